@@ -1,0 +1,119 @@
+//! The catalogue of diagnostics: a code is never reused, and each has a page in `explain/`.
+
+use super::Severity;
+
+macro_rules! codes {
+    ($($code:ident $severity:ident $title:literal)*) => {
+        /// The name of a mistake. `E` codes are mistakes of the text, the scene or the run, `L` codes physics rules.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Code { $(#[doc = $title] $code),* }
+
+        impl Code {
+            /// Every code, in order.
+            pub const ALL: &'static [Code] = &[$(Code::$code),*];
+
+            pub fn as_str(self) -> &'static str {
+                match self { $(Code::$code => stringify!($code)),* }
+            }
+
+            /// What is wrong, in a few words.
+            pub fn title(self) -> &'static str {
+                match self { $(Code::$code => $title),* }
+            }
+
+            /// What the code weighs where nobody says otherwise.
+            pub fn severity(self) -> Severity {
+                match self { $(Code::$code => Severity::$severity),* }
+            }
+
+            /// The page that `trackbed explain` prints.
+            pub fn page(self) -> &'static str {
+                match self { $(Code::$code => include_str!(concat!("../../explain/", stringify!($code), ".md"))),* }
+            }
+        }
+    };
+}
+
+codes! {
+    E0101 Error "text that cannot be read here"
+    E0102 Error "file that is not readable text"
+    E0103 Error "beyond the bounds of the language"
+    E0104 Error "bracket without its partner"
+    E0105 Error "spelling of another language"
+    E0106 Error "text without its closing quote"
+    E0201 Error "unknown name"
+    E0202 Error "name declared twice"
+    E0203 Error "names that need each other"
+    E0204 Error "module not found"
+    E0205 Error "base of another kind"
+    E0206 Error "modules that use each other"
+    E0207 Error "word that cannot be a name"
+    E0301 Error "number without its unit"
+    E0302 Error "wrong dimension"
+    E0303 Error "unknown unit"
+    E0304 Error "basis missing or wrong"
+    E0305 Error "operands that do not fit together"
+    E0401 Error "unknown kind"
+    E0402 Error "unknown field"
+    E0403 Error "missing field"
+    E0404 Error "field given twice"
+    E0405 Error "value out of range"
+    E0406 Error "value of another form"
+    E0407 Error "values that contradict each other"
+    E0408 Error "unknown word"
+    E0409 Error "declarations that exclude each other"
+    E0410 Warning "hole to be filled before a run"
+    E0411 Error "not in this version"
+    E0412 Warning "declaration that nothing uses"
+    E0501 Error "place off the track"
+    E0502 Error "section that does not fit its sleepers"
+    E0503 Error "train longer than its track"
+    E0504 Error "transitions that do not match the sections"
+    E0505 Error "span that does not ascend"
+    E0601 Error "scene without something to run"
+    E0602 Error "axle counts that do not divide"
+    E0603 Error "step too coarse to be stable"
+    E0801 Error "no equilibrium found"
+    E0802 Error "output folder that cannot be used"
+    E0803 Error "checkpoint of another scene"
+    E0804 Error "expectation not met"
+    L1001 Warning "stiffness jump without mitigation"
+    L1002 Warning "speed near the critical speed"
+    L1003 Warning "track too short for its ends to be far"
+    L1004 Warning "settlement law outside its calibration"
+    L1005 Warning "time step coarse for the contact"
+    L1006 Warning "update interval that overshoots"
+    L1007 Warning "sleeper passing near a vehicle resonance"
+}
+
+impl Code {
+    /// The code that a person typed, in any case.
+    pub fn parse(text: &str) -> Option<Code> {
+        Code::ALL.iter().copied().find(|c| c.as_str().eq_ignore_ascii_case(text))
+    }
+
+    /// The snake_case name under which a scenario allows or denies a physics rule.
+    pub fn rule(self) -> Option<&'static str> {
+        Some(match self {
+            Code::L1001 => "stiffness_jump",
+            Code::L1002 => "critical_speed",
+            Code::L1003 => "track_too_short",
+            Code::L1004 => "law_outside_calibration",
+            Code::L1005 => "coarse_time_step",
+            Code::L1006 => "update_overshoot",
+            Code::L1007 => "passing_frequency",
+            _ => return None,
+        })
+    }
+
+    /// The physics rule of that name.
+    pub fn of_rule(name: &str) -> Option<Code> {
+        Code::ALL.iter().copied().find(|c| c.rule() == Some(name))
+    }
+}
+
+impl std::fmt::Display for Code {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.as_str())
+    }
+}

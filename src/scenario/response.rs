@@ -1,0 +1,172 @@
+//! Responses by name, and the expressions over them that `expect` compares.
+
+use crate::diag::Span;
+use crate::syntax::tree::{BinaryOp, Comparison};
+use serde::{Deserialize, Serialize};
+
+/// A quantity that a run yields.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Response {
+    /// Force of the rail on a pad, N, per seat.
+    RailSeatLoad,
+    /// Force of half a sleeper on its support, N, never negative.
+    ContactForce,
+    /// The same without a vehicle.
+    GravityContactForce,
+    /// Force of a wheel on the rail, N.
+    WheelForce,
+    /// Downward displacement of the rail from the unloaded state of that axle count, m.
+    RailDisplacement,
+    /// Level of the unloaded rail below the level as built, m.
+    RailLevel,
+    /// Sagging rail moment, N m.
+    RailMoment,
+    /// Permanent downward move of a support, m.
+    Settlement,
+    /// Gap under a sleeper of the unloaded track, m.
+    Void,
+    /// Downward displacement of a sleeper from the unloaded state, m.
+    SleeperDisplacement,
+    /// m/s, downward.
+    SleeperVelocity,
+    /// m/s^2, downward.
+    SleeperAcceleration,
+    /// N/m per seat.
+    SupportStiffness,
+    /// Time without contact of sleeper and support during a passage, s.
+    ContactLoss,
+    /// Median settlement far from every transition, m.
+    FarFieldSettlement,
+    /// Largest settlement less the far-field one, m.
+    DifferentialSettlement,
+    /// Number of sleepers with a void.
+    VoidedSleepers,
+}
+
+/// Where a response exists.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    Seat,
+    Rail,
+    Wheel,
+    Scene,
+}
+
+/// How a field of values becomes one number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Reduction {
+    Max,
+    Min,
+    Mean,
+    /// Chainage at which the largest value stands, m.
+    PlaceOfMax,
+    /// A response that is one number already.
+    Itself,
+}
+
+/// `max(contact_force, over = -20 .. -1 sleepers, after = 100 axles)`
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Measure {
+    pub reduction: Reduction,
+    pub response: Response,
+    /// Chainage, m, ends included; everywhere where absent.
+    pub over: Option<(f64, f64)>,
+    /// Axle count; the last one where absent.
+    pub after: Option<u64>,
+}
+
+/// An expression over measures, in SI units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Expression {
+    Number(f64),
+    Measure(Measure),
+    Binary(Box<Expression>, BinaryOp, Box<Expression>),
+    Negate(Box<Expression>),
+}
+
+/// A comparison that must hold after the run: one more operand than operators.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Expectation {
+    /// As written, for messages.
+    pub text: String,
+    pub span: Span,
+    pub operands: Vec<Expression>,
+    pub operators: Vec<Comparison>,
+    /// The unit in which its numbers read well, and its size in SI.
+    pub unit: (String, f64),
+}
+
+impl Response {
+    pub const ALL: &'static [Response] = &[
+        Response::RailSeatLoad,
+        Response::ContactForce,
+        Response::GravityContactForce,
+        Response::WheelForce,
+        Response::RailDisplacement,
+        Response::RailLevel,
+        Response::RailMoment,
+        Response::Settlement,
+        Response::Void,
+        Response::SleeperDisplacement,
+        Response::SleeperVelocity,
+        Response::SleeperAcceleration,
+        Response::SupportStiffness,
+        Response::ContactLoss,
+        Response::FarFieldSettlement,
+        Response::DifferentialSettlement,
+        Response::VoidedSleepers,
+    ];
+
+    pub fn name(self) -> &'static str {
+        match self {
+            Response::RailSeatLoad => "rail_seat_load",
+            Response::ContactForce => "contact_force",
+            Response::GravityContactForce => "gravity_contact_force",
+            Response::WheelForce => "wheel_force",
+            Response::RailDisplacement => "rail_displacement",
+            Response::RailLevel => "rail_level",
+            Response::RailMoment => "rail_moment",
+            Response::Settlement => "settlement",
+            Response::Void => "void",
+            Response::SleeperDisplacement => "sleeper_displacement",
+            Response::SleeperVelocity => "sleeper_velocity",
+            Response::SleeperAcceleration => "sleeper_acceleration",
+            Response::SupportStiffness => "support_stiffness",
+            Response::ContactLoss => "contact_loss",
+            Response::FarFieldSettlement => "far_field_settlement",
+            Response::DifferentialSettlement => "differential_settlement",
+            Response::VoidedSleepers => "voided_sleepers",
+        }
+    }
+
+    pub fn of_name(name: &str) -> Option<Response> {
+        Response::ALL.iter().copied().find(|r| r.name() == name)
+    }
+
+    pub fn place(self) -> Place {
+        match self {
+            Response::WheelForce => Place::Wheel,
+            Response::RailDisplacement | Response::RailLevel | Response::RailMoment => Place::Rail,
+            Response::FarFieldSettlement | Response::DifferentialSettlement | Response::VoidedSleepers => Place::Scene,
+            _ => Place::Seat,
+        }
+    }
+
+    /// The SI unit of its values.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Response::RailSeatLoad | Response::ContactForce | Response::GravityContactForce | Response::WheelForce => {
+                "N"
+            }
+            Response::RailMoment => "N m",
+            Response::SleeperVelocity => "m/s",
+            Response::SleeperAcceleration => "m/s^2",
+            Response::SupportStiffness => "N/m",
+            Response::ContactLoss => "s",
+            Response::VoidedSleepers => "1",
+            _ => "m",
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! What acts on the track: vehicles, trains and test loads, and the law by which the supports settle.
+
+use super::Given;
+use serde::{Deserialize, Serialize};
+
+/// A vehicle on two bogies of two axles each, as carried by **one rail**: half of every mass, inertia and stiffness.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Vehicle {
+    pub name: String,
+    /// kg.
+    pub car_body_mass: Given,
+    /// kg m^2.
+    pub car_body_pitch_inertia: Given,
+    /// kg, of each bogie.
+    pub bogie_mass: Given,
+    /// kg m^2, of each bogie.
+    pub bogie_pitch_inertia: Given,
+    /// Distance of the bogie centres, m.
+    pub bogie_spacing: Given,
+    /// kg, of each wheel with its half axle.
+    pub wheel_mass: Given,
+    /// Distance of the axles of a bogie, m.
+    pub wheelset_spacing: Given,
+    /// m, for the drawing.
+    pub wheel_radius: f64,
+    /// N/m and N s/m, of each wheel.
+    pub primary_stiffness: Given,
+    pub primary_damping: Given,
+    /// N/m and N s/m, of each bogie.
+    pub secondary_stiffness: Given,
+    pub secondary_damping: Given,
+    /// Hertz constant of wheel on rail, N/m^1.5.
+    pub hertz: Given,
+    /// Over the couplers, m; given where a train needs it.
+    pub length: Option<Given>,
+}
+
+impl Vehicle {
+    /// Number of axles.
+    pub const AXLES: u64 = 4;
+
+    /// Mass over one rail, kg.
+    pub fn mass(&self) -> f64 {
+        *self.car_body_mass + 2.0 * *self.bogie_mass + 4.0 * *self.wheel_mass
+    }
+
+    /// Distances of the four wheels behind the leading one, m.
+    pub fn wheel_offsets(&self) -> [f64; 4] {
+        let (bogies, wheels) = (*self.bogie_spacing, *self.wheelset_spacing);
+        [0.0, wheels, bogies, bogies + wheels]
+    }
+}
+
+/// Vehicles that run together at one speed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Train {
+    pub name: String,
+    /// In the order of the train, the leading one first.
+    pub vehicles: Vec<Vehicle>,
+    /// m/s.
+    pub speed: Given,
+    pub direction: Direction,
+}
+
+impl Train {
+    pub fn axles(&self) -> u64 {
+        Vehicle::AXLES * self.vehicles.len() as u64
+    }
+
+    /// Distance of each vehicle's leading wheel behind the train's leading wheel, m. Vehicles of a train are centred
+    /// between their couplers.
+    pub fn vehicle_offsets(&self) -> Vec<f64> {
+        let mut offsets = Vec::with_capacity(self.vehicles.len());
+        let mut front = 0.0; // of the vehicle's coupler, behind that of the train
+        for vehicle in &self.vehicles {
+            let wheels = vehicle.wheel_offsets()[3];
+            let length = vehicle.length.map_or(wheels, |l| *l);
+            offsets.push(front + (length - wheels) / 2.0);
+            front += length;
+        }
+        let first = offsets.first().copied().unwrap_or(0.0);
+        offsets.iter().map(|o| o - first).collect()
+    }
+
+    /// Distance from the first to the last wheel, m.
+    pub fn wheel_base(&self) -> f64 {
+        match (self.vehicle_offsets().last(), self.vehicles.last()) {
+            (Some(offset), Some(vehicle)) => offset + vehicle.wheel_offsets()[3],
+            _ => 0.0,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Direction {
+    /// As x grows.
+    Forward,
+    Backward,
+    /// Every second train the other way.
+    Both,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Traffic {
+    pub train: Train,
+    /// Axles of the whole run.
+    pub total: Given<u64>,
+}
+
+/// A constant force on a track at rest.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StaticLoad {
+    pub name: String,
+    pub on: Target,
+    /// Chainage, m.
+    pub x: f64,
+    /// N over one rail, positive down.
+    pub force: Given,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Target {
+    Rail,
+    Sleepers,
+}
+
+/// By what rule a support settles under the peaks of its contact force.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SettlementLaw {
+    pub name: String,
+    pub form: LawForm,
+    /// Range of peak forces per seat that the law was calibrated for, N.
+    pub loads: Option<(f64, f64)>,
+    /// Range of axle counts that it was calibrated for.
+    pub cycles: Option<(f64, f64)>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum LawForm {
+    /// Varandas, Hölscher and Silva (2014): `reference_force` F0 [N] for `reference_cycles` N0 gives `gamma` [m].
+    Varandas { alpha: f64, beta: f64, gamma: f64, reference_cycles: f64, reference_force: f64 },
+}

@@ -1,0 +1,1 @@
+//! Solvers: SI numbers in, SI numbers out.
