@@ -4,5 +4,7 @@ pub mod diag;
 pub mod linalg;
 pub mod results;
 pub mod scenario;
+pub mod schema;
 pub mod solvers;
 pub mod syntax;
+pub mod units;

@@ -1,0 +1,562 @@
+//! The table of kinds and fields. Ranges are in the unit of their field; `per` names the basis of the range first.
+
+use super::{Alternative, Basis, Field, Form, Kind, Measure, Need, Role, Word};
+
+const fn field(name: &'static str, form: Form, need: Need, doc: &'static str) -> Field {
+    Field { name, form, need, doc }
+}
+const fn required(name: &'static str, form: Form, doc: &'static str) -> Field {
+    field(name, form, Need::Required, doc)
+}
+const fn optional(name: &'static str, form: Form, doc: &'static str) -> Field {
+    field(name, form, Need::Optional, doc)
+}
+const fn default(name: &'static str, form: Form, text: &'static str, doc: &'static str) -> Field {
+    field(name, form, Need::Default(text), doc)
+}
+const fn way(name: &'static str, form: Form, doc: &'static str) -> Field {
+    field(name, form, Need::Alternative, doc)
+}
+
+const fn measure(unit: &'static str, min: f64, max: f64) -> Measure {
+    Measure { unit, min, max, basis: None, varies: false }
+}
+const fn number(unit: &'static str, min: f64, max: f64) -> Form {
+    Form::Number(measure(unit, min, max))
+}
+const fn per(unit: &'static str, min: f64, max: f64, basis: &'static Basis) -> Form {
+    Form::Number(Measure { basis: Some(basis), ..measure(unit, min, max) })
+}
+/// A number that may vary along the track.
+const fn along(form: Form) -> Form {
+    match form {
+        Form::Number(m) => Form::Number(Measure { varies: true, ..m }),
+        other => other,
+    }
+}
+const fn word(name: &'static str, doc: &'static str) -> Word {
+    Word { name, doc, arguments: &[], planned: false }
+}
+const fn planned(name: &'static str) -> Word {
+    Word { name, doc: "not in this version", arguments: &[], planned: true }
+}
+const fn either(ways: &'static [&'static [&'static str]]) -> Alternative {
+    Alternative { ways, default: None }
+}
+
+const SLEEPER_OR_SEAT: Basis = Basis { names: &[("sleeper", 0.5), ("seat", 1.0)], assumed: Some("sleeper") };
+const SEAT_OR_SLEEPER: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: None };
+const RAIL_OR_TRACK: Basis = Basis { names: &[("rail", 1.0), ("track", 0.5)], assumed: None };
+const FORCE: Basis = Basis { names: &[("rail", 1.0), ("track", 0.5), ("seat", 1.0), ("sleeper", 0.5)], assumed: None };
+const VEHICLE_OR_RAIL: Basis = Basis { names: &[("vehicle", 0.5), ("rail", 1.0)], assumed: Some("vehicle") };
+const BOGIE_OR_RAIL: Basis = Basis { names: &[("bogie", 0.5), ("rail", 1.0)], assumed: None };
+const WHEELSET_OR_WHEEL: Basis = Basis { names: &[("wheelset", 0.5), ("wheel", 1.0)], assumed: None };
+const PRIMARY: Basis =
+    Basis { names: &[("wheel", 1.0), ("wheelset", 0.5), ("bogie", 0.25), ("rail", 1.0)], assumed: None };
+const SEAT: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: Some("seat") };
+
+const NONE: &[Word] = &[word("none", "absent")];
+const AUTO: &[Word] = &[word("auto", "chosen by the planner")];
+const RAIL: Form = Form::OneOf(&[Form::Object("rail"), Form::Words(NONE)]);
+const PAD: Form = Form::OneOf(&[Form::Object("pad"), Form::Words(NONE)]);
+const SLEEPER: Form = Form::OneOf(&[Form::Object("sleeper"), Form::Words(NONE)]);
+const SLAB: Form = Form::OneOf(&[Form::Object("slab"), Form::Words(NONE)]);
+const SUPPORT: Form = Form::OneOf(&[
+    Form::Object("support"),
+    Form::Words(&[word("rigid", "a seat that does not move"), word("none", "absent")]),
+]);
+const AXLES_OR_MASS: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 1e-6, 1e4)]);
+const AXLE_COUNT: Form = number("axles", 0.0, 1e9);
+
+/// Every kind, in the order of `trackbed docs`.
+pub const KINDS: &[Kind] = &[
+    Kind {
+        name: "scenario",
+        doc: "What the file is about, and which physics rules it silences or enforces.",
+        role: Role::Scene { once: true },
+        fields: &[
+            optional("title", Form::Text, "heads the report; the file's name where absent"),
+            optional(
+                "allow",
+                Form::Pairs { key: &Form::Rule, value: &Form::Text, implied: None },
+                "physics rules silenced, each with a reason",
+            ),
+            optional("deny", Form::List(&Form::Rule), "physics rules made errors"),
+        ],
+        alternatives: &[],
+        planned: &[],
+    },
+    Kind {
+        name: "rail",
+        doc: "One rail as a beam.",
+        role: Role::Part,
+        fields: &[
+            way("mass", number("kg/m", 25.0, 80.0), "of one rail"),
+            way("density", number("kg/m^3", 7000.0, 8100.0), "of the steel"),
+            way("area", number("cm^2", 30.0, 110.0), "of the cross-section"),
+            way(
+                "bending_stiffness",
+                number("MN m^2", 1.0, 12.0),
+                "EI, vertical; a stiffer rail spreads the load further",
+            ),
+            way("youngs_modulus", number("GPa", 190.0, 220.0), "of the steel"),
+            way("second_moment", number("cm^4", 500.0, 5000.0), "about the horizontal axis"),
+            default("height", number("mm", 100.0, 200.0), "172 mm", "for the drawing"),
+        ],
+        alternatives: &[
+            either(&[&["mass"], &["density", "area"]]),
+            either(&[&["bending_stiffness"], &["youngs_modulus", "second_moment"]]),
+        ],
+        planned: &["shear_stiffness"],
+    },
+    Kind {
+        name: "pad",
+        doc: "A rail pad: a spring and a damper between rail and sleeper, under one rail.",
+        role: Role::Part,
+        fields: &[
+            required("stiffness", along(number("MN/m", 5.0, 3000.0)), "dynamic, of one pad"),
+            way("damping", along(number("kN s/m", 0.0, 6000.0)), "of one pad"),
+            way("damping_time", number("ms", 0.0, 2.0), "damping / stiffness"),
+        ],
+        alternatives: &[Alternative {
+            ways: &[&["damping"], &["damping_time"]],
+            default: Some(("damping_time", "0.125 ms")),
+        }],
+        planned: &[],
+    },
+    Kind {
+        name: "sleeper",
+        doc: "A sleeper, rigid.",
+        role: Role::Part,
+        fields: &[
+            required("mass", per("kg", 50.0, 1000.0, &SLEEPER_OR_SEAT), "heavier sleepers lift less"),
+            default(
+                "bending",
+                Form::Words(&[word("rigid", "does not bend")]),
+                "rigid",
+                "bending of the sleeper itself",
+            ),
+            default("length", number("m", 2.0, 3.0), "2.6 m", "across the track"),
+            default("base_width", number("m", 0.2, 0.7), "0.3 m", "along the track"),
+            default("height", number("m", 0.1, 0.3), "0.21 m", ""),
+        ],
+        alternatives: &[],
+        planned: &["base_area", "seat_distance"],
+    },
+    Kind {
+        name: "slab",
+        doc: "A slab: a beam on a Winkler foundation that carries the pads.",
+        role: Role::Part,
+        fields: &[
+            required("bending_stiffness", per("MN m^2", 1.0, 5000.0, &RAIL_OR_TRACK), "EI, vertical"),
+            required("mass", per("kg/m", 200.0, 10000.0, &RAIL_OR_TRACK), "per metre of track"),
+            required("foundation_stiffness", per("MN/m^2", 5.0, 5000.0, &RAIL_OR_TRACK), "per metre of track"),
+            default("foundation_damping_time", number("ms", 0.0, 5.0), "1 ms", "damping / stiffness of the foundation"),
+        ],
+        alternatives: &[],
+        planned: &[],
+    },
+    Kind {
+        name: "support",
+        doc: "What carries a sleeper: a spring and a damper that push but do not pull, and that settle.",
+        role: Role::Part,
+        fields: &[
+            required(
+                "stiffness",
+                along(per("MN/m", 1.0, 1000.0, &SEAT_OR_SLEEPER)),
+                "of ballast and subgrade together",
+            ),
+            way("damping", along(per("kN s/m", 0.0, 5000.0, &SEAT_OR_SLEEPER)), ""),
+            way("damping_time", number("ms", 0.0, 5.0), "damping / stiffness"),
+        ],
+        alternatives: &[Alternative {
+            ways: &[&["damping"], &["damping_time"]],
+            default: Some(("damping_time", "1 ms")),
+        }],
+        planned: &[],
+    },
+    Kind {
+        name: "trackform",
+        doc: "A way to build track: what repeats from seat to seat.",
+        role: Role::Part,
+        fields: &[
+            optional("rail", RAIL, ""),
+            optional("pad", PAD, ""),
+            optional("sleeper", SLEEPER, "a slab has none"),
+            required("spacing", along(number("m", 0.3, 1.2)), "of sleepers or seats"),
+            optional("slab", SLAB, "carries the seats instead of sleepers and support"),
+            optional("support", SUPPORT, "carries the sleepers"),
+        ],
+        alternatives: &[],
+        planned: &["usp", "layers", "auxiliary_rails", "settlement"],
+    },
+    Kind {
+        name: "track",
+        doc: "The track: sections of trackform side by side. x = 0 is the first transition.",
+        role: Role::Scene { once: true },
+        fields: &[
+            required(
+                "sections",
+                Form::Pairs {
+                    key: &Form::Object("trackform"),
+                    value: &Form::OneOf(&[number("m", 0.3, 100_000.0), number("sleepers", 1.0, 200_000.0)]),
+                    implied: None,
+                },
+                "left to right, each with its length",
+            ),
+            optional(
+                "transitions",
+                Form::Pairs {
+                    key: &Form::Text,
+                    value: &Form::Words(&[
+                        word("soft_to_stiff", "the softer side lies at smaller x"),
+                        word("stiff_to_soft", "the softer side lies at greater x"),
+                    ]),
+                    implied: None,
+                },
+                "names and sides of the boundaries; a single one is `soft_to_stiff`",
+            ),
+            default(
+                "rail_ends",
+                Form::Words(&[
+                    word("clamped", "held level, at the level of the settled track there"),
+                    word("pinned", "held at that level, free to turn"),
+                    word("free", "not held"),
+                    planned("absorbing"),
+                ]),
+                "clamped",
+                "what holds the rail at the ends of the model",
+            ),
+        ],
+        alternatives: &[],
+        planned: &["stretches", "bed_width", "bed_ends", "base", "irregularity"],
+    },
+    Kind {
+        name: "vehicle",
+        doc: "A vehicle on two bogies of two axles each: a multibody system of 10 degrees of freedom and four wheel-rail contacts.",
+        role: Role::Part,
+        fields: &[
+            way(
+                "axle_load",
+                Form::OneOf(&[number("t", 1.0, 40.0), number("kN", 9.81, 392.4)]),
+                "of each axle; the car body's mass follows and scales an inherited `pitch_inertia`",
+            ),
+            required("car_body", Form::Object("car_body"), ""),
+            required("bogie", Form::Object("bogie"), "each of the two"),
+            required("wheelset", Form::Object("wheelset"), "each of the four"),
+            required("primary", Form::Object("primary_suspension"), "between wheelset and bogie"),
+            required("secondary", Form::Object("secondary_suspension"), "between bogie and car body"),
+            default(
+                "contact",
+                Form::Words(&[Word {
+                    name: "hertz",
+                    doc: "force = constant x indentation^1.5, no tension",
+                    arguments: &[default("constant", number("GN/m^1.5", 50.0, 200.0), "100 GN/m^1.5", "")],
+                    planned: false,
+                }]),
+                "hertz(100 GN/m^1.5)",
+                "wheel on rail",
+            ),
+            optional("length", number("m", 5.0, 40.0), "over couplers; needed in trains of several vehicles"),
+        ],
+        alternatives: &[either(&[&["axle_load"], &["car_body.mass"]])],
+        planned: &[],
+    },
+    Kind {
+        name: "car_body",
+        doc: "The car body of a vehicle.",
+        role: Role::Nested,
+        fields: &[
+            way("mass", per("t", 1.0, 200.0, &VEHICLE_OR_RAIL), ""),
+            way("pitch_inertia", per("kg m^2", 1e4, 1e8, &VEHICLE_OR_RAIL), "about the transverse axis"),
+            way("radius_of_gyration", number("m", 1.0, 12.0), "pitch inertia = mass x radius^2"),
+        ],
+        alternatives: &[either(&[&["pitch_inertia"], &["radius_of_gyration"]])],
+        planned: &[],
+    },
+    Kind {
+        name: "bogie",
+        doc: "One bogie frame.",
+        role: Role::Nested,
+        fields: &[
+            required("mass", per("kg", 100.0, 20_000.0, &BOGIE_OR_RAIL), ""),
+            required("pitch_inertia", per("kg m^2", 50.0, 50_000.0, &BOGIE_OR_RAIL), "about the transverse axis"),
+            required("spacing", number("m", 2.0, 25.0), "of the bogie centres"),
+        ],
+        alternatives: &[],
+        planned: &[],
+    },
+    Kind {
+        name: "wheelset",
+        doc: "One wheelset.",
+        role: Role::Nested,
+        fields: &[
+            required("mass", per("kg", 300.0, 5000.0, &WHEELSET_OR_WHEEL), ""),
+            optional(
+                "rolling_inertia",
+                per("kg m^2", 1.0, 1000.0, &WHEELSET_OR_WHEEL),
+                "kept; vertical dynamics has no use for it",
+            ),
+            required("spacing", number("m", 1.0, 4.0), "of the axles of a bogie"),
+            default("radius", number("m", 0.2, 0.7), "0.46 m", ""),
+        ],
+        alternatives: &[],
+        planned: &[],
+    },
+    Kind {
+        name: "primary_suspension",
+        doc: "Springs and dampers between wheelset and bogie.",
+        role: Role::Nested,
+        fields: &[
+            required("stiffness", per("MN/m", 0.1, 100.0, &PRIMARY), ""),
+            required("damping", per("kN s/m", 0.0, 1000.0, &PRIMARY), ""),
+        ],
+        alternatives: &[],
+        planned: &[],
+    },
+    Kind {
+        name: "secondary_suspension",
+        doc: "Springs and dampers between bogie and car body.",
+        role: Role::Nested,
+        fields: &[
+            required("stiffness", per("MN/m", 0.1, 100.0, &BOGIE_OR_RAIL), ""),
+            required("damping", per("kN s/m", 0.0, 1000.0, &BOGIE_OR_RAIL), ""),
+        ],
+        alternatives: &[],
+        planned: &[],
+    },
+    Kind {
+        name: "train",
+        doc: "Vehicles that run together.",
+        role: Role::Part,
+        fields: &[
+            required(
+                "vehicles",
+                Form::Pairs {
+                    key: &Form::Object("vehicle"),
+                    value: &Form::Integer { min: 1, max: 100 },
+                    implied: Some("1"),
+                },
+                "in order, the leading one first",
+            ),
+            required("speed", along(number("km/h", 1.0, 600.0)), ""),
+            default(
+                "direction",
+                Form::Words(&[
+                    word("forward", "as x grows"),
+                    word("backward", "the other way"),
+                    word("both", "every second train the other way"),
+                ]),
+                "forward",
+                "",
+            ),
+        ],
+        alternatives: &[],
+        planned: &[],
+    },
+    Kind {
+        name: "traffic",
+        doc: "The trains of the whole run.",
+        role: Role::Scene { once: true },
+        fields: &[
+            required(
+                "trains",
+                Form::Pairs { key: &Form::Object("train"), value: &number("%", 0.0, 100.0), implied: Some("100 %") },
+                "with their shares of `total`",
+            ),
+            required("total", AXLES_OR_MASS, "axles, or the mass that they carry"),
+        ],
+        alternatives: &[],
+        planned: &["order"],
+    },
+    Kind {
+        name: "load",
+        doc: "A test load on a track at rest.",
+        role: Role::Scene { once: false },
+        fields: &[
+            required("on", Form::Words(&[word("rail", ""), word("sleepers", "")]), "what it stands on"),
+            required("at", Form::List(&Form::Place), "one force at each place"),
+            optional("from", Form::Text, "the transition from which `at` counts; needed where there are several"),
+            required("force", per("kN", 0.0, 10_000.0, &FORCE), "constant, positive down"),
+        ],
+        alternatives: &[],
+        planned: &["total", "speed"],
+    },
+    Kind {
+        name: "law",
+        doc: "The settlement of a support under the peaks of its contact force.",
+        role: Role::Part,
+        fields: &[
+            required(
+                "form",
+                Form::Words(&[
+                    Word {
+                        name: "varandas",
+                        doc: "Varandas, Hölscher and Silva (2014): the integral over force of what each exceedance of that force adds",
+                        arguments: &[
+                            default("alpha", number("", 0.0, 5.0), "0.6", "exponent of the force"),
+                            default("beta", number("", 0.0, 5.0), "0.82", "how fast repeated load loses its effect"),
+                            default(
+                                "gamma",
+                                number("mm", 0.01, 1000.0),
+                                "10 mm",
+                                "settlement after `reference_cycles` of `reference_force`",
+                            ),
+                            default("reference_cycles", number("axles", 1.0, 1e12), "1_000_000 axles", "N0"),
+                            default("reference_force", per("kN", 0.1, 1000.0, &SEAT), "50 kN per seat", "F0"),
+                        ],
+                        planned: false,
+                    },
+                    planned("nasrollahi"),
+                    planned("sato"),
+                    planned("shenton"),
+                    planned("hettler"),
+                    planned("guerin"),
+                    planned("power"),
+                ]),
+                "",
+            ),
+            optional(
+                "loads",
+                Form::Interval(Measure { basis: Some(&SEAT), ..measure("kN", 0.0, 10_000.0) }),
+                "peak forces for which it was calibrated",
+            ),
+            optional("cycles", Form::Interval(measure("axles", 0.0, 1e12)), "axle counts for which it was calibrated"),
+        ],
+        alternatives: &[],
+        planned: &[],
+    },
+    Kind {
+        name: "solve",
+        doc: "How the answer is computed.",
+        role: Role::Scene { once: true },
+        fields: &[
+            default(
+                "substructure",
+                Form::Words(&[
+                    word("auto", "the cheapest tier that answers"),
+                    word("law", "a settlement law under each sleeper"),
+                    planned("cells"),
+                    planned("zone"),
+                    planned("full"),
+                ]),
+                "auto",
+                "the tier of the model under the sleepers",
+            ),
+            default("law", Form::Object("law"), "laws.varandas_2014", "by which the supports settle"),
+            default(
+                "update_every",
+                Form::OneOf(&[
+                    number("axles", 1.0, 1e9),
+                    Form::Words(&[
+                        Word {
+                            name: "geometric",
+                            doc: "blocks that grow with the axles so far",
+                            arguments: &[
+                                required("first", number("axles", 1.0, 1e9), "the smallest block"),
+                                required("ratio", number("", 0.001, 10.0), "block / axles so far"),
+                            ],
+                            planned: false,
+                        },
+                        planned("adaptive"),
+                    ]),
+                ]),
+                "geometric(4 axles, 0.2)",
+                "axles between two exchanges of forces and settlement",
+            ),
+            default(
+                "passages",
+                Form::Words(&[word("isolated", "trains run one by one"), planned("continuous")]),
+                "isolated",
+                "",
+            ),
+            default(
+                "beam",
+                Form::Words(&[word("euler", "Euler-Bernoulli"), planned("timoshenko")]),
+                "euler",
+                "beam theory of the rail",
+            ),
+            default("elements_per_bay", Form::Integer { min: 1, max: 32 }, "4", "beam elements between two seats"),
+            default(
+                "integrator",
+                Form::Words(&[
+                    Word {
+                        name: "generalised_alpha",
+                        doc: "Chung and Hulbert (1993)",
+                        arguments: &[default(
+                            "rho",
+                            number("", 0.0, 1.0),
+                            "0.85",
+                            "spectral radius at infinite frequency",
+                        )],
+                        planned: false,
+                    },
+                    planned("hht"),
+                    planned("newmark"),
+                ]),
+                "generalised_alpha(0.85)",
+                "time integration of track and vehicle",
+            ),
+            default(
+                "time_step",
+                Form::OneOf(&[number("s", 1e-7, 0.01), Form::Words(AUTO)]),
+                "auto",
+                "of track and vehicle",
+            ),
+            default("start", Form::OneOf(&[Form::Place, Form::Words(AUTO)]), "auto", "of the leading wheel"),
+            default("finish", Form::OneOf(&[Form::Place, Form::Words(AUTO)]), "auto", "of the leading wheel"),
+            default("gravity", number("m/s^2", 0.0, 20.0), "9.81 m/s^2", ""),
+            default("seed", Form::Integer { min: 0, max: 1_000_000_000 }, "1", "of everything random"),
+        ],
+        alternatives: &[],
+        planned: &[
+            "window",
+            "coupling",
+            "support_from",
+            "grain_step",
+            "zone_size",
+            "tolerance",
+            "budget",
+            "memory",
+            "symmetry",
+            "repeats",
+        ],
+    },
+    Kind {
+        name: "record",
+        doc: "Histories to keep. Tables along the track are always written.",
+        role: Role::Scene { once: false },
+        fields: &[
+            required("quantities", Form::List(&Form::Response), "what to keep"),
+            optional("at", Form::List(&Form::Place), "at these seats"),
+            optional("over", Form::Span, "at all seats of a span"),
+            optional("from", Form::Text, "the transition from which places count; needed where there are several"),
+            optional("after", Form::List(&AXLES_OR_MASS), "of a passage at these axle counts; the last where absent"),
+            optional("every", number("s", 1e-7, 1.0), "sampling interval"),
+        ],
+        alternatives: &[],
+        planned: &["depth", "volume", "states"],
+    },
+    Kind {
+        name: "expect",
+        doc: "What the run must show; a miss is named and sets the exit code.",
+        role: Role::Scene { once: false },
+        fields: &[required("that", Form::List(&Form::Comparison), "comparisons of responses")],
+        alternatives: &[],
+        planned: &[],
+    },
+];
+
+/// Fields that every kind has.
+pub const COMMON: &[Field] = &[
+    optional("source", Form::Text, "where the data comes from"),
+    optional(
+        "evidence",
+        Form::Words(&[
+            word("read", "taken over from its source"),
+            word("derived", "computed from other data"),
+            word("unchecked", "common knowledge, to be checked before it is relied on"),
+        ]),
+        "how the data was taken over",
+    ),
+];

@@ -1,0 +1,208 @@
+//! The one vocabulary: every kind, field, word, unit, range and default of the language.
+//!
+//! Checking, defaults and `trackbed docs` all read this table; a field is added in one place, [`kinds`].
+
+mod docs;
+mod kinds;
+
+pub use docs::{index, page};
+pub use kinds::{COMMON, KINDS};
+
+/// A kind of declaration, or of a value that only stands inside one.
+#[derive(Debug)]
+pub struct Kind {
+    pub name: &'static str,
+    pub doc: &'static str,
+    pub role: Role,
+    pub fields: &'static [Field],
+    pub alternatives: &'static [Alternative],
+    /// Fields of the language that this version does not read yet.
+    pub planned: &'static [&'static str],
+}
+
+/// What a declaration of a kind does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// A thing that others name.
+    Part,
+    /// Acts by itself in the main file.
+    Scene {
+        /// At most one a scene.
+        once: bool,
+    },
+    /// Stands only as the value of a field.
+    Nested,
+}
+
+/// A field of a kind, or an argument of a word.
+#[derive(Debug)]
+pub struct Field {
+    pub name: &'static str,
+    pub form: Form,
+    pub need: Need,
+    pub doc: &'static str,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Need {
+    Required,
+    Optional,
+    /// Used where nothing is given, written in the language itself.
+    Default(&'static str),
+    /// Needed or not as its [`Alternative`] says.
+    Alternative,
+}
+
+/// What may stand as a value.
+#[derive(Debug)]
+pub enum Form {
+    Text,
+    Number(Measure),
+    /// A plain whole number.
+    Integer {
+        min: u32,
+        max: u32,
+    },
+    Words(&'static [Word]),
+    /// An object of that kind, or the name of one.
+    Object(&'static str),
+    OneOf(&'static [Form]),
+    List(&'static Form),
+    /// `[key: value]`; where only a key stands, its value is `implied`.
+    Pairs {
+        key: &'static Form,
+        value: &'static Form,
+        implied: Option<&'static str>,
+    },
+    /// `from .. to` of numbers.
+    Interval(Measure),
+    /// A place or a span along the track, in metres or in sleepers.
+    Place,
+    Span,
+    Response,
+    Rule,
+    Comparison,
+}
+
+/// A number with its unit, range and basis.
+#[derive(Debug, Clone, Copy)]
+pub struct Measure {
+    /// The unit in which the range stands and in which messages speak; empty for a plain number.
+    pub unit: &'static str,
+    pub min: f64,
+    pub max: f64,
+    pub basis: Option<&'static Basis>,
+    /// May vary along the track, once profiles are read.
+    pub varies: bool,
+}
+
+/// Of what a value is: of one rail, or of a whole that the model halves.
+#[derive(Debug, PartialEq)]
+pub struct Basis {
+    /// Names with the factor to the value of one rail; the range is of the first.
+    pub names: &'static [(&'static str, f64)],
+    /// Taken where nothing is said; without it, leaving it out is an error.
+    pub assumed: Option<&'static str>,
+}
+
+/// A word that a field knows, bare or with arguments.
+#[derive(Debug)]
+pub struct Word {
+    pub name: &'static str,
+    pub doc: &'static str,
+    pub arguments: &'static [Field],
+    /// Known to the language, not to this version.
+    pub planned: bool,
+}
+
+/// Fields that say the same thing in different ways. Giving one way drops the inherited others; ways given together
+/// must agree within 2 %.
+#[derive(Debug)]
+pub struct Alternative {
+    /// Each way lists the paths that it needs.
+    pub ways: &'static [&'static [&'static str]],
+    /// Field and value where no way is given; without it one way is required.
+    pub default: Option<(&'static str, &'static str)>,
+}
+
+/// Kinds of the language that this version does not read yet.
+pub const PLANNED_KINDS: &[&str] = &["granular", "grading", "soil", "usp", "stretch", "tamping", "study"];
+
+/// The kind of that name, nested ones included.
+pub fn kind(name: &str) -> Option<&'static Kind> {
+    KINDS.iter().find(|k| k.name == name)
+}
+
+impl Kind {
+    pub fn field(&self, name: &str) -> Option<&'static Field> {
+        self.fields.iter().chain(COMMON).find(|f| f.name == name)
+    }
+}
+
+impl Basis {
+    pub fn factor(&self, name: &str) -> Option<f64> {
+        self.names.iter().find(|(n, _)| *n == name).map(|(_, f)| *f)
+    }
+
+    /// `per wheel, per wheelset or per bogie`
+    pub fn list(&self) -> String {
+        let names: Vec<String> = self.names.iter().map(|(n, _)| format!("`per {n}`")).collect();
+        crate::diag::nearest::or_list(&names)
+    }
+}
+
+impl Form {
+    /// What was expected, for a message: `a stiffness in MN/m`.
+    pub fn describe(&self) -> String {
+        match self {
+            Form::Text => "text in double quotes".into(),
+            Form::Number(m) if m.unit.is_empty() => "a plain number".into(),
+            Form::Number(m) => {
+                let dimension = crate::units::Dimension::of(m.unit);
+                match dimension.name() {
+                    Some(name) => format!("{name} in `{}`", m.unit),
+                    None if dimension.is_none() => format!("a share in `{}`", m.unit),
+                    None => format!("a quantity in `{}`", m.unit),
+                }
+            }
+            Form::Integer { .. } => "a whole number".into(),
+            Form::Words(words) => {
+                let names: Vec<String> = words.iter().filter(|w| !w.planned).map(|w| format!("`{}`", w.name)).collect();
+                crate::diag::nearest::or_list(&names)
+            }
+            Form::Object(kind) => format!("a {kind}"),
+            Form::OneOf(forms) => {
+                let names: Vec<String> = forms.iter().map(Form::describe).collect();
+                crate::diag::nearest::or_list(&names)
+            }
+            Form::List(item) => format!("a list of {}", item.describe()),
+            Form::Pairs { key, value, .. } => format!("a list of pairs, {}: {}", key.describe(), value.describe()),
+            Form::Interval(m) => format!("`from .. to` in `{}`", m.unit),
+            Form::Place => "a place in `m` or `sleepers`".into(),
+            Form::Span => "a span such as `-20 .. -1 sleepers`".into(),
+            Form::Response => "a response such as `rail_seat_load`".into(),
+            Form::Rule => "the name of a physics rule".into(),
+            Form::Comparison => "a comparison such as `max(settlement) < 3 mm`".into(),
+        }
+    }
+
+    /// The word of that name that the form knows.
+    pub fn word(&self, name: &str) -> Option<&'static Word> {
+        match self {
+            Form::Words(words) => words.iter().find(|w| w.name == name),
+            Form::OneOf(forms) => forms.iter().find_map(|f| f.word(name)),
+            Form::List(item) => item.word(name),
+            _ => None,
+        }
+    }
+
+    /// Every word that the form knows.
+    pub fn words(&self) -> Vec<&'static Word> {
+        match self {
+            Form::Words(words) => words.iter().collect(),
+            Form::OneOf(forms) => forms.iter().flat_map(Form::words).collect(),
+            Form::List(item) => item.words(),
+            _ => Vec::new(),
+        }
+    }
+}
