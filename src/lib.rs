@@ -1,5 +1,6 @@
 //! Trackbed: a language and a solver for railway transition zones.
 
+pub mod check;
 pub mod diag;
 pub mod linalg;
 pub mod results;

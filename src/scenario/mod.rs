@@ -48,8 +48,8 @@ pub struct Solve {
     pub integrator: Integrator,
     /// Beam elements between two neighbouring rail seats.
     pub elements_per_bay: Given<u32>,
-    /// s.
-    pub time_step: Given,
+    /// s; `None` is chosen by the planner.
+    pub time_step: Option<Given>,
     /// Chainage of the leading wheel at the start and at the end of a passage, m; `None` is chosen by the planner.
     pub start: Option<Given>,
     pub finish: Option<Given>,

@@ -78,6 +78,7 @@ fn form(form: &Form) -> String {
         Form::Pairs { key, value, .. } => format!("[{}: {}]", self::form(key), self::form(value)),
         Form::Object(kind) => (*kind).to_string(),
         Form::Text => "text".into(),
+        Form::Name => "name of a transition".into(),
         Form::Place => "place in m or sleepers".into(),
         Form::Span => "span in m or sleepers".into(),
         Form::Response => "response".into(),

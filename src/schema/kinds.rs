@@ -207,7 +207,7 @@ pub const KINDS: &[Kind] = &[
             optional(
                 "transitions",
                 Form::Pairs {
-                    key: &Form::Text,
+                    key: &Form::Name,
                     value: &Form::Words(&[
                         word("soft_to_stiff", "the softer side lies at smaller x"),
                         word("stiff_to_soft", "the softer side lies at greater x"),
@@ -376,7 +376,7 @@ pub const KINDS: &[Kind] = &[
         fields: &[
             required("on", Form::Words(&[word("rail", ""), word("sleepers", "")]), "what it stands on"),
             required("at", Form::List(&Form::Place), "one force at each place"),
-            optional("from", Form::Text, "the transition from which `at` counts; needed where there are several"),
+            optional("from", Form::Name, "the transition from which `at` counts; needed where there are several"),
             required("force", per("kN", 0.0, 10_000.0, &FORCE), "constant, positive down"),
         ],
         alternatives: &[],
@@ -530,7 +530,7 @@ pub const KINDS: &[Kind] = &[
             required("quantities", Form::List(&Form::Response), "what to keep"),
             optional("at", Form::List(&Form::Place), "at these seats"),
             optional("over", Form::Span, "at all seats of a span"),
-            optional("from", Form::Text, "the transition from which places count; needed where there are several"),
+            optional("from", Form::Name, "the transition from which places count; needed where there are several"),
             optional("after", Form::List(&AXLES_OR_MASS), "of a passage at these axle counts; the last where absent"),
             optional("every", number("s", 1e-7, 1.0), "sampling interval"),
         ],

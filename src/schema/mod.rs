@@ -79,6 +79,8 @@ pub enum Form {
     /// A place or a span along the track, in metres or in sleepers.
     Place,
     Span,
+    /// A bare name, of a transition.
+    Name,
     Response,
     Rule,
     Comparison,
@@ -180,6 +182,7 @@ impl Form {
             Form::Interval(m) => format!("`from .. to` in `{}`", m.unit),
             Form::Place => "a place in `m` or `sleepers`".into(),
             Form::Span => "a span such as `-20 .. -1 sleepers`".into(),
+            Form::Name => "a name".into(),
             Form::Response => "a response such as `rail_seat_load`".into(),
             Form::Rule => "the name of a physics rule".into(),
             Form::Comparison => "a comparison such as `max(settlement) < 3 mm`".into(),

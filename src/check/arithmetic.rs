@@ -1,0 +1,230 @@
+//! Numbers: literals with units, arithmetic with checked dimensions, and the paths that lead to numbers.
+
+use super::Checker;
+use super::modules::ScopeId;
+use super::value::{Number, Val};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::syntax::tree::{Argument, BinaryOp, Name, Path, UnitText, Value, ValueKind};
+use crate::units::{Dimension, UnitError, parse_unit};
+
+/// A number as evaluated, before any field has looked at it.
+#[derive(Debug, Clone)]
+pub(super) struct Raw {
+    pub value: f64,
+    pub dimension: Dimension,
+    /// The name after `per`, and its place.
+    pub basis: Option<(String, Span)>,
+    /// Where its literal stands, even behind a `let`.
+    pub span: Span,
+    /// A literal without a unit, which may only lack one.
+    pub bare: bool,
+}
+
+impl Checker<'_> {
+    /// Evaluates arithmetic; `None` where a diagnostic has been given.
+    pub fn raw(&mut self, value: &Value, scope: ScopeId) -> Option<Raw> {
+        let span = value.span;
+        match &value.kind {
+            ValueKind::Number { value, unit } => self.literal(*value, unit.as_ref(), span),
+            ValueKind::Negate(inner) => {
+                let inner = self.raw(inner, scope)?;
+                Some(Raw { value: -inner.value, span, ..inner })
+            }
+            ValueKind::Per(inner, basis) => {
+                let raw = self.raw(inner, scope)?;
+                Some(Raw { basis: Some((basis.text.clone(), basis.span)), ..raw })
+            }
+            ValueKind::Binary(left, op, right) => self.binary(left, *op, right, span, scope),
+            ValueKind::Path(path) => self.raw_path(path, scope),
+            ValueKind::Call { word, arguments } => self.function(word, arguments, span, scope),
+            ValueKind::Error => None,
+            ValueKind::Hole => {
+                self.report(Diagnostic::new(Code::E0410, "`?` cannot take part in arithmetic").at(span, "a hole"));
+                None
+            }
+            other => {
+                self.report(
+                    Diagnostic::new(Code::E0406, format!("expected a number, found {}", shape(other)))
+                        .at(span, "not a number"),
+                );
+                None
+            }
+        }
+    }
+
+    fn literal(&mut self, value: f64, unit: Option<&UnitText>, span: Span) -> Option<Raw> {
+        let Some(unit) = unit else {
+            return Some(Raw { value, dimension: Dimension::NONE, basis: None, span, bare: true });
+        };
+        match parse_unit(&unit.text) {
+            Ok(u) => Some(Raw { value: value * u.factor, dimension: u.dimension, basis: None, span, bare: false }),
+            Err(error) => {
+                self.report(unit_mistake(unit, &error));
+                None
+            }
+        }
+    }
+
+    fn raw_path(&mut self, path: &Path, scope: ScopeId) -> Option<Raw> {
+        let target = self.resolve(path, scope, &[])?;
+        if target.is_let {
+            let tree = self.scopes[target.id.scope].tree.clone();
+            let crate::syntax::tree::Item::Let(binding) = &tree.items[target.id.item] else { return None };
+            return self.within(target.id, path.span, |c| c.raw(&binding.value, target.id.scope));
+        }
+        let slot = self.slot_at(&target, path)?;
+        match slot.value {
+            Val::Number(n) => Some(Raw {
+                value: n.value,
+                dimension: n.dimension,
+                basis: n.basis.map(|b| (b.to_string(), path.span)),
+                span: path.span,
+                bare: false,
+            }),
+            Val::Error | Val::Hole => None,
+            _ => {
+                self.report(
+                    Diagnostic::new(Code::E0406, format!("expected a number, but `{}` is none", path.text()))
+                        .at(path.span, "not a number"),
+                );
+                None
+            }
+        }
+    }
+
+    fn binary(&mut self, left: &Value, op: BinaryOp, right: &Value, span: Span, scope: ScopeId) -> Option<Raw> {
+        let (a, b) = (self.raw(left, scope), self.raw(right, scope));
+        let (a, b) = (a?, b?);
+        let basis = |a: &Raw, b: &Raw| match (&a.basis, &b.basis) {
+            (Some(x), None) | (None, Some(x)) => Some(x.clone()),
+            (Some(x), Some(y)) if x.0 == y.0 => Some(x.clone()),
+            _ => None,
+        };
+        let raw = |value: f64, dimension: Dimension, basis| Raw { value, dimension, basis, span, bare: false };
+        let result = match op {
+            BinaryOp::Add | BinaryOp::Subtract => {
+                let bases_differ = matches!((&a.basis, &b.basis), (Some(x), Some(y)) if x.0 != y.0);
+                if a.dimension != b.dimension || bases_differ {
+                    let say = |r: &Raw| match &r.basis {
+                        Some((basis, _)) => format!("{} per {basis}", r.dimension.describe()),
+                        None => r.dimension.describe(),
+                    };
+                    self.report(
+                        Diagnostic::new(Code::E0305, format!("`{}` needs two values of the same kind", op.symbol()))
+                            .at(left.span, say(&a))
+                            .at(right.span, say(&b)),
+                    );
+                    return None;
+                }
+                let value = if op == BinaryOp::Add { a.value + b.value } else { a.value - b.value };
+                let bare = a.bare && b.bare;
+                Raw { bare, ..raw(value, a.dimension, basis(&a, &b)) }
+            }
+            BinaryOp::Multiply => raw(a.value * b.value, a.dimension * b.dimension, basis(&a, &b)),
+            BinaryOp::Divide => raw(a.value / b.value, a.dimension / b.dimension, basis(&a, &b)),
+            BinaryOp::Power => {
+                let hundredths = (b.value * 100.0).round();
+                let plain = b.dimension.is_none() && (hundredths - b.value * 100.0).abs() < 1e-9 && b.value.abs() <= 9.0;
+                let dimension = if plain { a.dimension.power(hundredths as i32) } else { None };
+                let Some(dimension) = dimension else {
+                    self.report(
+                        Diagnostic::new(Code::E0305, "an exponent is a plain number from -9 to 9")
+                            .at(right.span, b.dimension.describe()),
+                    );
+                    return None;
+                };
+                Raw { bare: a.bare, ..raw(a.value.powf(b.value), dimension, None) }
+            }
+        };
+        self.finite(result, span)
+    }
+
+    fn finite(&mut self, raw: Raw, span: Span) -> Option<Raw> {
+        if raw.value.is_finite() {
+            return Some(raw);
+        }
+        self.report(
+            Diagnostic::new(Code::E0405, "the result is not a finite number").at(span, "divides by zero or overflows"),
+        );
+        None
+    }
+
+    /// `sqrt`, `abs`, `min` and `max` of numbers.
+    fn function(&mut self, word: &Name, arguments: &[Argument], span: Span, scope: ScopeId) -> Option<Raw> {
+        if !matches!(word.text.as_str(), "sqrt" | "abs" | "min" | "max") {
+            let near = crate::diag::nearest::nearest(&word.text, ["sqrt", "abs", "min", "max"]);
+            self.report(
+                Diagnostic::new(Code::E0408, format!("expected a number, found the word `{}`", word.text))
+                    .at(word.span, "not a function of numbers")
+                    .maybe_help(near.map(|n| format!("did you mean `{n}`?"))),
+            );
+            return None;
+        }
+        let values: Vec<Option<Raw>> = arguments.iter().map(|a| self.raw(&a.value, scope)).collect();
+        let values: Vec<Raw> = values.into_iter().collect::<Option<_>>()?;
+        let one = matches!(word.text.as_str(), "sqrt" | "abs");
+        let Some(first) = values.first().filter(|_| !one || values.len() == 1) else {
+            let count = if one { "one value" } else { "at least one value" };
+            self.report(
+                Diagnostic::new(Code::E0406, format!("`{}` takes {count}, found {}", word.text, values.len()))
+                    .at(span, "here"),
+            );
+            return None;
+        };
+        if let Some(other) = values.iter().find(|v| v.dimension != first.dimension) {
+            self.report(
+                Diagnostic::new(Code::E0305, format!("`{}` needs values of the same kind", word.text))
+                    .at(other.span, other.dimension.describe())
+                    .at(first.span, first.dimension.describe()),
+            );
+            return None;
+        }
+        let numbers = values.iter().map(|v| v.value);
+        let (value, dimension) = match word.text.as_str() {
+            "sqrt" => (first.value.sqrt(), first.dimension.power(50)?),
+            "abs" => (first.value.abs(), first.dimension),
+            "min" => (numbers.fold(f64::INFINITY, f64::min), first.dimension),
+            _ => (numbers.fold(f64::NEG_INFINITY, f64::max), first.dimension),
+        };
+        self.finite(Raw { value, dimension, basis: first.basis.clone(), span, bare: false }, span)
+    }
+}
+
+impl From<Raw> for Number {
+    fn from(raw: Raw) -> Number {
+        Number { value: raw.value, dimension: raw.dimension, basis: None, factor: 1.0 }
+    }
+}
+
+fn unit_mistake(unit: &UnitText, error: &UnitError) -> Diagnostic {
+    match error {
+        UnitError::Unknown { symbol, instead } => {
+            let help = instead.as_ref().map(|ours| {
+                let whole = unit.text.replacen(symbol.as_str(), ours, 1);
+                if ours.contains('(') { format!("write {ours}") } else { format!("did you mean `{whole}`?") }
+            });
+            Diagnostic::new(Code::E0303, format!("unknown unit `{symbol}`")).at(unit.span, "not a unit").maybe_help(help)
+        }
+        UnitError::Exponent => Diagnostic::new(Code::E0103, format!("the exponents of `{}` go beyond -9 .. 9", unit.text))
+            .at(unit.span, "too large"),
+        UnitError::Form => {
+            Diagnostic::new(Code::E0303, format!("`{}` is not a unit", unit.text)).at(unit.span, "not a unit")
+        }
+    }
+}
+
+/// What a value looks like, for a message.
+pub(super) fn shape(kind: &ValueKind) -> &'static str {
+    match kind {
+        ValueKind::Number { .. } | ValueKind::Binary(..) | ValueKind::Negate(_) | ValueKind::Per(..) => "a number",
+        ValueKind::Text(_) => "text",
+        ValueKind::Hole => "a hole",
+        ValueKind::List { .. } => "a list",
+        ValueKind::Call { .. } => "a word with arguments",
+        ValueKind::Object { .. } => "an object",
+        ValueKind::Path(_) => "a name",
+        ValueKind::Range(..) => "a range",
+        ValueKind::Compare { .. } => "a comparison",
+        ValueKind::Error => "something unreadable",
+    }
+}

@@ -1,0 +1,320 @@
+//! Lays the sections out side by side, puts a seat on every place, and turns places into chainages.
+//!
+//! Sleeper -1 lies one spacing before a boundary, seat +1 on it; a section in metres holds the sleepers that fit inside,
+//! one in sleepers ends one spacing beyond its last. On a track of one section the sleepers stand in the middle of
+//! their bays.
+
+use super::Checker;
+use super::value::Number;
+use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
+use crate::scenario::{Side, Transition};
+use crate::units::{Dimension, number};
+
+/// A section before it is placed.
+pub(super) struct Plan {
+    pub name: String,
+    pub spacing: f64,
+    /// m, or a number of sleepers.
+    pub length: Number,
+    /// Where the length stands.
+    pub span: Span,
+}
+
+/// The places of a track.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Places {
+    /// Chainage of both ends of every section.
+    pub sections: Vec<(f64, f64)>,
+    pub transitions: Vec<Transition>,
+    /// Chainage, section, transition and number of every seat.
+    pub seats: Vec<(f64, usize, usize, i32)>,
+}
+
+/// How a section meets one of its boundaries.
+#[derive(Clone, Copy, PartialEq)]
+enum Edge {
+    /// An end of the model.
+    End,
+    /// The boundary of a transition, on its softer side: the last sleeper lies one spacing before it.
+    Soft,
+    /// On its stiffer side: a seat lies on it.
+    Stiff,
+}
+
+const TINY: f64 = 1e-6; // m: two places closer than this are one
+
+impl Checker<'_> {
+    /// Places sections and seats; sides are one a boundary.
+    pub(super) fn lay_out(&mut self, plans: &[Plan], sides: &[(String, Side)]) -> Option<Places> {
+        let edges: Vec<(Edge, Edge)> = (0..plans.len()).map(|i| edges(i, plans.len(), sides)).collect();
+        let mut sections = Vec::new();
+        let mut offsets = Vec::new();
+        let mut x = 0.0;
+        let mut sound = true;
+        for (plan, &edge) in plans.iter().zip(&edges) {
+            let Some((length, seats)) = self.section(plan, edge) else {
+                sound = false;
+                continue;
+            };
+            sections.push((x, x + length));
+            offsets.push(seats);
+            x += length;
+        }
+        if !sound {
+            return None;
+        }
+        let origin = if sides.is_empty() { 0.0 } else { sections[0].1 };
+        sections.iter_mut().for_each(|(a, b)| {
+            *a -= origin;
+            *b -= origin;
+        });
+        let transitions: Vec<Transition> = sides
+            .iter()
+            .zip(&sections)
+            .map(|((name, side), (_, end))| Transition { name: name.clone(), x: *end, side: *side })
+            .collect();
+        let mut places = Places { sections, transitions, seats: Vec::new() };
+        for (section, seats) in offsets.iter().enumerate() {
+            let start = places.sections[section].0;
+            for (i, offset) in seats.iter().enumerate() {
+                let (transition, number) = count(i, seats.len(), section, start + offset, &places);
+                places.seats.push((round(start + offset), section, transition, number));
+            }
+        }
+        Some(places)
+    }
+
+    /// Length of a section and the seats in it, as distances from its left end.
+    fn section(&mut self, plan: &Plan, (left, right): (Edge, Edge)) -> Option<(f64, Vec<f64>)> {
+        let s = plan.spacing;
+        // spacings between the first seat and the left boundary, the last seat and the right one
+        let margin = |edge: Edge| match edge {
+            Edge::End => 1.0,
+            Edge::Soft => 1.0,
+            Edge::Stiff => 0.0,
+        };
+        let alone = left == Edge::End && right == Edge::End;
+        if plan.length.dimension == Dimension::SLEEPERS {
+            let n = plan.length.value;
+            if n.fract() != 0.0 || n < 1.0 {
+                self.report(
+                    Diagnostic::new(Code::E0502, format!("a section holds a whole number of sleepers, found {}", number(n)))
+                        .at(plan.span, "not a whole number"),
+                );
+                return None;
+            }
+            let first = if alone { 0.5 } else { margin(left) };
+            let bays = if alone { n } else { n - 1.0 + margin(left) + margin(right) };
+            let seats = (0..n as usize).map(|i| (first + i as f64) * s).collect();
+            return Some((bays * s, seats));
+        }
+        let length = plan.length.value;
+        let bays = length / s;
+        if bays < 1.0 - TINY {
+            self.report(
+                Diagnostic::new(
+                    Code::E0502,
+                    format!("section `{}` of {} m is shorter than one bay of {} m", plan.name, number(length), number(s)),
+                )
+                .at(plan.span, "too short"),
+            );
+            return None;
+        }
+        let seats = match (left, right) {
+            (Edge::End, Edge::End) => {
+                let n = (bays + TINY).floor();
+                let first = (length - (n - 1.0) * s) / 2.0;
+                (0..n as usize).map(|i| first + i as f64 * s).collect()
+            }
+            (_, Edge::End) => inside(margin(left), s, length).collect::<Vec<f64>>(),
+            (Edge::End, _) => {
+                let mut seats: Vec<f64> = inside(margin(right), s, length).map(|d| length - d).collect();
+                seats.reverse();
+                seats
+            }
+            _ => {
+                let n = bays + 1.0 - margin(left) - margin(right);
+                if (n - n.round()).abs() > 1e-6 {
+                    let fits = |n: f64| number((n - 1.0 + margin(left) + margin(right)) * s);
+                    self.report(
+                        Diagnostic::new(
+                            Code::E0502,
+                            format!("{} m do not hold a whole number of bays of {} m between two transitions", number(length), number(s)),
+                        )
+                        .at(plan.span, "the counts from both transitions do not meet")
+                        .help(format!("write `{} m` or `{} m`, or give the length in sleepers", fits(n.floor()), fits(n.ceil()))),
+                    );
+                    return None;
+                }
+                (0..n.round() as usize).map(|i| (margin(left) + i as f64) * s).collect()
+            }
+        };
+        if seats.is_empty() {
+            self.report(
+                Diagnostic::new(Code::E0502, format!("section `{}` is too short to hold a seat", plan.name)).at(plan.span, "too short"),
+            );
+            return None;
+        }
+        Some((length, seats))
+    }
+
+    /// The transition that `from` names; the only one where nothing is named.
+    pub(super) fn transition(&mut self, places: &Places, from: Option<(&str, Span)>, place: Span) -> Option<usize> {
+        match from {
+            Some((name, span)) => {
+                let found = places.transitions.iter().position(|t| t.name == name);
+                if found.is_none() {
+                    let near = nearest(name, places.transitions.iter().map(|t| t.name.as_str()));
+                    self.report(
+                        Diagnostic::new(Code::E0504, format!("no transition is called `{name}`"))
+                            .at(span, "unknown transition")
+                            .maybe_help(near.map(|n| format!("did you mean `{n}`?"))),
+                    );
+                }
+                found
+            }
+            None if places.transitions.len() > 1 => {
+                let names: Vec<&str> = places.transitions.iter().map(|t| t.name.as_str()).collect();
+                self.report(
+                    Diagnostic::new(Code::E0504, "from which transition does this place count?")
+                        .at(place, "the track has several")
+                        .help(format!("add `from = {}`", names.join("` or `from = "))),
+                );
+                None
+            }
+            None => Some(0),
+        }
+    }
+
+    /// Chainage of a place.
+    pub(super) fn chainage(&mut self, places: &Places, at: Number, from: Option<(&str, Span)>, span: Span) -> Option<f64> {
+        let transition = self.transition(places, from, span)?;
+        let (first, last) = (places.sections.first()?.0, places.sections.last()?.1);
+        if at.dimension == Dimension::LENGTH {
+            let x = match places.transitions.get(transition) {
+                Some(t) if t.side == Side::StiffToSoft => t.x - at.value,
+                Some(t) => t.x + at.value,
+                None => at.value,
+            };
+            if x < first - TINY || x > last + TINY {
+                self.report(
+                    Diagnostic::new(Code::E0501, format!("the track reaches from {} m to {} m", number(first), number(last)))
+                        .at(span, format!("x = {} m is off the track", number(x))),
+                );
+                return None;
+            }
+            return Some(x);
+        }
+        match places.seat(transition, at.value) {
+            Some(seat) => Some(places.seats[seat].0),
+            None => {
+                let range = places.range(transition);
+                let message = if at.value == 0.0 && !places.transitions.is_empty() {
+                    "there is no sleeper 0: the softer side ends with -1, the stiffer one begins with +1".to_string()
+                } else {
+                    format!("no sleeper has the number {:+}", at.value)
+                };
+                self.report(Diagnostic::new(Code::E0501, message).at(span, "not on the track").help(format!("the track has {range}")));
+                None
+            }
+        }
+    }
+}
+
+/// Chainages of a span, in ascending order.
+pub(super) fn span(
+    checker: &mut Checker<'_>,
+    places: &Option<Places>,
+    a: Number,
+    b: Number,
+    from: Option<(&str, Span)>,
+    span: Span,
+) -> Option<(f64, f64)> {
+    let places = places.as_ref()?;
+    let (a, b) = (checker.chainage(places, a, from, span)?, checker.chainage(places, b, from, span)?);
+    Some((a.min(b), a.max(b)))
+}
+
+impl Places {
+    /// Index of the seat with that number, counted from a transition.
+    pub fn seat(&self, transition: usize, n: f64) -> Option<usize> {
+        if n.fract() != 0.0 {
+            return None;
+        }
+        self.counted(transition).find(|(_, number)| f64::from(*number) == n).map(|(i, _)| i)
+    }
+
+    /// Seats of the two sections beside a transition with their numbers from there; all from the left without one.
+    fn counted(&self, transition: usize) -> impl Iterator<Item = (usize, i32)> + '_ {
+        let boundary = self.transitions.get(transition);
+        self.seats.iter().enumerate().filter_map(move |(i, &(_, section, ..))| match boundary {
+            None => Some((i, i as i32 + 1)),
+            Some(t) => {
+                let here = |s: usize| self.seats.iter().enumerate().filter(move |(_, seat)| seat.1 == s).map(|(i, _)| i);
+                let (first_right, last_left) = (here(transition + 1).next()? as i32, here(transition).last()? as i32);
+                let steps = if section == transition {
+                    last_left - i as i32 + 1
+                } else if section == transition + 1 {
+                    i as i32 - first_right + 1
+                } else {
+                    return None;
+                };
+                let soft = (section == transition) == (t.side == Side::SoftToStiff);
+                Some((i, if soft { -steps } else { steps }))
+            }
+        })
+    }
+
+    fn range(&self, transition: usize) -> String {
+        let numbers: Vec<i32> = self.counted(transition).map(|(_, n)| n).collect();
+        let (Some(min), Some(max)) = (numbers.iter().min(), numbers.iter().max()) else { return "no sleepers".into() };
+        if *min < 0 && *max > 0 {
+            format!("sleepers {min} .. -1 and +1 .. {max:+}")
+        } else {
+            format!("sleepers {min} .. {max}")
+        }
+    }
+
+    /// Index of the seat nearest to a chainage.
+    pub fn nearest_seat(&self, x: f64) -> Option<usize> {
+        (0..self.seats.len()).min_by(|&a, &b| (self.seats[a].0 - x).abs().total_cmp(&(self.seats[b].0 - x).abs()))
+    }
+}
+
+fn edges(i: usize, n: usize, sides: &[(String, Side)]) -> (Edge, Edge) {
+    let left = match i.checked_sub(1).and_then(|b| sides.get(b)) {
+        None => Edge::End,
+        Some((_, Side::SoftToStiff)) => Edge::Stiff,
+        Some((_, Side::StiffToSoft)) => Edge::Soft,
+    };
+    let right = match sides.get(i).filter(|_| i + 1 < n) {
+        None => Edge::End,
+        Some((_, Side::SoftToStiff)) => Edge::Soft,
+        Some((_, Side::StiffToSoft)) => Edge::Stiff,
+    };
+    (left, right)
+}
+
+/// Distances from an anchored boundary that fall strictly inside a section.
+fn inside(margin: f64, spacing: f64, length: f64) -> impl Iterator<Item = f64> {
+    (0..).map(move |i| (margin + f64::from(i)) * spacing).take_while(move |d| *d < length - TINY)
+}
+
+/// Transition and number of the `i`-th of `n` seats of a section: counted from the nearer transition.
+fn count(i: usize, n: usize, section: usize, x: f64, places: &Places) -> (usize, i32) {
+    let boundaries = [section.checked_sub(1), Some(section).filter(|s| *s < places.transitions.len())];
+    let nearer = boundaries
+        .into_iter()
+        .flatten()
+        .min_by(|a, b| (places.transitions[*a].x - x).abs().total_cmp(&(places.transitions[*b].x - x).abs()));
+    let Some(t) = nearer else { return (0, i as i32 + 1) };
+    let left_of_it = t == section;
+    let steps = if left_of_it { n - i } else { i + 1 } as i32;
+    let soft = left_of_it == (places.transitions[t].side == Side::SoftToStiff);
+    (t, if soft { -steps } else { steps })
+}
+
+/// Sums of spacings are cleaned of their last digits, so that a seat on a boundary lies on it.
+fn round(x: f64) -> f64 {
+    (x * 1e9).round() / 1e9
+}

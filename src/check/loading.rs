@@ -1,0 +1,238 @@
+//! What acts on the track, how the answer is computed and what is kept of it: traffic, loads, laws, `solve`, `record`.
+
+use super::Checker;
+use super::geometry::Places;
+use super::track::given;
+use super::value::{Number, Record, Slot, Val};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::scenario::{
+    Given, Integrator, LawForm, Record as Kept, SettlementLaw, Solve, StaticLoad, Target, Traffic, Train, Update,
+};
+use crate::units::{Dimension, number};
+use std::collections::BTreeMap;
+
+impl Checker<'_> {
+    pub(super) fn traffic(&mut self, record: &Record) -> Option<Traffic> {
+        let Val::Pairs(pairs) = &record.get("trains")?.value else { return None };
+        let trains: Vec<Option<Train>> = pairs
+            .iter()
+            .map(|(train, _)| match &train.value {
+                Val::Record(train) => self.train(train),
+                _ => None,
+            })
+            .collect();
+        let total = record.get("total")?;
+        let span = record.get("trains")?.span;
+        if pairs.len() != 1 {
+            let mistake = if pairs.is_empty() {
+                Diagnostic::new(Code::E0403, "traffic needs a train").at(span, "empty")
+            } else {
+                Diagnostic::new(Code::E0411, "this version does not mix trains yet").at(span, "several trains")
+            };
+            self.report(mistake);
+            return None;
+        }
+        let share = match pairs[0].1.value {
+            Val::Number(n) => n.value,
+            _ => return None,
+        };
+        if (share - 1.0).abs() > 1e-9 {
+            self.report(
+                Diagnostic::new(Code::E0407, format!("the shares of the trains sum to {} %, not to 100 %", number(100.0 * share)))
+                    .at(pairs[0].1.span, "of `total`"),
+            );
+            return None;
+        }
+        let train = trains.into_iter().next()??;
+        let axles = self.axles(total, &train)?;
+        Some(Traffic { train, total: Given { value: axles, origin: total.origin } })
+    }
+
+    /// Axles of a count that may be given as the mass carried: whole trains, to the nearest.
+    fn axles(&mut self, slot: &Slot, train: &Train) -> Option<u64> {
+        let Val::Number(n) = slot.value else { return None };
+        if n.dimension == Dimension::MASS {
+            let mass: f64 = train.vehicles.iter().map(|v| 2.0 * v.mass()).sum();
+            let trains = (n.value / mass).round().max(1.0);
+            return Some(trains as u64 * train.axles());
+        }
+        if n.value.fract() != 0.0 {
+            self.report(
+                Diagnostic::new(Code::E0405, format!("expected a whole number of axles, found {}", number(n.value))).at(slot.span, "not whole"),
+            );
+            return None;
+        }
+        Some(n.value as u64)
+    }
+
+    pub(super) fn loads(&mut self, record: &Record, places: &Option<Places>) -> Option<Vec<StaticLoad>> {
+        let on = if record.word("on")? == "rail" { Target::Rail } else { Target::Sleepers };
+        let force_slot = record.get("force")?;
+        let Val::Number(force) = force_slot.value else { return None };
+        let allowed = if on == Target::Rail { ["rail", "track"] } else { ["seat", "sleeper"] };
+        if !allowed.contains(&force.basis.unwrap_or_default()) {
+            self.report(
+                Diagnostic::new(
+                    Code::E0304,
+                    format!("a load on the {} is `per {}` or `per {}`", record.word("on")?, allowed[0], allowed[1]),
+                )
+                .at(force_slot.span, format!("per {}", force.basis.unwrap_or_default())),
+            );
+            return None;
+        }
+        let places = places.as_ref()?;
+        let from = record.get("from").and_then(|s| Some((record.text("from")?, s.span)));
+        let Val::List(at) = &record.get("at")?.value else { return None };
+        at.iter()
+            .map(|slot| {
+                let Val::Number(n) = slot.value else { return None };
+                let x = self.chainage(places, n, from, slot.span)?;
+                let x = if on == Target::Sleepers { places.seats[places.nearest_seat(x)?].0 } else { x };
+                Some(StaticLoad { name: record.name.clone(), on, x, force: given(record, "force")? })
+            })
+            .collect()
+    }
+
+    fn law(&mut self, record: &Record) -> Option<SettlementLaw> {
+        let slot = record.get("form")?;
+        let Val::Word { arguments, .. } = &slot.value else { return None };
+        let argument = |name: &str| match arguments.get(name).map(|s| &s.value) {
+            Some(Val::Number(n)) => Some(n.of_rail()),
+            _ => None,
+        };
+        let range = |name: &str| match record.get(name).map(|s| &s.value) {
+            Some(Val::Range(a, b)) => Some((a.of_rail(), b.of_rail())),
+            _ => None,
+        };
+        Some(SettlementLaw {
+            name: record.name.clone(),
+            form: LawForm::Varandas {
+                alpha: argument("alpha")?,
+                beta: argument("beta")?,
+                gamma: argument("gamma")?,
+                reference_cycles: argument("reference_cycles")?,
+                reference_force: argument("reference_force")?,
+            },
+            loads: range("loads"),
+            cycles: range("cycles"),
+        })
+    }
+
+    pub(super) fn solve(&mut self, record: &Record, places: &Option<Places>) -> Option<Solve> {
+        let law = record.record("law")?.clone();
+        let law = self.law(&law);
+        let update = record.get("update_every")?;
+        let geometric = |arguments: &BTreeMap<&str, Slot>| {
+            let of = |name: &str| match arguments.get(name).map(|s| &s.value) {
+                Some(Val::Number(n)) => Some(n.value),
+                _ => None,
+            };
+            Some(Update::Geometric { first: of("first")?.round() as u64, ratio: of("ratio")? })
+        };
+        let exchange = match &update.value {
+            Val::Number(n) => Update::Fixed { axles: n.value.round() as u64 },
+            Val::Word { arguments, .. } => geometric(arguments)?,
+            _ => return None,
+        };
+        let rho = match &record.get("integrator")?.value {
+            Val::Word { arguments, .. } => match arguments.get("rho")?.value {
+                Val::Number(n) => n.value,
+                _ => return None,
+            },
+            _ => return None,
+        };
+        let elements = record.number("elements_per_bay")?;
+        let mut place = |name: &str| -> Option<Option<Given>> {
+            let slot = record.get(name)?;
+            match slot.value {
+                Val::Number(n) => {
+                    let x = self.chainage(places.as_ref()?, n, None, slot.span)?;
+                    Some(Some(Given { value: x, origin: slot.origin }))
+                }
+                Val::Word { .. } => Some(None),
+                _ => None,
+            }
+        };
+        let (start, finish) = (place("start"), place("finish"));
+        Some(Solve {
+            law: law?,
+            update: exchange,
+            update_span: update.origin.span(),
+            integrator: Integrator::GeneralisedAlpha { rho },
+            elements_per_bay: Given { value: elements.value as u32, origin: record.get("elements_per_bay")?.origin },
+            time_step: given(record, "time_step"),
+            start: start?,
+            finish: finish?,
+            gravity: given(record, "gravity")?,
+            seed: record.number("seed")?.value as u64,
+        })
+    }
+
+    pub(super) fn kept(&mut self, record: &Record, places: &Option<Places>, traffic: Option<&Traffic>) -> Option<Kept> {
+        let Val::List(quantities) = &record.get("quantities")?.value else { return None };
+        let quantities = quantities
+            .iter()
+            .map(|slot| if let Val::Response(r) = slot.value { Some(r) } else { None })
+            .collect::<Option<Vec<_>>>()?;
+        let seats = self.kept_seats(record, places.as_ref()?)?;
+        let after = match (record.get("after").map(|s| &s.value), traffic) {
+            (Some(Val::List(counts)), Some(traffic)) => {
+                counts.iter().map(|slot| self.recorded(slot, traffic)).collect::<Option<Vec<_>>>()?
+            }
+            (None, Some(traffic)) => vec![*traffic.total],
+            (Some(Val::List(_)) | None, None) => Vec::new(),
+            _ => return None,
+        };
+        Some(Kept { quantities, seats, after, every: record.number("every").map(|n| n.value) })
+    }
+
+    fn recorded(&mut self, slot: &Slot, traffic: &Traffic) -> Option<u64> {
+        let count = self.axles_from_zero(slot, &traffic.train)?;
+        if count > *traffic.total {
+            self.report(
+                Diagnostic::new(Code::E0602, format!("the run ends after {} axles", *traffic.total))
+                    .at(slot.span, format!("{count} axles are never reached")),
+            );
+            return None;
+        }
+        Some(count)
+    }
+
+    fn axles_from_zero(&mut self, slot: &Slot, train: &Train) -> Option<u64> {
+        match slot.value {
+            Val::Number(n) if n.value == 0.0 => Some(0),
+            _ => self.axles(slot, train),
+        }
+    }
+
+    /// Indices of the seats that a record names; all of them where it names none.
+    fn kept_seats(&mut self, record: &Record, places: &Places) -> Option<Vec<usize>> {
+        let from = record.get("from").and_then(|s| Some((record.text("from")?, s.span)));
+        let mut seats = Vec::new();
+        let mut any = false;
+        if let Some(Slot { value: Val::List(at), .. }) = record.get("at") {
+            any = true;
+            for slot in at {
+                let Val::Number(n) = slot.value else { return None };
+                seats.push(self.seat_of(places, n, from, slot.span)?);
+            }
+        }
+        if let Some(Slot { value: Val::Range(a, b), span, .. }) = record.get("over") {
+            any = true;
+            let (from_x, to_x) = super::geometry::span(self, &Some(places.clone()), *a, *b, from, *span)?;
+            seats.extend((0..places.seats.len()).filter(|i| (from_x - 1e-6..=to_x + 1e-6).contains(&places.seats[*i].0)));
+        }
+        if !any {
+            seats = (0..places.seats.len()).collect();
+        }
+        seats.sort_unstable();
+        seats.dedup();
+        Some(seats)
+    }
+
+    fn seat_of(&mut self, places: &Places, at: Number, from: Option<(&str, Span)>, span: Span) -> Option<usize> {
+        let x = self.chainage(places, at, from, span)?;
+        places.nearest_seat(x)
+    }
+}
+

@@ -1,0 +1,262 @@
+//! From the tree to the scenario: names, dimensions, fields, ranges, places.
+//!
+//! Everything is checked, whatever else is wrong: a value that could not be understood is marked and hides only what
+//! depends on it.
+
+mod arithmetic;
+mod complete;
+mod expectation;
+mod fit;
+mod geometry;
+mod library;
+mod loading;
+mod modules;
+mod names;
+mod overrides;
+mod records;
+mod track;
+mod value;
+mod vehicle;
+
+pub use modules::{Folder, Modules, NoModules};
+pub use overrides::Override;
+
+use crate::diag::{self, Code, Diagnostic, FileId, Sources, Span};
+use crate::scenario::{Loading, Scenario, Traffic};
+use crate::schema::{self, Role};
+use crate::syntax::tree::{Item, Value};
+use geometry::Places;
+use modules::{Loader, Scope, ScopeId};
+use names::ItemId;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::rc::Rc;
+use value::{Record, Val};
+
+/// What became of a file: every diagnostic, and the scene where nothing stands against it.
+#[derive(Debug)]
+pub struct Checked {
+    pub sources: Sources,
+    pub diagnostics: Vec<Diagnostic>,
+    /// `None` for a library, for a scene with errors and for one with holes.
+    pub scenario: Option<Scenario>,
+}
+
+/// Checks a text that a person calls `name`.
+pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Override]) -> Checked {
+    let mut loader = Loader::new(modules);
+    let main = loader.load(name, text.to_string(), false, |l, tree| overrides::apply(l, tree, overrides));
+    let standard = loader.standard_scope();
+    let scopes = std::mem::take(&mut loader.scopes);
+    let mut checker = Checker {
+        diagnostics: std::mem::take(&mut loader.diagnostics),
+        loader,
+        scopes,
+        standard,
+        records: HashMap::new(),
+        stack: Vec::new(),
+        used: BTreeSet::new(),
+        defaults: HashMap::new(),
+        seat_places: None,
+    };
+    let scenario = checker.scene(main);
+    let mut diagnostics = checker.diagnostics;
+    diag::sort(&mut diagnostics);
+    let stopped = diagnostics.iter().any(|d| d.is_error() || d.code == Code::E0410);
+    Checked { sources: checker.loader.sources, diagnostics, scenario: scenario.filter(|_| !stopped) }
+}
+
+/// The state of a check.
+struct Checker<'a> {
+    loader: Loader<'a>,
+    scopes: Vec<Scope>,
+    /// Where defaults are read: every module of the standard library is known there.
+    standard: ScopeId,
+    diagnostics: Vec<Diagnostic>,
+    /// Objects evaluated so far.
+    records: HashMap<ItemId, Option<Rc<Record>>>,
+    /// Items being evaluated, with the place that asked.
+    stack: Vec<(ItemId, Span)>,
+    /// Items that something asked for.
+    used: BTreeSet<ItemId>,
+    /// Defaults of the schema, parsed.
+    defaults: HashMap<&'static str, Rc<Value>>,
+    /// Known once the track is laid out.
+    seat_places: Option<Places>,
+}
+
+impl Checker<'_> {
+    fn report(&mut self, diagnostic: Diagnostic) {
+        if !self.diagnostics.contains(&diagnostic) {
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    /// Evaluates every declaration of the user's files, then builds the scene.
+    fn scene(&mut self, main: ScopeId) -> Option<Scenario> {
+        let tree = self.scopes[main].tree.clone();
+        if tree.items.is_empty() {
+            if !diag::has_errors(&self.diagnostics) {
+                self.report(
+                    Diagnostic::new(Code::E0601, "the file declares nothing")
+                        .at(Span::new(Loader::main_file(), 0, 0), "empty")
+                        .help("`trackbed new` writes a scene to begin with"),
+                );
+            }
+            return None;
+        }
+        let roots = self.evaluate_all(main);
+        let track_record = self.only(main, "track");
+        let scenario = track_record.as_ref().and_then(|record| self.build(main, record));
+        self.expectations_elsewhere(main);
+        if track_record.is_some() {
+            self.unused(main, &roots);
+        }
+        scenario
+    }
+
+    /// Evaluates declarations, the main file's last, and returns those that act by themselves. Expectations wait
+    /// until places are known.
+    fn evaluate_all(&mut self, main: ScopeId) -> Vec<ItemId> {
+        let mut roots = Vec::new();
+        let mine: Vec<ScopeId> = (0..self.scopes.len()).filter(|s| !self.scopes[*s].library).collect();
+        for scope in mine {
+            let tree = self.scopes[scope].tree.clone();
+            for (item, declaration) in tree.items.iter().enumerate() {
+                let Item::Declaration(d) = declaration else { continue };
+                let id = ItemId { scope, item };
+                let acts = matches!(schema::kind(&d.kind.text).map(|k| k.role), Some(Role::Scene { .. }));
+                if acts && scope == main {
+                    roots.push(id);
+                }
+                if d.kind.text != "expect" {
+                    let used = self.used.contains(&id);
+                    self.record(id, d.span);
+                    if !used && !acts {
+                        self.used.remove(&id);
+                    }
+                }
+            }
+        }
+        roots
+    }
+
+    /// Expectations of a file without a track are read all the same.
+    fn expectations_elsewhere(&mut self, main: ScopeId) {
+        let tree = self.scopes[main].tree.clone();
+        for (item, declaration) in tree.items.iter().enumerate() {
+            if let Item::Declaration(d) = declaration
+                && d.kind.text == "expect"
+            {
+                self.record(ItemId { scope: main, item }, d.span);
+            }
+        }
+    }
+
+    /// Every object of a kind in the main file, complete.
+    fn all(&mut self, main: ScopeId, kind: &str) -> Vec<Record> {
+        let tree = self.scopes[main].tree.clone();
+        let mut found = Vec::new();
+        for (item, declaration) in tree.items.iter().enumerate() {
+            let Item::Declaration(d) = declaration else { continue };
+            if d.kind.text != kind {
+                continue;
+            }
+            if let Some(record) = self.record(ItemId { scope: main, item }, d.span) {
+                found.push(self.complete(&record));
+            }
+        }
+        found
+    }
+
+    fn only(&mut self, main: ScopeId, kind: &str) -> Option<Record> {
+        self.all(main, kind).into_iter().next()
+    }
+
+    fn build(&mut self, main: ScopeId, track: &Record) -> Option<Scenario> {
+        let track = self.track(track);
+        let places = self.seat_places.clone();
+        let traffic_record = self.only(main, "traffic");
+        let traffic: Option<Traffic> = traffic_record.as_ref().and_then(|r| self.traffic(r));
+        let load_records = self.all(main, "load");
+        let loads: Vec<Option<Vec<_>>> = load_records.iter().map(|r| self.loads(r, &places)).collect();
+        let solve = self.only(main, "solve").unwrap_or_else(|| self.default_solve());
+        let solve = self.solve(&solve, &places);
+        let records = self.all(main, "record");
+        let records: Vec<Option<_>> = records.iter().map(|r| self.kept(r, &places, traffic.as_ref())).collect();
+        let expectations = self.expectations(main);
+        let (title, allow, deny) = self.scenario_head(main);
+        let loads: Vec<_> = loads.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
+        let loading = match (traffic_record.is_some(), loads.is_empty()) {
+            (true, _) => Some(Loading::Traffic(traffic?)),
+            (false, false) => Some(Loading::Static(loads)),
+            (false, true) => None,
+        };
+        Some(Scenario {
+            title,
+            track: track?,
+            loading,
+            solve: solve?,
+            records: records.into_iter().collect::<Option<_>>()?,
+            expectations,
+            allow,
+            deny,
+        })
+    }
+
+    /// `solve` of a scene that says nothing about it.
+    fn default_solve(&mut self) -> Record {
+        let Some(kind) = schema::kind("solve") else { unreachable!("the vocabulary has `solve`") };
+        let span = Span::new(FileId(0), 0, 0);
+        let empty = Record { kind, name: "solve".into(), span, fields: BTreeMap::new() };
+        self.complete(&empty)
+    }
+
+    fn expectations(&mut self, main: ScopeId) -> Vec<crate::scenario::response::Expectation> {
+        let mut found = Vec::new();
+        for record in self.all(main, "expect") {
+            let Some(Val::List(slots)) = record.get("that").map(|s| &s.value) else { continue };
+            found.extend(slots.iter().filter_map(|s| if let Val::Comparison(e) = &s.value { Some(e.clone()) } else { None }));
+        }
+        found
+    }
+
+    /// Title and physics rules; the file's name where there is no title.
+    fn scenario_head(&mut self, main: ScopeId) -> (String, Vec<(String, String)>, Vec<String>) {
+        let record = self.only(main, "scenario");
+        let name = self.loader.sources.get(Loader::main_file()).name.clone();
+        let stem = name.rsplit(['/', '\\']).next().unwrap_or(&name).trim_end_matches(".track").to_string();
+        let Some(record) = record else { return (stem, Vec::new(), Vec::new()) };
+        let text = |val: &Val| if let Val::Text(t) = val { Some(t.clone()) } else { None };
+        let allow = match record.get("allow").map(|s| &s.value) {
+            Some(Val::Pairs(pairs)) => pairs.iter().filter_map(|(k, v)| Some((text(&k.value)?, text(&v.value)?))).collect(),
+            _ => Vec::new(),
+        };
+        let deny = match record.get("deny").map(|s| &s.value) {
+            Some(Val::List(slots)) => slots.iter().filter_map(|s| text(&s.value)).collect(),
+            _ => Vec::new(),
+        };
+        (record.text("title").map_or(stem, str::to_string), allow, deny)
+    }
+
+    /// Warns of declarations of the main file that nothing asks for.
+    fn unused(&mut self, main: ScopeId, roots: &[ItemId]) {
+        let tree = self.scopes[main].tree.clone();
+        for (item, thing) in tree.items.iter().enumerate() {
+            let id = ItemId { scope: main, item };
+            let (name, span) = match thing {
+                Item::Declaration(d) => match &d.name {
+                    Some(name) => (name.text.clone(), name.span),
+                    None => (d.kind.text.clone(), d.kind.span),
+                },
+                Item::Let(l) => (l.name.text.clone(), l.name.span),
+                Item::Use(_) => continue,
+            };
+            let declared = self.scopes[main].names.get(&name) == Some(&item);
+            if declared && !roots.contains(&id) && !self.used.contains(&id) && !matches!(self.records.get(&id), Some(None)) {
+                self.report(
+                    Diagnostic::new(Code::E0412, format!("nothing uses `{name}`")).at(span, "declared here").help("take it out, or use it"),
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! Looks names up: what a path means in the file in which it stands.
+
+use super::Checker;
+use super::modules::ScopeId;
+use super::value::{Slot, Val};
+use crate::diag::{Code, Diagnostic, nearest::nearest};
+use crate::syntax::tree::{Item, Name, Path};
+
+/// An item of a scope.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) struct ItemId {
+    pub scope: ScopeId,
+    pub item: usize,
+}
+
+/// What a path names, and how many of its names are left to follow inside.
+pub(super) struct Target {
+    pub id: ItemId,
+    pub is_let: bool,
+    pub taken: usize,
+}
+
+impl Checker<'_> {
+    /// The declaration or let that a path starts with; a diagnostic where there is none. `words` are what could have
+    /// stood there besides names.
+    pub fn resolve(&mut self, path: &Path, scope: ScopeId, words: &[&str]) -> Option<Target> {
+        let first = &path.names[0];
+        if let Some(target) = self.lookup(scope, first, 1) {
+            return Some(target);
+        }
+        if let Some(&module) = self.scopes[scope].modules.get(&first.text) {
+            let Some(second) = path.names.get(1) else {
+                self.report(
+                    Diagnostic::new(Code::E0201, format!("`{}` is a module, not a value", first.text))
+                        .at(path.span, "name something in it")
+                        .maybe_help(self.scopes[module].names.keys().next().map(|n| format!("such as `{}.{n}`", first.text))),
+                );
+                return None;
+            };
+            if let Some(target) = self.lookup(module, second, 2) {
+                return Some(target);
+            }
+            let names: Vec<&str> = self.scopes[module].names.keys().map(String::as_str).collect();
+            let help = match nearest(&second.text, names.iter().copied()) {
+                Some(near) => format!("did you mean `{}.{near}`?", first.text),
+                None => format!("it has {}", names.join(", ")),
+            };
+            self.report(
+                Diagnostic::new(Code::E0201, format!("module `{}` has no `{}`", first.text, second.text))
+                    .at(second.span, "not found")
+                    .help(help),
+            );
+            return None;
+        }
+        self.unknown_name(first, scope, words);
+        None
+    }
+
+    fn lookup(&self, scope: ScopeId, name: &Name, taken: usize) -> Option<Target> {
+        let item = *self.scopes[scope].names.get(&name.text)?;
+        let is_let = matches!(self.scopes[scope].tree.items.get(item), Some(Item::Let(_)));
+        Some(Target { id: ItemId { scope, item }, is_let, taken })
+    }
+
+    fn unknown_name(&mut self, name: &Name, scope: ScopeId, words: &[&str]) {
+        let here = &self.scopes[scope];
+        let candidates =
+            here.names.keys().chain(here.modules.keys()).map(String::as_str).chain(words.iter().copied());
+        let near = nearest(&name.text, candidates).map(|n| format!("did you mean `{n}`?"));
+        let library = super::library::MODULES.iter().any(|(m, _)| *m == name.text);
+        let help = if library && !here.modules.contains_key(&name.text) {
+            Some("it is a module of the standard library: begin the file with `use std`".to_string())
+        } else if near.is_none() && !words.is_empty() {
+            let words: Vec<String> = words.iter().map(|w| format!("`{w}`")).collect();
+            Some(format!("expected {}", crate::diag::nearest::or_list(&words)))
+        } else {
+            near
+        };
+        self.report(
+            Diagnostic::new(Code::E0201, format!("nothing is called `{}`", name.text))
+                .at(name.span, "unknown name")
+                .maybe_help(help),
+        );
+    }
+
+    /// The slot that the rest of a path names inside a declaration.
+    pub fn slot_at(&mut self, target: &Target, path: &Path) -> Option<Slot> {
+        let record = self.record(target.id, path.span)?;
+        let mut slot = Slot { value: Val::Record(record), span: path.span, origin: crate::scenario::Origin::Derived };
+        for name in &path.names[target.taken..] {
+            let Val::Record(record) = &slot.value else {
+                self.report(
+                    Diagnostic::new(Code::E0201, format!("there is nothing inside a value to call `{}`", name.text))
+                        .at(name.span, "not an object"),
+                );
+                return None;
+            };
+            let record = record.clone();
+            match record.get(&name.text) {
+                Some(inner) => slot = inner.clone(),
+                None => {
+                    if self.field_of(record.kind, name).is_some() {
+                        self.report(
+                            Diagnostic::new(Code::E0403, format!("`{}` says nothing about `{}`", record.name, name.text))
+                                .at(name.span, "not given there")
+                                .at(record.span, "declared here"),
+                        );
+                    }
+                    return None;
+                }
+            }
+        }
+        Some(slot)
+    }
+}

@@ -1,0 +1,313 @@
+//! Objects: declarations and what they extend. `=` replaces a whole value, a path replaces inside it; nothing merges.
+
+use super::Checker;
+use super::modules::ScopeId;
+use super::names::ItemId;
+use super::value::{Record, Slot, Val};
+use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
+use crate::scenario::Origin;
+use crate::schema::{self, Form, Kind, PLANNED_KINDS};
+use crate::syntax::tree::{Declaration, Field, Item, Name, Path, ValueKind};
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+impl Checker<'_> {
+    /// Runs `f` inside an item, so that a circle of names is found and what it uses is noted. Mistakes found inside a
+    /// `let` get the place of use as their second label.
+    pub fn within<T>(&mut self, id: ItemId, place: Span, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        self.used.insert(id);
+        if let Some(start) = self.stack.iter().position(|(item, _)| *item == id) {
+            let names: Vec<String> =
+                self.stack[start..].iter().map(|(item, _)| *item).chain([id]).map(|i| self.item_name(i)).collect();
+            let mut mistake = Diagnostic::new(Code::E0203, format!("{} need each other", names[..names.len() - 1].join(", ")))
+                .at(place, "closes the circle")
+                .help(format!("the circle is {}", names.join(" -> ")));
+            if names.len() == 2 {
+                mistake.message = format!("`{}` needs itself", names[0]);
+            }
+            self.report(mistake);
+            return None;
+        }
+        self.stack.push((id, place));
+        let before = self.diagnostics.len();
+        let result = f(self);
+        self.stack.pop();
+        if matches!(self.scopes[id.scope].tree.items[id.item], Item::Let(_)) {
+            for diagnostic in &mut self.diagnostics[before..] {
+                if diagnostic.labels.iter().all(|l| l.span != place) {
+                    diagnostic.labels.push(crate::diag::Label { span: place, text: "used here".into() });
+                }
+            }
+        }
+        result
+    }
+
+    fn item_name(&self, id: ItemId) -> String {
+        match &self.scopes[id.scope].tree.items[id.item] {
+            Item::Let(l) => l.name.text.clone(),
+            Item::Declaration(d) => d.name.as_ref().unwrap_or(&d.kind).text.clone(),
+            Item::Use(u) => u.path.text(),
+        }
+    }
+
+    /// The object that a declaration stands for, evaluated once.
+    pub fn record(&mut self, id: ItemId, place: Span) -> Option<Rc<Record>> {
+        if let Some(done) = self.records.get(&id) {
+            self.used.insert(id);
+            return done.clone();
+        }
+        let circles = self.stack.iter().any(|(item, _)| *item == id);
+        let tree = self.scopes[id.scope].tree.clone();
+        let Item::Declaration(declaration) = &tree.items[id.item] else { return None };
+        let record = self.within(id, place, |c| c.declaration(declaration, id.scope)).map(Rc::new);
+        if !circles {
+            self.records.insert(id, record.clone());
+        }
+        record
+    }
+
+    fn declaration(&mut self, declaration: &Declaration, scope: ScopeId) -> Option<Record> {
+        let kind = self.kind_of(&declaration.kind)?;
+        let header = declaration.name.as_ref().map_or(declaration.kind.span, |n| declaration.kind.span.to(n.span));
+        let name = declaration.name.as_ref().unwrap_or(&declaration.kind).text.clone();
+        let fields = match &declaration.base {
+            Some(base) => self.base(base, kind, scope)?.fields.clone(),
+            None => BTreeMap::new(),
+        };
+        let mut record = Record { kind, name, span: header, fields };
+        self.apply(&mut record, &declaration.fields, scope);
+        Some(record)
+    }
+
+    fn kind_of(&mut self, name: &Name) -> Option<&'static Kind> {
+        let found = schema::kind(&name.text).filter(|k| k.role != schema::Role::Nested);
+        if found.is_none() {
+            self.report(if PLANNED_KINDS.contains(&name.text.as_str()) {
+                Diagnostic::new(Code::E0411, format!("this version does not read `{}` yet", name.text))
+                    .at(name.span, "planned")
+            } else {
+                let kinds = schema::KINDS.iter().filter(|k| k.role != schema::Role::Nested).map(|k| k.name);
+                let near = nearest(&name.text, kinds).map(|k| format!("did you mean `{k}`?"));
+                Diagnostic::new(Code::E0401, format!("unknown kind `{}`", name.text))
+                    .at(name.span, "not a kind")
+                    .help(near.unwrap_or_else(|| "`trackbed docs` lists the kinds".into()))
+            });
+        }
+        found
+    }
+
+    /// What `: base` or an object's path names, of the same kind.
+    fn base(&mut self, path: &Path, kind: &'static Kind, scope: ScopeId) -> Option<Rc<Record>> {
+        let target = self.resolve(path, scope, &[])?;
+        let found = if target.is_let { None } else { Some(self.slot_at(&target, path)?) };
+        match found.map(|slot| slot.value) {
+            Some(Val::Record(record)) if record.kind.name == kind.name => Some(record),
+            Some(Val::Error | Val::Hole) => None,
+            Some(Val::Record(record)) => {
+                self.report(
+                    Diagnostic::new(
+                        Code::E0205,
+                        format!("a {} cannot extend `{}`, which is a {}", kind.name, path.text(), record.kind.name),
+                    )
+                    .at(path.span, format!("expected a {}, found a {}", kind.name, record.kind.name)),
+                );
+                None
+            }
+            _ => {
+                self.report(
+                    Diagnostic::new(Code::E0205, format!("a {} cannot extend `{}`", kind.name, path.text()))
+                        .at(path.span, "not an object"),
+                );
+                None
+            }
+        }
+    }
+
+    /// An object written in place.
+    pub fn object(&mut self, base: Option<&Path>, fields: &[Field], kind: &'static Kind, span: Span, scope: ScopeId) -> Option<Record> {
+        let mut record = match base {
+            Some(path) => {
+                let base = self.base(path, kind, scope)?;
+                Record { span, ..(*base).clone() }
+            }
+            None => Record { kind, name: kind.name.to_string(), span, fields: BTreeMap::new() },
+        };
+        self.apply(&mut record, fields, scope);
+        Some(record)
+    }
+
+    /// Puts the fields of a block into a record.
+    fn apply(&mut self, record: &mut Record, fields: &[Field], scope: ScopeId) {
+        self.duplicates(fields);
+        self.drop_rivals(record, fields);
+        for field in fields {
+            self.put(record, &field.path.names, field, scope);
+        }
+    }
+
+    /// A path twice in one block, or a path and a longer one inside it.
+    fn duplicates(&mut self, fields: &[Field]) {
+        for (i, later) in fields.iter().enumerate() {
+            let names = |f: &Field| f.path.names.iter().map(|n| n.text.clone()).collect::<Vec<_>>();
+            let later_names = names(later);
+            let clash = fields[..i].iter().find(|f| {
+                let names = names(f);
+                names.starts_with(&later_names) || later_names.starts_with(&names)
+            });
+            if let Some(first) = clash {
+                let message = if first.path.text() == later.path.text() {
+                    format!("`{}` is given twice", later.path.text())
+                } else {
+                    format!("`{}` and `{}` overlap", first.path.text(), later.path.text())
+                };
+                self.report(
+                    Diagnostic::new(Code::E0404, message)
+                        .at(later.path.span, "again here")
+                        .at(first.path.span, "first given here")
+                        .help("keep one of the two"),
+                );
+            }
+        }
+    }
+
+    /// Giving one way to say a thing drops the inherited other ways.
+    fn drop_rivals(&self, record: &mut Record, fields: &[Field]) {
+        let sets = |path: &str| fields.iter().any(|f| sets_path(f, path));
+        for alternative in record.kind.alternatives {
+            let given: Vec<bool> = alternative.ways.iter().map(|way| way.iter().any(|p| sets(p))).collect();
+            if !given.contains(&true) {
+                continue;
+            }
+            for (way, _) in alternative.ways.iter().zip(&given).filter(|(_, given)| !**given) {
+                for path in way.iter() {
+                    remove(record, path);
+                }
+            }
+        }
+    }
+
+    /// Follows a path into a record and replaces what is there.
+    fn put(&mut self, record: &mut Record, path: &[Name], field: &Field, scope: ScopeId) {
+        let name = &path[0];
+        let Some(known) = self.field_of(record.kind, name) else { return };
+        let [_, rest @ ..] = path else { return };
+        if rest.is_empty() {
+            let slot = self.fit(&known.form, &field.value, scope);
+            record.fields.insert(known.name, slot);
+            return;
+        }
+        if let Some(kind) = object_kind(&known.form) {
+            let inner = match record.fields.get(known.name).map(|s| &s.value) {
+                Some(Val::Record(inner)) => (**inner).clone(),
+                Some(Val::Error | Val::Hole) => return,
+                _ => Record { kind, name: kind.name.to_string(), span: field.path.span, fields: BTreeMap::new() },
+            };
+            let mut inner = inner;
+            let tail = Field { path: Path { names: rest.to_vec(), span: field.path.span }, ..field.clone() };
+            self.drop_rivals(&mut inner, std::slice::from_ref(&tail));
+            self.put(&mut inner, rest, field, scope);
+            let origin = Origin::Written(field.span);
+            record.fields.insert(known.name, Slot { value: Val::Record(Rc::new(inner)), span: field.span, origin });
+            return;
+        }
+        self.put_inside(record, known, rest, field, scope);
+    }
+
+    /// A named argument of a word, or a pair by the last name of its key.
+    fn put_inside(&mut self, record: &mut Record, known: &'static schema::Field, rest: &[Name], field: &Field, scope: ScopeId) {
+        let name = &rest[0];
+        match record.fields.get_mut(known.name).map(|s| &mut s.value) {
+            Some(Val::Word { word, arguments }) if rest.len() == 1 => {
+                if let Some(argument) = word.arguments.iter().find(|a| a.name == name.text) {
+                    let slot = self.fit(&argument.form, &field.value, scope);
+                    arguments.insert(argument.name, slot);
+                    return;
+                }
+            }
+            Some(Val::Pairs(pairs)) if rest.len() == 1 => {
+                if let Form::Pairs { value, .. } = &known.form {
+                    let found = pairs.iter_mut().find(|(key, _)| matches!(&key.value, Val::Record(r) if r.name == name.text));
+                    if let Some((_, slot)) = found {
+                        *slot = self.fit(value, &field.value, scope);
+                        return;
+                    }
+                }
+            }
+            Some(Val::Error | Val::Hole) => return,
+            _ => {}
+        }
+        self.report(
+            Diagnostic::new(Code::E0402, format!("there is no `{}` inside `{}` to replace", name.text, known.name))
+                .at(name.span, "not found")
+                .help(format!("give the whole of it: `{} = ...`", known.name)),
+        );
+    }
+
+    /// The field of that name; a diagnostic where the kind has none.
+    pub fn field_of(&mut self, kind: &'static Kind, name: &Name) -> Option<&'static schema::Field> {
+        if let Some(field) = kind.field(&name.text) {
+            return Some(field);
+        }
+        if kind.planned.contains(&name.text.as_str()) {
+            self.report(
+                Diagnostic::new(Code::E0411, format!("this version does not read `{}` of a {} yet", name.text, kind.name))
+                    .at(name.span, "planned"),
+            );
+            return None;
+        }
+        let near = nearest(&name.text, kind.fields.iter().map(|f| f.name)).map(|n| format!("did you mean `{n}`?"));
+        let help = near.unwrap_or_else(|| format!("`trackbed docs {}` lists its fields", kind.name));
+        self.report(
+            Diagnostic::new(Code::E0402, format!("a {} has no field `{}`", kind.name, name.text))
+                .at(name.span, "unknown field")
+                .help(help),
+        );
+        None
+    }
+}
+
+/// The kind of object that a field holds.
+fn object_kind(form: &Form) -> Option<&'static Kind> {
+    match form {
+        Form::Object(kind) => schema::kind(kind),
+        Form::OneOf(forms) => forms.iter().find_map(object_kind),
+        _ => None,
+    }
+}
+
+/// Whether a field sets `path`: itself, or inside the object that it gives.
+fn sets_path(field: &Field, path: &str) -> bool {
+    let own = field.path.text();
+    if own == path {
+        return true;
+    }
+    match (path.strip_prefix(&format!("{own}.")), &field.value.kind) {
+        (Some(rest), ValueKind::Object { fields, .. }) => fields.iter().any(|f| sets_path(f, rest)),
+        _ => false,
+    }
+}
+
+/// Takes the slot at a path away. A mass that goes leaves its pitch inertia behind as a radius of gyration, so that the
+/// inertia scales with the mass that takes its place.
+fn remove(record: &mut Record, path: &str) {
+    let Some((first, rest)) = path.split_once('.') else {
+        if path == "mass" && record.kind.name == "car_body" {
+            keep_radius_of_gyration(record);
+        }
+        record.fields.remove(path);
+        return;
+    };
+    if let Some(Slot { value: Val::Record(inner), .. }) = record.fields.get_mut(first) {
+        remove(Rc::make_mut(inner), rest);
+    }
+}
+
+fn keep_radius_of_gyration(body: &mut Record) {
+    let (Some(mass), Some(inertia)) = (body.number("mass"), body.number("pitch_inertia")) else { return };
+    let radius = (inertia.of_rail() / mass.of_rail()).sqrt();
+    let dimension = crate::units::Dimension::LENGTH;
+    if let Some(slot) = body.fields.remove("pitch_inertia") {
+        let value = Val::Number(super::value::Number { value: radius, dimension, basis: None, factor: 1.0 });
+        body.fields.insert("radius_of_gyration", Slot { value, span: slot.span, origin: Origin::Derived });
+    }
+}

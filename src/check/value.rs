@@ -1,0 +1,113 @@
+//! Checked values: what a field holds once its text has been understood.
+
+use crate::diag::Span;
+use crate::scenario::Origin;
+use crate::scenario::response::{Expectation, Response};
+use crate::schema::{Kind, Word};
+use crate::units::Dimension;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
+/// A value with its place.
+#[derive(Debug, Clone)]
+pub(super) struct Slot {
+    pub value: Val,
+    pub span: Span,
+    pub origin: Origin,
+}
+
+#[derive(Debug, Clone)]
+pub(super) enum Val {
+    Number(Number),
+    Text(String),
+    Word { word: &'static Word, arguments: BTreeMap<&'static str, Slot> },
+    Record(Rc<Record>),
+    List(Vec<Slot>),
+    Pairs(Vec<(Slot, Slot)>),
+    Range(Number, Number),
+    Response(Response),
+    Comparison(Expectation),
+    /// `?`, reported as a warning.
+    Hole,
+    /// Reported already.
+    Error,
+}
+
+/// A number in SI as written, with what it is of.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Number {
+    pub value: f64,
+    pub dimension: Dimension,
+    pub basis: Option<&'static str>,
+    /// Factor from the basis to one rail.
+    pub factor: f64,
+}
+
+impl Number {
+    /// The value of one rail, SI.
+    pub fn of_rail(self) -> f64 {
+        self.value * self.factor
+    }
+}
+
+/// An object of a kind: a declaration, or an object written in place.
+#[derive(Debug, Clone)]
+pub(super) struct Record {
+    pub kind: &'static Kind,
+    /// Its declared name; of an object in place, that of what it extends, else the kind's.
+    pub name: String,
+    /// Where it stands: the header of a declaration, or the whole object.
+    pub span: Span,
+    pub fields: BTreeMap<&'static str, Slot>,
+}
+
+impl Record {
+    pub fn get(&self, name: &str) -> Option<&Slot> {
+        self.fields.get(name)
+    }
+
+    /// The slot at a dotted path through nested objects.
+    pub fn at(&self, path: &str) -> Option<&Slot> {
+        match path.split_once('.') {
+            None => self.get(path),
+            Some((first, rest)) => match &self.get(first)?.value {
+                Val::Record(inner) => inner.at(rest),
+                _ => None,
+            },
+        }
+    }
+
+    pub fn number(&self, name: &str) -> Option<Number> {
+        match self.at(name)?.value {
+            Val::Number(n) => Some(n),
+            _ => None,
+        }
+    }
+
+    pub fn record(&self, name: &str) -> Option<&Rc<Record>> {
+        match &self.at(name)?.value {
+            Val::Record(r) => Some(r),
+            _ => None,
+        }
+    }
+
+    pub fn text(&self, name: &str) -> Option<&str> {
+        match &self.at(name)?.value {
+            Val::Text(t) => Some(t),
+            _ => None,
+        }
+    }
+
+    /// The bare or leading word of a field.
+    pub fn word(&self, name: &str) -> Option<&'static str> {
+        match &self.at(name)?.value {
+            Val::Word { word, .. } => Some(word.name),
+            _ => None,
+        }
+    }
+
+    /// Whether a field stands there and could not be understood, or is a hole.
+    pub fn unknown(&self, name: &str) -> bool {
+        matches!(self.at(name).map(|s| &s.value), Some(Val::Error | Val::Hole))
+    }
+}
