@@ -1,0 +1,29 @@
+//! `trackbed check`: every diagnostic of a scene.
+
+use super::scene::{SceneArguments, failed, show};
+use super::{Format, Outcome, terminal};
+use crate::diag::render;
+
+/// Show every mistake of a scene, without running it
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    #[arg(long, value_enum, default_value = "human")]
+    format: Format,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Outcome {
+    let Some(compiled) = arguments.scene.compile() else { return Outcome::Usage };
+    match arguments.format {
+        Format::Human => show(&compiled),
+        Format::Json => terminal::out(&format!("{:#}\n", render::json(&compiled.diagnostics, &compiled.sources))),
+    }
+    if failed(&compiled) {
+        return Outcome::Failed;
+    }
+    if arguments.format == Format::Human {
+        terminal::out(&format!("{}: no errors\n", arguments.scene.file.display()));
+    }
+    Outcome::Fine
+}

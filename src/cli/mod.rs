@@ -1,0 +1,82 @@
+//! The command line: one file a command. The only place that prints, reads the environment or exits.
+//!
+//! Exit codes: 0 all is well, 1 the scene or its run has errors, 2 the command was used wrongly.
+
+mod check;
+mod docs;
+mod explain;
+mod fmt;
+mod new;
+mod plan;
+mod progress;
+mod report;
+mod run;
+mod scene;
+mod terminal;
+
+use clap::{Parser, Subcommand, ValueEnum};
+use std::process::ExitCode;
+
+/// Railway transition zones: from a scene in a text file to a settlement picture.
+#[derive(Parser)]
+#[command(name = "trackbed", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Check(check::Arguments),
+    Plan(plan::Arguments),
+    Run(run::Arguments),
+    Report(report::Arguments),
+    Fmt(fmt::Arguments),
+    Explain(explain::Arguments),
+    Docs(docs::Arguments),
+    New(new::Arguments),
+}
+
+/// For whom the answer is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Human,
+    Json,
+}
+
+/// How a command ended.
+enum Outcome {
+    Fine,
+    /// The scene or its run has errors, which have been shown.
+    Failed,
+    /// The command was used wrongly, which has been said.
+    Usage,
+}
+
+/// Reads the arguments, runs the command and tells the shell.
+pub fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => {
+            // help and version are no mistakes
+            let code = if error.use_stderr() { 2 } else { 0 };
+            let _ = error.print();
+            return ExitCode::from(code);
+        }
+    };
+    let outcome = match cli.command {
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Plan(arguments) => plan::run(&arguments),
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
+        Command::Fmt(arguments) => fmt::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
+        Command::Docs(arguments) => docs::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
+    };
+    ExitCode::from(match outcome {
+        Outcome::Fine => 0,
+        Outcome::Failed => 1,
+        Outcome::Usage => 2,
+    })
+}

@@ -1,0 +1,48 @@
+//! Reads and compiles the scene that a command works on, and shows what is wrong with it.
+
+use super::terminal;
+use crate::check::{Folder, Override};
+use crate::diag::{self, Sources, render};
+use crate::{Compiled, compile, syntax};
+use std::path::{Path, PathBuf};
+
+/// The scene a command works on.
+#[derive(clap::Args)]
+pub(super) struct SceneArguments {
+    /// The scene: a `.track` file.
+    pub file: PathBuf,
+    /// Acts as if that line of the file were edited, e.g. `--set open.spacing='0.65 m'`.
+    #[arg(long = "set", value_name = "PATH=VALUE", value_parser = Override::parse)]
+    pub set: Vec<Override>,
+}
+
+impl SceneArguments {
+    /// Reads and compiles the file; `None` where it cannot be read, which has been said.
+    pub fn compile(&self) -> Option<Compiled> {
+        let name = self.file.display().to_string();
+        let bytes = match std::fs::read(&self.file) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                terminal::error(&format!("cannot read `{name}`: {error}"));
+                return None;
+            }
+        };
+        let folder = Folder(self.file.parent().unwrap_or(Path::new("")).to_path_buf());
+        Some(match syntax::decode(&name, &bytes) {
+            Ok(text) => compile(&name, &text, &folder, &self.set),
+            Err(mistake) => Compiled { sources: Sources::default(), diagnostics: vec![mistake], scenario: None, graph: None },
+        })
+    }
+}
+
+/// Shows diagnostics on standard error.
+pub(super) fn show(compiled: &Compiled) {
+    if !compiled.diagnostics.is_empty() {
+        terminal::note(&render::human(&compiled.diagnostics, &compiled.sources, terminal::colour(), terminal::width()));
+    }
+}
+
+/// Whether anything stands against a run.
+pub(super) fn failed(compiled: &Compiled) -> bool {
+    diag::has_errors(&compiled.diagnostics)
+}

@@ -1,0 +1,175 @@
+//! The graph as a person reads it: text, JSON and DOT.
+
+use super::{Decision, Estimate, Graph, Schedule, SubstructureNode};
+use crate::solvers::settlement::Law;
+use crate::units::number;
+use serde::Serialize;
+
+/// A graph in names and sentences.
+#[derive(Debug, Clone, Serialize)]
+pub struct Listing {
+    pub nodes: Vec<Node>,
+    pub edges: Vec<Edge>,
+    pub schedule: Vec<String>,
+    pub passes: Vec<Decision>,
+    pub estimate: Option<Estimate>,
+}
+
+#[derive(Debug, Clone, Serialize)]
+pub struct Node {
+    pub name: &'static str,
+    pub model: String,
+    pub details: Vec<String>,
+}
+
+/// One quantity from node to node, once a block.
+#[derive(Debug, Clone, Serialize)]
+pub struct Edge {
+    pub from: &'static str,
+    pub to: &'static str,
+    pub quantity: &'static str,
+    pub symbol: &'static str,
+    pub unit: &'static str,
+}
+
+const EDGES: [Edge; 3] = [
+    Edge { from: "substructure", to: "track", quantity: "support stiffness and damping", symbol: "k, c", unit: "N/m, N s/m" },
+    Edge { from: "track", to: "substructure", quantity: "sleeper-ballast forces", symbol: "R(t)", unit: "N" },
+    Edge { from: "substructure", to: "track", quantity: "settlement", symbol: "s", unit: "m" },
+];
+
+impl Graph {
+    pub fn listing(&self) -> Listing {
+        Listing {
+            nodes: vec![self.track_node(), self.substructure_node()],
+            edges: match self.substructure {
+                SubstructureNode::Law { .. } => EDGES.to_vec(),
+                SubstructureNode::Fixed => EDGES[..1].to_vec(),
+            },
+            schedule: self.schedule_lines(),
+            passes: self.decisions.clone(),
+            estimate: Some(self.estimate),
+        }
+    }
+
+    fn track_node(&self) -> Node {
+        let track = &self.track.track;
+        let mut details = vec![
+            format!(
+                "rail: Euler-Bernoulli, {} elements a bay, {} m .. {} m",
+                self.track.elements_per_bay,
+                number(track.start()),
+                number(track.end())
+            ),
+            format!("seats: {}", track.seats.len()),
+        ];
+        details.extend(track.sections.iter().map(|s| {
+            let seats = track.seats.iter().filter(|seat| track.sections[seat.section].start == s.start).count();
+            let foot = if s.slab.is_some() { "on a slab" } else { "on sleepers" };
+            format!("section {}: {} m, {seats} seats {foot}", s.name, number(s.end - s.start))
+        }));
+        if let Schedule::Blocks(blocks) = &self.schedule {
+            let plan = &blocks.passage;
+            details.push(format!(
+                "train {}: {} vehicles, {} axles, {} km/h",
+                blocks.train.name,
+                blocks.train.vehicles.len(),
+                blocks.train.axles(),
+                number(*blocks.train.speed * 3.6)
+            ));
+            details.push(format!(
+                "passage: wheels from {} m to {} m, generalised-alpha (rho {}), step {} ms",
+                number(plan.left),
+                number(plan.right),
+                number(plan.rho),
+                number(plan.time_step * 1e3)
+            ));
+        }
+        Node { name: "track", model: "2D finite element track with multibody vehicles, one Newton".into(), details }
+    }
+
+    fn substructure_node(&self) -> Node {
+        match &self.substructure {
+            SubstructureNode::Fixed => Node {
+                name: "substructure",
+                model: "supports as given, without settlement".into(),
+                details: Vec::new(),
+            },
+            SubstructureNode::Law { name, law: Law::Varandas(law) } => Node {
+                name: "substructure",
+                model: format!("tier law: {name} under each sleeper"),
+                details: vec![format!(
+                    "Varandas: alpha {}, beta {}, gamma {} mm after {} axles of {} kN a seat",
+                    number(law.alpha),
+                    number(law.beta),
+                    number(law.gamma * 1e3),
+                    law.reference_cycles,
+                    number(law.reference_force / 1e3)
+                )],
+            },
+        }
+    }
+
+    fn schedule_lines(&self) -> Vec<String> {
+        match &self.schedule {
+            Schedule::Static { loads } => vec![format!("one static equilibrium under {} loads", loads.len())],
+            Schedule::Blocks(b) => {
+                let sizes: Vec<u64> = b.blocks.iter().map(|block| block.axles).collect();
+                let range = match (sizes.iter().min(), sizes.iter().max()) {
+                    (Some(min), Some(max)) if min == max => format!("{min} axles each"),
+                    (Some(min), Some(max)) => format!("{min} to {max} axles"),
+                    _ => "no axles".into(),
+                };
+                vec![
+                    format!("{} axles in {} blocks, {range}", b.total, sizes.len()),
+                    "each block: static state -> passage -> settlement of the block".into(),
+                    format!("recorded after {} axles", b.recorded.iter().map(u64::to_string).collect::<Vec<_>>().join(", ")),
+                ]
+            }
+        }
+    }
+}
+
+impl Listing {
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        for node in &self.nodes {
+            out.push_str(&format!("node {}: {}\n", node.name, node.model));
+            node.details.iter().for_each(|d| out.push_str(&format!("  {d}\n")));
+        }
+        out.push('\n');
+        for e in &self.edges {
+            out.push_str(&format!("edge {} -> {}: {}, {} [{}]\n", e.from, e.to, e.quantity, e.symbol, e.unit));
+        }
+        out.push('\n');
+        self.schedule.iter().for_each(|line| out.push_str(&format!("schedule: {line}\n")));
+        out.push('\n');
+        for pass in &self.passes {
+            out.push_str(&format!("pass {}: {}\n  because {}\n", pass.pass, pass.what, pass.why));
+        }
+        if let Some(e) = &self.estimate {
+            out.push_str(&format!(
+                "\nestimate: {} unknowns, {} passages, {} steps, about {} s on one core, {} MB\n",
+                e.unknowns,
+                e.passages,
+                e.steps,
+                number((e.seconds * 10.0).round() / 10.0),
+                e.bytes.div_ceil(1_000_000)
+            ));
+        }
+        out
+    }
+
+    /// For Graphviz.
+    pub fn dot(&self) -> String {
+        let mut out = String::from("digraph plan {\n  rankdir=LR\n  node [shape=box]\n");
+        for node in &self.nodes {
+            out.push_str(&format!("  {} [label=\"{}\\n{}\"]\n", node.name, node.name, node.model.replace('"', "'")));
+        }
+        for e in &self.edges {
+            out.push_str(&format!("  {} -> {} [label=\"{} [{}]\"]\n", e.from, e.to, e.symbol, e.unit));
+        }
+        out.push_str("}\n");
+        out
+    }
+}

@@ -1,0 +1,127 @@
+//! The solver graph: nodes that own state, edges that carry one quantity each, and the schedule that runs them block by
+//! block (Fig. 3 of the paper).
+//!
+//! The graph is data: it is printed by `trackbed plan`, costed before a run, and executed by [`execute`].
+
+mod execute;
+mod listing;
+mod substructure;
+mod track;
+
+pub use execute::{Checkpoint, Recorder, RunError, execute};
+pub use listing::Listing;
+pub use track::{PassageOutcome, Sample, SeatOutcome, Unloaded};
+
+use crate::scenario::{Direction, Record, StaticLoad, Track, Train};
+use crate::solvers::settlement::Law;
+use serde::{Deserialize, Serialize};
+
+/// A lowered scene.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Graph {
+    pub track: TrackNode,
+    pub substructure: SubstructureNode,
+    pub schedule: Schedule,
+    pub records: Vec<Record>,
+    /// What each pass decided, and why.
+    pub decisions: Vec<Decision>,
+    pub estimate: Estimate,
+}
+
+/// The 2D track with the vehicles on it: one coupled system.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TrackNode {
+    pub track: Track,
+    pub elements_per_bay: u32,
+    /// m/s^2.
+    pub gravity: f64,
+}
+
+/// What carries the sleepers: forces in, stiffness and settlement out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum SubstructureNode {
+    /// A settlement law under each sleeper; stiffness as the scene gives it.
+    Law { name: String, law: Law },
+    /// Nothing settles: a track at rest under test loads.
+    Fixed,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Schedule {
+    /// One state of equilibrium.
+    Static { loads: Vec<StaticLoad> },
+    /// Blocks of trains, each with one exchange of forces and settlement.
+    Blocks(Blocks),
+}
+
+/// The loop over axles.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Blocks {
+    pub train: Train,
+    pub passage: PassagePlan,
+    pub blocks: Vec<Block>,
+    /// Axle counts at which the state of the track is recorded, ascending.
+    pub recorded: Vec<u64>,
+    /// Axles of the whole run.
+    pub total: u64,
+}
+
+/// How one passage is integrated.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct PassagePlan {
+    /// Chainage of the wheel nearest to the left end while the train stands at the left, m, and of the wheel nearest
+    /// to the right end while it stands at the right.
+    pub left: f64,
+    pub right: f64,
+    /// s.
+    pub time_step: f64,
+    /// Spectral radius of generalised-alpha at infinite frequency.
+    pub rho: f64,
+    /// Interval of histories, in time steps.
+    pub sample_every: u64,
+}
+
+/// Trains that run between two exchanges.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Block {
+    /// Axles that have passed before.
+    pub before: u64,
+    pub axles: u64,
+    /// Trains as x grows, and the other way.
+    pub forward: u64,
+    pub backward: u64,
+}
+
+/// What a pass did and why.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Decision {
+    pub pass: String,
+    pub what: String,
+    pub why: String,
+}
+
+/// What the run will take: an estimate, from the counts of steps and unknowns.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    pub unknowns: usize,
+    pub passages: u64,
+    pub steps: u64,
+    /// On one core, s.
+    pub seconds: f64,
+    pub bytes: u64,
+}
+
+impl Blocks {
+    /// Directions of the passages that a block needs, with the number of trains of each.
+    pub fn passages(&self, block: &Block) -> Vec<(Direction, u64)> {
+        [(Direction::Forward, block.forward), (Direction::Backward, block.backward)]
+            .into_iter()
+            .filter(|(_, trains)| *trains > 0)
+            .collect()
+    }
+
+    /// The direction of the passage that shows the state after the last block.
+    pub fn leading_direction(&self) -> Direction {
+        if self.train.direction == Direction::Backward { Direction::Backward } else { Direction::Forward }
+    }
+}

@@ -1,0 +1,36 @@
+//! L1002: the train comes near the speed of bending waves in the track, (4 k EI / m^2)^(1/4).
+
+use super::winkler::Winkler;
+use crate::diag::{Code, Diagnostic};
+use crate::graph::{Graph, Schedule};
+use crate::scenario::Scenario;
+use crate::units::number;
+
+/// Above this share of the critical speed the static picture of the track fails.
+const LARGEST_SHARE: f64 = 0.6;
+
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let track = &scenario.track;
+    let sections = (0..track.sections.len()).filter_map(|i| Some((i, Winkler::of(track, i)?.critical_speed())));
+    let Some((section, critical)) = sections.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Vec::new() };
+    let speed = blocks.train.speed;
+    if *speed < LARGEST_SHARE * critical {
+        return Vec::new();
+    }
+    let diagnostic = Diagnostic::new(
+        Code::L1002,
+        format!(
+            "{} km/h are {} % of the critical speed of section `{}`, {} km/h",
+            number((*speed * 3.6).round()),
+            number((100.0 * *speed / critical).round()),
+            track.sections[section].name,
+            number((critical * 3.6).round())
+        ),
+    )
+    .help("the waves of the support itself are not in this model: it errs to the safe side no longer");
+    vec![match speed.origin.span() {
+        Some(span) => diagnostic.at(span, "near the critical speed"),
+        None => diagnostic,
+    }]
+}

@@ -1,0 +1,50 @@
+//! L1007: sleepers pass at a rate near a bounce or pitch resonance of the bogies.
+//!
+//! f = v / s against sqrt(2 k1 / m_b) / 2 pi (bounce) and sqrt(2 k1 (w/2)^2 / J_b) / 2 pi (pitch).
+
+use crate::diag::{Code, Diagnostic};
+use crate::graph::{Graph, Schedule};
+use crate::scenario::Scenario;
+use crate::units::number;
+
+/// Frequencies closer than this share are near.
+const NEAR: f64 = 0.1;
+
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let speed = blocks.train.speed;
+    let mut found = Vec::new();
+    for section in &scenario.track.sections {
+        let passing = *speed / *section.spacing;
+        for vehicle in &blocks.train.vehicles {
+            let stiffness = 2.0 * *vehicle.primary_stiffness;
+            let half = *vehicle.wheelset_spacing / 2.0;
+            let bounce = (stiffness / *vehicle.bogie_mass).sqrt() / (2.0 * std::f64::consts::PI);
+            let pitch = (stiffness * half * half / *vehicle.bogie_pitch_inertia).sqrt() / (2.0 * std::f64::consts::PI);
+            for (name, frequency) in [("bounce", bounce), ("pitch", pitch)] {
+                if (passing / frequency - 1.0).abs() > NEAR {
+                    continue;
+                }
+                let diagnostic = Diagnostic::new(
+                    Code::L1007,
+                    format!(
+                        "sleepers of `{}` pass at {} Hz, near the bogie {name} of `{}` at {} Hz",
+                        section.name,
+                        number(passing.round()),
+                        vehicle.name,
+                        number(frequency.round())
+                    ),
+                )
+                .help(format!("at {} km/h they part", number((*speed * 3.6 * (1.0 + 2.0 * NEAR)).round())));
+                let diagnostic = match speed.origin.span() {
+                    Some(span) => diagnostic.at(span, "this speed"),
+                    None => diagnostic,
+                };
+                if !found.contains(&diagnostic) {
+                    found.push(diagnostic);
+                }
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,48 @@
+//! L1001: the static stiffness at rail level jumps at a transition.
+//!
+//! Both sides as beams on Winkler foundations: K = 2 k / lambda. A ratio above 1.15 sets off the mechanism of Fig. 1 of
+//! the paper.
+
+use super::winkler::Winkler;
+use crate::diag::{Code, Diagnostic};
+use crate::graph::Graph;
+use crate::scenario::{Foot, Scenario};
+use crate::units::number;
+
+const LARGEST_RATIO: f64 = 1.15;
+
+pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
+    let track = &scenario.track;
+    let mut found = Vec::new();
+    for (i, transition) in track.transitions.iter().enumerate() {
+        let (Some(left), Some(right)) = (Winkler::of(track, i), Winkler::of(track, i + 1)) else { continue };
+        let (a, b) = (left.rail_stiffness(), right.rail_stiffness());
+        let ratio = a.max(b) / a.min(b);
+        if ratio <= LARGEST_RATIO {
+            continue;
+        }
+        let name = if transition.name.is_empty() { String::new() } else { format!(" `{}`", transition.name) };
+        let mut diagnostic = Diagnostic::new(
+            Code::L1001,
+            format!(
+                "the stiffness at rail level jumps from {} to {} MN/m at transition{name}, by a factor of {}",
+                number((a / 1e5).round() / 10.0),
+                number((b / 1e5).round() / 10.0),
+                number((ratio * 100.0).round() / 100.0)
+            ),
+        )
+        .help(format!("bring both sides within a factor of {LARGEST_RATIO}: softer pads on the stiff side, a stiffer support before it"));
+        for section in [i, i + 1] {
+            let seat = track.seats.iter().find(|s| s.section == section);
+            let origin = match seat.map(|s| &s.foot) {
+                Some(Foot::Sleeper { support, .. }) => support.stiffness.origin,
+                _ => seat.map_or(crate::scenario::Origin::Default, |s| s.pad.stiffness.origin),
+            };
+            if let Some(span) = origin.span() {
+                diagnostic = diagnostic.at(span, format!("section `{}`", track.sections[section].name));
+            }
+        }
+        found.push(diagnostic);
+    }
+    found
+}

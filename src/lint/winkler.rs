@@ -1,0 +1,52 @@
+//! The track as a beam on a Winkler foundation: the closed forms that several rules need.
+
+use crate::scenario::{Foot, Section, Track};
+
+/// A section smeared along the rail.
+pub(super) struct Winkler {
+    /// Foundation modulus: seat stiffness over spacing, N/m per metre.
+    pub modulus: f64,
+    /// EI of the rail, N m^2.
+    pub bending_stiffness: f64,
+    /// Rail and sleepers, kg/m.
+    pub mass: f64,
+}
+
+impl Winkler {
+    /// A seat is pad and support in series; a slab adds its foundation over one spacing.
+    pub fn of(track: &Track, section: usize) -> Option<Winkler> {
+        let Section { rail, spacing, slab, .. } = &track.sections[section];
+        let seat = track.seats.iter().find(|s| s.section == section)?;
+        let (below, mass) = match (&seat.foot, slab) {
+            (Foot::Sleeper { mass, support }, _) => (1.0 / *support.stiffness, **mass / **spacing),
+            (Foot::Slab, Some(slab)) => (1.0 / (*slab.foundation_stiffness * **spacing), 0.0),
+            _ => (0.0, 0.0),
+        };
+        let stiffness = 1.0 / (1.0 / *seat.pad.stiffness + below);
+        Some(Winkler {
+            modulus: stiffness / **spacing,
+            bending_stiffness: *rail.bending_stiffness,
+            mass: *rail.mass + mass,
+        })
+    }
+
+    /// Reciprocal of the characteristic length, 1/m: (k/4EI)^(1/4).
+    pub fn lambda(&self) -> f64 {
+        (self.modulus / (4.0 * self.bending_stiffness)).powf(0.25)
+    }
+
+    /// Static stiffness at rail level, N/m: 2 k / lambda.
+    pub fn rail_stiffness(&self) -> f64 {
+        2.0 * self.modulus / self.lambda()
+    }
+
+    /// Speed at which a moving load resonates with bending waves, m/s: (4 k EI / m^2)^(1/4).
+    pub fn critical_speed(&self) -> f64 {
+        (4.0 * self.modulus * self.bending_stiffness / (self.mass * self.mass)).powf(0.25)
+    }
+
+    /// Share of a load that the seat under it takes: lambda s / 2.
+    pub fn seat_share(&self, spacing: f64) -> f64 {
+        self.lambda() * spacing / 2.0
+    }
+}

@@ -1,0 +1,67 @@
+//! From the scenario to the solver graph: passes that choose models, places, steps and blocks, and say why.
+
+mod estimate;
+mod passage;
+mod schedule;
+
+use crate::diag::{Code, Diagnostic, Severity};
+use crate::graph::{Decision, Graph, Schedule, SubstructureNode, TrackNode};
+use crate::scenario::{LawForm, Loading, Scenario, SettlementLaw};
+use crate::solvers::settlement::{Law, Varandas};
+
+/// Lowers a scene. Without a graph there is at least one diagnostic.
+pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
+    let mut pass = Pass { decisions: Vec::new(), diagnostics: Vec::new() };
+    let (substructure, schedule) = match &scenario.loading {
+        None => {
+            pass.diagnostics.push(
+                Diagnostic::new(Code::E0601, "nothing acts on the track: there is neither `traffic` nor `load`")
+                    .severity(Severity::Warning)
+                    .help("add `traffic { trains = ..., total = 500 axles }` to run the scene"),
+            );
+            return (None, pass.diagnostics);
+        }
+        Some(Loading::Static(loads)) => {
+            pass.decide("tier", "no settlement", "test loads act on a track at rest");
+            (SubstructureNode::Fixed, Some(Schedule::Static { loads: loads.clone() }))
+        }
+        Some(Loading::Traffic(traffic)) => {
+            pass.decide("tier", "a settlement law under each sleeper", "the scene gives the stiffness of its supports");
+            let law = SubstructureNode::Law { name: scenario.solve.law.name.clone(), law: law(&scenario.solve.law) };
+            (law, schedule::blocks(&mut pass, scenario, traffic).map(Schedule::Blocks))
+        }
+    };
+    let Some(schedule) = schedule else { return (None, pass.diagnostics) };
+    let track = TrackNode {
+        track: scenario.track.clone(),
+        elements_per_bay: *scenario.solve.elements_per_bay,
+        gravity: *scenario.solve.gravity,
+    };
+    let estimate = estimate::estimate(&track, &schedule);
+    let graph = Graph {
+        track,
+        substructure,
+        schedule,
+        records: scenario.records.clone(),
+        decisions: pass.decisions,
+        estimate,
+    };
+    (Some(graph), pass.diagnostics)
+}
+
+fn law(law: &SettlementLaw) -> Law {
+    let LawForm::Varandas { alpha, beta, gamma, reference_cycles, reference_force } = law.form;
+    Law::Varandas(Varandas { alpha, beta, gamma, reference_cycles: reference_cycles as u64, reference_force })
+}
+
+/// What the passes collect on their way.
+struct Pass {
+    decisions: Vec<Decision>,
+    diagnostics: Vec<Diagnostic>,
+}
+
+impl Pass {
+    fn decide(&mut self, pass: &str, what: impl Into<String>, why: impl Into<String>) {
+        self.decisions.push(Decision { pass: pass.into(), what: what.into(), why: why.into() });
+    }
+}

@@ -1,0 +1,115 @@
+//! Where a passage starts and ends, and in which steps it is integrated.
+
+use super::Pass;
+use crate::diag::{Code, Diagnostic};
+use crate::graph::PassagePlan;
+use crate::scenario::{Direction, Given, Integrator, Scenario, Train};
+use crate::units::number;
+
+/// Distance that wheels keep from the ends of the model where there is room, m: about three decay lengths of the
+/// static deflection (methods: 1.6 .. 2.7 m).
+const MARGIN: f64 = 6.0;
+/// The least distance, m.
+const LEAST_MARGIN: f64 = 1.0;
+/// Time step where nothing is said, s: resolves the wheel on its contact spring (about 230 Hz) with forty steps.
+const TIME_STEP: f64 = 1e-4;
+/// Interval of histories where nothing is said, s.
+const SAMPLE: f64 = 5e-4;
+
+pub(super) fn plan(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<PassagePlan> {
+    let (left, right) = ends(pass, scenario, train)?;
+    let time_step = time_step(pass, scenario, train)?;
+    let rho = match scenario.solve.integrator {
+        Integrator::GeneralisedAlpha { rho } => rho,
+    };
+    let every = scenario.records.iter().filter_map(|r| r.every).fold(SAMPLE, f64::min);
+    let sample_every = (every / time_step).round().max(1.0) as u64;
+    Some(PassagePlan { left, right, time_step, rho, sample_every })
+}
+
+/// Chainage of the hindmost wheel at the left and of the foremost one at the right.
+fn ends(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<(f64, f64)> {
+    let track = &scenario.track;
+    let (start, end) = (track.start(), track.end());
+    let length = end - start;
+    let base = train.wheel_base();
+    let room = length - base;
+    if room < 4.0 * LEAST_MARGIN {
+        let span = train.vehicles[0].bogie_spacing.origin.span();
+        let mut mistake = Diagnostic::new(
+            Code::E0503,
+            format!("train `{}` is {} m from first to last wheel, the track {} m", train.name, number(base), number(length)),
+        )
+        .help(format!("make the track at least {} m long", number((base + 4.0 * MARGIN).ceil())));
+        if let Some(span) = span {
+            mistake = mistake.at(span, "the vehicle's bogies stand here");
+        }
+        pass.diagnostics.push(mistake);
+        return None;
+    }
+    let margin = MARGIN.min(room / 4.0);
+    let (mut left, mut right) = (start + margin, end - margin);
+    // `start` and `finish` are of the leading wheel
+    let forward = train.direction != Direction::Backward;
+    let (at_left, at_right) = if forward { (scenario.solve.start, scenario.solve.finish) } else { (scenario.solve.finish, scenario.solve.start) };
+    let behind = |given: Given, leading_is_right: bool| if leading_is_right { (*given - base, *given) } else { (*given, *given + base) };
+    for (given, left_end) in [(at_left, true), (at_right, false)] {
+        let Some(given) = given else { continue };
+        let (hindmost, foremost) = behind(given, forward);
+        if hindmost < start + 1e-9 || foremost > end - 1e-9 {
+            let mut mistake = Diagnostic::new(
+                Code::E0501,
+                format!("the train's wheels would stand from {} m to {} m, the track reaches from {} m to {} m",
+                    number(hindmost), number(foremost), number(start), number(end)),
+            );
+            if let Some(span) = given.origin.span() {
+                mistake = mistake.at(span, "of the leading wheel");
+            }
+            pass.diagnostics.push(mistake);
+            return None;
+        }
+        if left_end { left = hindmost } else { right = foremost }
+    }
+    if right - left < base + LEAST_MARGIN {
+        pass.diagnostics.push(Diagnostic::new(
+            Code::E0503,
+            format!("the train starts and ends its passage at the same place: {} m are left to run", number(right - left - base)),
+        ));
+        return None;
+    }
+    pass.decide(
+        "passage",
+        format!("wheels run from {} m to {} m, all on the track from the start", number(left), number(right)),
+        format!("the ends of the rail stay at least {} m away from every wheel", number((left - start).min(end - right))),
+    );
+    Some((left, right))
+}
+
+fn time_step(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<f64> {
+    let spacing = scenario.track.sections.iter().map(|s| *s.spacing).fold(f64::INFINITY, f64::min);
+    let element = spacing / f64::from(*scenario.solve.elements_per_bay);
+    let speed = *train.speed;
+    let transit = element / speed;
+    if let Some(given) = scenario.solve.time_step {
+        if *given > transit {
+            let mut mistake = Diagnostic::new(
+                Code::E0603,
+                format!("a wheel runs {} m in one step, more than one element of {} m", number(*given * speed), number(element)),
+            )
+            .help(format!("write `time_step = {} s` or less", number(transit / 10.0)));
+            if let Some(span) = given.origin.span() {
+                mistake = mistake.at(span, "too coarse");
+            }
+            pass.diagnostics.push(mistake);
+            return None;
+        }
+        return Some(*given);
+    }
+    let step = TIME_STEP.min(transit / 10.0);
+    pass.decide(
+        "time step",
+        format!("{} ms", number(step * 1e3)),
+        "a tenth of an element's transit, and at most 0.1 ms for the contact of wheel and rail",
+    );
+    Some(step)
+}
