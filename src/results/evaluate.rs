@@ -1,0 +1,193 @@
+//! Expressions over a run's responses, as numbers: what `expect` compares and a study optimises.
+//!
+//! A seat's response is the one value that `sleepers.csv` holds for it (the peak of the passage where it varies in
+//! time); velocities and accelerations come from histories, as do the wheels' and the rail's responses.
+
+use super::{BlockRow, HistoryRow, Scalar, SleeperRow, Verdict};
+use crate::scenario::Scenario;
+use crate::scenario::response::{Expectation, Expression, Measure, Place, Reduction, Response};
+use crate::syntax::tree::{BinaryOp, Comparison};
+use std::collections::BTreeMap;
+
+/// Slack at the ends of an interval of chainage, m: places are sums of spacings.
+const PLACE_TOLERANCE: f64 = 1e-6;
+
+/// What an expression can be about.
+#[derive(Debug, Clone, Copy)]
+pub struct Tables<'a> {
+    pub sleepers: &'a [SleeperRow],
+    pub blocks: &'a [BlockRow],
+    pub histories: &'a [HistoryRow],
+    pub scalars: &'a BTreeMap<String, Scalar>,
+}
+
+/// The value of an expression in SI units, or why it has none. The value is finite.
+pub fn evaluate(expression: &Expression, tables: Tables<'_>) -> Result<f64, String> {
+    let value = match expression {
+        Expression::Number(value) => *value,
+        Expression::Measure(measure) => evaluate_measure(measure, tables)?,
+        Expression::Negate(inner) => -evaluate(inner, tables)?,
+        Expression::Binary(left, operator, right) => {
+            let (left, right) = (evaluate(left, tables)?, evaluate(right, tables)?);
+            match operator {
+                BinaryOp::Add => left + right,
+                BinaryOp::Subtract => left - right,
+                BinaryOp::Multiply => left * right,
+                BinaryOp::Divide if right == 0.0 => return Err("divided by zero".to_owned()),
+                BinaryOp::Divide => left / right,
+                BinaryOp::Power => left.powf(right),
+            }
+        }
+    };
+    if value.is_finite() { Ok(value) } else { Err("the value is not a finite number".to_owned()) }
+}
+
+/// Every expectation of the scene against the tables.
+pub fn verdicts(scenario: &Scenario, tables: Tables<'_>) -> Vec<Verdict> {
+    scenario.expectations.iter().map(|expectation| verdict(expectation, tables)).collect()
+}
+
+fn verdict(expectation: &Expectation, tables: Tables<'_>) -> Verdict {
+    let operands: Result<Vec<f64>, String> = expectation.operands.iter().map(|e| evaluate(e, tables)).collect();
+    let (unit, size) = &expectation.unit;
+    let (met, values, problem) = match operands {
+        Ok(values) => {
+            let pairs = values.windows(2).zip(&expectation.operators);
+            let met = pairs.into_iter().all(|(pair, operator)| holds(pair[0], *operator, pair[1]));
+            (met, values.iter().map(|value| value / size).collect(), None)
+        }
+        Err(problem) => (false, Vec::new(), Some(problem)),
+    };
+    Verdict { text: expectation.text.clone(), met, values, unit: unit.clone(), problem }
+}
+
+fn holds(left: f64, operator: Comparison, right: f64) -> bool {
+    match operator {
+        Comparison::Less => left < right,
+        Comparison::LessOrEqual => left <= right,
+        Comparison::Greater => left > right,
+        Comparison::GreaterOrEqual => left >= right,
+    }
+}
+
+fn evaluate_measure(measure: &Measure, tables: Tables<'_>) -> Result<f64, String> {
+    let name = measure.response.name();
+    if measure.response.place() == Place::Scene {
+        let scalar = tables.scalars.get(name);
+        return scalar.map(|s| s.value).ok_or_else(|| format!("this run has no `{name}`"));
+    }
+    let values = values(measure, tables)?;
+    let largest = || values.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
+    let result = match measure.reduction {
+        Reduction::Max => largest().map(|(_, value)| value),
+        Reduction::PlaceOfMax => largest().map(|(x, _)| x),
+        Reduction::Min => values.iter().map(|(_, value)| *value).min_by(f64::total_cmp),
+        Reduction::Mean => (!values.is_empty()).then(|| values.iter().map(|v| v.1).sum::<f64>() / values.len() as f64),
+        Reduction::Itself => return Err(format!("`{name}` has many values: take its max, min or mean")),
+    };
+    // A peak along the rail is known for the whole run even where no history was asked for.
+    result.or_else(|| peak(measure, tables)).ok_or_else(|| absent(measure))
+}
+
+fn peak(measure: &Measure, tables: Tables<'_>) -> Option<f64> {
+    let last = tables.scalars.get("axles").map(|s| s.value as u64);
+    let everywhere_at_last = measure.over.is_none() && (measure.after.is_none() || measure.after == last);
+    let prefix = match measure.reduction {
+        Reduction::Max => "max",
+        Reduction::Min => "min",
+        _ => return None,
+    };
+    let scalar = tables.scalars.get(&format!("{prefix}_{}", measure.response.name()));
+    scalar.filter(|_| everywhere_at_last).map(|s| s.value)
+}
+
+fn absent(measure: &Measure) -> String {
+    let mut text = format!("no value of `{}`", measure.response.name());
+    if let Some((from, to)) = measure.over {
+        text += &format!(" between {from} m and {to} m");
+    }
+    if let Some(after) = measure.after {
+        text += &format!(" after {after} axles");
+    }
+    text + " was recorded"
+}
+
+/// Chainage and value of everything that the measure covers.
+fn values(measure: &Measure, tables: Tables<'_>) -> Result<Vec<(f64, f64)>, String> {
+    let inside = |x: f64| match measure.over {
+        Some((a, b)) => x >= a.min(b) - PLACE_TOLERANCE && x <= a.max(b) + PLACE_TOLERANCE,
+        None => true,
+    };
+    if let Some(column) = sleeper_column(measure.response) {
+        let axles = measure.after.or_else(|| tables.sleepers.iter().map(|row| row.axles).max());
+        let rows = tables.sleepers.iter().filter(|row| Some(row.axles) == axles && inside(row.x_m));
+        return Ok(rows.map(|row| (row.x_m, column(row))).collect());
+    }
+    let name = measure.response.name();
+    let on_rail = measure.response.place() == Place::Rail;
+    let rows = || tables.histories.iter().filter(|row| row.quantity == name && (!on_rail || row.id == "rail"));
+    let axles = measure.after.or_else(|| rows().map(|row| row.axles).max());
+    let rows = rows().filter(|row| Some(row.axles) == axles && inside(row.x_m));
+    Ok(rows.map(|row| (row.x_m, row.value)).collect())
+}
+
+/// The column of `sleepers.csv` that holds a seat's response.
+fn sleeper_column(response: Response) -> Option<fn(&SleeperRow) -> f64> {
+    match response {
+        Response::RailSeatLoad => Some(|row| row.max_rail_seat_load_N),
+        Response::ContactForce => Some(|row| row.max_contact_force_N),
+        Response::GravityContactForce => Some(|row| row.gravity_contact_force_N),
+        Response::Settlement => Some(|row| row.settlement_m),
+        Response::Void => Some(|row| row.void_m),
+        Response::SleeperDisplacement => Some(|row| row.max_sleeper_displacement_m),
+        Response::SupportStiffness => Some(|row| row.support_stiffness_N_per_m),
+        Response::ContactLoss => Some(|row| row.contact_loss_s),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::example;
+
+    fn measure(reduction: Reduction, response: Response) -> Measure {
+        Measure { reduction, response, over: None, after: None }
+    }
+
+    #[test]
+    fn reductions_over_place_and_count() {
+        let run = example::transition();
+        let tables = Tables {
+            sleepers: &run.sleepers,
+            blocks: &run.blocks,
+            histories: &run.histories,
+            scalars: &run.summary.scalars,
+        };
+        let value = |measure: Measure| evaluate(&Expression::Measure(measure), tables);
+        let place = value(measure(Reduction::PlaceOfMax, Response::Settlement)).unwrap();
+        assert!((place + 3.0).abs() < 1e-9);
+        let early = Measure { after: Some(100), ..measure(Reduction::Max, Response::Settlement) };
+        let late = value(measure(Reduction::Max, Response::Settlement)).unwrap();
+        assert!(value(early).unwrap() < late);
+        let far = Measure { over: Some((-40.0, -30.0)), ..measure(Reduction::Mean, Response::Settlement) };
+        assert!((value(far).unwrap() - 1.2e-3).abs() < 1e-6);
+        assert!(value(measure(Reduction::Max, Response::WheelForce)).unwrap() > 100e3);
+        assert!(value(measure(Reduction::Itself, Response::DifferentialSettlement)).unwrap() > 1e-3);
+        let nowhere = Measure { over: Some((100.0, 200.0)), ..measure(Reduction::Max, Response::Void) };
+        assert_eq!(value(nowhere).unwrap_err(), "no value of `void` between 100 m and 200 m was recorded");
+        let moment = measure(Reduction::Max, Response::RailMoment);
+        assert_eq!(value(moment).unwrap(), run.summary.scalars["max_rail_moment"].value);
+    }
+
+    #[test]
+    fn arithmetic_and_division_by_zero() {
+        let scalars = BTreeMap::new();
+        let tables = Tables { sleepers: &[], blocks: &[], histories: &[], scalars: &scalars };
+        let number = |value| Box::new(Expression::Number(value));
+        let binary = |a, operator, b| evaluate(&Expression::Binary(number(a), operator, number(b)), tables);
+        assert_eq!(binary(2.0, BinaryOp::Power, 3.0), Ok(8.0));
+        assert_eq!(binary(2.0, BinaryOp::Divide, 0.0), Err("divided by zero".to_owned()));
+        assert!(binary(-2.0, BinaryOp::Power, 0.5).is_err());
+    }
+}

@@ -1,0 +1,244 @@
+//! A run's directory: which file holds which part of a [`Run`], and both ways between them.
+//!
+//! Numbers survive the way there and back bit for bit, and two equal runs leave equal bytes: what differs between them
+//! goes into `timings.json`, which is no part of the [`Run`]. A number that is not finite is refused before any file
+//! is touched.
+
+use super::histories::{self, HISTORIES};
+use super::{ResultsError, Row, Run, atomic};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+const SCENARIO: &str = "scenario.json";
+const SUMMARY: &str = "summary.json";
+const TIMINGS: &str = "timings.json";
+
+/// Writes every file of `run` into `directory`, which is made where it does not exist.
+pub fn write(run: &Run, directory: &Path) -> Result<(), ResultsError> {
+    let files = [
+        (SCENARIO, scenario_json(run, directory)?),
+        (super::SleeperRow::FILE, table(&run.sleepers, directory)?),
+        (super::BlockRow::FILE, table(&run.blocks, directory)?),
+        (HISTORIES, histories::encode(&run.histories, directory)?),
+        (SUMMARY, summary_json(run, directory)?), // last: a directory with a summary is complete
+    ];
+    fs::create_dir_all(directory).map_err(|cause| ResultsError::io(directory, "create", cause))?;
+    files.iter().try_for_each(|(name, bytes)| atomic::write(&directory.join(name), bytes))
+}
+
+/// Reads a run back from its directory.
+pub fn read(directory: &Path) -> Result<Run, ResultsError> {
+    Ok(Run {
+        summary: read_json(&directory.join(SUMMARY))?,
+        scenario: read_json(&directory.join(SCENARIO))?,
+        sleepers: read_table(directory)?,
+        blocks: read_table(directory)?,
+        histories: histories::decode(&directory.join(HISTORIES))?,
+    })
+}
+
+/// Writes `timings.json`: seconds, rates and whatever else differs between two equal runs.
+pub fn write_timings(timings: &BTreeMap<String, f64>, directory: &Path) -> Result<(), ResultsError> {
+    for (row, (name, value)) in timings.iter().enumerate() {
+        check_finite(TIMINGS, name, row + 1, *value)?;
+    }
+    fs::create_dir_all(directory).map_err(|cause| ResultsError::io(directory, "create", cause))?;
+    let path = directory.join(TIMINGS);
+    atomic::write(&path, &json(timings, &path)?)
+}
+
+/// Reads `timings.json`; empty where there is none.
+pub fn read_timings(directory: &Path) -> Result<BTreeMap<String, f64>, ResultsError> {
+    let path = directory.join(TIMINGS);
+    if path.exists() { read_json(&path) } else { Ok(BTreeMap::new()) }
+}
+
+pub(super) fn check_finite(table: &str, column: &str, row: usize, value: f64) -> Result<(), ResultsError> {
+    if value.is_finite() { Ok(()) } else { Err(not_finite(table, column, row)) }
+}
+
+fn not_finite(table: &str, column: &str, row: usize) -> ResultsError {
+    ResultsError::NotFinite { table: table.to_owned(), column: column.to_owned(), row }
+}
+
+fn summary_json(run: &Run, directory: &Path) -> Result<Vec<u8>, ResultsError> {
+    let path = directory.join(SUMMARY);
+    for (name, scalar) in &run.summary.scalars {
+        if name == "expectations" || name == "provenance" {
+            return Err(ResultsError::unwritable(&path, format!("a scalar cannot be called `{name}`")));
+        }
+        check_finite(SUMMARY, name, 1, scalar.value)?;
+    }
+    for (row, verdict) in run.summary.expectations.iter().enumerate() {
+        verdict.values.iter().try_for_each(|value| check_finite(SUMMARY, "expectations", row + 1, *value))?;
+    }
+    json(&run.summary, &path)
+}
+
+/// JSON has no word for a number that is not finite: what does not come back equal held one.
+fn scenario_json(run: &Run, directory: &Path) -> Result<Vec<u8>, ResultsError> {
+    let path = directory.join(SCENARIO);
+    let bytes = json(&run.scenario, &path)?;
+    match serde_json::from_slice(&bytes) {
+        Ok(back) if run.scenario == back => Ok(bytes),
+        Ok(_) => Err(ResultsError::unwritable(&path, "a value of the scene is not finite")),
+        Err(cause) => Err(ResultsError::unwritable(&path, format!("a value of the scene is not finite ({cause})"))),
+    }
+}
+
+fn json<T: Serialize>(value: &T, path: &Path) -> Result<Vec<u8>, ResultsError> {
+    let mut bytes = serde_json::to_vec_pretty(value).map_err(|cause| ResultsError::unwritable(path, cause))?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, ResultsError> {
+    let bytes = fs::read(path).map_err(|cause| ResultsError::io(path, "read", cause))?;
+    serde_json::from_slice(&bytes).map_err(|cause| ResultsError::malformed(path, cause))
+}
+
+fn table<R: Row>(rows: &[R], directory: &Path) -> Result<Vec<u8>, ResultsError> {
+    let path = directory.join(R::FILE);
+    let fail = |cause: csv::Error| ResultsError::unwritable(&path, cause);
+    // The header is written by hand so that a table without rows has one too.
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    writer.write_record(R::COLUMNS).map_err(fail)?;
+    for (index, row) in rows.iter().enumerate() {
+        check_row(row, index + 1, &path)?;
+        writer.serialize(row).map_err(fail)?;
+    }
+    writer.into_inner().map_err(|cause| ResultsError::unwritable(&path, cause))
+}
+
+/// JSON makes null of a number that is not finite, and a row holds nothing else that could be null.
+fn check_row<R: Row>(row: &R, number: usize, path: &Path) -> Result<(), ResultsError> {
+    let fields = serde_json::to_value(row).map_err(|cause| ResultsError::unwritable(path, cause))?;
+    match R::COLUMNS.iter().find(|column| fields[**column].is_null()) {
+        Some(column) => Err(not_finite(R::FILE, column, number)),
+        None => Ok(()),
+    }
+}
+
+fn read_table<R: Row>(directory: &Path) -> Result<Vec<R>, ResultsError> {
+    let path = directory.join(R::FILE);
+    let bytes = fs::read(&path).map_err(|cause| ResultsError::io(&path, "read", cause))?;
+    let mut reader = csv::Reader::from_reader(bytes.as_slice());
+    let header = reader.headers().map_err(|cause| ResultsError::malformed(&path, cause))?;
+    if !header.iter().eq(R::COLUMNS.iter().copied()) {
+        let found = header.iter().collect::<Vec<_>>().join(",");
+        let expected = R::COLUMNS.join(",");
+        return Err(ResultsError::malformed(&path, format!("expected columns `{expected}`, found `{found}`")));
+    }
+    let mut rows = Vec::new();
+    for row in reader.deserialize() {
+        rows.push(row.map_err(|cause| ResultsError::malformed(&path, cause))?);
+    }
+    Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::{BlockRow, SleeperRow, example};
+
+    fn columns<R: Row>(row: &R) {
+        let fields = serde_json::to_value(row).unwrap();
+        let mut expected = R::COLUMNS.to_vec();
+        expected.sort_unstable();
+        assert!(fields.as_object().unwrap().keys().eq(expected), "{}", R::FILE);
+        assert!(!fields.as_object().unwrap().values().any(serde_json::Value::is_null));
+    }
+
+    #[test]
+    fn columns_are_the_fields() {
+        let run = example::transition();
+        columns::<SleeperRow>(&run.sleepers[0]);
+        columns::<BlockRow>(&run.blocks[0]);
+    }
+
+    #[test]
+    fn a_run_comes_back_bit_for_bit() {
+        let mut run = example::transition();
+        run.sleepers[3].settlement_m = 0.1 + 0.2;
+        run.sleepers[4].void_m = -0.0;
+        run.histories[5].value = f64::MIN_POSITIVE / 7.0;
+        run.summary.scalars.get_mut("max_void").unwrap().value = 1.0 / 3.0;
+        let directory = tempfile::tempdir().unwrap();
+        let (first, second) = (directory.path().join("a/b"), directory.path().join("c"));
+        write(&run, &first).unwrap();
+        let back = read(&first).unwrap();
+        assert!(run == back);
+        assert_eq!(back.sleepers[4].void_m.to_bits(), (-0.0_f64).to_bits());
+        write(&back, &second).unwrap();
+        let mut names: Vec<String> =
+            fs::read_dir(&first).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        assert_eq!(names, ["blocks.csv", "histories.parquet", "scenario.json", "sleepers.csv", "summary.json"]);
+        for name in names {
+            assert!(fs::read(first.join(&name)).unwrap() == fs::read(second.join(&name)).unwrap(), "{name}");
+        }
+    }
+
+    #[test]
+    fn scalars_stand_at_the_top_level() {
+        let run = example::bench();
+        let directory = tempfile::tempdir().unwrap();
+        write(&run, directory.path()).unwrap();
+        let text = fs::read_to_string(directory.path().join(SUMMARY)).unwrap();
+        let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(json["max_rail_moment"]["value"], 17.66e3);
+        assert_eq!(json["max_rail_displacement"]["unit"], "m");
+        assert_eq!(json["provenance"]["seed"], 1);
+        assert!(read(directory.path()).unwrap() == run);
+    }
+
+    #[test]
+    fn numbers_that_are_none_are_refused_by_name() {
+        let directory = tempfile::tempdir().unwrap();
+        let refusal = |change: fn(&mut Run)| {
+            let mut run = example::bench();
+            change(&mut run);
+            write(&run, &directory.path().join("never")).unwrap_err().to_string()
+        };
+        let text = refusal(|run| run.sleepers[1].max_rail_seat_load_N = f64::NAN);
+        assert_eq!(
+            text,
+            "refused to write `sleepers.csv`: column `max_rail_seat_load_N` of row 2 is not a finite number"
+        );
+        let text = refusal(|run| run.histories[0].value = f64::INFINITY);
+        assert_eq!(text, "refused to write `histories.parquet`: column `value` of row 1 is not a finite number");
+        let text = refusal(|run| run.summary.scalars.get_mut("max_rail_moment").unwrap().value = f64::NAN);
+        assert_eq!(text, "refused to write `summary.json`: column `max_rail_moment` of row 1 is not a finite number");
+        assert!(refusal(|run| run.scenario.solve.gravity.value = f64::NAN).contains("scenario.json"));
+        assert!(!directory.path().join("never").exists());
+    }
+
+    #[test]
+    fn errors_name_the_file_and_what_is_wrong() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path();
+        let error = || read(path).unwrap_err().to_string();
+        assert!(error().contains("cannot read `") && error().contains("summary.json`"), "{}", error());
+        write(&example::bench(), path).unwrap();
+        fs::write(path.join("blocks.csv"), "axles,more\n1,2\n").unwrap();
+        assert!(error().contains("blocks.csv`: expected columns `axles,block_axles,"), "{}", error());
+        let header = BlockRow::COLUMNS.join(",");
+        fs::write(path.join("blocks.csv"), format!("{header}\n1,2,x,4,5,6,7,8,9,10\n")).unwrap();
+        assert!(error().contains("blocks.csv`") && error().contains("line: 2"), "{}", error());
+        fs::write(path.join("blocks.csv"), header).unwrap();
+        fs::write(path.join("histories.parquet"), "PAR1 and nothing else").unwrap();
+        assert!(error().contains("histories.parquet`") && !error().contains('\n'), "{}", error());
+    }
+
+    #[test]
+    fn timings_stand_apart() {
+        let directory = tempfile::tempdir().unwrap();
+        assert!(read_timings(directory.path()).unwrap().is_empty());
+        let timings = BTreeMap::from([("wall_s".to_owned(), 12.5)]);
+        write_timings(&timings, directory.path()).unwrap();
+        assert_eq!(read_timings(directory.path()).unwrap(), timings);
+    }
+}

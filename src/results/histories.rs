@@ -1,0 +1,138 @@
+//! `histories.parquet`: the long table of everything sampled along a passage, one row a value.
+//!
+//! Columns `axles` INT64, `time_s` DOUBLE, `quantity` UTF8, `id` UTF8, `x_m` DOUBLE, `value` DOUBLE; dictionaries
+//! where values repeat, compressed with Snappy. Equal rows make equal bytes: nothing of the file depends on the clock.
+
+use super::files::check_finite;
+use super::{HistoryRow, ResultsError};
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
+use parquet::column::reader::get_typed_column_reader;
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
+use parquet::errors::Result as ParquetResult;
+use parquet::file::properties::WriterProperties;
+use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::schema::types::{Type, TypePtr};
+use std::fs::File;
+use std::path::Path;
+use std::sync::Arc;
+
+pub(super) const HISTORIES: &str = "histories.parquet";
+
+const COLUMNS: [(&str, Physical); 6] = [
+    ("axles", Physical::INT64),
+    ("time_s", Physical::DOUBLE),
+    ("quantity", Physical::BYTE_ARRAY),
+    ("id", Physical::BYTE_ARRAY),
+    ("x_m", Physical::DOUBLE),
+    ("value", Physical::DOUBLE),
+];
+
+/// Rows that are held in columns at once while a file is written or read.
+const GROUP_ROWS: usize = 1 << 18;
+
+/// The bytes of the file that holds `rows`.
+pub(super) fn encode(rows: &[HistoryRow], directory: &Path) -> Result<Vec<u8>, ResultsError> {
+    for (index, row) in rows.iter().enumerate() {
+        check_finite(HISTORIES, "time_s", index + 1, row.time_s)?;
+        check_finite(HISTORIES, "x_m", index + 1, row.x_m)?;
+        check_finite(HISTORIES, "value", index + 1, row.value)?;
+    }
+    write_groups(rows).map_err(|cause| ResultsError::unwritable(&directory.join(HISTORIES), cause))
+}
+
+/// The rows of a file.
+pub(super) fn decode(path: &Path) -> Result<Vec<HistoryRow>, ResultsError> {
+    let file = File::open(path).map_err(|cause| ResultsError::io(path, "read", cause))?;
+    let reader = SerializedFileReader::new(file).map_err(|cause| ResultsError::malformed(path, cause))?;
+    let schema = reader.metadata().file_metadata().schema_descr();
+    let found = schema.columns().iter().map(|c| (c.name(), c.physical_type()));
+    if !found.clone().eq(COLUMNS) {
+        let name = |(name, physical): (&str, Physical)| format!("{name} {physical}");
+        let expected = COLUMNS.map(name).join(", ");
+        let found = found.map(name).collect::<Vec<_>>().join(", ");
+        return Err(ResultsError::malformed(path, format!("expected columns `{expected}`, found `{found}`")));
+    }
+    let mut rows = Vec::new();
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group).map_err(|cause| ResultsError::malformed(path, cause))?;
+        read_group(group.as_ref(), &mut rows).map_err(|cause| ResultsError::malformed(path, cause))?;
+    }
+    Ok(rows)
+}
+
+fn schema() -> ParquetResult<TypePtr> {
+    let column = |(name, physical)| {
+        let text = (physical == Physical::BYTE_ARRAY).then_some(LogicalType::String);
+        let builder = Type::primitive_type_builder(name, physical);
+        builder.with_repetition(Repetition::REQUIRED).with_logical_type(text).build().map(Arc::new)
+    };
+    let fields = COLUMNS.into_iter().map(column).collect::<ParquetResult<Vec<_>>>()?;
+    Ok(Arc::new(Type::group_type_builder("histories").with_fields(fields).build()?))
+}
+
+fn write_groups(rows: &[HistoryRow]) -> ParquetResult<Vec<u8>> {
+    let properties = WriterProperties::builder()
+        .set_compression(Compression::SNAPPY)
+        .set_dictionary_enabled(true)
+        .set_created_by(concat!("trackbed ", env!("CARGO_PKG_VERSION")).to_owned())
+        .build();
+    let mut bytes = Vec::new();
+    let mut writer = SerializedFileWriter::new(&mut bytes, schema()?, Arc::new(properties))?;
+    for rows in rows.chunks(GROUP_ROWS) {
+        let mut group = writer.next_row_group()?;
+        let text = |value: &str| ByteArray::from(value);
+        write_column::<Int64Type, _>(&mut group, rows.iter().map(|r| r.axles as i64).collect())?;
+        write_column::<DoubleType, _>(&mut group, rows.iter().map(|r| r.time_s).collect())?;
+        write_column::<ByteArrayType, _>(&mut group, rows.iter().map(|r| text(&r.quantity)).collect())?;
+        write_column::<ByteArrayType, _>(&mut group, rows.iter().map(|r| text(&r.id)).collect())?;
+        write_column::<DoubleType, _>(&mut group, rows.iter().map(|r| r.x_m).collect())?;
+        write_column::<DoubleType, _>(&mut group, rows.iter().map(|r| r.value).collect())?;
+        group.close()?;
+    }
+    writer.close()?;
+    Ok(bytes)
+}
+
+fn write_column<D: DataType, W: std::io::Write + Send>(
+    group: &mut SerializedRowGroupWriter<'_, W>,
+    values: Vec<D::T>,
+) -> ParquetResult<()> {
+    let Some(mut column) = group.next_column()? else {
+        return Err(parquet::errors::ParquetError::General("the schema has too few columns".to_owned()));
+    };
+    column.typed::<D>().write_batch(&values, None, None)?;
+    column.close()
+}
+
+fn read_group(group: &dyn RowGroupReader, rows: &mut Vec<HistoryRow>) -> ParquetResult<()> {
+    let axles = read_column::<Int64Type>(group, 0)?;
+    let time = read_column::<DoubleType>(group, 1)?;
+    let quantity = read_column::<ByteArrayType>(group, 2)?;
+    let id = read_column::<ByteArrayType>(group, 3)?;
+    let x = read_column::<DoubleType>(group, 4)?;
+    let value = read_column::<DoubleType>(group, 5)?;
+    for row in 0..axles.len() {
+        rows.push(HistoryRow {
+            axles: axles[row] as u64,
+            time_s: time[row],
+            quantity: quantity[row].as_utf8()?.to_owned(),
+            id: id[row].as_utf8()?.to_owned(),
+            x_m: x[row],
+            value: value[row],
+        });
+    }
+    Ok(())
+}
+
+fn read_column<D: DataType>(group: &dyn RowGroupReader, column: usize) -> ParquetResult<Vec<D::T>> {
+    let count = group.metadata().num_rows() as usize;
+    let mut reader = get_typed_column_reader::<D>(group.get_column_reader(column)?);
+    let mut values = Vec::with_capacity(count);
+    reader.read_records(count, None, None, &mut values)?;
+    if values.len() == count {
+        return Ok(values);
+    }
+    let message = format!("column {column} holds {} values of {count}", values.len());
+    Err(parquet::errors::ParquetError::General(message))
+}

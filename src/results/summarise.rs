@@ -1,0 +1,151 @@
+//! The scalars of `summary.json`, from the tables: every extreme is that after the last axle count.
+
+use super::{BlockRow, Scalar, SleeperRow};
+use crate::scenario::{Loading, Scenario, Seat, Vehicle};
+use std::collections::{BTreeMap, HashMap};
+
+/// A gap below this is round-off, not a void, m.
+pub const VOID_THRESHOLD: f64 = 1e-6;
+
+/// Beyond this distance from every transition a seat is in the far field, m.
+const FAR_FIELD_DISTANCE: f64 = 10.0;
+
+/// Largest responses along the rail after the last axle count, which no table holds.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RailMaxima {
+    /// Sagging moment, N m.
+    pub moment: Option<f64>,
+    /// Downward displacement, m; of a static check.
+    pub displacement: Option<f64>,
+}
+
+/// Computes the scalars that the tables allow; what does not exist on the scene is left out.
+pub fn summarise(
+    scenario: &Scenario,
+    sleepers: &[SleeperRow],
+    blocks: &[BlockRow],
+    rail: RailMaxima,
+) -> BTreeMap<String, Scalar> {
+    let axles = last_count(sleepers, blocks);
+    let last: Vec<&SleeperRow> = sleepers.iter().filter(|row| row.axles == axles).collect();
+    let mut scalars = BTreeMap::new();
+    let mut put = |name: &str, value: Option<f64>, unit: &str| {
+        if let Some(value) = value {
+            scalars.insert(name.to_owned(), Scalar::new(value, unit));
+        }
+    };
+
+    put("axles", Some(axles as f64), "1");
+    put("max_rail_seat_load", largest(last.iter().map(|row| row.max_rail_seat_load_N)), "N");
+    put("max_rail_moment", rail.moment, "N m");
+    if matches!(scenario.loading, Some(Loading::Static(_))) {
+        put("max_rail_displacement", rail.displacement, "m");
+    }
+
+    let ballasted = ballasted(scenario, &last);
+    if !ballasted.is_empty() {
+        let dip = ballasted.iter().map(|(_, row)| *row).max_by(|a, b| a.settlement_m.total_cmp(&b.settlement_m));
+        let far_field = far_field(scenario, &ballasted);
+        let deepest = dip.map(|row| row.settlement_m);
+        put("max_settlement", deepest, "m");
+        put("max_settlement_x", dip.map(|row| row.x_m), "m");
+        put("far_field_settlement", far_field, "m");
+        put("differential_settlement", deepest.zip(far_field).map(|(deepest, far)| deepest - far), "m");
+        put("max_void", largest(ballasted.iter().map(|(_, row)| row.void_m)), "m");
+        let voided = ballasted.iter().filter(|(_, row)| row.void_m > VOID_THRESHOLD).count();
+        put("voided_sleepers", Some(voided as f64), "1");
+        put("max_contact_force", largest(ballasted.iter().map(|(_, row)| row.max_contact_force_N)), "N");
+    }
+    if let Some(block) = blocks.last() {
+        put("max_wheel_force", Some(block.max_wheel_force_N), "N");
+        put("min_wheel_force", Some(block.min_wheel_force_N), "N");
+        let amplification = static_wheel_load(scenario).map(|load| block.max_wheel_force_N / load);
+        put("dynamic_amplification", amplification, "1");
+    }
+    scalars
+}
+
+/// The static load of the heaviest vehicle's wheels, N; `None` without traffic or without gravity.
+pub fn static_wheel_load(scenario: &Scenario) -> Option<f64> {
+    let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
+    let loads = traffic.train.vehicles.iter().map(|v| v.mass() * *scenario.solve.gravity / Vehicle::AXLES as f64);
+    largest(loads).filter(|load| *load > 0.0)
+}
+
+fn last_count(sleepers: &[SleeperRow], blocks: &[BlockRow]) -> u64 {
+    let of_sleepers = sleepers.iter().map(|row| row.axles).max();
+    of_sleepers.or(blocks.last().map(|block| block.axles + block.block_axles)).unwrap_or(0)
+}
+
+/// The ballasted seats with their rows.
+fn ballasted<'a>(scenario: &'a Scenario, rows: &[&'a SleeperRow]) -> Vec<(&'a Seat, &'a SleeperRow)> {
+    let track = &scenario.track;
+    let by_name: HashMap<&str, &SleeperRow> = rows.iter().map(|row| (row.sleeper.as_str(), *row)).collect();
+    let seats = track.seats.iter().filter(|seat| seat.is_ballasted());
+    seats.filter_map(|seat| Some((seat, *by_name.get(track.seat_name(seat).as_str())?))).collect()
+}
+
+/// Median settlement of the seats far from every transition; of the far half where none is far enough.
+fn far_field(scenario: &Scenario, ballasted: &[(&Seat, &SleeperRow)]) -> Option<f64> {
+    let distance = |seat: &Seat| {
+        let distances = scenario.track.transitions.iter().map(|transition| (seat.x - transition.x).abs());
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    let mut by_distance: Vec<(f64, f64)> =
+        ballasted.iter().map(|(seat, row)| (distance(seat), row.settlement_m)).collect();
+    by_distance.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let far = by_distance.iter().take_while(|(distance, _)| *distance > FAR_FIELD_DISTANCE).count();
+    let far = if far == 0 { by_distance.len().div_ceil(2) } else { far };
+    median(by_distance[..far].iter().map(|(_, settlement)| *settlement).collect())
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => None,
+        n if n % 2 == 1 => Some(values[middle]),
+        _ => Some((values[middle - 1] + values[middle]) / 2.0),
+    }
+}
+
+fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
+    values.max_by(f64::total_cmp)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::example;
+
+    #[test]
+    fn the_example_has_the_scalars_of_its_making() {
+        let run = example::transition();
+        let scalars = summarise(&run.scenario, &run.sleepers, &run.blocks, RailMaxima::default());
+        let value = |name: &str| scalars[name].value;
+        assert_eq!(value("axles"), 500.0);
+        assert!((value("far_field_settlement") - 1.2e-3).abs() < 1e-9);
+        assert!((value("max_settlement_x") + 3.0).abs() < 1e-9);
+        assert!((value("differential_settlement") - (value("max_settlement") - 1.2e-3)).abs() < 1e-9);
+        assert!(value("voided_sleepers") >= 3.0);
+        assert!((value("dynamic_amplification") - value("max_wheel_force") / 98.1e3).abs() < 0.01);
+        assert!(!scalars.contains_key("max_rail_moment"));
+    }
+
+    #[test]
+    fn a_short_track_takes_its_far_half() {
+        let mut run = example::transition();
+        run.scenario.track.seats.retain(|seat| seat.x > -2.5);
+        let scalars = summarise(&run.scenario, &run.sleepers, &run.blocks, RailMaxima::default());
+        // seats at -2.4, -1.8, -1.2 and -0.6: the far half is the first two
+        let at = |x: f64| run.sleepers.iter().rfind(|r| (r.x_m - x).abs() < 1e-6).unwrap().settlement_m;
+        assert!((scalars["far_field_settlement"].value - (at(-2.4) + at(-1.8)) / 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn medians() {
+        assert_eq!(median(vec![]), None);
+        assert_eq!(median(vec![3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(vec![4.0, 1.0, 2.0, 3.0]), Some(2.5));
+    }
+}

@@ -1,0 +1,54 @@
+//! `summary.json`: the scalars of a run under their names, its expectations, and what made it.
+
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Scalars by name, and the provenance of the whole run. The scalars stand at the top level of the file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    #[serde(flatten)]
+    pub scalars: BTreeMap<String, Scalar>,
+    pub expectations: Vec<Verdict>,
+    pub provenance: Provenance,
+}
+
+/// A number and its SI unit; `1` for a count or a ratio.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Scalar {
+    pub value: f64,
+    pub unit: String,
+}
+
+impl Scalar {
+    pub fn new(value: f64, unit: &str) -> Self {
+        Scalar { value, unit: unit.to_owned() }
+    }
+}
+
+/// An expectation of the scene and how it came out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    pub text: String,
+    pub met: bool,
+    /// The operands as computed, in `unit`; empty where one could not be computed.
+    pub values: Vec<f64>,
+    pub unit: String,
+    /// Why an operand could not be computed; the expectation then counts as missed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub problem: Option<String>,
+}
+
+/// What made a run: enough to make it again.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    pub program: String,
+    pub version: String,
+    /// Name of the main file.
+    pub file: String,
+    /// Text of the main file, and the SHA-256 of all texts and overrides.
+    pub source: String,
+    pub source_sha256: String,
+    pub seed: u64,
+    /// The solver graph as `trackbed plan` prints it.
+    pub plan: String,
+}

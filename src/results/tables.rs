@@ -1,0 +1,97 @@
+//! The rows of a run's tables: one struct a file, one field a column. Values are SI.
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+/// A row of a small table that is kept as CSV.
+pub trait Row: Serialize + DeserializeOwned {
+    /// Name of the table's file.
+    const FILE: &'static str;
+    /// Its columns, in the order of the struct's fields.
+    const COLUMNS: &'static [&'static str];
+}
+
+/// One seat at one recorded axle count (`sleepers.csv`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)] // the names are the file's columns
+pub struct SleeperRow {
+    pub axles: u64,
+    pub sleeper: String,
+    pub x_m: f64,
+    pub settlement_m: f64,
+    pub void_m: f64,
+    pub gravity_contact_force_N: f64,
+    pub max_contact_force_N: f64,
+    pub max_rail_seat_load_N: f64,
+    pub max_sleeper_displacement_m: f64,
+    pub support_stiffness_N_per_m: f64,
+    pub contact_loss_s: f64,
+}
+
+impl Row for SleeperRow {
+    const FILE: &'static str = "sleepers.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "axles",
+        "sleeper",
+        "x_m",
+        "settlement_m",
+        "void_m",
+        "gravity_contact_force_N",
+        "max_contact_force_N",
+        "max_rail_seat_load_N",
+        "max_sleeper_displacement_m",
+        "support_stiffness_N_per_m",
+        "contact_loss_s",
+    ];
+}
+
+/// One block of the iteration (`blocks.csv`): a passage computed at `axles`, and the axles that it stands for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub struct BlockRow {
+    /// Axles that had passed before the block.
+    pub axles: u64,
+    /// Axles of the block; 0 for the passage after the last block, computed for the record only.
+    pub block_axles: u64,
+    pub max_wheel_force_N: f64,
+    pub min_wheel_force_N: f64,
+    pub max_rail_seat_load_N: f64,
+    pub max_contact_force_N: f64,
+    /// After the block.
+    pub max_settlement_m: f64,
+    /// Largest settlement of the block at any sleeper.
+    pub max_settlement_step_m: f64,
+    pub time_steps: u64,
+    pub newton_iterations: u64,
+}
+
+impl Row for BlockRow {
+    const FILE: &'static str = "blocks.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "axles",
+        "block_axles",
+        "max_wheel_force_N",
+        "min_wheel_force_N",
+        "max_rail_seat_load_N",
+        "max_contact_force_N",
+        "max_settlement_m",
+        "max_settlement_step_m",
+        "time_steps",
+        "newton_iterations",
+    ];
+}
+
+/// One value of a history (`histories.parquet`), in long format. Fields along the track that belong to no moment of
+/// a passage (`rail_level`, all of a static check) have `time_s` 0.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct HistoryRow {
+    pub axles: u64,
+    pub time_s: f64,
+    /// A [`crate::scenario::response::Response`] name.
+    pub quantity: String,
+    /// Seat name, wheel (`wheel 1` leads) or `rail`.
+    pub id: String,
+    /// Chainage, m: of the seat, of the wheel at that moment, or of the place on the rail.
+    pub x_m: f64,
+    pub value: f64,
+}
