@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Replaces `path` by `bytes`: a temporary name in the same directory, synced, then renamed.
-pub(super) fn write(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
+pub fn write(path: &Path, bytes: &[u8]) -> Result<(), ResultsError> {
     let temporary = temporary_name(path);
     let written = File::create(&temporary).and_then(|mut file| {
         file.write_all(bytes)?;

@@ -9,6 +9,7 @@ mod error;
 mod evaluate;
 mod files;
 mod histories;
+mod recorder;
 mod summarise;
 mod summary;
 mod tables;
@@ -18,7 +19,9 @@ pub(crate) mod example;
 
 pub use error::ResultsError;
 pub use evaluate::{Tables, evaluate, verdicts};
+pub use atomic::write as write_atomically;
 pub use files::{read, read_timings, write, write_timings};
+pub use recorder::{RunRecorder, RunTables, Store};
 pub use summarise::{RailMaxima, VOID_THRESHOLD, static_wheel_load, summarise};
 pub use summary::{Provenance, Scalar, Summary, Verdict};
 pub use tables::{BlockRow, HistoryRow, Row, SleeperRow};

@@ -1,0 +1,202 @@
+//! `trackbed run`: runs a scene into a directory, with checkpoints, a report and the verdict on its expectations.
+
+use super::scene::{SceneArguments, failed, show};
+use super::{Outcome, progress, report, terminal};
+use crate::diag::{Code, Diagnostic, render};
+use crate::graph::{self, Graph, RunError};
+use crate::results::{self, Provenance, Run, RunRecorder, Store, Summary, checkpoint};
+use crate::scenario::Scenario;
+use crate::units::number;
+use crate::{Compiled, fingerprint};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Run a scene and write its results and report
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// The directory for results; made where it does not exist.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Go on where an interrupted run of the same scene stopped.
+    #[arg(long)]
+    resume: bool,
+    /// Replace the results of another run in that directory.
+    #[arg(long)]
+    force: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Outcome {
+    let started = Instant::now();
+    let Some(compiled) = arguments.scene.compile() else { return Outcome::Usage };
+    show(&compiled);
+    if failed(&compiled) {
+        return Outcome::Failed;
+    }
+    let (Some(scenario), Some(graph)) = (&compiled.scenario, &compiled.graph) else {
+        // holes and missing loads are warnings to `check`, and stop a run
+        terminal::error("the scene cannot be run yet: see above");
+        if compiled.diagnostics.is_empty() {
+            terminal::note("it has no `track`: a file without one is a library\n");
+        }
+        return Outcome::Failed;
+    };
+    let hash = fingerprint(&compiled.sources);
+    if let Err(message) = prepare(arguments) {
+        return stop(&compiled, Diagnostic::new(Code::E0802, message).help("give another `--out`, or `--resume` or `--force`"));
+    }
+    let bar = progress::bar();
+    let store = Store { directory: arguments.out.clone(), scene_sha256: hash.clone() };
+    let mut recorder = RunRecorder::new(scenario, Some(store), |done, all| {
+        bar.set_length(all);
+        bar.set_position(done);
+    });
+    let from = match arguments.resume.then(|| recorder.resume()).transpose() {
+        Ok(from) => from.flatten(),
+        Err(error) => {
+            return stop(&compiled, Diagnostic::new(Code::E0803, error.to_string()).help("run without `--resume`, with `--force`"));
+        }
+    };
+    let outcome = graph::execute(graph, &mut recorder, from);
+    bar.finish_and_clear();
+    if let Err(error) = outcome {
+        return stop(&compiled, explain(&error, &compiled));
+    }
+    let computed = started.elapsed().as_secs_f64();
+    let run = gather(&recorder, scenario, graph, &compiled, hash);
+    drop(recorder);
+    match write(&run, &arguments.out, computed, &started) {
+        Ok(page) => summary(&run, &page, computed),
+        Err(message) => return stop(&compiled, Diagnostic::new(Code::E0802, message)),
+    }
+    verdicts(&run, &compiled)
+}
+
+fn stop(compiled: &Compiled, diagnostic: Diagnostic) -> Outcome {
+    terminal::note(&render::human(&[diagnostic], &compiled.sources, terminal::colour(), terminal::width()));
+    Outcome::Failed
+}
+
+/// Makes the directory ready: the results of another run are not overwritten by accident.
+fn prepare(arguments: &Arguments) -> Result<(), String> {
+    let out = &arguments.out;
+    let shown = out.display();
+    if out.is_file() {
+        return Err(format!("`{shown}` is a file, not a directory"));
+    }
+    std::fs::create_dir_all(out).map_err(|e| format!("cannot make the directory `{shown}`: {e}"))?;
+    let holds = |name: &str| out.join(name).exists();
+    if arguments.force {
+        for name in ["summary.json", "checkpoint.json", "histories.parquet"] {
+            if holds(name) {
+                std::fs::remove_file(out.join(name)).map_err(|e| format!("cannot replace `{shown}/{name}`: {e}"))?;
+            }
+        }
+    }
+    if holds("summary.json") {
+        return Err(format!("`{shown}` holds the results of a finished run"));
+    }
+    if holds("checkpoint.json") && !arguments.resume {
+        return Err(format!("`{shown}` holds an interrupted run"));
+    }
+    Ok(())
+}
+
+fn explain(error: &RunError, compiled: &Compiled) -> Diagnostic {
+    match error {
+        RunError::Recorder(message) => Diagnostic::new(Code::E0802, message.clone()).help("the run can be resumed with `--resume`"),
+        RunError::Track { .. } => {
+            let diagnostic = Diagnostic::new(Code::E0801, error.to_string())
+                .help("a smaller `solve.time_step` or shorter blocks in `solve.update_every` often help; a track that nothing holds has no equilibrium");
+            let span = compiled.scenario.as_ref().and_then(|s| s.solve.update_span);
+            match span {
+                Some(span) => diagnostic.at(span, "exchanged here"),
+                None => diagnostic,
+            }
+        }
+    }
+}
+
+fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compiled: &Compiled, hash: String) -> Run {
+    let tables = &recorder.tables;
+    let histories = recorder.all_histories();
+    let scalars = results::summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+    let view = results::Tables { sleepers: &tables.sleepers, blocks: &tables.blocks, histories: &histories, scalars: &scalars };
+    let expectations = results::verdicts(scenario, view);
+    let main = compiled.sources.iter().next().map(|(_, s)| (s.name.clone(), s.text.clone())).unwrap_or_default();
+    let provenance = Provenance {
+        program: env!("CARGO_PKG_NAME").into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        file: main.0,
+        source: main.1,
+        source_sha256: hash,
+        seed: scenario.solve.seed,
+        plan: graph.listing().text(),
+    };
+    Run {
+        scenario: scenario.clone(),
+        summary: Summary { scalars, expectations, provenance },
+        sleepers: tables.sleepers.clone(),
+        blocks: tables.blocks.clone(),
+        histories,
+    }
+}
+
+fn write(run: &Run, out: &Path, computed: f64, started: &Instant) -> Result<PathBuf, String> {
+    results::write(run, out).map_err(|e| e.to_string())?;
+    let page = report::write(run, out, false)?;
+    let timings = BTreeMap::from([
+        ("solve_s".to_string(), computed),
+        ("total_s".to_string(), started.elapsed().as_secs_f64()),
+    ]);
+    results::write_timings(&timings, out).map_err(|e| e.to_string())?;
+    checkpoint::remove(out).map_err(|e| e.to_string())?;
+    Ok(page)
+}
+
+/// The few numbers that people ask for first.
+fn summary(run: &Run, page: &Path, seconds: f64) {
+    let mut out = format!("{}\n", run.scenario.title);
+    let lines: [(&str, &str, &str, f64); 9] = [
+        ("max_settlement", "largest settlement", "mm", 1e-3),
+        ("max_settlement_x", "  at", "m", 1.0),
+        ("far_field_settlement", "far-field settlement", "mm", 1e-3),
+        ("voided_sleepers", "voided sleepers", "", 1.0),
+        ("max_wheel_force", "largest wheel force", "kN", 1e3),
+        ("dynamic_amplification", "dynamic amplification", "", 1.0),
+        ("max_rail_seat_load", "largest rail seat load", "kN", 1e3),
+        ("max_rail_moment", "largest rail moment", "kN m", 1e3),
+        ("max_rail_displacement", "largest rail displacement", "mm", 1e-3),
+    ];
+    for (name, label, unit, size) in lines {
+        if let Some(scalar) = run.summary.scalars.get(name) {
+            let value = (scalar.value / size * 1e4).round() / 1e4;
+            out.push_str(&format!("  {label:<26}{} {unit}\n", number(value)));
+        }
+    }
+    out.push_str(&format!("{} ({} s)\n", page.display(), number((seconds * 10.0).round() / 10.0)));
+    terminal::out(&out);
+}
+
+/// Names every expectation that was missed.
+fn verdicts(run: &Run, compiled: &Compiled) -> Outcome {
+    let missed: Vec<Diagnostic> = run
+        .summary
+        .expectations
+        .iter()
+        .zip(&run.scenario.expectations)
+        .filter(|(verdict, _)| !verdict.met)
+        .map(|(verdict, expectation)| {
+            let values: Vec<String> = verdict.values.iter().map(|v| format!("{} {}", number(*v), verdict.unit)).collect();
+            let found = verdict.problem.clone().unwrap_or_else(|| values.join(", "));
+            Diagnostic::new(Code::E0804, format!("expected `{}`, found {found}", verdict.text)).at(expectation.span, "not met")
+        })
+        .collect();
+    if missed.is_empty() {
+        return Outcome::Fine;
+    }
+    terminal::note(&render::human(&missed, &compiled.sources, terminal::colour(), terminal::width()));
+    Outcome::Failed
+}

@@ -1,0 +1,98 @@
+//! The track node: the 2D track and vehicle solver, spoken to in the scene's terms.
+
+use super::Graph;
+use crate::scenario::response::Response;
+use crate::scenario::{Direction, StaticLoad, Track};
+use crate::solvers::track::TrackError;
+
+/// The track without a train.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unloaded {
+    /// Every rail node, left to right.
+    pub rail: Vec<RailPoint>,
+    pub seats: Vec<UnloadedSeat>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RailPoint {
+    /// Chainage, m.
+    pub x: f64,
+    /// Below the level as built, m.
+    pub deflection: f64,
+    /// Sagging, N m.
+    pub moment: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct UnloadedSeat {
+    /// Permanent downward move of the support, m.
+    pub settlement: f64,
+    /// Sleeper below its level as built, m.
+    pub sleeper_level: f64,
+    /// Gap under the sleeper, m.
+    pub void: f64,
+    /// Sleeper on support, N.
+    pub contact_force: f64,
+    /// Rail on pad, N.
+    pub seat_load: f64,
+}
+
+/// What one passage did to the track.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PassageOutcome {
+    pub seats: Vec<SeatOutcome>,
+    /// For every seat the peak contact force of each wheel of the train, N.
+    pub peaks: Vec<Vec<f64>>,
+    /// N.
+    pub max_wheel_force: f64,
+    pub min_wheel_force: f64,
+    /// Sagging, at rail nodes, N m.
+    pub max_rail_moment: f64,
+    pub time_steps: u64,
+    pub newton_iterations: u64,
+    /// Histories; empty where the passage is not recorded.
+    pub samples: Vec<Sample>,
+}
+
+/// Extremes of one seat over a passage.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SeatOutcome {
+    /// N.
+    pub max_rail_seat_load: f64,
+    pub max_contact_force: f64,
+    /// From the unloaded state, m.
+    pub max_sleeper_displacement: f64,
+    /// Time without contact of sleeper and support, s.
+    pub contact_loss: f64,
+}
+
+/// One value of a history.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// s.
+    pub time: f64,
+    pub quantity: Response,
+    pub target: Target,
+    /// Chainage, m.
+    pub x: f64,
+    /// SI.
+    pub value: f64,
+}
+
+/// Of what a sample is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Target {
+    /// Index into the track's seats.
+    Seat(usize),
+    /// 0 leads.
+    Wheel(usize),
+}
+
+impl Target {
+    pub fn name(self, track: &Track) -> String {
+        match self {
+            Target::Seat(seat) => track.seat_name(&track.seats[seat]),
+            Target::Wheel(wheel) => format!("wheel {}", wheel + 1),
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! Listens to a run and makes its tables. What it holds between two blocks is small and goes into the checkpoint;
+//! histories go into their own file as soon as they exist.
+
+use super::histories::HISTORIES;
+use super::{BlockRow, HistoryRow, RailMaxima, ResultsError, SleeperRow, atomic, checkpoint, histories};
+use crate::graph::{self, Block, PassageOutcome, Recorder, Unloaded};
+use crate::scenario::response::Response;
+use crate::scenario::{Direction, Foot, Scenario, Track};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+
+/// Where a run keeps what it needs to be resumed.
+pub struct Store {
+    pub directory: PathBuf,
+    /// Names the scene: its texts and overrides.
+    pub scene_sha256: String,
+}
+
+/// The small tables of a run.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct RunTables {
+    pub sleepers: Vec<SleeperRow>,
+    pub blocks: Vec<BlockRow>,
+    /// Settlement of every ballasted seat after every block.
+    pub settlements: Vec<HistoryRow>,
+    /// Largest sagging moment of the last passage, N m, and displacement of a static check, m.
+    pub max_rail_moment: Option<f64>,
+    pub max_rail_displacement: Option<f64>,
+}
+
+/// What a checkpoint holds.
+#[derive(Serialize, Deserialize)]
+struct Saved {
+    checkpoint: graph::Checkpoint,
+    tables: RunTables,
+}
+
+/// Makes the tables of a run.
+pub struct RunRecorder<'a> {
+    scenario: &'a Scenario,
+    store: Option<Store>,
+    progress: Box<dyn FnMut(u64, u64) + 'a>,
+    pub tables: RunTables,
+    pub histories: Vec<HistoryRow>,
+    /// Rows of `histories` that are in their file already.
+    written: usize,
+    unloaded: Option<Unloaded>,
+}
+
+impl<'a> RunRecorder<'a> {
+    /// Without a store nothing is written while the run goes on.
+    pub fn new(scenario: &'a Scenario, store: Option<Store>, progress: impl FnMut(u64, u64) + 'a) -> Self {
+        RunRecorder {
+            scenario,
+            store,
+            progress: Box::new(progress),
+            tables: RunTables::default(),
+            histories: Vec::new(),
+            written: 0,
+            unloaded: None,
+        }
+    }
+
+    /// Takes up what an interrupted run has left; `None` where it left nothing.
+    pub fn resume(&mut self) -> Result<Option<graph::Checkpoint>, ResultsError> {
+        let Some(store) = &self.store else { return Ok(None) };
+        let Some(saved) = checkpoint::read::<Saved>(&store.directory, &store.scene_sha256)? else { return Ok(None) };
+        // a passage recorded after the checkpoint will be computed again
+        let done = saved.tables.blocks.last().map_or(0, |b| b.axles + b.block_axles);
+        self.histories = histories::decode(&store.directory.join(HISTORIES)).unwrap_or_default();
+        self.histories.retain(|row| row.axles < done);
+        self.written = self.histories.len();
+        self.tables = saved.tables;
+        Ok(Some(saved.checkpoint))
+    }
+
+    /// Every history: of the recorded passages, and the settlement of every block.
+    pub fn all_histories(&self) -> Vec<HistoryRow> {
+        self.histories.iter().chain(&self.tables.settlements).cloned().collect()
+    }
+
+    pub fn rail_maxima(&self) -> RailMaxima {
+        RailMaxima { moment: self.tables.max_rail_moment, displacement: self.tables.max_rail_displacement }
+    }
+
+    fn track(&self) -> &'a Track {
+        &self.scenario.track
+    }
+
+    fn keep_settlements(&mut self, axles: u64, settlement: &[f64]) {
+        let track = self.track();
+        let ballasted = track.seats.iter().zip(settlement).filter(|(seat, _)| seat.is_ballasted());
+        self.tables.settlements.extend(ballasted.map(|(seat, value)| HistoryRow {
+            axles,
+            time_s: 0.0,
+            quantity: Response::Settlement.name().into(),
+            id: track.seat_name(seat),
+            x_m: seat.x,
+            value: *value,
+        }));
+    }
+
+    fn keep_rail(&mut self, axles: u64, quantity: Response, points: impl Iterator<Item = (f64, f64)>) {
+        self.histories.extend(points.map(|(x_m, value)| HistoryRow {
+            axles,
+            time_s: 0.0,
+            quantity: quantity.name().into(),
+            id: "rail".into(),
+            x_m,
+            value,
+        }));
+    }
+}
+
+impl Recorder for RunRecorder<'_> {
+    fn unloaded(&mut self, axles: u64, state: &Unloaded) {
+        self.keep_rail(axles, Response::RailLevel, state.rail.iter().map(|p| (p.x, p.deflection)));
+        self.unloaded = Some(state.clone());
+    }
+
+    fn passage(&mut self, axles: u64, _direction: Direction, passage: &PassageOutcome) {
+        let track = self.track();
+        let rows = passage.samples.iter().map(|s| HistoryRow {
+            axles,
+            time_s: s.time,
+            quantity: s.quantity.name().into(),
+            id: s.target.name(track),
+            x_m: s.x,
+            value: s.value,
+        });
+        self.histories.extend(rows);
+        let Some(unloaded) = self.unloaded.take() else { return };
+        for ((seat, outcome), rest) in track.seats.iter().zip(&passage.seats).zip(&unloaded.seats) {
+            let stiffness = match &seat.foot {
+                Foot::Sleeper { support, .. } => *support.stiffness,
+                Foot::Rigid | Foot::Slab => 0.0,
+            };
+            self.tables.sleepers.push(SleeperRow {
+                axles,
+                sleeper: track.seat_name(seat),
+                x_m: seat.x,
+                settlement_m: rest.settlement,
+                void_m: rest.void,
+                gravity_contact_force_N: rest.contact_force,
+                max_contact_force_N: outcome.max_contact_force,
+                max_rail_seat_load_N: outcome.max_rail_seat_load,
+                max_sleeper_displacement_m: outcome.max_sleeper_displacement,
+                support_stiffness_N_per_m: stiffness,
+                contact_loss_s: outcome.contact_loss,
+            });
+        }
+    }
+
+    fn block(&mut self, axles: u64, block: Option<&Block>, passages: &[PassageOutcome], before: &[f64], after: &[f64]) {
+        let largest = |of: fn(&PassageOutcome) -> f64| passages.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+        let seats = |p: &PassageOutcome, of: fn(&graph::SeatOutcome) -> f64| p.seats.iter().map(of).fold(0.0, f64::max);
+        let steps = before.iter().zip(after).map(|(b, a)| a - b).fold(0.0, f64::max);
+        self.tables.blocks.push(BlockRow {
+            axles,
+            block_axles: block.map_or(0, |b| b.axles),
+            max_wheel_force_N: largest(|p| p.max_wheel_force),
+            min_wheel_force_N: passages.iter().map(|p| p.min_wheel_force).fold(f64::INFINITY, f64::min),
+            max_rail_seat_load_N: passages.iter().map(|p| seats(p, |s| s.max_rail_seat_load)).fold(0.0, f64::max),
+            max_contact_force_N: passages.iter().map(|p| seats(p, |s| s.max_contact_force)).fold(0.0, f64::max),
+            max_settlement_m: after.iter().copied().fold(0.0, f64::max),
+            max_settlement_step_m: steps,
+            time_steps: passages.iter().map(|p| p.time_steps).sum(),
+            newton_iterations: passages.iter().map(|p| p.newton_iterations).sum(),
+        });
+        if axles == 0 {
+            self.keep_settlements(0, before);
+        }
+        if let Some(block) = block {
+            self.keep_settlements(axles + block.axles, after);
+        }
+        self.tables.max_rail_moment = Some(largest(|p| p.max_rail_moment));
+    }
+
+    fn checkpoint(&mut self, checkpoint: &graph::Checkpoint) -> Result<(), String> {
+        let Some(store) = &self.store else { return Ok(()) };
+        let saved = || -> Result<(), ResultsError> {
+            if self.written < self.histories.len() {
+                let bytes = histories::encode(&self.histories, &store.directory)?;
+                atomic::write(&store.directory.join(HISTORIES), &bytes)?;
+            }
+            let saved = Saved { checkpoint: checkpoint.clone(), tables: self.tables.clone() };
+            checkpoint::write(&store.directory, &store.scene_sha256, &saved)
+        };
+        saved().map_err(|e| e.to_string())?;
+        self.written = self.histories.len();
+        Ok(())
+    }
+
+    fn progress(&mut self, done: u64, all: u64) {
+        (self.progress)(done, all);
+    }
+
+    fn equilibrium(&mut self, state: &Unloaded) {
+        let track = self.track();
+        self.keep_rail(0, Response::RailDisplacement, state.rail.iter().map(|p| (p.x, p.deflection)));
+        self.keep_rail(0, Response::RailMoment, state.rail.iter().map(|p| (p.x, p.moment)));
+        for (seat, rest) in track.seats.iter().zip(&state.seats) {
+            let stiffness = match &seat.foot {
+                Foot::Sleeper { support, .. } => *support.stiffness,
+                Foot::Rigid | Foot::Slab => 0.0,
+            };
+            self.tables.sleepers.push(SleeperRow {
+                axles: 0,
+                sleeper: track.seat_name(seat),
+                x_m: seat.x,
+                settlement_m: rest.settlement,
+                void_m: rest.void,
+                gravity_contact_force_N: rest.contact_force,
+                max_contact_force_N: rest.contact_force,
+                max_rail_seat_load_N: rest.seat_load,
+                max_sleeper_displacement_m: rest.sleeper_level,
+                support_stiffness_N_per_m: stiffness,
+                contact_loss_s: 0.0,
+            });
+        }
+        let largest = |of: fn(&graph::RailPoint) -> f64| state.rail.iter().map(of).reduce(f64::max);
+        self.tables.max_rail_moment = largest(|p| p.moment);
+        self.tables.max_rail_displacement = largest(|p| p.deflection);
+    }
+}
