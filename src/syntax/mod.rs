@@ -1,13 +1,39 @@
-//! From text to a tree.
+//! From text to a tree, and from text to tidy text.
+//!
+//! [`parse`] reads a file whole and reports all its mistakes at once: `token` cuts it, `foreign` and `balance` repair
+//! it so that `grammar/track.pest` can read it to the end, `build` makes the tree, and `explain` finds words for what
+//! could not be read. [`format()`] lays the tokens out anew.
 
+mod balance;
+mod build;
+mod decode;
+mod explain;
+mod foreign;
+mod format;
+mod parse;
+mod prepare;
+mod token;
 pub mod tree;
+mod value;
 
-use crate::diag::{Diagnostic, FileId};
+pub use decode::decode;
+pub use format::format;
+pub use parse::parse;
 
-/// Stand-in until the parser lands.
-pub fn parse(_file: FileId, _text: &str) -> (tree::Tree, Vec<Diagnostic>) {
-    unimplemented!()
-}
-pub fn decode(_name: &str, _bytes: &[u8]) -> Result<String, Diagnostic> {
-    unimplemented!()
+/// The bounds of the language, for files that no person wrote.
+pub mod limits {
+    /// Length of a file.
+    pub const BYTES: usize = 8 << 20;
+    /// Brackets inside brackets.
+    pub const DEPTH: usize = 64;
+    /// Powers of powers in one value.
+    pub const POWERS: usize = 64;
+    /// Operations inside operations in one value.
+    pub const OPERATIONS: usize = 512;
+    /// Declarations in a file.
+    pub const DECLARATIONS: usize = 100_000;
+    /// Largest exponent, either sign.
+    pub const EXPONENT: f64 = 9.0;
+    /// Mistakes reported for one file.
+    pub const DIAGNOSTICS: usize = 500;
 }

@@ -1,0 +1,383 @@
+//! Makes the tree from what the grammar matched, and reports each place where a fallback of the grammar did.
+
+use pest::iterators::{Pair, Pairs};
+
+use super::explain::Explained;
+use super::limits;
+use super::parse::Rule;
+use super::prepare::Prepared;
+use super::tree::{Declaration, Field, Item, Let, Name, Path, Use, Value, ValueKind};
+use crate::diag::{Code, Diagnostic, Span};
+
+pub(super) struct Builder<'p> {
+    pub prepared: &'p Prepared,
+    pub diagnostics: &'p mut Vec<Diagnostic>,
+    /// Operations around the current place: the tree is as deep as they nest.
+    pub operations: usize,
+}
+
+impl<'p> Builder<'p> {
+    pub fn new(prepared: &'p Prepared, diagnostics: &'p mut Vec<Diagnostic>) -> Self {
+        Builder { prepared, diagnostics, operations: 0 }
+    }
+
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        if self.diagnostics.len() < limits::DIAGNOSTICS {
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    pub fn is_full(&self) -> bool {
+        self.diagnostics.len() >= limits::DIAGNOSTICS
+    }
+
+    pub fn text(&self, start: usize, end: usize) -> &'p str {
+        &self.prepared.text[start..end]
+    }
+
+    pub fn span(&self, start: usize, end: usize) -> Span {
+        self.prepared.span(start, end)
+    }
+
+    pub fn span_of(&self, pair: &Pair<Rule>) -> Span {
+        self.span(pair.as_span().start(), pair.as_span().end())
+    }
+
+    pub fn file(&mut self, pairs: Pairs<'p, Rule>) -> Vec<Item> {
+        let mut items = Vec::new();
+        let mut declarations = 0;
+        for pair in pairs.flat_map(Pair::into_inner) {
+            let start = pair.as_span().start();
+            if matches!(pair.as_rule(), Rule::declaration | Rule::wrong_declaration) {
+                declarations += 1;
+                if declarations > limits::DECLARATIONS {
+                    let mistake = Diagnostic::new(Code::E0103, "more than 100000 declarations in one file");
+                    self.report(mistake.at(self.span(start, start), "").help("divide the file into modules"));
+                    break;
+                }
+            }
+            match pair.as_rule() {
+                Rule::use_item => items.extend(self.use_item(pair).map(Item::Use)),
+                Rule::let_item => items.extend(self.let_item(pair).map(Item::Let)),
+                Rule::wrong_let => items.extend(self.wrong_let(pair).map(Item::Let)),
+                Rule::declaration => items.extend(self.declaration(pair).map(Item::Declaration)),
+                Rule::wrong_declaration => items.extend(self.wrong_declaration(pair).map(Item::Declaration)),
+                Rule::bad_item => {
+                    if let Explained::DecimalComma = self.explain_pair(Rule::exact_item, &pair)
+                        && let Some(Item::Let(previous)) = items.last_mut()
+                    {
+                        previous.value.kind = ValueKind::Error;
+                    }
+                }
+                _ => {}
+            }
+        }
+        items
+    }
+
+    fn use_item(&mut self, pair: Pair<'p, Rule>) -> Option<Use> {
+        let start = pair.as_span().start();
+        let (mut path, mut alias, mut end) = (None, None, start);
+        for part in pair.into_inner() {
+            let part_end = part.as_span().end();
+            match part.as_rule() {
+                Rule::path => path = Some(self.path(part)),
+                Rule::name => alias = Some(self.name(part)),
+                Rule::junk => {
+                    self.explain(Rule::exact_item, start, part.as_span().start(), part_end);
+                    continue;
+                }
+                _ => {}
+            }
+            end = part_end;
+        }
+        Some(Use { path: path?, alias, span: self.span(start, end) })
+    }
+
+    fn let_item(&mut self, pair: Pair<'p, Rule>) -> Option<Let> {
+        let docs = self.docs(pair.as_span().start());
+        let start = pair.as_span().start();
+        let mut parts = pair.into_inner();
+        parts.next();
+        let name = self.name(parts.next()?);
+        let value = self.given(&mut parts)?.0;
+        let span = self.span(start, start).to(value.span);
+        Some(Let { name, value, docs, span })
+    }
+
+    /// `name = value` outside of a block.
+    fn wrong_let(&mut self, pair: Pair<'p, Rule>) -> Option<Let> {
+        let docs = self.docs(pair.as_span().start());
+        let (start, end) = (pair.as_span().start(), pair.as_span().end());
+        let mut parts = pair.into_inner();
+        let path = self.path(parts.next()?);
+        let known = self.diagnostics.len();
+        let value = self.given(&mut parts)?.0;
+        if self.diagnostics.len() == known {
+            let text = first_line(self.text(start, end));
+            let (message, help) = if path.names.len() == 1 {
+                ("a value outside of a declaration needs `let`", format!("write `let {text}`"))
+            } else {
+                (
+                    "a field outside of a declaration",
+                    "put it into the braces of the declaration it belongs to".to_owned(),
+                )
+            };
+            self.report(Diagnostic::new(Code::E0105, message).at(path.span, "").help(help));
+        }
+        let span = path.span.to(value.span);
+        let name = path.names.into_iter().next()?;
+        Some(Let { name, value, docs, span })
+    }
+
+    fn declaration(&mut self, pair: Pair<'p, Rule>) -> Option<Declaration> {
+        let docs = self.docs(pair.as_span().start());
+        let start = pair.as_span().start();
+        let (mut names, mut base, mut fields, mut colon, mut end) = (Vec::new(), None, Vec::new(), start, start);
+        for part in pair.into_inner() {
+            let (part_start, part_end) = (part.as_span().start(), part.as_span().end());
+            match part.as_rule() {
+                Rule::name => names.push(self.name(part)),
+                Rule::colon => colon = part_start,
+                Rule::base => base = part.into_inner().next().map(|p| self.path(p)),
+                Rule::missing => {
+                    let mistake = Diagnostic::new(Code::E0101, "expected a name after `:`, found `{`");
+                    let help = "name what is extended, or remove the `:`";
+                    self.report(mistake.at(self.span(colon, colon + 1), "").help(help));
+                    continue;
+                }
+                Rule::block => fields = self.block(part),
+                Rule::header_junk | Rule::junk => {
+                    self.explain(Rule::exact_item, start, part_start, part_end);
+                    continue;
+                }
+                _ => {}
+            }
+            end = end.max(part_end);
+        }
+        let span = self.span(start, self.trimmed(start, end));
+        let mut names = names.into_iter();
+        Some(Declaration { kind: names.next()?, name: names.next(), base, fields, docs, span })
+    }
+
+    /// `kind name = base`, also with a block behind, and `kind name = { ... }`.
+    fn wrong_declaration(&mut self, pair: Pair<'p, Rule>) -> Option<Declaration> {
+        let docs = self.docs(pair.as_span().start());
+        let start = pair.as_span().start();
+        let mut parts = pair.into_inner();
+        let kind = self.name(parts.next()?);
+        let name = self.name(parts.next()?);
+        let equals = parts.next()?;
+        let value_start = parts.peek()?.as_span().start();
+        let (value, sound) = self.given(&mut parts)?;
+        let span = self.span(start, start).to(value.span);
+        let header = format!("{} {}", kind.text, name.text);
+        let (base, fields, help) = match value.kind {
+            ValueKind::Path(base) => {
+                let help = format!("write `{header} : {}`", base.text());
+                (Some(base), Vec::new(), help)
+            }
+            ValueKind::Object { base, fields } => {
+                let help = match &base {
+                    Some(base) => format!("write `{header} : {} {{`", base.text()),
+                    None => format!("write `{header} {{`, without `=`"),
+                };
+                (base, fields, help)
+            }
+            _ => {
+                let value = first_line(self.text(value_start, self.prepared.text.len()));
+                (None, Vec::new(), format!("write `let {} = {value}` to name a value", name.text))
+            }
+        };
+        if sound {
+            let mistake = Diagnostic::new(Code::E0105, "`=` in the header of a declaration");
+            self.report(mistake.at(self.span_of(&equals), "").help(help));
+        }
+        Some(Declaration { kind, name: Some(name), base, fields, docs, span })
+    }
+
+    pub fn block(&mut self, pair: Pair<'p, Rule>) -> Vec<Field> {
+        let mut fields: Vec<Field> = Vec::new();
+        for part in pair.into_inner() {
+            match part.as_rule() {
+                Rule::field | Rule::wrong_colon => self.field(part, &mut fields),
+                Rule::wrong_block => fields.extend(self.wrong_block(part)),
+                Rule::wrong_nested => self.wrong_nested(part, &mut fields),
+                Rule::bad_field => match self.explain_pair(Rule::exact_field, &part) {
+                    Explained::DecimalComma => {
+                        if let Some(previous) = fields.last_mut() {
+                            previous.value.kind = ValueKind::Error;
+                        }
+                    }
+                    Explained::Other(path) => fields.extend(path.map(|p| self.unreadable(p))),
+                },
+                _ => {}
+            }
+        }
+        fields
+    }
+
+    /// A field that is there, with a value that nobody knows.
+    fn unreadable(&self, path: Path) -> Field {
+        let span = path.span;
+        Field { path, value: Value { kind: ValueKind::Error, span }, docs: Vec::new(), span }
+    }
+
+    /// `path = value`, or `path : value`.
+    fn field(&mut self, pair: Pair<'p, Rule>, fields: &mut Vec<Field>) {
+        let docs = self.docs(pair.as_span().start());
+        let end = pair.as_span().end();
+        let wrong = pair.as_rule() == Rule::wrong_colon;
+        let mut parts = pair.into_inner();
+        let Some(path) = parts.next() else { return };
+        let path_end = path.as_span().end();
+        let path = self.path(path);
+        let mut junk = parts.clone().filter(|p| p.as_rule() == Rule::junk);
+        let swallowed = junk.next().and_then(|j| self.swallowed(j.as_span().start()));
+        let colon = parts.peek().map(|p| self.span_of(&p)).unwrap_or(path.span);
+        let Some((value, sound)) = self.given(&mut parts) else { return };
+        if wrong && sound {
+            let rest = self.text(path_end, end).trim_start().trim_start_matches(':').trim_start();
+            let help = format!("write `{} = {}`", path.text(), first_line(rest));
+            self.report(Diagnostic::new(Code::E0105, "a field is given with `=`").at(colon, "").help(help));
+        }
+        let span = path.span.to(value.span);
+        fields.push(Field { path, value, docs, span });
+        fields.extend(swallowed.map(|path| self.unreadable(path)));
+    }
+
+    /// `field { ... }` without `=`.
+    fn wrong_block(&mut self, pair: Pair<'p, Rule>) -> Option<Field> {
+        let docs = self.docs(pair.as_span().start());
+        let start = pair.as_span().start();
+        let mut parts = pair.into_inner();
+        let path = self.path(parts.next()?);
+        let block = parts.next()?;
+        let span = self.span_of(&block);
+        let object = ValueKind::Object { base: None, fields: self.block(block.clone()) };
+        let mut value = Value { kind: object, span };
+        let help = format!("write `{} = {}`", path.text(), first_line(block.as_str()));
+        self.report(Diagnostic::new(Code::E0105, "a field is given with `=`").at(path.span, "").help(help));
+        if let Some(junk) = parts.next() {
+            self.explain(Rule::exact_field, start, junk.as_span().start(), junk.as_span().end());
+            value.kind = ValueKind::Error;
+        }
+        let span = path.span.to(span);
+        Some(Field { path, value, docs, span })
+    }
+
+    /// `kind name { ... }` inside a block.
+    fn wrong_nested(&mut self, pair: Pair<'p, Rule>, fields: &mut Vec<Field>) {
+        let (mut names, mut base) = (Vec::new(), None);
+        for part in pair.into_inner() {
+            match part.as_rule() {
+                Rule::name => names.push(self.name(part)),
+                Rule::base => base = part.into_inner().next().map(|p| self.path(p)),
+                Rule::block => {
+                    // Its mistakes are of interest, its fields belong nowhere.
+                    self.block(part);
+                }
+                Rule::junk => {
+                    self.explain(
+                        Rule::exact_field,
+                        part.as_span().start(),
+                        part.as_span().start(),
+                        part.as_span().end(),
+                    );
+                }
+                _ => {}
+            }
+        }
+        let [kind, name] = names.as_slice() else { return };
+        let base = base.map_or(String::new(), |b| format!("{} ", b.text()));
+        let mistake = Diagnostic::new(Code::E0101, "declaration inside a block")
+            .at(kind.span.to(name.span), "only values nest")
+            .help(format!("write `{} = {base}{{`, or move the declaration out of the block", kind.text));
+        self.report(mistake);
+        let path = Path { names: vec![kind.clone()], span: kind.span };
+        fields.push(self.unreadable(path));
+    }
+
+    /// What stands after `=` or `:`, and whether it could be read; the sign itself is passed over.
+    pub fn given(&mut self, parts: &mut Pairs<'p, Rule>) -> Option<(Value, bool)> {
+        let mut part = parts.next()?;
+        let mut sign = None;
+        if matches!(part.as_rule(), Rule::equals | Rule::colon) {
+            sign = Some(part);
+            part = parts.next()?;
+        }
+        let (start, end) = (part.as_span().start(), part.as_span().end());
+        match part.as_rule() {
+            Rule::missing => {
+                let at = sign.map_or(start, |s| s.as_span().end());
+                let sign = self.text(at.saturating_sub(1), at);
+                if !self.prepared.is_poisoned(at, end) {
+                    let found = self.found(at);
+                    let message = format!("expected a value after `{sign}`, found {found}");
+                    self.report(Diagnostic::new(Code::E0101, message).at(self.span(at.saturating_sub(1), at), ""));
+                }
+                Some((Value { kind: ValueKind::Error, span: self.span(at, at) }, false))
+            }
+            Rule::bad_value => {
+                self.explain(Rule::exact_value, start, start, end);
+                Some((Value { kind: ValueKind::Error, span: self.span(start, end) }, false))
+            }
+            _ => {
+                let value = self.value(part);
+                match parts.next() {
+                    Some(junk) => {
+                        let (junk_start, junk_end) = (junk.as_span().start(), junk.as_span().end());
+                        self.explain(Rule::exact_value, start, junk_start, junk_end);
+                        let span = value.span.to(self.span(junk_start, junk_end));
+                        Some((Value { kind: ValueKind::Error, span }, false))
+                    }
+                    None => Some((value, true)),
+                }
+            }
+        }
+    }
+
+    pub fn path(&mut self, pair: Pair<'p, Rule>) -> Path {
+        let span = self.span_of(&pair);
+        Path { names: pair.into_inner().map(|p| self.name(p)).collect(), span }
+    }
+
+    pub fn name(&mut self, pair: Pair<'p, Rule>) -> Name {
+        let name = Name { text: pair.as_str().to_owned(), span: self.span_of(&pair) };
+        if matches!(name.text.as_str(), "use" | "let" | "as" | "per") {
+            let message = format!("`{}` is a word of the language, it cannot be a name", name.text);
+            self.report(Diagnostic::new(Code::E0207, message).at(name.span, "").help("choose another name"));
+        }
+        name
+    }
+
+    /// The `///` lines directly above what starts here, if it is the first on its line.
+    fn docs(&self, start: usize) -> Vec<String> {
+        let text = &self.prepared.text;
+        let mut line = text[..start].rfind('\n').map_or(0, |i| i + 1);
+        let mut docs = Vec::new();
+        if !text[line..start].trim().is_empty() {
+            return docs;
+        }
+        while line > 0 {
+            let above = text[..line - 1].rfind('\n').map_or(0, |i| i + 1);
+            match text[above..line].trim().strip_prefix("///") {
+                Some(doc) if !doc.starts_with('/') => docs.push(doc.trim().to_owned()),
+                _ => break,
+            }
+            line = above;
+        }
+        docs.reverse();
+        docs
+    }
+
+    /// Without the blanks and comments that a rule with an optional end may have passed over.
+    fn trimmed(&self, start: usize, end: usize) -> usize {
+        start + self.text(start, end).trim_end().len()
+    }
+}
+
+pub(super) fn first_line(text: &str) -> &str {
+    let line = text.lines().next().unwrap_or("");
+    line.split("//").next().unwrap_or("").trim_end().trim_end_matches(',')
+}

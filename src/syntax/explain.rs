@@ -1,0 +1,251 @@
+//! Finds words for what could not be read: the part is parsed again alone with the exact rule, and where that fails
+//! stands the mistake.
+
+use pest::Parser;
+use pest::error::{Error, ErrorVariant, InputLocation};
+use pest::iterators::Pair;
+
+use super::build::{Builder, first_line};
+use super::parse::{Grammar, Rule};
+use super::token::{self, Kind, Token};
+use super::tree::{Name, Path};
+use crate::diag::{Code, Diagnostic};
+
+/// What an unreadable part turned out to be.
+pub(super) enum Explained {
+    /// The rest of a number that was cut at its decimal comma: the value before it is not to be trusted.
+    DecimalComma,
+    /// Something else, perhaps with a path in front that names a field.
+    Other(Option<Path>),
+}
+
+impl<'p> Builder<'p> {
+    pub fn explain_pair(&mut self, rule: Rule, pair: &Pair<'p, Rule>) -> Explained {
+        self.explain(rule, pair.as_span().start(), pair.as_span().start(), pair.as_span().end())
+    }
+
+    /// Reports why the text from `start` to `end` is not what `exact` reads; everything before `junk` is fine.
+    pub fn explain(&mut self, exact: Rule, start: usize, junk: usize, end: usize) -> Explained {
+        let text: &'p str = &self.prepared.text;
+        let path = self.leading_path(start, end);
+        if self.is_full() || self.prepared.is_poisoned(start, end) {
+            return Explained::Other(path);
+        }
+        if junk == start && self.decimal_comma(start).is_some() {
+            self.report_decimal_comma(start, end);
+            return Explained::DecimalComma;
+        }
+        let (at, expected) = match Grammar::parse(exact, &text[start..end]) {
+            Err(error) => ((start + offset(&error)).max(junk), expected(&error)),
+            Ok(_) => (junk, Vec::new()),
+        };
+        let at = self.past_trivia(at);
+        let Some(found) = token::next(text, at).filter(|t| t.kind != Kind::LineBreak) else {
+            let mistake = Diagnostic::new(Code::E0101, message(&expected, &self.found(at)));
+            let last = start + text[start..end.min(at.max(start))].trim_end().len();
+            self.report(mistake.at(self.span(last, last), "").maybe_help(self.way_out(exact, start, junk, end, None)));
+            return Explained::Other(path);
+        };
+        if self.prepared.is_inserted(found.start) {
+            return Explained::Other(path);
+        }
+        let mistake = match self.swallowed(junk) {
+            Some(next) => {
+                let (name, _) = (next.text(), next.span);
+                Diagnostic::new(Code::E0101, format!("expected a comma or a line break before `{name}`"))
+                    .at(next.span, "a new field starts here")
+            }
+            None => {
+                let what = self.found(found.start);
+                Diagnostic::new(Code::E0101, message(&expected, &what)).at(self.span(found.start, found.end), "")
+            }
+        };
+        self.report(mistake.maybe_help(self.way_out(exact, start, junk, end, Some(found))));
+        Explained::Other(path)
+    }
+
+    /// The grammar failed on the whole file.
+    pub fn unread(&mut self, error: &Error<Rule>) {
+        let at = self.past_trivia(offset(error));
+        let message = message(&expected(error), &self.found(at));
+        self.report(Diagnostic::new(Code::E0101, message).at(self.span(at, at), ""));
+    }
+
+    /// What to write instead, where that can be guessed.
+    fn way_out(&self, exact: Rule, start: usize, junk: usize, end: usize, found: Option<Token>) -> Option<String> {
+        let text: &'p str = &self.prepared.text;
+        let part = first_line(&text[start..end]);
+        let word = found.map_or("", |t| t.of(text));
+        let opens = |sign: &str| matches!(sign, "+" | "*" | "/" | "^" | ".." | "<" | ">" | "<=" | ">=" | "per");
+        if word.chars().any(|c| !c.is_ascii()) && matches!(found?.kind, Kind::Word) {
+            return Some("names are made of ASCII letters, digits and `_`".to_owned());
+        }
+        if start == junk && found.is_some_and(|t| t.start == start) && opens(word) {
+            return Some(format!("a line goes on behind an operator: end the line above with `{word}`"));
+        }
+        match exact {
+            Rule::exact_field if matches!(first_word(part), "let" | "use") => {
+                Some(format!("`{}` stands outside of braces", first_word(part)))
+            }
+            Rule::exact_field => {
+                let path = leading(part);
+                let rest = part[path.len()..].trim_start();
+                let value = rest.starts_with(|c: char| c.is_alphanumeric() || "\"([-?".contains(c));
+                (!path.is_empty() && value).then(|| format!("write `{path} = {rest}`"))
+            }
+            Rule::exact_item if first_word(part) == "let" => Some("write `let name = value`".to_owned()),
+            Rule::exact_item if first_word(part) == "use" => {
+                Some("write `use module` or `use module as name`".to_owned())
+            }
+            Rule::exact_item if start == junk => Some("a declaration is `kind name { field = value }`".to_owned()),
+            _ => None,
+        }
+    }
+
+    /// The field that a value has run into for want of a comma: `a = 1 m b = 2`, with the junk from the second `=`.
+    pub fn swallowed(&self, junk: usize) -> Option<Path> {
+        let text = &self.prepared.text;
+        if !text[junk..].starts_with('=') || text[junk..].starts_with("==") {
+            return None;
+        }
+        let before = text[..junk].trim_end_matches([' ', '\t']);
+        let start = before.rfind(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).map_or(0, |i| i + 1);
+        let name = &before[start..];
+        let apart = before[..start].ends_with([' ', '\t']) && !before[..start].trim_end().ends_with(['=', '\n']);
+        (apart && name.starts_with(|c: char| c.is_ascii_alphabetic())).then(|| self.path_at(start, name))
+    }
+
+    fn leading_path(&self, start: usize, end: usize) -> Option<Path> {
+        let path = leading(&self.prepared.text[start..end]);
+        (!path.is_empty() && !matches!(path, "use" | "let" | "as" | "per")).then(|| self.path_at(start, path))
+    }
+
+    fn path_at(&self, start: usize, path: &str) -> Path {
+        let mut names = Vec::new();
+        let mut at = start;
+        for name in path.split('.') {
+            names.push(Name { text: name.to_owned(), span: self.span(at, at + name.len()) });
+            at += name.len() + 1;
+        }
+        Path { names, span: self.span(start, start + path.len()) }
+    }
+
+    /// Where the number starts whose decimals start at `at`, behind a comma without a blank.
+    pub fn decimal_comma(&self, at: usize) -> Option<usize> {
+        let text = &self.prepared.text;
+        let whole = text[..at].strip_suffix(',')?;
+        let start = whole.rfind(|c: char| !(c.is_ascii_digit() || c == '_')).map_or(0, |i| i + 1);
+        let before = whole[..start].chars().next_back();
+        let alone = start < whole.len() && !before.is_some_and(|c| c == '.' || c.is_alphanumeric());
+        (alone && text[at..].starts_with(|c: char| c.is_ascii_digit())).then_some(start)
+    }
+
+    pub fn report_decimal_comma(&mut self, at: usize, end: usize) {
+        let Some(start) = self.decimal_comma(at) else { return };
+        let (whole, decimals) = (&self.prepared.text[start..at - 1], first_line(self.text(at, end)));
+        let mistake = Diagnostic::new(Code::E0105, "a decimal comma")
+            .at(self.span(start, at + first_line(self.text(at, end)).len()), "a comma parts items")
+            .help(format!("write `{whole}.{decimals}`"));
+        self.report(mistake);
+    }
+
+    fn past_trivia(&self, mut at: usize) -> usize {
+        while let Some(token) = token::next(&self.prepared.text, at).filter(|t| t.kind == Kind::Comment) {
+            at = token.end;
+        }
+        at
+    }
+
+    /// What stands at an offset, in words.
+    pub fn found(&self, at: usize) -> String {
+        let text = &self.prepared.text;
+        match token::next(text, self.past_trivia(at)) {
+            None => "the end of the file".to_owned(),
+            Some(token) if token.kind == Kind::LineBreak || self.prepared.is_inserted(token.start) => {
+                "the end of the line".to_owned()
+            }
+            Some(token) => {
+                let shown: String = token.of(text).chars().take(40).collect();
+                let escaped = shown.chars().any(char::is_control);
+                if escaped { format!("`{}`", shown.escape_debug()) } else { format!("`{shown}`") }
+            }
+        }
+    }
+}
+
+/// The path that a text starts with, if any.
+fn leading(text: &str) -> &str {
+    let mut end = 0;
+    loop {
+        let rest = &text[end..];
+        let length = rest.find(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).unwrap_or(rest.len());
+        if length == 0 || !rest.starts_with(|c: char| c.is_ascii_alphabetic()) {
+            return text[..end].trim_end_matches('.');
+        }
+        end += length;
+        if !text[end..].starts_with('.') {
+            return &text[..end];
+        }
+        end += 1;
+    }
+}
+
+fn first_word(text: &str) -> &str {
+    text.split_whitespace().next().unwrap_or("")
+}
+
+fn offset(error: &Error<Rule>) -> usize {
+    match error.location {
+        InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
+    }
+}
+
+/// What could have stood there, from the loosest to the tightest.
+fn expected(error: &Error<Rule>) -> Vec<&'static str> {
+    let ErrorVariant::ParsingError { positives, .. } = &error.variant else { return Vec::new() };
+    const WORDS: [(&str, &[Rule]); 9] = [
+        ("a declaration", &[Rule::declaration, Rule::exact_item, Rule::use_item, Rule::let_item]),
+        ("a name", &[Rule::name, Rule::path, Rule::base]),
+        (
+            "a value",
+            &[
+                Rule::value,
+                Rule::range,
+                Rule::sum,
+                Rule::product,
+                Rule::factor,
+                Rule::power,
+                Rule::quantity,
+                Rule::number,
+                Rule::wrong_number,
+                Rule::text,
+                Rule::list,
+                Rule::group,
+                Rule::hole,
+                Rule::sign,
+                Rule::object,
+                Rule::call,
+            ],
+        ),
+        ("`:`", &[Rule::colon]),
+        ("`=`", &[Rule::equals]),
+        ("`as`", &[Rule::kw_as]),
+        ("`{`", &[Rule::block]),
+        ("an operator", &[Rule::add_op, Rule::multiply_op, Rule::compare_op, Rule::dots, Rule::caret]),
+        ("the end of the item", &[Rule::EOI]),
+    ];
+    let has = |rules: &[Rule]| positives.iter().any(|p| rules.contains(p));
+    let mut words: Vec<&str> = WORDS.iter().filter(|(_, rules)| has(rules)).map(|(word, _)| *word).collect();
+    if words.contains(&"a value") {
+        words.retain(|w| !matches!(*w, "a name" | "`{`"));
+    }
+    words
+}
+
+fn message(expected: &[&str], found: &str) -> String {
+    match expected {
+        [] => format!("{found} cannot stand here"),
+        [only] => format!("expected {only}, found {found}"),
+        [first @ .., last] => format!("expected {} or {last}, found {found}", first.join(", ")),
+    }
+}

@@ -1,0 +1,171 @@
+//! Signs of other languages and of word processors: each is reported with the right form in the user's own words, and
+//! replaced by that form, byte for byte of the same length, so that the parser goes on as if it had stood there.
+//!
+//! Only signs that are never right are dealt with here; what is wrong by its place alone is left to the grammar.
+
+use super::prepare::Draft;
+use super::token::{Kind, Token};
+use crate::diag::{Code, Diagnostic};
+
+/// Signs that look like ours.
+const LOOK_ALIKES: [(&str, &str); 7] =
+    [("−", "-"), ("≤", "<="), ("≥", ">="), ("×", "*"), ("÷", "/"), ("…", ".."), ("∙", "*")];
+
+/// Reports and replaces the foreign signs of a text.
+pub(super) fn replace(draft: &mut Draft, tokens: &[Token]) {
+    let mut brackets = Vec::new();
+    for (i, token) in tokens.iter().enumerate() {
+        let text = token.of(draft.original);
+        match token.kind {
+            Kind::Open(c) => brackets.push(c),
+            Kind::Close(_) => {
+                brackets.pop();
+            }
+            Kind::HashComment => {
+                draft.overwrite(token, "");
+                let help = format!("write `// {}`", text.trim_start_matches('#').trim());
+                report(draft, token, "`#` does not begin a comment", help);
+            }
+            Kind::BlockComment => block_comment(draft, token),
+            Kind::OddText => odd_text(draft, token),
+            Kind::Text { closed: false } => {
+                draft.overwrite(token, "?");
+                draft.poisoned.insert(token.start);
+                let mistake = Diagnostic::new(Code::E0106, "text without its closing quote")
+                    .at(draft.span(token.start, token.end), "opened here, and still open at the end of the line")
+                    .help(format!("write `{}\"`", text.trim_end()));
+                draft.report(mistake);
+            }
+            Kind::Sign => match text {
+                ";" => {
+                    draft.overwrite(token, ",");
+                    let repeated = i > 0 && tokens[i - 1].of(draft.original) == ";";
+                    if !repeated {
+                        let help = match line_around(draft.original, tokens, i) {
+                            "" => "remove it".to_owned(),
+                            item => format!("write `{item}`"),
+                        };
+                        report(draft, token, "`;` does not end an item: a line break or a comma does", help);
+                    }
+                }
+                "=>" if brackets.last() == Some(&'[') => {
+                    draft.overwrite(token, ":");
+                    let help = format!(
+                        "write `{}` for a pair, `{}` for a comparison",
+                        rewritten(draft.original, tokens, i, ": "),
+                        rewritten(draft.original, tokens, i, " >= ")
+                    );
+                    report(draft, token, "`=>` is not a sign of this language", help);
+                }
+                "=>" | ":=" => {
+                    draft.overwrite(token, "=");
+                    let help = format!("write `{}`", rewritten(draft.original, tokens, i, " = "));
+                    report(draft, token, format!("`{text}` is not a sign of this language"), help);
+                }
+                _ => look_alike(draft, tokens, i),
+            },
+            _ => {}
+        }
+    }
+}
+
+fn report(draft: &mut Draft, token: &Token, message: impl Into<String>, help: String) {
+    let end = draft.original[token.start..token.end].find('\n').map_or(token.end, |i| token.start + i);
+    let mistake = Diagnostic::new(Code::E0105, message).at(draft.span(token.start, end), "").help(help);
+    draft.report(mistake);
+}
+
+fn block_comment(draft: &mut Draft, token: &Token) {
+    let text = token.of(draft.original);
+    draft.overwrite(token, "");
+    let inner = text.trim_start_matches("/*").trim_end_matches("*/");
+    let lines = inner.lines().map(|l| l.trim().trim_start_matches('*').trim()).filter(|l| !l.is_empty());
+    let first = lines.clone().next().unwrap_or("");
+    let help = if lines.count() > 1 {
+        format!("begin each of its lines with `//`: `// {first}`")
+    } else {
+        format!("write `// {first}`, with nothing behind it on its line")
+    };
+    report(draft, token, "`/* */` is not a comment here", help);
+}
+
+fn odd_text(draft: &mut Draft, token: &Token) {
+    let text = token.of(draft.original);
+    let mut inner = text.chars();
+    inner.next();
+    inner.next_back();
+    let inner = inner.as_str();
+    let right = format!("\"{inner}\"");
+    if inner.contains(['"', '\\']) || right.len() > text.len() {
+        draft.overwrite(token, "?");
+        draft.poisoned.insert(token.start);
+    } else {
+        draft.overwrite(token, &right);
+    }
+    let right = format!("\"{}\"", inner.replace('\\', "\\\\").replace('"', "\\\""));
+    report(draft, token, "text stands in double quotes", format!("write `{right}`"));
+}
+
+fn look_alike(draft: &mut Draft, tokens: &[Token], i: usize) {
+    let text = tokens[i].of(draft.original);
+    if let Some((_, right)) = LOOK_ALIKES.iter().find(|(wrong, _)| *wrong == text) {
+        draft.overwrite(&tokens[i], right);
+        let spaced = if *right == "-" { right.to_string() } else { format!(" {right} ") };
+        let help = format!("write `{}`", rewritten(draft.original, tokens, i, &spaced));
+        report(draft, &tokens[i], format!("`{text}` looks like `{right}` but is another character"), help);
+    } else if text.chars().all(|c| c.is_whitespace() || matches!(c, '\u{200b}' | '\u{feff}' | '\u{2060}')) {
+        draft.overwrite(&tokens[i], "");
+        let code = text.chars().next().map_or(0, u32::from);
+        let help = "replace it by an ordinary blank".to_owned();
+        report(draft, &tokens[i], format!("blank of another kind (U+{code:04X})"), help);
+    }
+}
+
+/// The part of the item that stands on the token's line, with another sign in the token's place.
+fn rewritten(text: &str, tokens: &[Token], i: usize, sign: &str) -> String {
+    let (first, last) = item_around(text, tokens, i);
+    let before = text[tokens[first].start..tokens[i].start].trim_end();
+    let after = text[tokens[i].end..tokens[last].end].trim_start();
+    let unary = sign == "-" && before.ends_with(['=', '(', '[', ':', '.', '*', '/', ',']);
+    let joint = if unary {
+        " -"
+    } else if sign == "-" && !before.is_empty() {
+        " - "
+    } else {
+        sign
+    };
+    format!("{before}{joint}{after}").trim().to_owned()
+}
+
+/// What stands before the token in its item, on its line.
+fn line_around<'a>(text: &'a str, tokens: &[Token], i: usize) -> &'a str {
+    let (first, _) = item_around(text, tokens, i);
+    text[tokens[first].start..tokens[i].start].trim()
+}
+
+/// The first and last token of the item around a token, on its line.
+fn item_around(text: &str, tokens: &[Token], i: usize) -> (usize, usize) {
+    let ends = |t: &Token| t.kind == Kind::LineBreak || t.is_comment() || matches!(t.of(text), "," | ";");
+    let mut depth = 0;
+    let mut first = i;
+    while first > 0 && i - first < 100 && !ends(&tokens[first - 1]) {
+        match tokens[first - 1].kind {
+            Kind::Close(_) => depth += 1,
+            Kind::Open(_) if depth == 0 => break,
+            Kind::Open(_) => depth -= 1,
+            _ => {}
+        }
+        first -= 1;
+    }
+    let mut last = i;
+    while last + 1 < tokens.len() && last - i < 100 && !ends(&tokens[last + 1]) {
+        match tokens[last + 1].kind {
+            Kind::Open(_) => depth += 1,
+            Kind::Close(_) if depth <= 0 => break,
+            Kind::Close(_) => depth -= 1,
+            _ => {}
+        }
+        last += 1;
+    }
+    (first, last)
+}

@@ -1,0 +1,115 @@
+//! Makes a text ready for the grammar: bounds are checked, foreign signs replaced and brackets balanced, each
+//! with its diagnostic. The prepared text keeps every offset, but for closing brackets put in, which [`Prepared`]
+//! takes out again when it is asked where something stands.
+
+use std::collections::BTreeSet;
+
+use super::token::{Token, tokens};
+use super::{balance, foreign, limits};
+use crate::diag::{Code, Diagnostic, FileId, Span};
+
+/// A text on its way: what has been written over it and put into it so far.
+pub(super) struct Draft<'a> {
+    pub file: FileId,
+    pub original: &'a str,
+    bytes: Vec<u8>,
+    /// Closing brackets to put in, each before the byte at its offset.
+    pub insertions: Vec<(usize, char)>,
+    /// Where a value stands that is already reported.
+    pub poisoned: BTreeSet<usize>,
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Draft<'_> {
+    pub fn span(&self, start: usize, end: usize) -> Span {
+        Span::new(self.file, start, end)
+    }
+
+    pub fn report(&mut self, diagnostic: Diagnostic) {
+        if self.diagnostics.len() < limits::DIAGNOSTICS {
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
+    /// Writes `new` over a token and blanks what is left of it, line breaks excepted.
+    pub fn overwrite(&mut self, token: &Token, new: &str) {
+        for (i, byte) in self.bytes[token.start..token.end].iter_mut().enumerate() {
+            match new.as_bytes().get(i) {
+                Some(replacement) => *byte = *replacement,
+                None if *byte == b'\n' => {}
+                None => *byte = b' ',
+            }
+        }
+    }
+}
+
+/// A text that the grammar can read whole.
+pub(super) struct Prepared {
+    pub file: FileId,
+    pub text: String,
+    /// Where in `text` a bracket was put in, ascending.
+    inserted: Vec<usize>,
+    poisoned: BTreeSet<usize>,
+    original_length: usize,
+}
+
+impl Prepared {
+    /// The place in the original of an offset in `text`.
+    pub fn original(&self, offset: usize) -> usize {
+        (offset - self.inserted.partition_point(|i| *i < offset)).min(self.original_length)
+    }
+
+    pub fn span(&self, start: usize, end: usize) -> Span {
+        let start = self.original(start);
+        Span::new(self.file, start, self.original(end).max(start))
+    }
+
+    /// Whether the bracket at this offset of `text` was put in.
+    pub fn is_inserted(&self, offset: usize) -> bool {
+        self.inserted.binary_search(&offset).is_ok()
+    }
+
+    /// Whether something between these offsets of `text` is already reported.
+    pub fn is_poisoned(&self, start: usize, end: usize) -> bool {
+        self.poisoned.range(self.original(start)..self.original(end).max(self.original(start) + 1)).next().is_some()
+    }
+}
+
+/// A text ready for the grammar, or nothing where it is beyond the bounds; and what was wrong with it.
+pub(super) fn prepare(file: FileId, original: &str) -> (Option<Prepared>, Vec<Diagnostic>) {
+    if original.len() > limits::BYTES {
+        let size = original.len() as f64 / f64::from(1 << 20);
+        let mistake = Diagnostic::new(Code::E0103, format!("file of {size:.1} MiB, where 8 MiB are the bound"))
+            .at(Span::new(file, 0, 0), "")
+            .help("move part of it to a module, or tables to a `file(\"...\")`");
+        return (None, vec![mistake]);
+    }
+    let tokens = tokens(original);
+    let mut draft = Draft {
+        file,
+        original,
+        bytes: original.as_bytes().to_vec(),
+        insertions: Vec::new(),
+        poisoned: BTreeSet::new(),
+        diagnostics: Vec::new(),
+    };
+    foreign::replace(&mut draft, &tokens);
+    if let Err(beyond) = balance::balance(&mut draft, &tokens) {
+        return (None, vec![beyond]);
+    }
+    let Draft { bytes, mut insertions, poisoned, diagnostics, .. } = draft;
+    insertions.sort_by_key(|(offset, _)| *offset);
+    // Only whole characters were written over; should that ever fail, the untouched text still gives the mistakes.
+    let replaced = String::from_utf8(bytes).unwrap_or_else(|_| original.to_owned());
+    let mut text = String::with_capacity(replaced.len() + insertions.len());
+    let mut inserted = Vec::with_capacity(insertions.len());
+    let mut from = 0;
+    for (offset, bracket) in insertions {
+        text.push_str(&replaced[from..offset]);
+        inserted.push(text.len());
+        text.push(bracket);
+        from = offset;
+    }
+    text.push_str(&replaced[from..]);
+    (Some(Prepared { file, text, inserted, poisoned, original_length: original.len() }), diagnostics)
+}
