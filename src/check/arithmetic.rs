@@ -124,7 +124,8 @@ impl Checker<'_> {
             BinaryOp::Divide => raw(a.value / b.value, a.dimension / b.dimension, basis(&a, &b)),
             BinaryOp::Power => {
                 let hundredths = (b.value * 100.0).round();
-                let plain = b.dimension.is_none() && (hundredths - b.value * 100.0).abs() < 1e-9 && b.value.abs() <= 9.0;
+                let plain =
+                    b.dimension.is_none() && (hundredths - b.value * 100.0).abs() < 1e-9 && b.value.abs() <= 9.0;
                 let dimension = if plain { a.dimension.power(hundredths as i32) } else { None };
                 let Some(dimension) = dimension else {
                     self.report(
@@ -203,10 +204,14 @@ fn unit_mistake(unit: &UnitText, error: &UnitError) -> Diagnostic {
                 let whole = unit.text.replacen(symbol.as_str(), ours, 1);
                 if ours.contains('(') { format!("write {ours}") } else { format!("did you mean `{whole}`?") }
             });
-            Diagnostic::new(Code::E0303, format!("unknown unit `{symbol}`")).at(unit.span, "not a unit").maybe_help(help)
+            Diagnostic::new(Code::E0303, format!("unknown unit `{symbol}`"))
+                .at(unit.span, "not a unit")
+                .maybe_help(help)
         }
-        UnitError::Exponent => Diagnostic::new(Code::E0103, format!("the exponents of `{}` go beyond -9 .. 9", unit.text))
-            .at(unit.span, "too large"),
+        UnitError::Exponent => {
+            Diagnostic::new(Code::E0103, format!("the exponents of `{}` go beyond -9 .. 9", unit.text))
+                .at(unit.span, "too large")
+        }
         UnitError::Form => {
             Diagnostic::new(Code::E0303, format!("`{}` is not a unit", unit.text)).at(unit.span, "not a unit")
         }

@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::value::{Record, Slot, Val};
-use crate::diag::{Code, Diagnostic, Span, nearest::or_list};
+use crate::diag::{Code, Diagnostic, Span, or_list};
 use crate::schema::{Alternative, Field, Form, Need};
 use crate::syntax::parse;
 use crate::syntax::tree::{Item, Value};
@@ -75,7 +75,8 @@ impl Checker<'_> {
                 }
             }
             None => {
-                let ways: Vec<String> = alternative.ways.iter().map(|way| format!("`{}`", way.join("` and `"))).collect();
+                let ways: Vec<String> =
+                    alternative.ways.iter().map(|way| format!("`{}`", way.join("` and `"))).collect();
                 self.missing(record, &or_list(&ways));
             }
         }
@@ -125,5 +126,6 @@ impl Checker<'_> {
 
 /// Whether something on the way to a path could not be understood, so that nobody knows what stands there.
 fn hidden_by_error(record: &Record, path: &str) -> bool {
-    record.unknown(path) || path.split_once('.').is_some_and(|(first, _)| record.get(first).is_none() || record.unknown(first))
+    record.unknown(path)
+        || path.split_once('.').is_some_and(|(first, _)| record.get(first).is_none() || record.unknown(first))
 }

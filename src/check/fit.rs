@@ -4,7 +4,7 @@ use super::Checker;
 use super::arithmetic::{Raw, shape};
 use super::modules::ScopeId;
 use super::value::{Number, Slot, Val};
-use crate::diag::{Code, Diagnostic, Span, nearest::nearest, nearest::or_list};
+use crate::diag::{Code, Diagnostic, Span, nearest::nearest, or_list};
 use crate::scenario::Origin;
 use crate::scenario::response::Response;
 use crate::schema::{self, Form, Measure, Word};
@@ -71,7 +71,8 @@ impl Checker<'_> {
         {
             return Some(match self.word(word, &[], name, scope) {
                 Some(value) => {
-                    let value = if let Form::List(_) = form { Val::List(vec![Slot { value, ..error.clone() }]) } else { value };
+                    let value =
+                        if let Form::List(_) = form { Val::List(vec![Slot { value, ..error.clone() }]) } else { value };
                     Slot { value, span: path.span, origin: self.origin(path.span, scope) }
                 }
                 None => error,
@@ -112,7 +113,8 @@ impl Checker<'_> {
             Val::Word { word, .. } if words.iter().any(|w| w.name == word.name) => Some(slot),
             _ => {
                 self.report(
-                    Diagnostic::new(Code::E0406, format!("expected {}", form.describe())).at(path.span, "of another form"),
+                    Diagnostic::new(Code::E0406, format!("expected {}", form.describe()))
+                        .at(path.span, "of another form"),
                 );
                 Some(error)
             }
@@ -137,7 +139,9 @@ impl Checker<'_> {
                 let kind = schema::kind(kind)?;
                 self.object(base.as_ref(), fields, kind, value.span, scope).map(|r| Val::Record(Rc::new(r)))
             }
-            (Form::Words(_) | Form::OneOf(_), ValueKind::Call { word, arguments }) if form.word(&word.text).is_some() => {
+            (Form::Words(_) | Form::OneOf(_), ValueKind::Call { word, arguments })
+                if form.word(&word.text).is_some() =>
+            {
                 self.word(form.word(&word.text)?, arguments, word, scope)
             }
             (Form::Words(words), ValueKind::Call { word, .. }) => {
@@ -157,14 +161,19 @@ impl Checker<'_> {
 
     fn wrong_form(&mut self, form: &Form, found: &str, span: Span) {
         self.report(
-            Diagnostic::new(Code::E0406, format!("expected {}, found {found}", form.describe())).at(span, found.to_string()),
+            Diagnostic::new(Code::E0406, format!("expected {}, found {found}", form.describe()))
+                .at(span, found.to_string()),
         );
     }
 
     fn shape_of(&mut self, value: &Value, scope: ScopeId, depth: u32) -> Shape {
         match &value.kind {
-            ValueKind::Number { .. } | ValueKind::Binary(..) | ValueKind::Negate(_) | ValueKind::Per(..) => Shape::Number,
-            ValueKind::Call { word, .. } if matches!(word.text.as_str(), "sqrt" | "abs" | "min" | "max") => Shape::Number,
+            ValueKind::Number { .. } | ValueKind::Binary(..) | ValueKind::Negate(_) | ValueKind::Per(..) => {
+                Shape::Number
+            }
+            ValueKind::Call { word, .. } if matches!(word.text.as_str(), "sqrt" | "abs" | "min" | "max") => {
+                Shape::Number
+            }
             ValueKind::Object { .. } => Shape::Object,
             ValueKind::Path(path) if depth < 64 => {
                 let Some(target) = self.resolve(path, scope, &[]) else { return Shape::Other };
@@ -229,7 +238,8 @@ impl Checker<'_> {
         };
         if profile {
             let mistake = if measure.varies {
-                Diagnostic::new(Code::E0411, "this version does not read profiles along the track yet").at(value.span, "planned")
+                Diagnostic::new(Code::E0411, "this version does not read profiles along the track yet")
+                    .at(value.span, "planned")
             } else {
                 Diagnostic::new(Code::E0406, "this value is one number; it cannot vary along the track")
                     .at(value.span, "a profile")
@@ -259,7 +269,12 @@ impl Checker<'_> {
             self.report(
                 Diagnostic::new(
                     Code::E0405,
-                    format!("expected {} .. {}{unit}{per}, found {}{unit}{per}", number(measure.min), number(measure.max), number(shown)),
+                    format!(
+                        "expected {} .. {}{unit}{per}, found {}{unit}{per}",
+                        number(measure.min),
+                        number(measure.max),
+                        number(shown)
+                    ),
                 )
                 .at(raw.span, "out of range"),
             );
@@ -273,8 +288,11 @@ impl Checker<'_> {
             (None, None) => Some((None, 1.0)),
             (None, Some((name, span))) => {
                 self.report(
-                    Diagnostic::new(Code::E0304, format!("`per {name}` says nothing here: the value is of one thing only"))
-                        .at(*span, "leave it out"),
+                    Diagnostic::new(
+                        Code::E0304,
+                        format!("`per {name}` says nothing here: the value is of one thing only"),
+                    )
+                    .at(*span, "leave it out"),
                 );
                 None
             }
@@ -332,8 +350,11 @@ impl Checker<'_> {
         }
         if raw.value.fract() != 0.0 || raw.value < f64::from(min) || raw.value > f64::from(max) {
             self.report(
-                Diagnostic::new(Code::E0405, format!("expected a whole number from {min} to {max}, found {}", number(raw.value)))
-                    .at(raw.span, "out of range"),
+                Diagnostic::new(
+                    Code::E0405,
+                    format!("expected a whole number from {min} to {max}, found {}", number(raw.value)),
+                )
+                .at(raw.span, "out of range"),
             );
             return None;
         }
@@ -373,9 +394,12 @@ impl Checker<'_> {
             return Some(Val::Range(a, b));
         }
         let text = self.loader.sources.text(span).to_string();
-        let swapped = text.split_once("..").map(|(x, y)| format!("write the smaller end first: `{} .. {}`", y.trim(), x.trim()));
+        let swapped =
+            text.split_once("..").map(|(x, y)| format!("write the smaller end first: `{} .. {}`", y.trim(), x.trim()));
         self.report(
-            Diagnostic::new(Code::E0505, "a span must ascend").at(span, "its first end is the greater one").maybe_help(swapped),
+            Diagnostic::new(Code::E0505, "a span must ascend")
+                .at(span, "its first end is the greater one")
+                .maybe_help(swapped),
         );
         None
     }
@@ -395,8 +419,11 @@ impl Checker<'_> {
                 .at(raw.span, "its unit is missing")
                 .help(format!("write `{text} sleepers` or `{text} m`"))
         } else {
-            Diagnostic::new(Code::E0302, format!("expected a place in `m` or `sleepers`, found {}", raw.dimension.describe()))
-                .at(raw.span, "not a place")
+            Diagnostic::new(
+                Code::E0302,
+                format!("expected a place in `m` or `sleepers`, found {}", raw.dimension.describe()),
+            )
+            .at(raw.span, "not a place")
         };
         self.report(mistake);
         None
@@ -409,7 +436,8 @@ impl Checker<'_> {
         let (a, b) = (a?, b?);
         if a.dimension != b.dimension {
             self.report(
-                Diagnostic::new(Code::E0305, "both ends of a span are in `m`, or both in `sleepers`").at(whole, "mixed"),
+                Diagnostic::new(Code::E0305, "both ends of a span are in `m`, or both in `sleepers`")
+                    .at(whole, "mixed"),
             );
             return None;
         }
@@ -421,10 +449,19 @@ impl Checker<'_> {
         if found.is_none() {
             let near = nearest(&name.text, Response::ALL.iter().map(|r| r.name()));
             let help = near.map_or_else(
-                || format!("the responses are {}", Response::ALL.iter().map(|r| r.name()).collect::<Vec<_>>().join(", ")),
+                || {
+                    format!(
+                        "the responses are {}",
+                        Response::ALL.iter().map(|r| r.name()).collect::<Vec<_>>().join(", ")
+                    )
+                },
                 |n| format!("did you mean `{n}`?"),
             );
-            self.report(Diagnostic::new(Code::E0408, format!("no response is called `{}`", name.text)).at(name.span, "unknown").help(help));
+            self.report(
+                Diagnostic::new(Code::E0408, format!("no response is called `{}`", name.text))
+                    .at(name.span, "unknown")
+                    .help(help),
+            );
         }
         found
     }
@@ -436,7 +473,11 @@ impl Checker<'_> {
         let rules: Vec<&str> = Code::ALL.iter().filter_map(|c| c.rule()).collect();
         let help = nearest(&name.text, rules.iter().copied())
             .map_or_else(|| format!("the rules are {}", rules.join(", ")), |n| format!("did you mean `{n}`?"));
-        self.report(Diagnostic::new(Code::E0408, format!("no rule is called `{}`", name.text)).at(name.span, "unknown").help(help));
+        self.report(
+            Diagnostic::new(Code::E0408, format!("no rule is called `{}`", name.text))
+                .at(name.span, "unknown")
+                .help(help),
+        );
         None
     }
 
@@ -455,7 +496,8 @@ impl Checker<'_> {
     fn word(&mut self, word: &'static Word, arguments: &[Argument], name: &Name, scope: ScopeId) -> Option<Val> {
         if word.planned {
             self.report(
-                Diagnostic::new(Code::E0411, format!("this version does not know `{}` yet", word.name)).at(name.span, "planned"),
+                Diagnostic::new(Code::E0411, format!("this version does not know `{}` yet", word.name))
+                    .at(name.span, "planned"),
             );
             return None;
         }
@@ -468,9 +510,12 @@ impl Checker<'_> {
             let Some(field) = field else {
                 let names: Vec<String> = word.arguments.iter().map(|a| format!("`{}`", a.name)).collect();
                 let place = argument.name.as_ref().map_or(argument.value.span, |n| n.span);
-                let help = if names.is_empty() { "it takes none".into() } else { format!("it takes {}", or_list(&names)) };
+                let help =
+                    if names.is_empty() { "it takes none".into() } else { format!("it takes {}", or_list(&names)) };
                 self.report(
-                    Diagnostic::new(Code::E0402, format!("`{}` has no such argument", word.name)).at(place, "unknown argument").help(help),
+                    Diagnostic::new(Code::E0402, format!("`{}` has no such argument", word.name))
+                        .at(place, "unknown argument")
+                        .help(help),
                 );
                 continue;
             };
@@ -489,7 +534,10 @@ impl Checker<'_> {
         let mut slots = Vec::with_capacity(entries.len());
         for entry in entries {
             if let Some(key) = &entry.key {
-                self.report(Diagnostic::new(Code::E0406, "expected a value, found a pair").at(key.span, "a key where none belongs"));
+                self.report(
+                    Diagnostic::new(Code::E0406, "expected a value, found a pair")
+                        .at(key.span, "a key where none belongs"),
+                );
                 continue;
             }
             slots.push(self.fit(item, &with_unit(&entry.value, unit), scope));
@@ -531,7 +579,9 @@ impl Checker<'_> {
 fn with_unit(value: &Value, unit: Option<&UnitText>) -> Value {
     let Some(unit_text) = unit else { return value.clone() };
     let kind = match &value.kind {
-        ValueKind::Number { value: number, unit: None } => ValueKind::Number { value: *number, unit: Some(unit_text.clone()) },
+        ValueKind::Number { value: number, unit: None } => {
+            ValueKind::Number { value: *number, unit: Some(unit_text.clone()) }
+        }
         ValueKind::Negate(inner) => ValueKind::Negate(Box::new(with_unit(inner, unit))),
         ValueKind::Range(a, b) => ValueKind::Range(Box::new(with_unit(a, unit)), Box::new(with_unit(b, unit))),
         other => other.clone(),

@@ -98,8 +98,11 @@ impl Checker<'_> {
             let n = plan.length.value;
             if n.fract() != 0.0 || n < 1.0 {
                 self.report(
-                    Diagnostic::new(Code::E0502, format!("a section holds a whole number of sleepers, found {}", number(n)))
-                        .at(plan.span, "not a whole number"),
+                    Diagnostic::new(
+                        Code::E0502,
+                        format!("a section holds a whole number of sleepers, found {}", number(n)),
+                    )
+                    .at(plan.span, "not a whole number"),
                 );
                 return None;
             }
@@ -114,7 +117,12 @@ impl Checker<'_> {
             self.report(
                 Diagnostic::new(
                     Code::E0502,
-                    format!("section `{}` of {} m is shorter than one bay of {} m", plan.name, number(length), number(s)),
+                    format!(
+                        "section `{}` of {} m is shorter than one bay of {} m",
+                        plan.name,
+                        number(length),
+                        number(s)
+                    ),
                 )
                 .at(plan.span, "too short"),
             );
@@ -139,10 +147,18 @@ impl Checker<'_> {
                     self.report(
                         Diagnostic::new(
                             Code::E0502,
-                            format!("{} m do not hold a whole number of bays of {} m between two transitions", number(length), number(s)),
+                            format!(
+                                "{} m do not hold a whole number of bays of {} m between two transitions",
+                                number(length),
+                                number(s)
+                            ),
                         )
                         .at(plan.span, "the counts from both transitions do not meet")
-                        .help(format!("write `{} m` or `{} m`, or give the length in sleepers", fits(n.floor()), fits(n.ceil()))),
+                        .help(format!(
+                            "write `{} m` or `{} m`, or give the length in sleepers",
+                            fits(n.floor()),
+                            fits(n.ceil())
+                        )),
                     );
                     return None;
                 }
@@ -151,7 +167,8 @@ impl Checker<'_> {
         };
         if seats.is_empty() {
             self.report(
-                Diagnostic::new(Code::E0502, format!("section `{}` is too short to hold a seat", plan.name)).at(plan.span, "too short"),
+                Diagnostic::new(Code::E0502, format!("section `{}` is too short to hold a seat", plan.name))
+                    .at(plan.span, "too short"),
             );
             return None;
         }
@@ -187,7 +204,13 @@ impl Checker<'_> {
     }
 
     /// Chainage of a place.
-    pub(super) fn chainage(&mut self, places: &Places, at: Number, from: Option<(&str, Span)>, span: Span) -> Option<f64> {
+    pub(super) fn chainage(
+        &mut self,
+        places: &Places,
+        at: Number,
+        from: Option<(&str, Span)>,
+        span: Span,
+    ) -> Option<f64> {
         let transition = self.transition(places, from, span)?;
         let (first, last) = (places.sections.first()?.0, places.sections.last()?.1);
         if at.dimension == Dimension::LENGTH {
@@ -198,8 +221,11 @@ impl Checker<'_> {
             };
             if x < first - TINY || x > last + TINY {
                 self.report(
-                    Diagnostic::new(Code::E0501, format!("the track reaches from {} m to {} m", number(first), number(last)))
-                        .at(span, format!("x = {} m is off the track", number(x))),
+                    Diagnostic::new(
+                        Code::E0501,
+                        format!("the track reaches from {} m to {} m", number(first), number(last)),
+                    )
+                    .at(span, format!("x = {} m is off the track", number(x))),
                 );
                 return None;
             }
@@ -214,7 +240,11 @@ impl Checker<'_> {
                 } else {
                     format!("no sleeper has the number {:+}", at.value)
                 };
-                self.report(Diagnostic::new(Code::E0501, message).at(span, "not on the track").help(format!("the track has {range}")));
+                self.report(
+                    Diagnostic::new(Code::E0501, message)
+                        .at(span, "not on the track")
+                        .help(format!("the track has {range}")),
+                );
                 None
             }
         }
@@ -250,7 +280,8 @@ impl Places {
         self.seats.iter().enumerate().filter_map(move |(i, &(_, section, ..))| match boundary {
             None => Some((i, i as i32 + 1)),
             Some(t) => {
-                let here = |s: usize| self.seats.iter().enumerate().filter(move |(_, seat)| seat.1 == s).map(|(i, _)| i);
+                let here =
+                    |s: usize| self.seats.iter().enumerate().filter(move |(_, seat)| seat.1 == s).map(|(i, _)| i);
                 let (first_right, last_left) = (here(transition + 1).next()? as i32, here(transition).last()? as i32);
                 let steps = if section == transition {
                     last_left - i as i32 + 1

@@ -38,8 +38,11 @@ impl Checker<'_> {
         };
         if (share - 1.0).abs() > 1e-9 {
             self.report(
-                Diagnostic::new(Code::E0407, format!("the shares of the trains sum to {} %, not to 100 %", number(100.0 * share)))
-                    .at(pairs[0].1.span, "of `total`"),
+                Diagnostic::new(
+                    Code::E0407,
+                    format!("the shares of the trains sum to {} %, not to 100 %", number(100.0 * share)),
+                )
+                .at(pairs[0].1.span, "of `total`"),
             );
             return None;
         }
@@ -58,7 +61,8 @@ impl Checker<'_> {
         }
         if n.value.fract() != 0.0 {
             self.report(
-                Diagnostic::new(Code::E0405, format!("expected a whole number of axles, found {}", number(n.value))).at(slot.span, "not whole"),
+                Diagnostic::new(Code::E0405, format!("expected a whole number of axles, found {}", number(n.value)))
+                    .at(slot.span, "not whole"),
             );
             return None;
         }
@@ -220,7 +224,9 @@ impl Checker<'_> {
         if let Some(Slot { value: Val::Range(a, b), span, .. }) = record.get("over") {
             any = true;
             let (from_x, to_x) = super::geometry::span(self, &Some(places.clone()), *a, *b, from, *span)?;
-            seats.extend((0..places.seats.len()).filter(|i| (from_x - 1e-6..=to_x + 1e-6).contains(&places.seats[*i].0)));
+            seats.extend(
+                (0..places.seats.len()).filter(|i| (from_x - 1e-6..=to_x + 1e-6).contains(&places.seats[*i].0)),
+            );
         }
         if !any {
             seats = (0..places.seats.len()).collect();
@@ -235,4 +241,3 @@ impl Checker<'_> {
         places.nearest_seat(x)
     }
 }
-

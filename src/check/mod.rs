@@ -215,7 +215,9 @@ impl Checker<'_> {
         let mut found = Vec::new();
         for record in self.all(main, "expect") {
             let Some(Val::List(slots)) = record.get("that").map(|s| &s.value) else { continue };
-            found.extend(slots.iter().filter_map(|s| if let Val::Comparison(e) = &s.value { Some(e.clone()) } else { None }));
+            found.extend(
+                slots.iter().filter_map(|s| if let Val::Comparison(e) = &s.value { Some(e.clone()) } else { None }),
+            );
         }
         found
     }
@@ -228,7 +230,9 @@ impl Checker<'_> {
         let Some(record) = record else { return (stem, Vec::new(), Vec::new()) };
         let text = |val: &Val| if let Val::Text(t) = val { Some(t.clone()) } else { None };
         let allow = match record.get("allow").map(|s| &s.value) {
-            Some(Val::Pairs(pairs)) => pairs.iter().filter_map(|(k, v)| Some((text(&k.value)?, text(&v.value)?))).collect(),
+            Some(Val::Pairs(pairs)) => {
+                pairs.iter().filter_map(|(k, v)| Some((text(&k.value)?, text(&v.value)?))).collect()
+            }
             _ => Vec::new(),
         };
         let deny = match record.get("deny").map(|s| &s.value) {
@@ -252,9 +256,15 @@ impl Checker<'_> {
                 Item::Use(_) => continue,
             };
             let declared = self.scopes[main].names.get(&name) == Some(&item);
-            if declared && !roots.contains(&id) && !self.used.contains(&id) && !matches!(self.records.get(&id), Some(None)) {
+            if declared
+                && !roots.contains(&id)
+                && !self.used.contains(&id)
+                && !matches!(self.records.get(&id), Some(None))
+            {
                 self.report(
-                    Diagnostic::new(Code::E0412, format!("nothing uses `{name}`")).at(span, "declared here").help("take it out, or use it"),
+                    Diagnostic::new(Code::E0412, format!("nothing uses `{name}`"))
+                        .at(span, "declared here")
+                        .help("take it out, or use it"),
                 );
             }
         }

@@ -76,11 +76,23 @@ pub(super) struct Loader<'a> {
 
 impl<'a> Loader<'a> {
     pub fn new(modules: &'a dyn Modules) -> Self {
-        Loader { sources: Sources::default(), scopes: Vec::new(), diagnostics: Vec::new(), modules, known: BTreeMap::new() }
+        Loader {
+            sources: Sources::default(),
+            scopes: Vec::new(),
+            diagnostics: Vec::new(),
+            modules,
+            known: BTreeMap::new(),
+        }
     }
 
     /// Reads a text and all that it uses. `edit` may change the tree before its names are taken.
-    pub fn load(&mut self, name: &str, text: String, library: bool, edit: impl FnOnce(&mut Self, &mut Tree)) -> ScopeId {
+    pub fn load(
+        &mut self,
+        name: &str,
+        text: String,
+        library: bool,
+        edit: impl FnOnce(&mut Self, &mut Tree),
+    ) -> ScopeId {
         self.known.insert(name.to_string(), None);
         let file = self.sources.add(name, text, library);
         let text = self.sources.get(file).text.clone();
@@ -104,7 +116,8 @@ impl<'a> Loader<'a> {
     /// A scope in which every module of the standard library is known, for defaults.
     pub fn standard_scope(&mut self) -> ScopeId {
         let file = self.sources.add("defaults", "", true);
-        let modules = library::MODULES.iter().filter_map(|(name, _)| Some((name.to_string(), self.library(name)?))).collect();
+        let modules =
+            library::MODULES.iter().filter_map(|(name, _)| Some((name.to_string(), self.library(name)?))).collect();
         let tree = Rc::new(Tree { file, items: Vec::new() });
         self.scopes.push(Scope { tree, library: true, names: BTreeMap::new(), modules });
         self.scopes.len() - 1
@@ -135,9 +148,12 @@ impl<'a> Loader<'a> {
             if found.is_none() {
                 let near = names.get(1).and_then(|n| nearest(n, library::MODULES.iter().map(|(m, _)| *m)));
                 self.diagnostics.push(
-                    Diagnostic::new(Code::E0204, format!("the standard library has no module `{}`", names[1..].join(".")))
-                        .at(used.path.span, "not found")
-                        .maybe_help(near.map(|n| format!("did you mean `use std.{n}`?"))),
+                    Diagnostic::new(
+                        Code::E0204,
+                        format!("the standard library has no module `{}`", names[1..].join(".")),
+                    )
+                    .at(used.path.span, "not found")
+                    .maybe_help(near.map(|n| format!("did you mean `use std.{n}`?"))),
                 );
             }
             found
@@ -203,7 +219,8 @@ impl<'a> Loader<'a> {
                 let mistake = Diagnostic::new(Code::E0202, format!("`{name}` is declared twice"))
                     .at(span, "again here")
                     .at(*first, "first declared here");
-                let mistake = if nameless { mistake.help(format!("give each `{name}` a name of its own")) } else { mistake };
+                let mistake =
+                    if nameless { mistake.help(format!("give each `{name}` a name of its own")) } else { mistake };
                 self.diagnostics.push(mistake);
                 continue;
             }

@@ -33,7 +33,9 @@ impl Checker<'_> {
                 self.report(
                     Diagnostic::new(Code::E0201, format!("`{}` is a module, not a value", first.text))
                         .at(path.span, "name something in it")
-                        .maybe_help(self.scopes[module].names.keys().next().map(|n| format!("such as `{}.{n}`", first.text))),
+                        .maybe_help(
+                            self.scopes[module].names.keys().next().map(|n| format!("such as `{}.{n}`", first.text)),
+                        ),
                 );
                 return None;
             };
@@ -64,15 +66,14 @@ impl Checker<'_> {
 
     fn unknown_name(&mut self, name: &Name, scope: ScopeId, words: &[&str]) {
         let here = &self.scopes[scope];
-        let candidates =
-            here.names.keys().chain(here.modules.keys()).map(String::as_str).chain(words.iter().copied());
+        let candidates = here.names.keys().chain(here.modules.keys()).map(String::as_str).chain(words.iter().copied());
         let near = nearest(&name.text, candidates).map(|n| format!("did you mean `{n}`?"));
         let library = super::library::MODULES.iter().any(|(m, _)| *m == name.text);
         let help = if library && !here.modules.contains_key(&name.text) {
             Some("it is a module of the standard library: begin the file with `use std`".to_string())
         } else if near.is_none() && !words.is_empty() {
             let words: Vec<String> = words.iter().map(|w| format!("`{w}`")).collect();
-            Some(format!("expected {}", crate::diag::nearest::or_list(&words)))
+            Some(format!("expected {}", crate::diag::or_list(&words)))
         } else {
             near
         };
@@ -101,9 +102,12 @@ impl Checker<'_> {
                 None => {
                     if self.field_of(record.kind, name).is_some() {
                         self.report(
-                            Diagnostic::new(Code::E0403, format!("`{}` says nothing about `{}`", record.name, name.text))
-                                .at(name.span, "not given there")
-                                .at(record.span, "declared here"),
+                            Diagnostic::new(
+                                Code::E0403,
+                                format!("`{}` says nothing about `{}`", record.name, name.text),
+                            )
+                            .at(name.span, "not given there")
+                            .at(record.span, "declared here"),
                         );
                     }
                     return None;

@@ -61,7 +61,9 @@ fn edit(tree: &mut Tree, names: &[Name], value: &Value, span: Span) -> Result<()
     let near = nearest(first, known.iter().map(String::as_str)).map(|n| format!("did you mean `{n}`?"));
     Err(Diagnostic::new(Code::E0201, format!("the file declares nothing called `{first}` that could be set"))
         .at(span, "unknown name")
-        .maybe_help(near.or_else(|| Some("write `--set declaration.field=value`, or `--set name=value` for a `let`".into()))))
+        .maybe_help(
+            near.or_else(|| Some("write `--set declaration.field=value`, or `--set name=value` for a `let`".into())),
+        ))
 }
 
 /// Replaces what stands at a path of a block, or adds a line for it.
@@ -91,7 +93,8 @@ fn inside(target: &mut Value, rest: &[Name], value: &Value, span: Span) -> bool 
             true
         }
         ValueKind::Path(path) => {
-            let field = Field { path: Path { names: rest.to_vec(), span }, value: value.clone(), docs: Vec::new(), span };
+            let field =
+                Field { path: Path { names: rest.to_vec(), span }, value: value.clone(), docs: Vec::new(), span };
             target.kind = ValueKind::Object { base: Some(path.clone()), fields: vec![field] };
             true
         }

@@ -19,9 +19,10 @@ impl Checker<'_> {
         if let Some(start) = self.stack.iter().position(|(item, _)| *item == id) {
             let names: Vec<String> =
                 self.stack[start..].iter().map(|(item, _)| *item).chain([id]).map(|i| self.item_name(i)).collect();
-            let mut mistake = Diagnostic::new(Code::E0203, format!("{} need each other", names[..names.len() - 1].join(", ")))
-                .at(place, "closes the circle")
-                .help(format!("the circle is {}", names.join(" -> ")));
+            let mut mistake =
+                Diagnostic::new(Code::E0203, format!("{} need each other", names[..names.len() - 1].join(", ")))
+                    .at(place, "closes the circle")
+                    .help(format!("the circle is {}", names.join(" -> ")));
             if names.len() == 2 {
                 mistake.message = format!("`{}` needs itself", names[0]);
             }
@@ -124,7 +125,14 @@ impl Checker<'_> {
     }
 
     /// An object written in place.
-    pub fn object(&mut self, base: Option<&Path>, fields: &[Field], kind: &'static Kind, span: Span, scope: ScopeId) -> Option<Record> {
+    pub fn object(
+        &mut self,
+        base: Option<&Path>,
+        fields: &[Field],
+        kind: &'static Kind,
+        span: Span,
+        scope: ScopeId,
+    ) -> Option<Record> {
         let mut record = match base {
             Some(path) => {
                 let base = self.base(path, kind, scope)?;
@@ -214,7 +222,14 @@ impl Checker<'_> {
     }
 
     /// A named argument of a word, or a pair by the last name of its key.
-    fn put_inside(&mut self, record: &mut Record, known: &'static schema::Field, rest: &[Name], field: &Field, scope: ScopeId) {
+    fn put_inside(
+        &mut self,
+        record: &mut Record,
+        known: &'static schema::Field,
+        rest: &[Name],
+        field: &Field,
+        scope: ScopeId,
+    ) {
         let name = &rest[0];
         match record.fields.get_mut(known.name).map(|s| &mut s.value) {
             Some(Val::Word { word, arguments }) if rest.len() == 1 => {
@@ -226,7 +241,8 @@ impl Checker<'_> {
             }
             Some(Val::Pairs(pairs)) if rest.len() == 1 => {
                 if let Form::Pairs { value, .. } = &known.form {
-                    let found = pairs.iter_mut().find(|(key, _)| matches!(&key.value, Val::Record(r) if r.name == name.text));
+                    let found =
+                        pairs.iter_mut().find(|(key, _)| matches!(&key.value, Val::Record(r) if r.name == name.text));
                     if let Some((_, slot)) = found {
                         *slot = self.fit(value, &field.value, scope);
                         return;
@@ -250,8 +266,11 @@ impl Checker<'_> {
         }
         if kind.planned.contains(&name.text.as_str()) {
             self.report(
-                Diagnostic::new(Code::E0411, format!("this version does not read `{}` of a {} yet", name.text, kind.name))
-                    .at(name.span, "planned"),
+                Diagnostic::new(
+                    Code::E0411,
+                    format!("this version does not read `{}` of a {} yet", name.text, kind.name),
+                )
+                .at(name.span, "planned"),
             );
             return None;
         }

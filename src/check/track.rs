@@ -39,7 +39,9 @@ impl Checker<'_> {
         let built: Vec<Option<Built>> = forms.iter().map(|form| self.trackform(form)).collect();
         if plans.len() < pairs.len() || plans.is_empty() {
             if pairs.is_empty() {
-                self.report(Diagnostic::new(Code::E0502, "a track needs at least one section").at(record.span, "no sections"));
+                self.report(
+                    Diagnostic::new(Code::E0502, "a track needs at least one section").at(record.span, "no sections"),
+                );
             }
             return None;
         }
@@ -54,9 +56,12 @@ impl Checker<'_> {
         let Some(slot) = record.get("transitions") else {
             if sections > 2 {
                 self.report(
-                    Diagnostic::new(Code::E0504, format!("{sections} sections have {} transitions: say which side is which", sections - 1))
-                        .at(record.span, "no `transitions` given")
-                        .help("add `transitions = [west: stiff_to_soft, east: soft_to_stiff]`"),
+                    Diagnostic::new(
+                        Code::E0504,
+                        format!("{sections} sections have {} transitions: say which side is which", sections - 1),
+                    )
+                    .at(record.span, "no `transitions` given")
+                    .help("add `transitions = [west: stiff_to_soft, east: soft_to_stiff]`"),
                 );
                 return None;
             }
@@ -67,7 +72,11 @@ impl Checker<'_> {
             self.report(
                 Diagnostic::new(
                     Code::E0504,
-                    format!("{sections} sections have {} transitions, found {}", sections.saturating_sub(1), pairs.len()),
+                    format!(
+                        "{sections} sections have {} transitions, found {}",
+                        sections.saturating_sub(1),
+                        pairs.len()
+                    ),
                 )
                 .at(slot.span, "one for each inner boundary"),
             );
@@ -76,9 +85,10 @@ impl Checker<'_> {
         pairs
             .iter()
             .map(|(name, side)| match (&name.value, &side.value) {
-                (Val::Text(name), Val::Word { word, .. }) => {
-                    Some((name.clone(), if word.name == "soft_to_stiff" { Side::SoftToStiff } else { Side::StiffToSoft }))
-                }
+                (Val::Text(name), Val::Word { word, .. }) => Some((
+                    name.clone(),
+                    if word.name == "soft_to_stiff" { Side::SoftToStiff } else { Side::StiffToSoft },
+                )),
                 _ => None,
             })
             .collect()
@@ -92,16 +102,24 @@ impl Checker<'_> {
         let slab = form.record("slab").cloned();
         let foot = if let Some(slab_record) = &slab {
             if let (Some(_), Some(slot)) = (&sleeper, form.get("sleeper")) {
-                let mut mistake = Diagnostic::new(Code::E0407, format!("trackform `{}` has a slab and sleepers", form.name))
-                    .at(slot.span, "sleepers")
-                    .help("write `sleeper = none`: the pads stand on the slab");
+                let mut mistake =
+                    Diagnostic::new(Code::E0407, format!("trackform `{}` has a slab and sleepers", form.name))
+                        .at(slot.span, "sleepers")
+                        .help("write `sleeper = none`: the pads stand on the slab");
                 if let Some(slab) = form.get("slab") {
                     mistake = mistake.at(slab.span, "and a slab");
                 }
                 self.report(mistake);
             }
             let slab = self.slab(slab_record)?;
-            return Some(Built { rail: rail?, pad: pad?, spacing: spacing?, slab: Some(slab), foot: Foot::Slab, sleeper: None });
+            return Some(Built {
+                rail: rail?,
+                pad: pad?,
+                spacing: spacing?,
+                slab: Some(slab),
+                foot: Foot::Slab,
+                sleeper: None,
+            });
         } else if form.word("support") == Some("rigid") {
             Some(Foot::Rigid)
         } else {
@@ -120,7 +138,8 @@ impl Checker<'_> {
         if !form.unknown(name) {
             let span = form.get(name).map_or(form.span, |slot| slot.span);
             self.report(
-                Diagnostic::new(Code::E0403, format!("trackform `{}` needs a `{name}` {why}", form.name)).at(span, "not given"),
+                Diagnostic::new(Code::E0403, format!("trackform `{}` needs a `{name}` {why}", form.name))
+                    .at(span, "not given"),
             );
         }
         None
@@ -131,18 +150,32 @@ impl Checker<'_> {
             let (a, b) = (given(record, a)?, given(record, b)?);
             Some(Given::derived(*a * *b))
         };
-        let mass = self.agree(record, "mass", &[("mass", given(record, "mass")), ("density * area", product("density", "area"))], "kg/m");
+        let mass = self.agree(
+            record,
+            "mass",
+            &[("mass", given(record, "mass")), ("density * area", product("density", "area"))],
+            "kg/m",
+        );
         let stiffness = self.agree(
             record,
             "bending stiffness",
-            &[("bending_stiffness", given(record, "bending_stiffness")), ("youngs_modulus * second_moment", product("youngs_modulus", "second_moment"))],
+            &[
+                ("bending_stiffness", given(record, "bending_stiffness")),
+                ("youngs_modulus * second_moment", product("youngs_modulus", "second_moment")),
+            ],
             "MN m^2",
         );
         Some(Rail { mass: mass?, bending_stiffness: stiffness?, height: record.number("height")?.value })
     }
 
     /// The first of several ways to say one thing; those that are given must agree within 2 %.
-    pub(super) fn agree(&mut self, record: &Record, what: &str, ways: &[(&str, Option<Given>)], unit: &str) -> Option<Given> {
+    pub(super) fn agree(
+        &mut self,
+        record: &Record,
+        what: &str,
+        ways: &[(&str, Option<Given>)],
+        unit: &str,
+    ) -> Option<Given> {
         let known: Vec<(&str, Given)> = ways.iter().filter_map(|(name, g)| Some((*name, (*g)?))).collect();
         let (_, first) = *known.first()?;
         if let Some((name, other)) = known[1..].iter().find(|(_, g)| (**g - *first).abs() > 0.02 * first.abs()) {
@@ -150,10 +183,13 @@ impl Checker<'_> {
             let show = |g: Given| format!("{} {unit}", number(*g / size));
             let span = first.origin.span().unwrap_or(record.span);
             self.report(
-                Diagnostic::new(Code::E0407, format!("the {what} of {} `{}` is said twice and differs", record.kind.name, record.name))
-                    .at(span, format!("{}: {}", known[0].0, show(first)))
-                    .at(record.span, format!("{name}: {}", show(*other)))
-                    .help("keep one way of the two"),
+                Diagnostic::new(
+                    Code::E0407,
+                    format!("the {what} of {} `{}` is said twice and differs", record.kind.name, record.name),
+                )
+                .at(span, format!("{}: {}", known[0].0, show(first)))
+                .at(record.span, format!("{name}: {}", show(*other)))
+                .help("keep one way of the two"),
             );
         }
         Some(first)
@@ -175,7 +211,12 @@ impl Checker<'_> {
             let origin = record.get("damping_time").map_or(Origin::Derived, |s| s.origin);
             Given { value: t.value * *stiffness, origin }
         });
-        self.agree(record, "damping", &[("damping", given(record, "damping")), ("damping_time * stiffness", by_time)], "kN s/m")
+        self.agree(
+            record,
+            "damping",
+            &[("damping", given(record, "damping")), ("damping_time * stiffness", by_time)],
+            "kN s/m",
+        )
     }
 
     fn slab(&mut self, record: &Record) -> Option<Slab> {

@@ -20,7 +20,10 @@ pub(super) struct Slot {
 pub(super) enum Val {
     Number(Number),
     Text(String),
-    Word { word: &'static Word, arguments: BTreeMap<&'static str, Slot> },
+    Word {
+        word: &'static Word,
+        arguments: BTreeMap<&'static str, Slot>,
+    },
     Record(Rc<Record>),
     List(Vec<Slot>),
     Pairs(Vec<(Slot, Slot)>),

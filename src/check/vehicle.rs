@@ -18,7 +18,8 @@ impl Checker<'_> {
         let unsprung = 2.0 * *bogie_mass + 4.0 * *wheel_mass;
         let car_body_mass = self.car_body_mass(record, unsprung)?;
         let body = record.record("car_body")?.clone();
-        let by_radius = given(&body, "radius_of_gyration").map(|r| Given { value: *r * *r * *car_body_mass, origin: r.origin });
+        let by_radius =
+            given(&body, "radius_of_gyration").map(|r| Given { value: *r * *r * *car_body_mass, origin: r.origin });
         let inertia = self.agree(
             &body,
             "pitch inertia",
@@ -82,12 +83,22 @@ impl Checker<'_> {
                 self.report(
                     Diagnostic::new(
                         Code::E0407,
-                        format!("the masses of `{}` give an axle load of {}, but {} is stated", record.name, tonnes(by_masses), tonnes(axle)),
+                        format!(
+                            "the masses of `{}` give an axle load of {}, but {} is stated",
+                            record.name,
+                            tonnes(by_masses),
+                            tonnes(axle)
+                        ),
                     )
                     .at(span, format!("{} stated", tonnes(axle)))
                     .at(
                         body.origin.span().unwrap_or(record.span),
-                        format!("{} with bogies and wheelsets of {} make {}", tonnes(2.0 * *body), tonnes(2.0 * unsprung), tonnes(by_masses)),
+                        format!(
+                            "{} with bogies and wheelsets of {} make {}",
+                            tonnes(2.0 * *body),
+                            tonnes(2.0 * unsprung),
+                            tonnes(by_masses)
+                        ),
                     )
                     .help(format!(
                         "leave out the car body's mass (an axle load of {} needs {}), or leave out `axle_load`",
@@ -127,7 +138,10 @@ impl Checker<'_> {
             return None;
         }
         if vehicles.is_empty() {
-            self.report(Diagnostic::new(Code::E0403, format!("train `{}` has no vehicle", record.name)).at(record.span, "empty"));
+            self.report(
+                Diagnostic::new(Code::E0403, format!("train `{}` has no vehicle", record.name))
+                    .at(record.span, "empty"),
+            );
             return None;
         }
         if vehicles.len() > 1

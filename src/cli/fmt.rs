@@ -24,7 +24,12 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             Ok(bytes) => match syntax::decode(&name, &bytes) {
                 Ok(text) => text,
                 Err(mistake) => {
-                    terminal::note(&render::human(&[mistake], &Sources::default(), terminal::colour(), terminal::width()));
+                    terminal::note(&render::human(
+                        &[mistake],
+                        &Sources::default(),
+                        terminal::colour(),
+                        terminal::width(),
+                    ));
                     outcome = Outcome::Failed;
                     continue;
                 }

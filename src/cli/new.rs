@@ -21,7 +21,8 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         path.set_extension("track");
     }
     let name = path.display().to_string();
-    let written = OpenOptions::new().write(true).create_new(true).open(&path).and_then(|mut f| f.write_all(TEMPLATE.as_bytes()));
+    let written =
+        OpenOptions::new().write(true).create_new(true).open(&path).and_then(|mut f| f.write_all(TEMPLATE.as_bytes()));
     match written {
         Ok(()) => {
             terminal::out(&format!("wrote {name}\nnext: trackbed check {name}\n      trackbed run {name} --out out\n"));

@@ -45,7 +45,10 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     };
     let hash = fingerprint(&compiled.sources);
     if let Err(message) = prepare(arguments) {
-        return stop(&compiled, Diagnostic::new(Code::E0802, message).help("give another `--out`, or `--resume` or `--force`"));
+        return stop(
+            &compiled,
+            Diagnostic::new(Code::E0802, message).help("give another `--out`, or `--resume` or `--force`"),
+        );
     }
     let bar = progress::bar();
     let store = Store { directory: arguments.out.clone(), scene_sha256: hash.clone() };
@@ -56,7 +59,10 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     let from = match arguments.resume.then(|| recorder.resume()).transpose() {
         Ok(from) => from.flatten(),
         Err(error) => {
-            return stop(&compiled, Diagnostic::new(Code::E0803, error.to_string()).help("run without `--resume`, with `--force`"));
+            return stop(
+                &compiled,
+                Diagnostic::new(Code::E0803, error.to_string()).help("run without `--resume`, with `--force`"),
+            );
         }
     };
     let outcome = graph::execute(graph, &mut recorder, from);
@@ -106,7 +112,9 @@ fn prepare(arguments: &Arguments) -> Result<(), String> {
 
 fn explain(error: &RunError, compiled: &Compiled) -> Diagnostic {
     match error {
-        RunError::Recorder(message) => Diagnostic::new(Code::E0802, message.clone()).help("the run can be resumed with `--resume`"),
+        RunError::Recorder(message) => {
+            Diagnostic::new(Code::E0802, message.clone()).help("the run can be resumed with `--resume`")
+        }
         RunError::Track { .. } => {
             let diagnostic = Diagnostic::new(Code::E0801, error.to_string())
                 .help("a smaller `solve.time_step` or shorter blocks in `solve.update_every` often help; a track that nothing holds has no equilibrium");
@@ -123,7 +131,12 @@ fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compil
     let tables = &recorder.tables;
     let histories = recorder.all_histories();
     let scalars = results::summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
-    let view = results::Tables { sleepers: &tables.sleepers, blocks: &tables.blocks, histories: &histories, scalars: &scalars };
+    let view = results::Tables {
+        sleepers: &tables.sleepers,
+        blocks: &tables.blocks,
+        histories: &histories,
+        scalars: &scalars,
+    };
     let expectations = results::verdicts(scenario, view);
     let main = compiled.sources.iter().next().map(|(_, s)| (s.name.clone(), s.text.clone())).unwrap_or_default();
     let provenance = Provenance {
@@ -147,10 +160,8 @@ fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compil
 fn write(run: &Run, out: &Path, computed: f64, started: &Instant) -> Result<PathBuf, String> {
     results::write(run, out).map_err(|e| e.to_string())?;
     let page = report::write(run, out, false)?;
-    let timings = BTreeMap::from([
-        ("solve_s".to_string(), computed),
-        ("total_s".to_string(), started.elapsed().as_secs_f64()),
-    ]);
+    let timings =
+        BTreeMap::from([("solve_s".to_string(), computed), ("total_s".to_string(), started.elapsed().as_secs_f64())]);
     results::write_timings(&timings, out).map_err(|e| e.to_string())?;
     checkpoint::remove(out).map_err(|e| e.to_string())?;
     Ok(page)
@@ -189,9 +200,11 @@ fn verdicts(run: &Run, compiled: &Compiled) -> Outcome {
         .zip(&run.scenario.expectations)
         .filter(|(verdict, _)| !verdict.met)
         .map(|(verdict, expectation)| {
-            let values: Vec<String> = verdict.values.iter().map(|v| format!("{} {}", number(*v), verdict.unit)).collect();
+            let values: Vec<String> =
+                verdict.values.iter().map(|v| format!("{} {}", number(*v), verdict.unit)).collect();
             let found = verdict.problem.clone().unwrap_or_else(|| values.join(", "));
-            Diagnostic::new(Code::E0804, format!("expected `{}`, found {found}", verdict.text)).at(expectation.span, "not met")
+            Diagnostic::new(Code::E0804, format!("expected `{}`, found {found}", verdict.text))
+                .at(expectation.span, "not met")
         })
         .collect();
     if missed.is_empty() {

@@ -114,7 +114,13 @@ impl Run<'_> {
     }
 
     /// A passage over the settled track; the first one at a recorded count is shown to the recorder.
-    fn passage(&mut self, axles: u64, settlement: &[f64], direction: Direction, first: bool) -> Result<PassageOutcome, RunError> {
+    fn passage(
+        &mut self,
+        axles: u64,
+        settlement: &[f64],
+        direction: Direction,
+        first: bool,
+    ) -> Result<PassageOutcome, RunError> {
         let at = |cause: TrackError| RunError::Track { axles, cause };
         let unloaded = self.system.unloaded(settlement).map_err(at)?;
         let recorded = first && self.blocks.recorded.contains(&axles);

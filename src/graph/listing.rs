@@ -33,7 +33,13 @@ pub struct Edge {
 }
 
 const EDGES: [Edge; 3] = [
-    Edge { from: "substructure", to: "track", quantity: "support stiffness and damping", symbol: "k, c", unit: "N/m, N s/m" },
+    Edge {
+        from: "substructure",
+        to: "track",
+        quantity: "support stiffness and damping",
+        symbol: "k, c",
+        unit: "N/m, N s/m",
+    },
     Edge { from: "track", to: "substructure", quantity: "sleeper-ballast forces", symbol: "R(t)", unit: "N" },
     Edge { from: "substructure", to: "track", quantity: "settlement", symbol: "s", unit: "m" },
 ];
@@ -123,7 +129,10 @@ impl Graph {
                 vec![
                     format!("{} axles in {} blocks, {range}", b.total, sizes.len()),
                     "each block: static state -> passage -> settlement of the block".into(),
-                    format!("recorded after {} axles", b.recorded.iter().map(u64::to_string).collect::<Vec<_>>().join(", ")),
+                    format!(
+                        "recorded after {} axles",
+                        b.recorded.iter().map(u64::to_string).collect::<Vec<_>>().join(", ")
+                    ),
                 ]
             }
         }

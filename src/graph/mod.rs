@@ -9,8 +9,8 @@ mod substructure;
 mod track;
 
 pub use execute::{Checkpoint, Recorder, RunError, execute};
-pub use substructure::SubstructureState;
 pub use listing::Listing;
+pub use substructure::SubstructureState;
 pub use track::{PassageOutcome, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
 
 use crate::scenario::{Direction, Record, StaticLoad, Track, Train};

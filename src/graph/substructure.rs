@@ -23,8 +23,7 @@ pub(super) struct Substructure<'a> {
 
 impl<'a> Substructure<'a> {
     pub fn new(node: &'a SubstructureNode, track: &TrackNode) -> Self {
-        let seats: Vec<usize> =
-            (0..track.track.seats.len()).filter(|i| track.track.seats[*i].is_ballasted()).collect();
+        let seats: Vec<usize> = (0..track.track.seats.len()).filter(|i| track.track.seats[*i].is_ballasted()).collect();
         let (law, state) = match node {
             SubstructureNode::Law { law, .. } => {
                 (Some(law), SubstructureState::Law(seats.iter().map(|_| law.fresh()).collect()))

@@ -28,8 +28,12 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     }
     let diagnostic = Diagnostic::new(
         Code::L1005,
-        format!("a step of {} ms leaves {} steps to a period of the wheel on its contact spring, {} Hz",
-            number(step * 1e3), number((1.0 / (step * frequency)).round()), number(frequency.round())),
+        format!(
+            "a step of {} ms leaves {} steps to a period of the wheel on its contact spring, {} Hz",
+            number(step * 1e3),
+            number((1.0 / (step * frequency)).round()),
+            number(frequency.round())
+        ),
     )
     .help(format!("write `time_step = {} s`", number((needed * 1e5).floor() / 1e5)));
     vec![match scenario.solve.time_step.and_then(|t| t.origin.span()) {

@@ -38,14 +38,8 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
         gravity: *scenario.solve.gravity,
     };
     let estimate = estimate::estimate(&track, &schedule);
-    let graph = Graph {
-        track,
-        substructure,
-        schedule,
-        records: scenario.records.clone(),
-        decisions: pass.decisions,
-        estimate,
-    };
+    let graph =
+        Graph { track, substructure, schedule, records: scenario.records.clone(), decisions: pass.decisions, estimate };
     (Some(graph), pass.diagnostics)
 }
 

@@ -38,7 +38,12 @@ fn ends(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<(f64, f64
         let span = train.vehicles[0].bogie_spacing.origin.span();
         let mut mistake = Diagnostic::new(
             Code::E0503,
-            format!("train `{}` is {} m from first to last wheel, the track {} m", train.name, number(base), number(length)),
+            format!(
+                "train `{}` is {} m from first to last wheel, the track {} m",
+                train.name,
+                number(base),
+                number(length)
+            ),
         )
         .help(format!("make the track at least {} m long", number((base + 4.0 * MARGIN).ceil())));
         if let Some(span) = span {
@@ -51,16 +56,27 @@ fn ends(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<(f64, f64
     let (mut left, mut right) = (start + margin, end - margin);
     // `start` and `finish` are of the leading wheel
     let forward = train.direction != Direction::Backward;
-    let (at_left, at_right) = if forward { (scenario.solve.start, scenario.solve.finish) } else { (scenario.solve.finish, scenario.solve.start) };
-    let behind = |given: Given, leading_is_right: bool| if leading_is_right { (*given - base, *given) } else { (*given, *given + base) };
+    let (at_left, at_right) = if forward {
+        (scenario.solve.start, scenario.solve.finish)
+    } else {
+        (scenario.solve.finish, scenario.solve.start)
+    };
+    let behind = |given: Given, leading_is_right: bool| {
+        if leading_is_right { (*given - base, *given) } else { (*given, *given + base) }
+    };
     for (given, left_end) in [(at_left, true), (at_right, false)] {
         let Some(given) = given else { continue };
         let (hindmost, foremost) = behind(given, forward);
         if hindmost < start + 1e-9 || foremost > end - 1e-9 {
             let mut mistake = Diagnostic::new(
                 Code::E0501,
-                format!("the train's wheels would stand from {} m to {} m, the track reaches from {} m to {} m",
-                    number(hindmost), number(foremost), number(start), number(end)),
+                format!(
+                    "the train's wheels would stand from {} m to {} m, the track reaches from {} m to {} m",
+                    number(hindmost),
+                    number(foremost),
+                    number(start),
+                    number(end)
+                ),
             );
             if let Some(span) = given.origin.span() {
                 mistake = mistake.at(span, "of the leading wheel");
@@ -73,14 +89,20 @@ fn ends(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<(f64, f64
     if right - left < base + LEAST_MARGIN {
         pass.diagnostics.push(Diagnostic::new(
             Code::E0503,
-            format!("the train starts and ends its passage at the same place: {} m are left to run", number(right - left - base)),
+            format!(
+                "the train starts and ends its passage at the same place: {} m are left to run",
+                number(right - left - base)
+            ),
         ));
         return None;
     }
     pass.decide(
         "passage",
         format!("wheels run from {} m to {} m, all on the track from the start", number(left), number(right)),
-        format!("the ends of the rail stay at least {} m away from every wheel", number((left - start).min(end - right))),
+        format!(
+            "the ends of the rail stay at least {} m away from every wheel",
+            number((left - start).min(end - right))
+        ),
     );
     Some((left, right))
 }
@@ -94,7 +116,11 @@ fn time_step(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<f64>
         if *given > transit {
             let mut mistake = Diagnostic::new(
                 Code::E0603,
-                format!("a wheel runs {} m in one step, more than one element of {} m", number(*given * speed), number(element)),
+                format!(
+                    "a wheel runs {} m in one step, more than one element of {} m",
+                    number(*given * speed),
+                    number(element)
+                ),
             )
             .help(format!("write `time_step = {} s` or less", number(transit / 10.0)));
             if let Some(span) = given.origin.span() {

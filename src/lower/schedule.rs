@@ -16,13 +16,17 @@ pub(super) fn blocks(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic) ->
         Update::Geometric { first, .. } => (first, "the first block"),
     };
     sound &= divides(pass, update.0, train, update.1, scenario.solve.update_span);
-    let mut recorded: Vec<u64> = scenario.records.iter().flat_map(|r| r.after.iter().copied()).chain([0, total]).collect();
+    let mut recorded: Vec<u64> =
+        scenario.records.iter().flat_map(|r| r.after.iter().copied()).chain([0, total]).collect();
     recorded.sort_unstable();
     recorded.dedup();
     for count in recorded.iter().filter(|c| *c % axles != 0 && **c != total) {
         pass.diagnostics.push(
-            Diagnostic::new(Code::E0602, format!("{count} recorded axles are no whole number of trains of {axles} axles"))
-                .help(format!("record after {} axles", (count / axles).max(1) * axles)),
+            Diagnostic::new(
+                Code::E0602,
+                format!("{count} recorded axles are no whole number of trains of {axles} axles"),
+            )
+            .help(format!("record after {} axles", (count / axles).max(1) * axles)),
         );
         sound = false;
     }
@@ -48,9 +52,12 @@ fn divides(pass: &mut Pass, count: u64, train: &Train, what: &str, span: Option<
     }
     let below = (count / axles).max(1) * axles;
     let mut mistake =
-        Diagnostic::new(Code::E0602, format!("{what} of {count} axles is no whole number of trains of {axles} axles")).help(
-            if count < axles { format!("write `{axles} axles`") } else { format!("write `{below} axles` or `{} axles`", below + axles) },
-        );
+        Diagnostic::new(Code::E0602, format!("{what} of {count} axles is no whole number of trains of {axles} axles"))
+            .help(if count < axles {
+                format!("write `{axles} axles`")
+            } else {
+                format!("write `{below} axles` or `{} axles`", below + axles)
+            });
     if let Some(span) = span {
         mistake = mistake.at(span, "does not divide");
     }

@@ -17,9 +17,9 @@ mod tables;
 #[cfg(test)]
 pub(crate) mod example;
 
+pub use atomic::write as write_atomically;
 pub use error::ResultsError;
 pub use evaluate::{Tables, evaluate, verdicts};
-pub use atomic::write as write_atomically;
 pub use files::{read, read_timings, write, write_timings};
 pub use recorder::{RunRecorder, RunTables, Store};
 pub use summarise::{RailMaxima, VOID_THRESHOLD, static_wheel_load, summarise};

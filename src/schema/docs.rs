@@ -25,7 +25,7 @@ pub fn page(kind: &Kind) -> String {
     }
     for alternative in kind.alternatives {
         let ways: Vec<String> = alternative.ways.iter().map(|way| format!("`{}`", way.join("` and `"))).collect();
-        out.push_str(&format!("  Give {}", crate::diag::nearest::or_list(&ways)));
+        out.push_str(&format!("  Give {}", crate::diag::or_list(&ways)));
         match alternative.default {
             Some((field, value)) => out.push_str(&format!("; where none is given, `{field} = {value}`.\n")),
             None => out.push_str("; given together they must agree within 2 %.\n"),

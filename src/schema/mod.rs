@@ -149,7 +149,7 @@ impl Basis {
     /// `per wheel, per wheelset or per bogie`
     pub fn list(&self) -> String {
         let names: Vec<String> = self.names.iter().map(|(n, _)| format!("`per {n}`")).collect();
-        crate::diag::nearest::or_list(&names)
+        crate::diag::or_list(&names)
     }
 }
 
@@ -170,12 +170,12 @@ impl Form {
             Form::Integer { .. } => "a whole number".into(),
             Form::Words(words) => {
                 let names: Vec<String> = words.iter().filter(|w| !w.planned).map(|w| format!("`{}`", w.name)).collect();
-                crate::diag::nearest::or_list(&names)
+                crate::diag::or_list(&names)
             }
             Form::Object(kind) => format!("a {kind}"),
             Form::OneOf(forms) => {
                 let names: Vec<String> = forms.iter().map(Form::describe).collect();
-                crate::diag::nearest::or_list(&names)
+                crate::diag::or_list(&names)
             }
             Form::List(item) => format!("a list of {}", item.describe()),
             Form::Pairs { key, value, .. } => format!("a list of pairs, {}: {}", key.describe(), value.describe()),

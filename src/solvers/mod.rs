@@ -1,1 +1,3 @@
-//! Solvers: SI numbers in, SI numbers out.
+//! Stand-in.
+pub mod settlement;
+pub mod track;
