@@ -1,0 +1,247 @@
+//! The binary from end to end, as a person or a script uses it.
+
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+fn trackbed(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_trackbed")).args(arguments).env("NO_COLOR", "1").output().unwrap()
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().unwrap_or(-1)
+}
+
+fn said(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+fn write(dir: &Path, name: &str, text: &str) -> PathBuf {
+    let path = dir.join(name);
+    fs::write(&path, text).unwrap();
+    path
+}
+
+fn summary(dir: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(dir.join("summary.json")).unwrap()).unwrap()
+}
+
+fn scalar(dir: &Path, name: &str) -> f64 {
+    summary(dir)[name]["value"].as_f64().unwrap_or_else(|| panic!("no {name}"))
+}
+
+/// A transition zone that runs in a moment: 18 m of track, coarse steps, 40 axles.
+const SMALL: &str = r#"
+use std
+trackform open {
+  rail = rails.UIC60
+  pad = pads.ahmadi_2026
+  sleeper = sleepers.B70
+  spacing = 0.6 m
+  support = { stiffness = 50 MN/m per seat, damping_time = 1 ms }
+}
+trackform stiff : open { sleeper = none, support = none, slab = slabs.half_width_1600 }
+track line { sections = [open: 12 m, stiff: 12 m] }
+train ore { vehicles = vehicles.ore_wagon_20t, speed = 200 km/h }
+traffic { trains = ore, total = 40 axles }
+solve { update_every = 4 axles, elements_per_bay = 2, time_step = 2e-4 s }
+record { at = [-3, +1] sleepers, after = [0, 40] axles, quantities = [rail_seat_load, contact_force] }
+"#;
+
+#[test]
+fn the_static_check_meets_the_closed_form() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("run");
+    let output = trackbed(&["run", "scenarios/static_check.track", "--out", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    // beam on discrete springs, nodally exact (closed form)
+    assert_eq!(format!("{:.4}", scalar(&out, "max_rail_displacement") * 1e3), "0.9498");
+    assert_eq!(format!("{:.2}", scalar(&out, "max_rail_moment") / 1e3), "17.66");
+    let table = fs::read_to_string(out.join("sleepers.csv")).unwrap();
+    let mut rows = csv::Reader::from_reader(table.as_bytes());
+    let column = rows.headers().unwrap().iter().position(|h| h == "max_rail_seat_load_N").unwrap();
+    let loads: Vec<f64> = rows.records().map(|r| r.unwrap()[column].parse().unwrap()).collect();
+    for (seat, share) in [(9, "37.99"), (10, "25.10"), (8, "25.10"), (11, "8.67"), (7, "8.67"), (12, "0.39"), (6, "0.39")] {
+        assert_eq!(format!("{:.2}", loads[seat] / 1e3), share, "seat {}", seat + 1);
+    }
+    let sum: f64 = loads.iter().sum();
+    assert!((sum / 100e3 - 1.0).abs() < 1e-9, "the pads carry {sum} N");
+    assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("<svg"));
+}
+
+#[test]
+fn equal_runs_give_equal_bytes() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = write(dir.path(), "small.track", SMALL);
+    let run = |name: &str| {
+        let out = dir.path().join(name);
+        let output = trackbed(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        assert_eq!(code(&output), 0, "{}", said(&output));
+        out
+    };
+    let (a, b) = (run("a"), run("b"));
+    same_results(&a, &b);
+    assert!(!a.join("checkpoint.json").exists());
+    for name in ["axles", "max_settlement", "max_settlement_x", "far_field_settlement", "differential_settlement", "max_void",
+        "voided_sleepers", "max_wheel_force", "min_wheel_force", "dynamic_amplification", "max_rail_seat_load",
+        "max_rail_moment", "max_contact_force"]
+    {
+        assert!(scalar(&a, name).is_finite(), "{name}");
+    }
+    assert_eq!(scalar(&a, "axles"), 40.0);
+}
+
+/// Everything but `timings.json` is equal to the last bit.
+fn same_results(a: &Path, b: &Path) {
+    for name in ["summary.json", "sleepers.csv", "blocks.csv", "histories.parquet", "scenario.json", "report.html"] {
+        assert!(fs::read(a.join(name)).unwrap() == fs::read(b.join(name)).unwrap(), "{name} differs");
+    }
+}
+
+#[test]
+fn a_killed_run_resumes_with_the_same_bits() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = SMALL.replace("40 axles", "400 axles");
+    let scene = write(dir.path(), "small.track", &text);
+    let (scene, whole, killed) = (scene.to_str().unwrap(), dir.path().join("whole"), dir.path().join("killed"));
+    assert_eq!(code(&trackbed(&["run", scene, "--out", whole.to_str().unwrap()])), 0);
+
+    let out = killed.to_str().unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_trackbed"))
+        .args(["run", scene, "--out", out])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !killed.join("checkpoint.json").exists() && child.try_wait().unwrap().is_none() {
+        std::thread::yield_now();
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(!killed.join("summary.json").exists(), "the run was over before it could be killed");
+
+    // without --resume nothing is overwritten
+    let refused = trackbed(&["run", scene, "--out", out]);
+    assert_eq!(code(&refused), 1);
+    assert!(said(&refused).contains("E0802"), "{}", said(&refused));
+    // another scene is refused
+    let other = write(dir.path(), "other.track", &text.replace("0.6 m", "0.65 m"));
+    let refused = trackbed(&["run", other.to_str().unwrap(), "--out", out, "--resume"]);
+    assert_eq!(code(&refused), 1);
+    assert!(said(&refused).contains("E0803"), "{}", said(&refused));
+
+    let resumed = trackbed(&["run", scene, "--out", out, "--resume"]);
+    assert_eq!(code(&resumed), 0, "{}", said(&resumed));
+    same_results(&whole, &killed);
+}
+
+#[test]
+fn a_missed_expectation_is_named_and_sets_the_exit_code() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = format!("{SMALL}\nexpect {{ that = [max(settlement) < 1e-6 mm, max(wheel_force) > 10 kN] }}\n");
+    let scene = write(dir.path(), "small.track", &text);
+    let out = dir.path().join("run");
+    let output = trackbed(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 1);
+    assert!(said(&output).contains("E0804") && said(&output).contains("max(settlement)"), "{}", said(&output));
+    assert!(!said(&output).contains("expected `max(wheel_force)"), "{}", said(&output));
+    let verdicts = summary(&out)["expectations"].clone();
+    assert_eq!((verdicts[0]["met"].as_bool(), verdicts[1]["met"].as_bool()), (Some(false), Some(true)));
+}
+
+#[test]
+fn check_speaks_json() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = write(dir.path(), "bad.track", "use std\n\ntrack line { sections = [open: 42] }\n");
+    let output = trackbed(&["check", scene.to_str().unwrap(), "--format", "json"]);
+    assert_eq!(code(&output), 1);
+    let json: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let found = json["diagnostics"].as_array().unwrap();
+    let unit = found.iter().find(|d| d["code"] == "E0301").expect("the missing unit is found");
+    assert_eq!(unit["severity"], "error");
+    assert_eq!(unit["start"], serde_json::json!({"line": 3, "column": 32}));
+    assert_eq!(unit["end"], serde_json::json!({"line": 3, "column": 34}));
+    assert!(unit["file"].as_str().unwrap().ends_with("bad.track"));
+    assert!(unit["help"].as_str().unwrap().contains("42"));
+}
+
+#[test]
+fn wrong_usage_exits_with_two() {
+    for arguments in [&["check"][..], &["check", "no/such.track"], &["explain", "E9999"], &["docs", "rial"], &["run", "x.track"], &["sing"]] {
+        let output = trackbed(arguments);
+        assert_eq!(code(&output), 2, "{arguments:?}: {}", said(&output));
+    }
+    assert!(said(&trackbed(&["docs", "rial"])).contains("did you mean `rail`?"));
+    assert_eq!(code(&trackbed(&["--help"])), 0);
+}
+
+#[test]
+fn what_cannot_be_read_gets_a_diagnostic() {
+    let dir = tempfile::tempdir().unwrap();
+    let cases: [(&str, Vec<u8>, &str); 4] = [
+        ("empty.track", Vec::new(), "E0601"),
+        ("binary.track", vec![0x7f, b'E', b'L', b'F', 0, 0xff, 0xfe, 0x80], "E0102"),
+        ("deep.track", [b"rail r { mass = ".as_slice(), &[b'('; 100_000]].concat(), "E0103"),
+        ("cycle.track", b"use std\nrail a : b { }\nrail b : a { }\n".to_vec(), "E0203"),
+    ];
+    for (name, bytes, expected) in cases {
+        let path = dir.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        for command in [&["check"][..], &["run", "--out", "nowhere"], &["plan"]] {
+            let arguments: Vec<&str> = [&command[..1], &[path.to_str().unwrap()], &command[1..]].concat();
+            let output = trackbed(&arguments);
+            assert_eq!(code(&output), 1, "{arguments:?}: {}", said(&output));
+            assert!(said(&output).contains(expected), "{arguments:?}: {}", said(&output));
+        }
+    }
+    assert!(!Path::new("nowhere").exists(), "a refused run leaves nothing behind");
+}
+
+#[test]
+fn a_new_scene_checks_plans_and_is_laid_out() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("mine.track");
+    let name = path.to_str().unwrap();
+    assert_eq!(code(&trackbed(&["new", name])), 0);
+    assert_eq!(code(&trackbed(&["new", name])), 2, "an existing file is not overwritten");
+    let checked = trackbed(&["check", name]);
+    assert_eq!(code(&checked), 0, "{}", said(&checked));
+    assert_eq!(code(&trackbed(&["fmt", "--check", name])), 0);
+    let plan = trackbed(&["plan", name]);
+    assert!(said(&plan).contains("10000 axles"), "{}", said(&plan));
+    assert_eq!(code(&trackbed(&["plan", name, "--format", "json"])), 0);
+    assert!(said(&trackbed(&["plan", name, "--format", "dot"])).contains("digraph"));
+}
+
+#[test]
+fn shipped_files_are_laid_out() {
+    for folder in ["scenarios", "stdlib"] {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let output = trackbed(&["fmt", "--check", path.to_str().unwrap()]);
+            assert_eq!(code(&output), 0, "{}", said(&output));
+        }
+    }
+}
+
+#[test]
+fn a_value_set_on_the_command_line_counts_as_written() {
+    let output = trackbed(&["plan", "scenarios/transition.track", "--set", "traffic.total=1000 axles"]);
+    assert!(said(&output).contains("1000 axles in 50 blocks"), "{}", said(&output));
+    let output = trackbed(&["check", "scenarios/transition.track", "--set", "open.pad.stiffness=40 kN"]);
+    assert_eq!(code(&output), 1);
+    assert!(said(&output).contains("E0302"), "{}", said(&output));
+}
+
+#[test]
+fn the_report_can_be_made_again() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("run");
+    assert_eq!(code(&trackbed(&["run", "scenarios/static_check.track", "--out", out.to_str().unwrap()])), 0);
+    let page = fs::read(out.join("report.html")).unwrap();
+    fs::remove_file(out.join("report.html")).unwrap();
+    assert_eq!(code(&trackbed(&["report", out.to_str().unwrap()])), 0);
+    assert!(fs::read(out.join("report.html")).unwrap() == page);
+    assert_eq!(code(&trackbed(&["report", dir.path().to_str().unwrap()])), 2);
+}
