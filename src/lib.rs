@@ -2,6 +2,7 @@
 
 pub mod diag;
 pub mod linalg;
+pub mod report;
 pub mod results;
 pub mod scenario;
 pub mod solvers;
