@@ -187,9 +187,9 @@ impl Chart {
     fn round_range(&self, (low, high): (f64, f64), height: f64) -> (f64, f64) {
         let step = nice_step((high - low) / self.y.size / rows(height) as f64) * self.y.size;
         let room = if self.bands.iter().any(|band| !band.label.is_empty()) { 0.09 * (high - low) } else { 0.0 };
-        let (above, below) = if self.y.downwards { (0.0, room) } else { (room, 0.0) };
         let up = |value: f64| (value / step - 1e-6).ceil() * step;
-        (-up(-(low - below)), up(high + above))
+        let (bottom, top) = (-up(-low), up(high));
+        if self.y.downwards { (bottom.min(low - room), top) } else { (bottom, top.max(high + room)) }
     }
 
     fn draw_bands(&self, svg: &mut Svg, plane: &Plane) {
@@ -263,6 +263,10 @@ fn draw_series(svg: &mut Svg, plane: &Plane, series: &Series, chart: &Chart) {
             let (top, bottom) = (top.min(bottom), top.max(bottom));
             let frame = Frame { x: left, y: top, width: right - left, height: bottom - top };
             svg.titled_rect(&class("bar"), frame, &label(series, index, chart));
+            if point.1 > 0.03 * plane.y.1 && frame.width > 14.0 {
+                let value = significant(point.1 / chart.y.size, 2);
+                svg.text("small halo", (left + frame.width / 2.0, top - 4.0), Anchor::Middle, &value);
+            }
         }
         return;
     }

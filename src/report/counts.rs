@@ -31,7 +31,7 @@ pub fn shown(run: &Run) -> Vec<Count> {
     let last = chosen.len().saturating_sub(1);
     let count = |(index, axles): (usize, u64)| {
         let name = if axles == 0 { "as built".to_owned() } else { format!("after {} axles", whole(axles)) };
-        let colour = if last == 0 { MOST - 1 } else { index * (MOST - 1) / last };
+        let colour = (index * (MOST - 1)).checked_div(last).unwrap_or(MOST - 1);
         Count { axles, name, class: format!("k{colour}") }
     };
     chosen.into_iter().enumerate().map(count).collect()

@@ -135,13 +135,65 @@ mod tests {
         assert_eq!(ids.len(), unique.len());
     }
 
+    /// A bridge: two transitions, a long train that runs backwards, more counts than colours.
+    fn bridge() -> Run {
+        let mut run = example::transition();
+        let track = &mut run.scenario.track;
+        let mut right = track.sections[0].clone();
+        (right.start, right.end) = (24.0, 66.0);
+        track.sections.push(right);
+        let side = crate::scenario::Side::StiffToSoft;
+        track.transitions[0].name = "west".to_owned();
+        track.transitions.push(crate::scenario::Transition { name: "east".to_owned(), x: 24.0, side });
+        let mirrored: Vec<_> = track.seats.iter().filter(|seat| seat.number < 0).rev().cloned().collect();
+        for mut seat in mirrored {
+            (seat.x, seat.section, seat.transition) = (24.0 - seat.x, 2, 1);
+            track.seats.push(seat);
+        }
+        run.sleepers.clear();
+        for axles in (0..=1000).step_by(100) {
+            for seat in &track.seats {
+                let distance = seat.x.abs().min((seat.x - 24.0).abs());
+                let settled = if seat.is_ballasted() { 1e-3 * (1.0 + (-distance).exp()) } else { 0.0 };
+                run.sleepers.push(crate::results::SleeperRow {
+                    axles,
+                    sleeper: track.seat_name(seat),
+                    x_m: seat.x,
+                    settlement_m: settled * axles as f64 / 1e3,
+                    void_m: 0.0,
+                    gravity_contact_force_N: 1.8e3,
+                    max_contact_force_N: 3e4,
+                    max_rail_seat_load_N: 4e4,
+                    max_sleeper_displacement_m: 1e-3,
+                    support_stiffness_N_per_m: 4e7,
+                    contact_loss_s: 0.0,
+                });
+            }
+        }
+        if let Some(Loading::Traffic(traffic)) = &mut run.scenario.loading {
+            traffic.train.vehicles = vec![traffic.train.vehicles[0].clone(); 20];
+            traffic.train.direction = crate::scenario::Direction::Backward;
+        }
+        run.scenario.solve.start = None;
+        run.histories.clear();
+        run
+    }
+
+    #[test]
+    fn every_figure_of_a_bridge_is_valid() {
+        let figures = figures(&bridge());
+        assert_eq!(figures[0].svg.matches("42 m, 69 seats at 0.6 m").count(), 2);
+        assert_eq!(figures[1].svg.matches("<circle").count() - 5, 5 * 138, "five counts that settle, and the legend");
+        figures.iter().for_each(check_svg);
+    }
+
     /// Writes the example pages where a person can look at them: `cargo test --lib example_pages -- --ignored`.
     #[test]
     #[ignore = "for looking at"]
     fn example_pages() {
         let directory = std::env::temp_dir().join("trackbed-example");
         std::fs::create_dir_all(&directory).unwrap();
-        for (name, run) in [("transition", example::transition()), ("bench", example::bench())] {
+        for (name, run) in [("transition", example::transition()), ("bench", example::bench()), ("bridge", bridge())] {
             std::fs::write(directory.join(format!("{name}.html")), page(&run)).unwrap();
             std::fs::write(directory.join(format!("{name}.svg")), scene_svg(&run.scenario)).unwrap();
         }

@@ -40,6 +40,15 @@ pub fn significant(value: f64, digits: usize) -> String {
     fixed(value, (digits as f64 - 1.0 - magnitude).clamp(0.0, 9.0) as usize)
 }
 
+/// As [`significant`], without zeros behind the point: for numbers that a person chose, as a spacing of 0.6 m.
+pub fn plain(value: f64, digits: usize) -> String {
+    let text = significant(value, digits);
+    if text.contains('.') && !text.contains('e') {
+        return text.trim_end_matches('0').trim_end_matches('.').to_owned();
+    }
+    text
+}
+
 /// A whole number with its thousands apart.
 pub fn whole(value: u64) -> String {
     grouped(&value.to_string())
@@ -60,7 +69,7 @@ fn grouped(digits: &str) -> String {
     }
     let mut text = String::new();
     for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index) % 3 == 0 {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
             text.push('\u{2009}');
         }
         text.push(digit);
@@ -106,6 +115,7 @@ mod tests {
         assert_eq!(significant(0.0, 3), "0");
         assert_eq!(significant(1.5e12, 3), "1.50e12");
         assert_eq!(significant(f64::NAN, 3), "\u{2013}");
+        assert_eq!((plain(0.6, 3), plain(40.0, 3), plain(-2.5, 4)), ("0.6".into(), "40".into(), "\u{2212}2.5".into()));
         assert_eq!(whole(1_234_567), "1\u{2009}234\u{2009}567");
     }
 }

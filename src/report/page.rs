@@ -1,6 +1,6 @@
 //! The report of a run: one HTML page with its pictures inside, that needs no script and nothing from elsewhere.
 
-use super::number::{shown_unit, significant, whole};
+use super::number::{plain, shown_unit, significant, whole};
 use super::svg::{STYLE, escape};
 use super::{Figure, figures};
 use crate::results::{Run, Verdict};
@@ -43,16 +43,16 @@ fn subtitle(scenario: &Scenario) -> String {
                 whole(*traffic.total),
                 traffic.train.name,
                 if count == 1 { "" } else { "s" },
-                significant(*traffic.train.speed * 3.6, 3)
+                plain(*traffic.train.speed * 3.6, 3)
             )
         }
         Some(Loading::Static(loads)) => {
-            let list = loads.iter().map(|load| format!("{} {} kN", load.name, significant(*load.force / 1e3, 4)));
+            let list = loads.iter().map(|load| format!("{} {} kN", load.name, plain(*load.force / 1e3, 4)));
             format!("Static check: {}. ", list.collect::<Vec<_>>().join(", "))
         }
         None => String::new(),
     };
-    let metres = |length: f64| significant(length, 3);
+    let metres = |length: f64| plain(length, 3);
     let sections = track.sections.iter().map(|s| format!("{} {} m", s.name, metres(s.end - s.start)));
     let sections = sections.collect::<Vec<_>>().join(", ");
     let _ = write!(text, "Track {}, {} m: {sections}.", track.name, metres(track.end() - track.start()));
@@ -76,15 +76,17 @@ fn tiles(html: &mut String, run: &Run) {
         );
     };
     let load = |name: &str| run.summary.scalars.get(name).map(|s| significant(s.value / 1e3, 3));
-    let place = scalar("max_settlement_x").map(|x| format!("at {} m", significant(x, 3)));
+    let place = scalar("max_settlement_x").map(|x| format!("at {} m", plain(x, 3)));
     tile("Largest settlement", scalar("max_settlement"), "m", place.unwrap_or_default());
     tile("Far-field settlement", scalar("far_field_settlement"), "m", "median".to_owned());
     tile("Differential settlement", scalar("differential_settlement"), "m", "largest less far field".to_owned());
     let void = scalar("max_void").map(|gap| format!("largest void {} mm", significant(gap * 1e3, 2)));
     tile("Voided sleepers", scalar("voided_sleepers"), "1", void.unwrap_or_default());
+    let amplification =
+        scalar("dynamic_amplification").map(|factor| format!("{} \u{d7} static", significant(factor, 3)));
     let least = load("min_wheel_force").map(|force| format!("least {force} kN"));
-    tile("Largest wheel force", scalar("max_wheel_force"), "N", least.unwrap_or_default());
-    tile("Dynamic amplification", scalar("dynamic_amplification"), "1", "of the static wheel load".to_owned());
+    let wheel = amplification.into_iter().chain(least).collect::<Vec<_>>().join(", ");
+    tile("Largest wheel force", scalar("max_wheel_force"), "N", wheel);
     tile("Largest rail seat load", scalar("max_rail_seat_load"), "N", "per seat".to_owned());
     tile("Largest contact force", scalar("max_contact_force"), "N", "sleeper on ballast, per seat".to_owned());
     tile("Largest rail moment", scalar("max_rail_moment"), "N m", "sagging, one rail".to_owned());
@@ -109,7 +111,7 @@ fn expectations(html: &mut String, verdicts: &[Verdict]) {
          <tr><th class=\"text\">expected</th><th class=\"text\">computed</th><th class=\"text\">verdict</th></tr>"
     );
     for verdict in verdicts {
-        let values: Vec<String> = verdict.values.iter().map(|value| significant(*value, 4)).collect();
+        let values: Vec<String> = verdict.values.iter().map(|value| plain(*value, 4)).collect();
         let computed = match &verdict.problem {
             Some(problem) => problem.clone(),
             None => format!("{} {}", values.join(" | "), if verdict.unit == "1" { "" } else { &verdict.unit }),

@@ -3,7 +3,7 @@
 //! Lengths that the scene states (places, spacings, sleepers, rail, wheels, bogies) are true, and equal in both
 //! directions. The depth of ballast and slab, the car body's height and the springs are symbols.
 
-use super::number::{significant, tick_label, ticks, whole};
+use super::number::{plain, tick_label, ticks, whole};
 use super::svg::{Anchor, Frame, Svg, text_width};
 use super::vehicle;
 use crate::scenario::{Foot, Loading, Scenario, Seat, Section, StaticLoad};
@@ -107,8 +107,8 @@ fn draw_close(svg: &mut Svg, scenario: &Scenario, place: f64, index: usize, top:
     let name = track.transitions.get(index).map_or("", |t| t.name.as_str());
     let title = match (track.transitions.is_empty(), name) {
         (true, _) => "Around the load".to_owned(),
-        (_, "") => format!("The transition, \u{b1}{} m", significant(CLOSE, 2)),
-        (_, name) => format!("Transition `{name}`, \u{b1}{} m", significant(CLOSE, 2)),
+        (_, "") => format!("The transition, \u{b1}{} m", plain(CLOSE, 2)),
+        (_, name) => format!("Transition `{name}`, \u{b1}{} m", plain(CLOSE, 2)),
     };
     svg.text("strong", (6.0, top + 18.0), Anchor::Start, &title);
     draw_key(svg, top + 18.0);
@@ -119,7 +119,7 @@ fn draw_close(svg: &mut Svg, scenario: &Scenario, place: f64, index: usize, top:
     let bottom = draw_numbers(svg, scenario, &view, bottom);
     if let Some(transition) = track.transitions.get(index) {
         let x = view.x(transition.x);
-        svg.line("mark", (x, view.rail - 44.0), (x, bottom + 2.0));
+        svg.line("mark", (x, view.rail - 44.0), (x, view.y(ground(scenario))));
     }
     draw_chainage(svg, &view, bottom + 4.0)
 }
@@ -225,7 +225,7 @@ fn draw_stones(svg: &mut Svg, area: Frame, scale: f64) {
     let mut y = area.y + 0.7 * size;
     let mut row = 0u32;
     while y < area.y + area.height {
-        let mut x = area.x + if row % 2 == 0 { 0.5 } else { 1.1 } * size;
+        let mut x = area.x + if row.is_multiple_of(2) { 0.5 } else { 1.1 } * size;
         let mut count = row;
         while x < area.x + area.width {
             let r = 0.34 * size * (0.75 + 0.25 * f64::from((count * 7 + row * 3) % 5) / 4.0);
@@ -257,7 +257,7 @@ fn draw_load(svg: &mut Svg, view: &View, load: &StaticLoad) {
     let (x, tip) = (view.x(load.x), view.rail - 1.0);
     svg.path("push", &[(x, tip - 34.0), (x, tip)], false, "");
     svg.path("push", &[(x - 5.0, tip - 9.0), (x, tip), (x + 5.0, tip - 9.0)], false, "");
-    let text = format!("{}: {} kN", load.name, significant(*load.force / 1e3, 4));
+    let text = format!("{}: {} kN", load.name, plain(*load.force / 1e3, 4));
     svg.text("halo", (x + 9.0, tip - 22.0), Anchor::Start, &text);
 }
 
@@ -283,7 +283,7 @@ fn draw_spacings(svg: &mut Svg, scenario: &Scenario, view: &View) {
         let (Some(from), Some(to)) = (seats.get(middle.wrapping_sub(1)), seats.get(middle)) else { continue };
         let (a, b, y) = (view.x(from.x), view.x(to.x), view.rail - 12.0);
         draw_dimension(svg, a, b, y);
-        let text = format!("{} m", significant(to.x - from.x, 3));
+        let text = format!("{} m", plain(to.x - from.x, 3));
         svg.text("small halo", ((a + b) / 2.0, y - 6.0), Anchor::Middle, &text);
         let (left, right) = (view.x(section.start.max(view.start)), view.x(section.end.min(view.end)));
         let text = carried(section, &seats);
@@ -296,7 +296,7 @@ fn carried(section: &Section, seats: &[&Seat]) -> String {
     let range = |values: Vec<f64>| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(0.0, f64::max);
-        let show = |value: f64| significant(value / 1e6, 3);
+        let show = |value: f64| plain(value / 1e6, 3);
         if high - low < 1e-3 * high { show(high) } else { format!("{} to {}", show(low), show(high)) }
     };
     let pads = range(seats.iter().map(|seat| *seat.pad.stiffness).collect());
@@ -311,7 +311,7 @@ fn carried(section: &Section, seats: &[&Seat]) -> String {
     if !supports.is_empty() {
         text += &format!(", support {} MN/m per seat", range(supports));
     } else if let Some(slab) = &section.slab {
-        text += &format!(", foundation {} MN/m per m", significant(*slab.foundation_stiffness / 1e6, 3));
+        text += &format!(", foundation {} MN/m per m", plain(*slab.foundation_stiffness / 1e6, 3));
     }
     text
 }
@@ -330,13 +330,9 @@ fn draw_spans(svg: &mut Svg, scenario: &Scenario, view: &View, y: f64) -> f64 {
         let (a, b) = (view.x(section.start), view.x(section.end));
         draw_dimension(svg, a, b, y);
         let seats = scenario.track.seats.iter().filter(|seat| seat.section == index).count();
-        let length = significant(section.end - section.start, 3);
-        let full = format!(
-            "{}: {length} m, {} seats at {} m",
-            section.name,
-            whole(seats as u64),
-            significant(*section.spacing, 3)
-        );
+        let length = plain(section.end - section.start, 3);
+        let full =
+            format!("{}: {length} m, {} seats at {} m", section.name, whole(seats as u64), plain(*section.spacing, 3));
         let short = [full, format!("{}: {length} m", section.name), format!("{length} m")];
         if let Some(text) = short.iter().find(|text| 0.9 * text_width(text) < b - a) {
             svg.text("small", ((a + b) / 2.0, y + 15.0), Anchor::Middle, text);

@@ -29,10 +29,6 @@ pub struct Svg {
 }
 
 impl Svg {
-    pub fn raw(&mut self, text: &str) {
-        self.body += text;
-    }
-
     pub fn line(&mut self, class: &str, from: (f64, f64), to: (f64, f64)) {
         let (x1, y1, x2, y2) = (px(from.0), px(from.1), px(to.0), px(to.1));
         let _ = write!(self.body, r#"<line class="{class}" x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}"/>"#);

@@ -1,6 +1,6 @@
 //! A train on the drawing: wheels and bogies where a passage starts, the car body as a symbol.
 
-use super::number::significant;
+use super::number::plain;
 use super::scene::{View, draw_spring};
 use super::svg::{Anchor, Frame, Svg};
 use crate::scenario::{Direction, Scenario, Traffic, Vehicle};
@@ -32,16 +32,17 @@ pub(super) fn draw_train(svg: &mut Svg, scenario: &Scenario, traffic: &Traffic, 
     let y = view.y(-ROOF) - 9.0;
     let length = train.vehicles.first().map_or(10.0, |v| v.wheel_offsets()[3]);
     let middle = view.x(lead + sign * 0.5 * length);
-    let speed = significant(*train.speed * 3.6, 3);
+    let speed = plain(*train.speed * 3.6, 3);
     let text = format!(
         "{}, {speed} km/h; leading wheel starts at {} m",
         train.vehicles.first().map_or("", |v| v.name.as_str()),
-        significant(lead, 3)
+        plain(lead, 3)
     );
     let half = 3.1 * text.chars().count() as f64;
     let middle = middle.clamp(view.x(view.start) + half, (view.x(view.end) - half).max(view.x(view.start) + half));
     svg.text("small halo", (middle, y), Anchor::Middle, &text);
-    let (tip, tail) = (view.x(lead) - sign * 34.0, view.x(lead) - sign * 10.0);
+    let nose = lead - sign * train.vehicles.first().map_or(0.0, |v| (body_length(v) - v.wheel_offsets()[3]) / 2.0);
+    let (tip, tail) = (view.x(nose) - sign * 32.0, view.x(nose) - sign * 8.0);
     let y = view.y(-0.5 * ROOF);
     svg.path("push", &[(tail, y), (tip, y)], false, "");
     svg.path("push", &[(tip + sign * 7.0, y - 4.5), (tip, y), (tip + sign * 7.0, y + 4.5)], false, "");
@@ -50,7 +51,7 @@ pub(super) fn draw_train(svg: &mut Svg, scenario: &Scenario, traffic: &Traffic, 
 fn draw_vehicle(svg: &mut Svg, view: &View, vehicle: &Vehicle, first: f64, sign: f64) {
     let wheels = vehicle.wheel_offsets().map(|offset| first + sign * offset);
     let base = vehicle.wheel_offsets()[3];
-    let length = vehicle.length.map_or(base + 2.6, |length| *length - 0.8);
+    let length = body_length(vehicle);
     let centre = first + sign * base / 2.0;
     svg.rect("body", area(view, centre - length / 2.0, centre + length / 2.0, ROOF, FLOOR));
     let radius = vehicle.wheel_radius;
@@ -66,6 +67,11 @@ fn draw_vehicle(svg: &mut Svg, view: &View, vehicle: &Vehicle, first: f64, sign:
             svg.circle("steel", (view.x(wheels[wheel]), view.y(-radius)), (0.18 * r).max(1.0), "");
         }
     }
+}
+
+/// The car body ends a little before the couplers do, m.
+fn body_length(vehicle: &Vehicle) -> f64 {
+    vehicle.length.map_or(vehicle.wheel_offsets()[3] + 2.6, |length| *length - 0.8)
 }
 
 /// A box between two chainages and two heights above the rail's top, m; the view's clip cuts what sticks out.
