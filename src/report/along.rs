@@ -15,7 +15,7 @@ const HEIGHT: f64 = 320.0;
 pub fn settlement(run: &Run) -> Option<Figure> {
     let mut chart = track_chart(run, "Settlement", "m", true);
     chart.series = per_seat(run, true, |row| row.settlement_m);
-    chart.series.retain(|series| series.points.iter().any(|point| point.1 != 0.0));
+    chart.series.retain(|series| series.points.iter().any(|point| point.1.is_finite() && point.1 != 0.0));
     let caption = "Permanent settlement of each sleeper's support, downwards as in the track; shaded where no ballast \
                    carries the seats.";
     figure(&chart, "settlement", "Settlement along the track", caption)
@@ -50,7 +50,6 @@ pub fn gravity_contact(run: &Run) -> Option<Figure> {
 /// Settlement of telling sleepers against the axles.
 pub fn settlement_with_axles(run: &Run) -> Option<Figure> {
     let mut chart = Chart::new(Axis::new("Axles", ("", 1.0)), downwards(Axis::new("Settlement", shown_unit("m"))));
-    chart.x.from_zero = true;
     chart.y.from_zero = true;
     for (index, (row, why)) in telling_seats(run).into_iter().enumerate() {
         let blocks = run.histories.iter().filter(|h| h.quantity == "settlement" && h.id == row.sleeper);
@@ -134,11 +133,9 @@ fn downwards(axis: Axis) -> Axis {
 fn per_seat(run: &Run, ballasted: bool, value: fn(&SleeperRow) -> f64) -> Vec<Series> {
     let names = ballasted_names(&run.scenario);
     let of_count = |count: &Count| {
-        let rows: Vec<&SleeperRow> = run
-            .sleepers
-            .iter()
-            .filter(|row| row.axles == count.axles && (!ballasted || names.contains(&row.sleeper)))
-            .collect();
+        let rows: Vec<&SleeperRow> = run.sleepers.iter().filter(|row| row.axles == count.axles).collect();
+        // A seat that has no such value interrupts the curve.
+        let value = |row: &SleeperRow| if ballasted && !names.contains(&row.sleeper) { f64::NAN } else { value(row) };
         let points = rows.iter().map(|row| (row.x_m, value(row))).collect();
         let labels = rows.iter().map(|row| row.sleeper.replace('-', "\u{2212}")).collect();
         Series { labels, ..Series::new(&count.name, &count.class, Mark::Dots, points) }

@@ -317,7 +317,7 @@ fn finite(point: &(f64, f64)) -> bool {
 }
 
 fn rows(height: f64) -> usize {
-    ((height / 42.0) as usize).max(2)
+    ((height / 36.0) as usize).max(2)
 }
 
 fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {

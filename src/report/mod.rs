@@ -187,6 +187,14 @@ mod tests {
         figures.iter().for_each(check_svg);
     }
 
+    #[test]
+    fn a_track_without_sections_draws_nothing_and_does_not_fail() {
+        let mut scenario = example::bench().scenario;
+        scenario.track.sections.clear();
+        scenario.track.seats.clear();
+        assert!(roxmltree::Document::parse(&scene_svg(&scenario)).is_ok());
+    }
+
     /// Writes the example pages where a person can look at them: `cargo test --lib example_pages -- --ignored`.
     #[test]
     #[ignore = "for looking at"]

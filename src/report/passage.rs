@@ -6,7 +6,7 @@ use super::chart::{Axis, Band, Chart, Mark, Series};
 use super::counts::{self, Count};
 use super::number::{shown_unit, significant};
 use super::scene::WIDTH;
-use super::svg::{Anchor, Frame, Svg};
+use super::svg::{Frame, Svg};
 use crate::results::{HistoryRow, Run, static_wheel_load};
 use crate::scenario::response::{Place, Response};
 
@@ -67,20 +67,18 @@ fn history(run: &Run, response: Response) -> Option<Figure> {
     for (index, (seat, _)) in seats.iter().enumerate() {
         let frame = Frame {
             x: (index % columns) as f64 * width,
-            y: (index / columns) as f64 * (PANEL_HEIGHT + 26.0),
+            y: (index / columns) as f64 * (PANEL_HEIGHT + 14.0),
             width,
             height: PANEL_HEIGHT,
         };
-        let name = format!("Seat {}", seat.replace('-', "\u{2212}"));
-        svg.text("strong", (frame.x + 6.0, frame.y + 14.0), Anchor::Start, &name);
         let chart = panel(&rows, response, seat, limits, &counts, lost(run, seat, &counts));
         let id = format!("plane-{}-{index}", response.name());
-        chart.draw(&mut svg, &id, Frame { y: frame.y + 20.0, ..frame });
+        chart.draw(&mut svg, &id, frame);
     }
-    let height = seats.len().div_ceil(columns) as f64 * (PANEL_HEIGHT + 26.0);
+    let height = seats.len().div_ceil(columns) as f64 * (PANEL_HEIGHT + 14.0);
     let title = title(response);
     let lost_any = seats.iter().any(|(seat, _)| !lost(run, seat, &counts).is_empty());
-    let mut caption = "During one passage; the clock starts with the passage.".to_owned();
+    let mut caption = "During one passage, per seat; the clock starts with the passage.".to_owned();
     if lost_any {
         caption += " Shaded while the sleeper has no contact with its support at the last count.";
     }
@@ -96,7 +94,8 @@ fn panel(
     counts: &[Count],
     lost: Vec<Band>,
 ) -> Chart {
-    let mut y = Axis::new(&title(response), shown_unit(response.unit()));
+    let name = format!("Seat {}", seat.replace('-', "\u{2212}"));
+    let mut y = Axis::new(&name, shown_unit(response.unit()));
     y.downwards = matches!(response, Response::RailDisplacement | Response::SleeperDisplacement | Response::RailLevel);
     let mut chart = Chart::new(Axis { range: Some(limits), ..Axis::new("Time", ("s", 1.0)) }, y);
     chart.bands = lost;

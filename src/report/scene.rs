@@ -86,7 +86,7 @@ fn draw_whole(svg: &mut Svg, scenario: &Scenario) -> f64 {
         }
     });
     let mut bottom = draw_loads(svg, scenario, &view);
-    if scale * *track.sections[0].spacing > 26.0 {
+    if track.sections.first().is_some_and(|section| scale * *section.spacing > 26.0) {
         bottom = draw_numbers(svg, scenario, &view, bottom);
     }
     for transition in &track.transitions {

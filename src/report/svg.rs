@@ -135,7 +135,7 @@ pub fn text_width(text: &str) -> f64 {
 
 fn px(value: f64) -> String {
     let rounded = (value * 10.0).round() / 10.0;
-    if rounded == 0.0 { "0".to_owned() } else { rounded.to_string() }
+    if rounded == 0.0 || !rounded.is_finite() { "0".to_owned() } else { rounded.to_string() }
 }
 
 #[cfg(test)]
@@ -147,6 +147,7 @@ mod tests {
         assert_eq!(escape("a<b & \"c\"\u{1}'"), "a&lt;b &amp; &quot;c&quot;\u{fffd}&#39;");
         assert_eq!(px(-0.04), "0");
         assert_eq!(px(12.0), "12");
+        assert_eq!(px(f64::NAN), "0");
         assert_eq!(px(1.0 / 3.0), "0.3");
     }
 }

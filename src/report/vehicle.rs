@@ -16,7 +16,7 @@ pub(super) fn draw_train(svg: &mut Svg, scenario: &Scenario, traffic: &Traffic, 
     let sign = if forwards { -1.0 } else { 1.0 };
     let lead = scenario.solve.start.map_or_else(
         || {
-            let reach = (train.wheel_base() + 2.0).min(view.end - view.start - 2.0);
+            let reach = (train.wheel_base() + 2.0).min(0.92 * (view.end - view.start));
             if forwards { view.start + reach } else { view.end - reach }
         },
         |start| *start,
