@@ -1,12 +1,209 @@
-//! Stand-in.
+//! Pictures and pages of a run: the scene to scale, what happens along the track, in time and with the axles.
+//!
+//! [`page`] is the whole report in one file that needs nothing else; [`figures`] are its pictures one by one, each an
+//! SVG that stands on its own; [`scene_svg`] draws a scene that has not been run. Nothing here computes physics: the
+//! numbers are those of the run's tables.
+
+mod along;
+mod chart;
+mod counts;
+mod number;
+mod page;
+mod passage;
+mod scene;
+mod svg;
+mod vehicle;
+
+pub use page::page;
+pub use scene::scene_svg;
+
 use crate::results::Run;
+use crate::scenario::Loading;
+
+/// One picture of a run.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
+    /// Short name, fit for a file name and an anchor.
     pub id: String,
+    pub title: String,
+    /// What is to be seen, in a sentence or two.
+    pub caption: String,
+    /// A whole SVG document with its own style, light and dark.
     pub svg: String,
 }
-pub fn page(_: &Run) -> String {
-    String::new()
+
+/// Every picture that the run has data for, in reading order.
+pub fn figures(run: &Run) -> Vec<Figure> {
+    let scene = Figure {
+        id: "scene".to_owned(),
+        title: "The scene".to_owned(),
+        caption:
+            "Places, spacings, sleepers, rail, wheels and bogies are to scale. The depth of the bed, the car body \
+                  and the springs are symbols."
+                .to_owned(),
+        svg: scene_svg(&run.scenario),
+    };
+    let mut figures = vec![scene];
+    if matches!(run.scenario.loading, Some(Loading::Static(_))) {
+        figures.extend(
+            [along::rail_displacement(run), along::rail_moment(run), along::seat_shares(run)].into_iter().flatten(),
+        );
+    } else {
+        let along = [
+            along::settlement(run),
+            along::rail_level(run),
+            passage::wheel_force(run),
+            along::seat_loads(run),
+            along::gravity_contact(run),
+            along::settlement_with_axles(run),
+        ];
+        figures.extend(along.into_iter().flatten());
+    }
+    figures.extend(passage::histories(run));
+    figures
 }
-pub fn figures(_: &Run) -> Vec<Figure> {
-    Vec::new()
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::example;
+
+    fn check_svg(figure: &Figure) {
+        let document = roxmltree::Document::parse(&figure.svg).unwrap_or_else(|e| panic!("{}: {e}", figure.id));
+        assert_eq!(document.root_element().tag_name().name(), "svg");
+        let drawn: String = document
+            .descendants()
+            .flat_map(|node| node.attributes().map(|a| a.value()).chain(node.text()).collect::<Vec<_>>())
+            .filter(|text| *text != svg::STYLE)
+            .collect();
+        assert!(!drawn.contains("NaN") && !drawn.contains("inf"), "{}", figure.id);
+    }
+
+    #[test]
+    fn every_figure_of_a_passage_is_valid() {
+        let figures = figures(&example::transition());
+        let ids: Vec<&str> = figures.iter().map(|figure| figure.id.as_str()).collect();
+        let expected = [
+            "scene",
+            "settlement",
+            "rail_level",
+            "wheel_force",
+            "rail_seat_load",
+            "gravity_contact_force",
+            "settlement_with_axles",
+            "history_rail_seat_load",
+            "history_contact_force",
+            "history_rail_displacement",
+        ];
+        assert_eq!(ids, expected);
+        figures.iter().for_each(check_svg);
+    }
+
+    #[test]
+    fn every_figure_of_a_static_check_is_valid() {
+        let figures = figures(&example::bench());
+        let ids: Vec<&str> = figures.iter().map(|figure| figure.id.as_str()).collect();
+        assert_eq!(ids, ["scene", "rail_displacement", "rail_moment", "seat_shares"]);
+        figures.iter().for_each(check_svg);
+    }
+
+    #[test]
+    fn a_run_without_data_has_its_scene_only() {
+        let mut run = example::transition();
+        run.sleepers.clear();
+        run.histories.clear();
+        assert_eq!(figures(&run).len(), 1);
+        let empty = page(&run);
+        assert!(empty.contains("</html>"));
+    }
+
+    #[test]
+    fn the_page_is_small_escaped_and_alone() {
+        let mut run = example::transition();
+        run.scenario.title = "<b>\"A & B\"</b>".to_owned();
+        run.sleepers[7].settlement_m = f64::NAN;
+        let page = page(&run);
+        assert!(page.len() < 1_500_000, "{}", page.len());
+        assert!(page.contains("&lt;b&gt;&quot;A &amp; B&quot;&lt;/b&gt;") && !page.contains("<b>\"A"));
+        assert!(!page.contains("NaN") && !page.contains(">inf"));
+        let outside = page.replace("http://www.w3.org/2000/svg", "");
+        assert!(!outside.contains("http") && !outside.contains("<script") && !outside.contains("url(\""));
+        let ids: Vec<&str> = page.split(" id=\"").skip(1).map(|rest| &rest[..rest.find('"').unwrap()]).collect();
+        let mut unique = ids.clone();
+        unique.sort_unstable();
+        unique.dedup();
+        assert_eq!(ids.len(), unique.len());
+    }
+
+    /// A bridge: two transitions, a long train that runs backwards, more counts than colours.
+    fn bridge() -> Run {
+        let mut run = example::transition();
+        let track = &mut run.scenario.track;
+        let mut right = track.sections[0].clone();
+        (right.start, right.end) = (24.0, 66.0);
+        track.sections.push(right);
+        let side = crate::scenario::Side::StiffToSoft;
+        track.transitions[0].name = "west".to_owned();
+        track.transitions.push(crate::scenario::Transition { name: "east".to_owned(), x: 24.0, side });
+        let mirrored: Vec<_> = track.seats.iter().filter(|seat| seat.number < 0).rev().cloned().collect();
+        for mut seat in mirrored {
+            (seat.x, seat.section, seat.transition) = (24.0 - seat.x, 2, 1);
+            track.seats.push(seat);
+        }
+        run.sleepers.clear();
+        for axles in (0..=1000).step_by(100) {
+            for seat in &track.seats {
+                let distance = seat.x.abs().min((seat.x - 24.0).abs());
+                let settled = if seat.is_ballasted() { 1e-3 * (1.0 + (-distance).exp()) } else { 0.0 };
+                run.sleepers.push(crate::results::SleeperRow {
+                    axles,
+                    sleeper: track.seat_name(seat),
+                    x_m: seat.x,
+                    settlement_m: settled * axles as f64 / 1e3,
+                    void_m: 0.0,
+                    gravity_contact_force_N: 1.8e3,
+                    max_contact_force_N: 3e4,
+                    max_rail_seat_load_N: 4e4,
+                    max_sleeper_displacement_m: 1e-3,
+                    support_stiffness_N_per_m: 4e7,
+                    contact_loss_s: 0.0,
+                });
+            }
+        }
+        if let Some(Loading::Traffic(traffic)) = &mut run.scenario.loading {
+            traffic.train.vehicles = vec![traffic.train.vehicles[0].clone(); 20];
+            traffic.train.direction = crate::scenario::Direction::Backward;
+        }
+        run.scenario.solve.start = None;
+        run.histories.clear();
+        run
+    }
+
+    #[test]
+    fn every_figure_of_a_bridge_is_valid() {
+        let figures = figures(&bridge());
+        assert_eq!(figures[0].svg.matches("42 m, 69 seats at 0.6 m").count(), 2);
+        assert_eq!(figures[1].svg.matches("<circle").count() - 5, 5 * 138, "five counts that settle, and the legend");
+        figures.iter().for_each(check_svg);
+    }
+
+    #[test]
+    fn a_track_without_sections_draws_nothing_and_does_not_fail() {
+        let mut scenario = example::bench().scenario;
+        scenario.track.sections.clear();
+        scenario.track.seats.clear();
+        assert!(roxmltree::Document::parse(&scene_svg(&scenario)).is_ok());
+    }
+
+    /// Writes the example pages where a person can look at them: `cargo test --lib example_pages -- --ignored`.
+    #[test]
+    #[ignore = "for looking at"]
+    fn example_pages() {
+        let directory = std::env::temp_dir().join("trackbed-example");
+        std::fs::create_dir_all(&directory).unwrap();
+        for (name, run) in [("transition", example::transition()), ("bench", example::bench()), ("bridge", bridge())] {
+            std::fs::write(directory.join(format!("{name}.html")), page(&run)).unwrap();
+            std::fs::write(directory.join(format!("{name}.svg")), scene_svg(&run.scenario)).unwrap();
+        }
+    }
 }

@@ -1,0 +1,205 @@
+//! What happens along the track: settlement, level, loads and moments, one curve a recorded axle count.
+
+use super::Figure;
+use super::chart::{Axis, Chart, Mark, Series};
+use super::counts::{self, Count};
+use super::number::{shown_unit, significant, whole};
+use super::scene::WIDTH;
+use super::svg::{Frame, Svg};
+use crate::results::{Run, SleeperRow};
+use crate::scenario::{Loading, Scenario};
+
+const HEIGHT: f64 = 320.0;
+
+/// Permanent downward move of each support.
+pub fn settlement(run: &Run) -> Option<Figure> {
+    let mut chart = track_chart(run, "Settlement", "m", true);
+    chart.series = per_seat(run, true, |row| row.settlement_m);
+    chart.series.retain(|series| series.points.iter().any(|point| point.1.is_finite() && point.1 != 0.0));
+    let caption = "Permanent settlement of each sleeper's support, downwards as in the track; shaded where no ballast \
+                   carries the seats.";
+    figure(&chart, "settlement", "Settlement along the track", caption)
+}
+
+/// Level of the rail without a vehicle.
+pub fn rail_level(run: &Run) -> Option<Figure> {
+    let mut chart = track_chart(run, "Rail level below as built", "m", true);
+    chart.series = counts::shown(run).iter().map(|count| along_rail(run, "rail_level", count)).collect();
+    let caption = "Level of the unloaded rail under its own weight: where it lies above the settled supports, sleepers \
+                   hang from it.";
+    figure(&chart, "rail_level", "Rail level without a vehicle", caption)
+}
+
+/// Largest rail seat load of a passage, per seat.
+pub fn seat_loads(run: &Run) -> Option<Figure> {
+    let mut chart = track_chart(run, "Largest rail seat load", "N", false);
+    chart.series = per_seat(run, false, |row| row.max_rail_seat_load_N);
+    let caption = "Largest force of the rail on each pad during one passage, per seat.";
+    figure(&chart, "rail_seat_load", "Rail seat loads along the track", caption)
+}
+
+/// How the dead load of the track rests on the ballast.
+pub fn gravity_contact(run: &Run) -> Option<Figure> {
+    let mut chart = track_chart(run, "Contact force without a vehicle", "N", false);
+    chart.series = per_seat(run, true, |row| row.gravity_contact_force_N);
+    let caption = "Force of each half sleeper on its support under dead load alone: a sleeper at zero hangs, and its \
+                   neighbours carry its weight.";
+    figure(&chart, "gravity_contact_force", "Sleeper\u{2013}ballast contact under dead load", caption)
+}
+
+/// Settlement of telling sleepers against the axles.
+pub fn settlement_with_axles(run: &Run) -> Option<Figure> {
+    let mut chart = Chart::new(Axis::new("Axles", ("", 1.0)), downwards(Axis::new("Settlement", shown_unit("m"))));
+    chart.y.from_zero = true;
+    for (index, (row, why)) in telling_seats(run).into_iter().enumerate() {
+        let blocks = run.histories.iter().filter(|h| h.quantity == "settlement" && h.id == row.sleeper);
+        let mut points: Vec<(f64, f64)> = blocks.map(|h| (h.axles as f64, h.value)).collect();
+        let counts = run.sleepers.iter().filter(|other| other.sleeper == row.sleeper);
+        points.extend(counts.map(|other| (other.axles as f64, other.settlement_m)));
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        points.dedup_by(|a, b| a.0 == b.0);
+        let name = format!("{} ({why})", row.sleeper.replace('-', "\u{2212}"));
+        chart.series.push(Series::new(&name, &format!("s{index}"), Mark::Dots, points));
+    }
+    if chart.series.iter().all(|series| series.points.len() < 2) {
+        return None;
+    }
+    let caption = "Settlement against the axles passed, at the sleeper that settles most, the one nearest to a \
+                   transition and one in the far field.";
+    figure(&chart, "settlement_with_axles", "Settlement with the axles", caption)
+}
+
+/// Rail deflection of a static check.
+pub fn rail_displacement(run: &Run) -> Option<Figure> {
+    let mut chart = track_chart(run, "Rail deflection", "m", true);
+    chart.series = vec![along_rail(run, "rail_displacement", &only())];
+    figure(&chart, "rail_displacement", "Rail deflection", "Downward deflection of the rail under the static loads.")
+}
+
+/// Rail moment of a static check.
+pub fn rail_moment(run: &Run) -> Option<Figure> {
+    let mut chart = track_chart(run, "Rail moment, sagging positive", "N m", true);
+    chart.series = vec![along_rail(run, "rail_moment", &only())];
+    figure(&chart, "rail_moment", "Rail bending moment", "Bending moment of one rail, drawn on its tension side.")
+}
+
+/// Each seat's share of a static check's load.
+pub fn seat_shares(run: &Run) -> Option<Figure> {
+    let Some(Loading::Static(loads)) = &run.scenario.loading else { return None };
+    let total: f64 = loads.iter().map(|load| *load.force).sum();
+    let mut chart = track_chart(run, "Share of the load", "1", false);
+    chart.y = Axis { unit: "%", size: 0.01, from_zero: true, ..chart.y };
+    let rows: Vec<&SleeperRow> = run.sleepers.iter().filter(|row| row.max_rail_seat_load_N.is_finite()).collect();
+    if total <= 0.0 || rows.is_empty() {
+        return None;
+    }
+    let gap = rows.windows(2).map(|pair| pair[1].x_m - pair[0].x_m).fold(f64::INFINITY, f64::min);
+    let points = rows.iter().map(|row| (row.x_m, row.max_rail_seat_load_N / total)).collect();
+    let mut series = Series::new("", "s0", Mark::Bars(0.6 * if gap.is_finite() { gap } else { 0.6 }), points);
+    series.labels = rows.iter().map(|row| row.sleeper.clone()).collect();
+    chart.series = vec![series];
+    let mut shares: Vec<f64> = rows.iter().map(|row| 100.0 * row.max_rail_seat_load_N / total).collect();
+    shares.sort_by(|a, b| b.total_cmp(a));
+    let largest = shares.iter().take(3).map(|share| significant(*share, 3)).collect::<Vec<_>>().join(", ");
+    let caption =
+        format!("Rail seat loads as shares of the whole load of {} kN; the largest are {largest} %.", whole_kn(total));
+    figure(&chart, "seat_shares", "Load shares of the seats", &caption)
+}
+
+fn whole_kn(force: f64) -> String {
+    if force / 1e3 >= 10.0 { whole((force / 1e3).round() as u64) } else { significant(force / 1e3, 3) }
+}
+
+/// The colour of a figure with one curve.
+fn only() -> Count {
+    Count { axles: 0, name: String::new(), class: "s0".to_owned() }
+}
+
+/// A chart over the whole track with its sections and transitions.
+pub fn track_chart(run: &Run, label: &str, unit: &str, down: bool) -> Chart {
+    let track = &run.scenario.track;
+    let axis = Axis { downwards: down, from_zero: down, ..Axis::new(label, shown_unit(unit)) };
+    let mut chart = Chart::new(Axis::chainage((track.start(), track.end())), axis);
+    chart.bands = counts::sections(&run.scenario);
+    chart.uprights = track.transitions.iter().map(|transition| transition.x).collect();
+    chart
+}
+
+fn downwards(axis: Axis) -> Axis {
+    Axis { downwards: true, ..axis }
+}
+
+/// One series a count over the seats, of the ballasted ones only where the quantity is the ballast's.
+fn per_seat(run: &Run, ballasted: bool, value: fn(&SleeperRow) -> f64) -> Vec<Series> {
+    let names = ballasted_names(&run.scenario);
+    let of_count = |count: &Count| {
+        let rows: Vec<&SleeperRow> = run.sleepers.iter().filter(|row| row.axles == count.axles).collect();
+        // A seat that has no such value interrupts the curve.
+        let value = |row: &SleeperRow| if ballasted && !names.contains(&row.sleeper) { f64::NAN } else { value(row) };
+        let points = rows.iter().map(|row| (row.x_m, value(row))).collect();
+        let labels = rows.iter().map(|row| row.sleeper.replace('-', "\u{2212}")).collect();
+        Series { labels, ..Series::new(&count.name, &count.class, Mark::Dots, points) }
+    };
+    counts::shown(run).iter().map(of_count).collect()
+}
+
+fn ballasted_names(scenario: &Scenario) -> std::collections::HashSet<String> {
+    let track = &scenario.track;
+    track.seats.iter().filter(|seat| seat.is_ballasted()).map(|seat| track.seat_name(seat)).collect()
+}
+
+fn along_rail(run: &Run, quantity: &str, count: &Count) -> Series {
+    let rows = run.histories.iter().filter(|h| h.quantity == quantity && h.id == "rail" && h.axles == count.axles);
+    let mut points: Vec<(f64, f64)> = rows.map(|h| (h.x_m, h.value)).collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Series::new(&count.name, &count.class, Mark::Line, points)
+}
+
+/// Rows of the last count: the sleeper that settled most, the one nearest to a transition, one of the far field.
+fn telling_seats(run: &Run) -> Vec<(&SleeperRow, &'static str)> {
+    let names = ballasted_names(&run.scenario);
+    let last = run.sleepers.iter().map(|row| row.axles).max();
+    let rows: Vec<&SleeperRow> = run
+        .sleepers
+        .iter()
+        .filter(|row| Some(row.axles) == last && names.contains(&row.sleeper) && row.settlement_m.is_finite())
+        .collect();
+    let distance = |row: &&&SleeperRow| {
+        let distances = run.scenario.track.transitions.iter().map(|t| (t.x - row.x_m).abs());
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    let far_field = run.summary.scalars.get("far_field_settlement").map_or(0.0, |s| s.value);
+    // The far-field one: of the farther half, the one that is nearest to the far-field settlement.
+    let mut farther: Vec<&&SleeperRow> = rows.iter().collect();
+    farther.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
+    farther.truncate(rows.len().div_ceil(2));
+    let off = |row: &&&SleeperRow| (row.settlement_m - far_field).abs();
+    let chosen = [
+        (rows.iter().max_by(|a, b| a.settlement_m.total_cmp(&b.settlement_m)), "largest"),
+        (rows.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))), "at the transition"),
+        (farther.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))), "far field"),
+    ];
+    let mut seats: Vec<(&SleeperRow, &str)> = Vec::new();
+    for (row, why) in chosen {
+        let Some(row) = row else { continue };
+        if !seats.iter().any(|(other, _)| other.sleeper == row.sleeper) {
+            seats.push((row, why));
+        }
+    }
+    seats
+}
+
+/// A figure of one chart over the full width; `None` where there is nothing to see.
+pub fn figure(chart: &Chart, id: &str, title: &str, caption: &str) -> Option<Figure> {
+    if chart.is_empty() {
+        return None;
+    }
+    let mut svg = Svg::default();
+    chart.draw(&mut svg, &format!("plane-{id}"), Frame { x: 0.0, y: 0.0, width: WIDTH, height: HEIGHT });
+    Some(Figure {
+        id: id.to_owned(),
+        title: title.to_owned(),
+        caption: caption.to_owned(),
+        svg: svg.finish(WIDTH, HEIGHT, title),
+    })
+}

@@ -1,0 +1,364 @@
+//! One diagram: axes with units, series, shaded stretches and reference lines, drawn into a frame of a picture.
+//!
+//! Data come in SI and are shown in the axis's unit. What is not finite is a gap, never a mark. Long series are thinned
+//! to what the pixels can show, with every peak kept.
+
+use super::number::{nice_step, significant, tick_label, ticks};
+use super::svg::{Anchor, Frame, Svg, text_width};
+
+/// A direction of the diagram.
+#[derive(Debug, Clone)]
+pub struct Axis {
+    pub label: String,
+    pub unit: &'static str,
+    /// Size of the shown unit in SI.
+    pub size: f64,
+    /// Larger values stand lower: settlement and deflection.
+    pub downwards: bool,
+    /// In SI; the extent of the data where absent.
+    pub range: Option<(f64, f64)>,
+    pub from_zero: bool,
+}
+
+impl Axis {
+    pub fn new(label: &str, (unit, size): (&'static str, f64)) -> Self {
+        Axis { label: label.to_owned(), unit, size, downwards: false, range: None, from_zero: false }
+    }
+
+    /// Chainage, m.
+    pub fn chainage(range: (f64, f64)) -> Self {
+        Axis { range: Some(range), ..Axis::new("Chainage", ("m", 1.0)) }
+    }
+
+    fn title(&self) -> String {
+        if self.unit.is_empty() { self.label.clone() } else { format!("{} [{}]", self.label, self.unit) }
+    }
+}
+
+/// How a series is drawn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Mark {
+    Line,
+    /// A thin line behind the others, without a place in the legend.
+    Faint,
+    /// A line with a dot at every value.
+    Dots,
+    /// Bars of this width in SI from zero.
+    Bars(f64),
+}
+
+#[derive(Debug, Clone)]
+pub struct Series {
+    /// Empty keeps it out of the legend.
+    pub name: String,
+    /// Its colour: `k0`..`k5` for axle counts, `s0`..`s3` otherwise.
+    pub class: String,
+    pub mark: Mark,
+    pub points: Vec<(f64, f64)>,
+    /// What each point is, for those who point at it.
+    pub labels: Vec<String>,
+}
+
+impl Series {
+    pub fn new(name: &str, class: &str, mark: Mark, points: Vec<(f64, f64)>) -> Self {
+        Series { name: name.to_owned(), class: class.to_owned(), mark, points, labels: vec![] }
+    }
+}
+
+/// A shaded stretch of the x axis.
+#[derive(Debug, Clone)]
+pub struct Band {
+    pub from: f64,
+    pub to: f64,
+    pub label: String,
+    pub class: &'static str,
+}
+
+#[derive(Debug, Clone)]
+pub struct Chart {
+    pub x: Axis,
+    pub y: Axis,
+    pub series: Vec<Series>,
+    pub bands: Vec<Band>,
+    /// Dashed upright lines, SI.
+    pub uprights: Vec<f64>,
+    /// Dotted level lines with a name, SI.
+    pub levels: Vec<(f64, String)>,
+}
+
+const LEFT: f64 = 56.0;
+const RIGHT: f64 = 14.0;
+const BOTTOM: f64 = 42.0;
+const LEGEND_ROW: f64 = 19.0;
+
+/// The plane of the data, and how it lies on the picture.
+struct Plane {
+    frame: Frame,
+    x: (f64, f64),
+    y: (f64, f64),
+    downwards: bool,
+}
+
+impl Plane {
+    fn at(&self, point: (f64, f64)) -> (f64, f64) {
+        let across = (point.0 - self.x.0) / (self.x.1 - self.x.0);
+        let up = (point.1 - self.y.0) / (self.y.1 - self.y.0);
+        let down = if self.downwards { up } else { 1.0 - up };
+        (self.frame.x + across * self.frame.width, self.frame.y + down * self.frame.height)
+    }
+}
+
+impl Chart {
+    pub fn new(x: Axis, y: Axis) -> Self {
+        Chart { x, y, series: vec![], bands: vec![], uprights: vec![], levels: vec![] }
+    }
+
+    /// Whether there is anything to see.
+    pub fn is_empty(&self) -> bool {
+        !self.series.iter().any(|series| series.points.iter().any(finite))
+    }
+
+    /// Draws the diagram with its labels into `frame`. `id` is unique on a page.
+    pub fn draw(&self, svg: &mut Svg, id: &str, frame: Frame) {
+        let top = self.draw_head(svg, frame);
+        let plane = self.plane(Frame {
+            x: frame.x + LEFT,
+            y: top,
+            width: frame.width - LEFT - RIGHT,
+            height: frame.y + frame.height - BOTTOM - top,
+        });
+        self.draw_bands(svg, &plane);
+        self.draw_axes(svg, &plane);
+        svg.clipped(id, plane.frame, |svg| {
+            self.series.iter().for_each(|series| draw_series(svg, &plane, series, self))
+        });
+        self.draw_names(svg, &plane);
+    }
+
+    /// The axis's title and the legend; gives the top of the plane.
+    fn draw_head(&self, svg: &mut Svg, frame: Frame) -> f64 {
+        let title = self.y.title();
+        svg.text("strong", (frame.x + 6.0, frame.y + 14.0), Anchor::Start, &title);
+        let entries: Vec<&Series> =
+            self.series.iter().filter(|s| !s.name.is_empty() && s.mark != Mark::Faint).collect();
+        let width = |series: &&Series| text_width(&series.name) + 36.0;
+        let all: f64 = entries.iter().map(width).sum();
+        let (left, right) = (frame.x + 6.0, frame.x + frame.width - RIGHT);
+        let beside = right - all > left + text_width(&title) + 24.0;
+        let (mut x, mut y) = if beside { (right - all, frame.y + 14.0) } else { (left, frame.y + 14.0 + LEGEND_ROW) };
+        for series in &entries {
+            if x + width(series) > right + 8.0 && x > left {
+                (x, y) = (left, y + LEGEND_ROW);
+            }
+            let class = format!("line {}", series.class);
+            match series.mark {
+                Mark::Bars(_) => svg.rect(
+                    &format!("bar {}", series.class),
+                    Frame { x: x + 6.0, y: y - 9.0, width: 10.0, height: 10.0 },
+                ),
+                _ => svg.line(&class, (x, y - 4.0), (x + 20.0, y - 4.0)),
+            }
+            if series.mark == Mark::Dots {
+                svg.circle(&format!("dot {}", series.class), (x + 10.0, y - 4.0), 3.0, "");
+            }
+            svg.text("", (x + 25.0, y), Anchor::Start, &series.name);
+            x += width(series);
+        }
+        if entries.is_empty() { frame.y + 24.0 } else { y + 10.0 }
+    }
+
+    fn plane(&self, frame: Frame) -> Plane {
+        let points = || self.series.iter().flat_map(|series| series.points.iter().filter(|p| finite(p)));
+        let x = self.x.range.unwrap_or_else(|| extent(points().map(|p| p.0)));
+        let inside = points().filter(|p| p.0 >= x.0 && p.0 <= x.1).map(|p| p.1);
+        let y = self.y.range.unwrap_or_else(|| {
+            let levels = self.levels.iter().map(|(level, _)| *level);
+            self.round_range(extent(inside.chain(levels).chain(self.y.from_zero.then_some(0.0))), frame.height)
+        });
+        Plane { frame, x: widened(x), y: widened(y), downwards: self.y.downwards }
+    }
+
+    /// The range of the upright axis, SI, that shows `series` whole on a plane of `height` px.
+    pub fn y_extent(&self, series: &Series, height: f64) -> (f64, f64) {
+        self.round_range(extent(series.points.iter().filter(|p| finite(p)).map(|p| p.1)), height)
+    }
+
+    /// A range that ends on round values, with room for names at the top.
+    fn round_range(&self, (low, high): (f64, f64), height: f64) -> (f64, f64) {
+        let step = nice_step((high - low) / self.y.size / rows(height) as f64) * self.y.size;
+        let room = if self.bands.iter().any(|band| !band.label.is_empty()) { 0.09 * (high - low) } else { 0.0 };
+        let up = |value: f64| (value / step - 1e-6).ceil() * step;
+        let (bottom, top) = (-up(-low), up(high));
+        if self.y.downwards { (bottom.min(low - room), top) } else { (bottom, top.max(high + room)) }
+    }
+
+    fn draw_bands(&self, svg: &mut Svg, plane: &Plane) {
+        let Frame { x: left, y, width, height } = plane.frame;
+        for band in &self.bands {
+            let from = plane.at((band.from, 0.0)).0.max(left);
+            let to = plane.at((band.to, 0.0)).0.min(left + width);
+            if to > from {
+                svg.rect(band.class, Frame { x: from, y, width: to - from, height });
+            }
+        }
+    }
+
+    fn draw_axes(&self, svg: &mut Svg, plane: &Plane) {
+        let frame = plane.frame;
+        let (right, bottom) = (frame.x + frame.width, frame.y + frame.height);
+        let (low, high) = (plane.y.0 / self.y.size, plane.y.1 / self.y.size);
+        let marks = ticks(low, high, rows(frame.height));
+        let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
+        for mark in marks {
+            let y = plane.at((plane.x.0, mark * self.y.size)).1;
+            svg.line("grid", (frame.x, y), (right, y));
+            svg.text("small muted", (frame.x - 7.0, y + 4.0), Anchor::End, &tick_label(mark, step));
+        }
+        let (low, high) = (plane.x.0 / self.x.size, plane.x.1 / self.x.size);
+        let marks = ticks(low, high, (frame.width / 75.0) as usize);
+        let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
+        for mark in marks {
+            let x = plane.at((mark * self.x.size, plane.y.0)).0;
+            svg.line("grid", (x, frame.y), (x, bottom));
+            svg.line("axis", (x, bottom), (x, bottom + 4.0));
+            svg.text("small muted", (x, bottom + 17.0), Anchor::Middle, &tick_label(mark, step));
+        }
+        svg.line("axis", (frame.x, bottom), (right, bottom));
+        svg.line("axis", (frame.x, frame.y), (frame.x, bottom));
+        if plane.y.0 < 0.0 && plane.y.1 > 0.0 {
+            let zero = plane.at((plane.x.0, 0.0)).1;
+            svg.line("axis", (frame.x, zero), (right, zero));
+        }
+        svg.text("", (frame.x + frame.width / 2.0, bottom + 35.0), Anchor::Middle, &self.x.title());
+    }
+
+    /// Reference lines and every name inside the plane, above the data.
+    fn draw_names(&self, svg: &mut Svg, plane: &Plane) {
+        let Frame { x: left, y: top, width, height } = plane.frame;
+        for x in self.uprights.iter().filter(|x| (plane.x.0..=plane.x.1).contains(*x)) {
+            let x = plane.at((*x, 0.0)).0;
+            svg.line("mark", (x, top), (x, top + height));
+        }
+        for (level, name) in &self.levels {
+            let y = plane.at((plane.x.0, *level)).1;
+            svg.line("load", (left, y), (left + width, y));
+            svg.text("small muted halo", (left + 6.0, y - 5.0), Anchor::Start, name);
+        }
+        for band in self.bands.iter().filter(|band| !band.label.is_empty()) {
+            let from = plane.at((band.from, 0.0)).0.max(left);
+            let to = plane.at((band.to, 0.0)).0.min(left + width);
+            if to - from > text_width(&band.label) {
+                svg.text("small muted halo", ((from + to) / 2.0, top + 14.0), Anchor::Middle, &band.label);
+            }
+        }
+    }
+}
+
+fn draw_series(svg: &mut Svg, plane: &Plane, series: &Series, chart: &Chart) {
+    let class = |kind: &str| format!("{kind} {}", series.class);
+    if let Mark::Bars(width) = series.mark {
+        for (index, point) in series.points.iter().enumerate().filter(|(_, p)| finite(p)) {
+            let (left, top) = plane.at((point.0 - width / 2.0, point.1.max(0.0)));
+            let (right, bottom) = plane.at((point.0 + width / 2.0, point.1.min(0.0)));
+            let (top, bottom) = (top.min(bottom), top.max(bottom));
+            let frame = Frame { x: left, y: top, width: right - left, height: bottom - top };
+            svg.titled_rect(&class("bar"), frame, &label(series, index, chart));
+            if point.1 > 0.03 * plane.y.1 && frame.width > 14.0 {
+                let value = significant(point.1 / chart.y.size, 2);
+                svg.text("small halo", (left + frame.width / 2.0, top - 4.0), Anchor::Middle, &value);
+            }
+        }
+        return;
+    }
+    let pixels: Vec<(f64, f64)> = series.points.iter().map(|point| plane.at(*point)).collect();
+    let (kind, column) = if series.mark == Mark::Faint { ("faint", 2.0) } else { ("line", 1.0) };
+    for piece in pixels.split(|point| !finite(point)) {
+        svg.path(&class(kind), &thin(piece, column), false, &series.name);
+    }
+    if series.mark == Mark::Dots && series.points.len() <= 400 {
+        let radius = if series.points.len() > 150 { 1.8 } else { 2.2 };
+        for (index, pixel) in pixels.iter().enumerate().filter(|(_, p)| finite(p)) {
+            svg.circle(&class("dot"), *pixel, radius, &label(series, index, chart));
+        }
+    }
+}
+
+fn label(series: &Series, index: usize, chart: &Chart) -> String {
+    let (x, y) = series.points[index];
+    let what = series.labels.get(index).map_or("", String::as_str);
+    let value = |axis: &Axis, value: f64| format!("{} {}", significant(value / axis.size, 4), axis.unit);
+    let place = if what.is_empty() { value(&chart.x, x) } else { format!("{what} ({})", value(&chart.x, x)) };
+    let name = if series.name.is_empty() { String::new() } else { format!(", {}", series.name) };
+    format!("{place}{name}: {}", value(&chart.y, y))
+}
+
+/// Keeps the first, lowest, highest and last point of each column of `column` px; the order stays.
+pub fn thin(points: &[(f64, f64)], column: f64) -> Vec<(f64, f64)> {
+    let mut kept: Vec<(f64, f64)> = Vec::new();
+    let of = |point: &(f64, f64)| (point.0 / column).floor();
+    for group in points.chunk_by(|a, b| of(a) == of(b)) {
+        if group.len() <= 4 {
+            kept.extend(group);
+            continue;
+        }
+        let by_height = |a: &usize, b: &usize| group[*a].1.total_cmp(&group[*b].1);
+        let lowest = (0..group.len()).min_by(by_height).unwrap_or(0);
+        let highest = (0..group.len()).max_by(by_height).unwrap_or(0);
+        let mut chosen = [0, lowest, highest, group.len() - 1];
+        chosen.sort_unstable();
+        let mut last = None;
+        kept.extend(chosen.into_iter().filter(|index| last.replace(*index) != Some(*index)).map(|i| group[i]));
+    }
+    kept
+}
+
+fn finite(point: &(f64, f64)) -> bool {
+    point.0.is_finite() && point.1.is_finite()
+}
+
+fn rows(height: f64) -> usize {
+    ((height / 36.0) as usize).max(2)
+}
+
+fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    widened(values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v))))
+}
+
+/// A range that has a length.
+fn widened((low, high): (f64, f64)) -> (f64, f64) {
+    if !(low.is_finite() && high.is_finite()) {
+        return (0.0, 1.0);
+    }
+    let least = (low.abs().max(high.abs()) * 1e-6).max(1e-9);
+    if high - low > least { (low, high) } else { (low - 500.0 * least, high + 500.0 * least) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_peaks_and_ends() {
+        let mut points: Vec<(f64, f64)> = (0..10_000).map(|k| (f64::from(k) / 100.0, 1.0)).collect();
+        points[4321].1 = 9.0;
+        points[4355].1 = -9.0;
+        let thinned = thin(&points, 1.0);
+        assert!(thinned.len() <= 400);
+        assert!(thinned.contains(&points[4321]) && thinned.contains(&points[4355]));
+        assert_eq!((thinned[0], thinned[thinned.len() - 1]), (points[0], points[9999]));
+        assert!(thinned.windows(2).all(|pair| pair[0].0 < pair[1].0));
+    }
+
+    #[test]
+    fn values_that_are_none_leave_a_gap() {
+        let mut chart = Chart::new(Axis::new("a", ("", 1.0)), Axis::new("b", ("", 1.0)));
+        assert!(chart.is_empty());
+        let points = vec![(0.0, 1.0), (1.0, 2.0), (2.0, f64::NAN), (3.0, f64::INFINITY), (4.0, 1.0), (5.0, 0.0)];
+        chart.series.push(Series::new("c", "k0", Mark::Dots, points));
+        let mut svg = Svg::default();
+        chart.draw(&mut svg, "id", Frame { x: 0.0, y: 0.0, width: 300.0, height: 200.0 });
+        let text = svg.finish(300.0, 200.0, "d");
+        assert!(!text.contains("NaN") && !text.contains("inf"));
+        assert_eq!(text.matches("<path").count(), 2);
+    }
+}

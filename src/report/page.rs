@@ -1,0 +1,209 @@
+//! The report of a run: one HTML page with its pictures inside, that needs no script and nothing from elsewhere.
+
+use super::number::{plain, shown_unit, significant, whole};
+use super::svg::{STYLE, escape};
+use super::{Figure, figures};
+use crate::results::{Run, Verdict};
+use crate::scenario::{Loading, Scenario};
+use std::fmt::Write;
+
+/// Makes the whole page.
+pub fn page(run: &Run) -> String {
+    let title = escape(&run.scenario.title);
+    let mut html = format!(
+        concat!(
+            "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">",
+            "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">",
+            "<meta name=\"color-scheme\" content=\"light dark\">",
+            "<title>{title}</title><style>{page}{figures}</style></head><body><main>\n",
+            "<header><h1>{title}</h1><p class=\"sub\">{subtitle}</p></header>\n"
+        ),
+        title = title,
+        page = include_str!("page.css"),
+        figures = STYLE,
+        subtitle = escape(&subtitle(&run.scenario))
+    );
+    tiles(&mut html, run);
+    expectations(&mut html, &run.summary.expectations);
+    figures(run).iter().for_each(|figure| picture(&mut html, figure));
+    blocks(&mut html, run);
+    provenance(&mut html, run);
+    html += "</main></body></html>\n";
+    html
+}
+
+/// `wagon: 1 vehicle at 200 km/h, 500 axles. Track line, 66 m: ballasted 42 m, slab_track 24 m.`
+fn subtitle(scenario: &Scenario) -> String {
+    let track = &scenario.track;
+    let mut text = match &scenario.loading {
+        Some(Loading::Traffic(traffic)) => {
+            let count = traffic.train.vehicles.len();
+            format!(
+                "{} axles of train {} ({count} vehicle{}) at {} km/h. ",
+                whole(*traffic.total),
+                traffic.train.name,
+                if count == 1 { "" } else { "s" },
+                plain(*traffic.train.speed * 3.6, 3)
+            )
+        }
+        Some(Loading::Static(loads)) => {
+            let list = loads.iter().map(|load| format!("{} {} kN", load.name, plain(*load.force / 1e3, 4)));
+            format!("Static check: {}. ", list.collect::<Vec<_>>().join(", "))
+        }
+        None => String::new(),
+    };
+    let metres = |length: f64| plain(length, 3);
+    let sections = track.sections.iter().map(|s| format!("{} {} m", s.name, metres(s.end - s.start)));
+    let sections = sections.collect::<Vec<_>>().join(", ");
+    let _ = write!(text, "Track {}, {} m: {sections}.", track.name, metres(track.end() - track.start()));
+    text
+}
+
+/// The key figures in a row.
+fn tiles(html: &mut String, run: &Run) {
+    let scalar = |name: &str| run.summary.scalars.get(name).map(|s| s.value).filter(|value| value.is_finite());
+    let mut tiles = String::new();
+    let mut tile = |name: &str, value: Option<f64>, unit: &str, note: String| {
+        let Some(value) = value else { return };
+        let (shown, size) = shown_unit(unit);
+        let value =
+            if unit == "1" && value.fract() == 0.0 { whole(value as u64) } else { significant(value / size, 3) };
+        let _ = write!(
+            tiles,
+            "<div class=\"tile\"><div class=\"name\">{name}</div><div class=\"value\">{value} <span>{shown}</span></div>\
+             <div class=\"note\">{}</div></div>",
+            escape(&note)
+        );
+    };
+    let load = |name: &str| run.summary.scalars.get(name).map(|s| significant(s.value / 1e3, 3));
+    let place = scalar("max_settlement_x").map(|x| format!("at {} m", plain(x, 3)));
+    tile("Largest settlement", scalar("max_settlement"), "m", place.unwrap_or_default());
+    tile("Far-field settlement", scalar("far_field_settlement"), "m", "median".to_owned());
+    tile("Differential settlement", scalar("differential_settlement"), "m", "largest less far field".to_owned());
+    let void = scalar("max_void").map(|gap| format!("largest void {} mm", significant(gap * 1e3, 2)));
+    tile("Voided sleepers", scalar("voided_sleepers"), "1", void.unwrap_or_default());
+    let amplification =
+        scalar("dynamic_amplification").map(|factor| format!("{} \u{d7} static", significant(factor, 3)));
+    let least = load("min_wheel_force").map(|force| format!("least {force} kN"));
+    let wheel = amplification.into_iter().chain(least).collect::<Vec<_>>().join(", ");
+    tile("Largest wheel force", scalar("max_wheel_force"), "N", wheel);
+    tile("Largest rail seat load", scalar("max_rail_seat_load"), "N", "per seat".to_owned());
+    tile("Largest contact force", scalar("max_contact_force"), "N", "sleeper on ballast, per seat".to_owned());
+    tile("Largest rail moment", scalar("max_rail_moment"), "N m", "sagging, one rail".to_owned());
+    tile("Largest rail deflection", scalar("max_rail_displacement"), "m", String::new());
+    if !tiles.is_empty() {
+        let _ = writeln!(html, "<div class=\"tiles\">{tiles}</div>");
+    }
+}
+
+fn expectations(html: &mut String, verdicts: &[Verdict]) {
+    if verdicts.is_empty() {
+        return;
+    }
+    let missed = verdicts.iter().filter(|verdict| !verdict.met).count();
+    let caption = match missed {
+        0 => "Everything that the scene expects holds.".to_owned(),
+        n => format!("{n} of {} do not hold.", verdicts.len()),
+    };
+    let _ = write!(
+        html,
+        "<section><h2>Expectations</h2><p class=\"caption\">{caption}</p><div class=\"scroll\"><table>\
+         <tr><th class=\"text\">expected</th><th class=\"text\">computed</th><th class=\"text\">verdict</th></tr>"
+    );
+    for verdict in verdicts {
+        let values: Vec<String> = verdict.values.iter().map(|value| plain(*value, 4)).collect();
+        let computed = match &verdict.problem {
+            Some(problem) => problem.clone(),
+            None => format!("{} {}", values.join(" | "), if verdict.unit == "1" { "" } else { &verdict.unit }),
+        };
+        let (class, word) = if verdict.met { ("good", "\u{2713} met") } else { ("bad", "\u{2717} missed") };
+        let _ = write!(
+            html,
+            "<tr><td class=\"text\"><code>{}</code></td><td class=\"text\">{}</td><td class=\"text {class}\">{word}</td></tr>",
+            escape(&verdict.text),
+            escape(&computed)
+        );
+    }
+    *html += "</table></div></section>\n";
+}
+
+fn picture(html: &mut String, figure: &Figure) {
+    // The page states the pictures' style once.
+    let svg = figure.svg.replacen(&format!("<style>{STYLE}</style>"), "", 1);
+    let (id, title, caption) = (escape(&figure.id), escape(&figure.title), escape(&figure.caption));
+    let _ = writeln!(
+        html,
+        "<section id=\"{id}\"><h2>{title}</h2><p class=\"caption\">{caption}</p><div class=\"scroll\">{svg}</div></section>"
+    );
+}
+
+/// The extremes of every block.
+fn blocks(html: &mut String, run: &Run) {
+    if run.blocks.is_empty() {
+        return;
+    }
+    let heads = [
+        ("Axles before", ""),
+        ("Axles of the block", ""),
+        ("Wheel force, largest", "kN"),
+        ("Wheel force, least", "kN"),
+        ("Rail seat load", "kN"),
+        ("Contact force", "kN"),
+        ("Settlement after", "mm"),
+        ("Settlement of the block", "mm"),
+        ("Newton iterations per step", ""),
+    ];
+    let mut table = String::from("<div class=\"scroll\"><table><thead><tr>");
+    for (name, unit) in heads {
+        let _ = write!(table, "<th>{name}<small>{unit}</small></th>");
+    }
+    table += "</tr></thead><tbody>";
+    for block in &run.blocks {
+        let iterations = block.newton_iterations as f64 / block.time_steps.max(1) as f64;
+        let of_block = if block.block_axles == 0 { "record only".to_owned() } else { whole(block.block_axles) };
+        let numbers = [
+            block.max_wheel_force_N / 1e3,
+            block.min_wheel_force_N / 1e3,
+            block.max_rail_seat_load_N / 1e3,
+            block.max_contact_force_N / 1e3,
+            block.max_settlement_m * 1e3,
+            block.max_settlement_step_m * 1e3,
+            iterations,
+        ];
+        let _ = write!(table, "<tr><td>{}</td><td>{of_block}</td>", whole(block.axles));
+        for number in numbers {
+            let _ = write!(table, "<td>{}</td>", significant(number, 3));
+        }
+        table += "</tr>";
+    }
+    table += "</tbody></table></div>";
+    if run.blocks.len() > 40 {
+        table = format!("<details><summary>{} blocks</summary>{table}</details>", run.blocks.len());
+    }
+    let _ = writeln!(
+        html,
+        "<section class=\"long\" id=\"blocks\"><h2>Blocks</h2><p class=\"caption\">Extremes of the passage computed for \
+         each block of axles.</p>{table}</section>"
+    );
+}
+
+fn provenance(html: &mut String, run: &Run) {
+    let made = &run.summary.provenance;
+    let _ = writeln!(
+        html,
+        "<section class=\"long\" id=\"provenance\"><h2>What made this</h2><dl><dt>Program</dt><dd>{} {}</dd>\
+         <dt>File</dt><dd>{}</dd><dt>SHA-256</dt><dd><code>{}</code></dd><dt>Seed</dt><dd>{}</dd></dl>",
+        escape(&made.program),
+        escape(&made.version),
+        escape(&made.file),
+        escape(&made.source_sha256),
+        made.seed
+    );
+    if !made.plan.is_empty() {
+        let _ = writeln!(html, "<p class=\"note\">The plan</p><pre>{}</pre>", escape(&made.plan));
+    }
+    if !made.source.is_empty() {
+        let _ = writeln!(html, "<details><summary>The source</summary><pre>{}</pre></details>", escape(&made.source));
+    }
+    *html += "</section>\n";
+}

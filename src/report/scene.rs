@@ -1,0 +1,356 @@
+//! The scene to scale: the whole track with its vehicle at the start, and each transition close up.
+//!
+//! Lengths that the scene states (places, spacings, sleepers, rail, wheels, bogies) are true, and equal in both
+//! directions. The depth of ballast and slab, the car body's height and the springs are symbols.
+
+use super::number::{plain, tick_label, ticks, whole};
+use super::svg::{Anchor, Frame, Svg, text_width};
+use super::vehicle;
+use crate::scenario::{Foot, Loading, Scenario, Seat, Section, StaticLoad};
+
+pub const WIDTH: f64 = 900.0;
+const MARGIN: f64 = 26.0;
+/// Half the length of a close-up, m.
+const CLOSE: f64 = 6.0;
+/// Depth of the drawn bed under the sleepers' base, m.
+const BED: f64 = 0.40;
+const PAD: f64 = 0.035;
+const SLAB: f64 = 0.25;
+
+/// A window on the track at one scale.
+pub(super) struct View {
+    /// Chainage at the left edge, m, and length shown, m.
+    pub start: f64,
+    pub end: f64,
+    pub scale: f64,
+    /// Top of the rail on the picture, px.
+    pub rail: f64,
+}
+
+impl View {
+    pub fn x(&self, chainage: f64) -> f64 {
+        MARGIN + (chainage - self.start) * self.scale
+    }
+
+    /// Place of a height below the rail's top, m.
+    pub fn y(&self, below: f64) -> f64 {
+        self.rail + below * self.scale
+    }
+
+    fn shows(&self, x: f64) -> bool {
+        x >= self.start - 1e-6 && x <= self.end + 1e-6
+    }
+
+    /// A box of the world, m: left and right chainage, top and bottom below the rail's top.
+    pub fn area(&self, left: f64, right: f64, top: f64, bottom: f64) -> Frame {
+        let (left, right) = (left.max(self.start), right.min(self.end));
+        Frame {
+            x: self.x(left),
+            y: self.y(top),
+            width: (right - left) * self.scale,
+            height: (bottom - top) * self.scale,
+        }
+    }
+}
+
+/// Draws the scene as one picture, valid on its own.
+pub fn scene_svg(scenario: &Scenario) -> String {
+    let mut svg = Svg::default();
+    let track = &scenario.track;
+    let mut bottom = draw_whole(&mut svg, scenario);
+    let length = track.end() - track.start();
+    if length > 3.0 * CLOSE {
+        let places: Vec<f64> = match &scenario.loading {
+            Some(Loading::Static(loads)) if track.transitions.is_empty() => loads.iter().map(|load| load.x).collect(),
+            _ => track.transitions.iter().map(|transition| transition.x).collect(),
+        };
+        for (index, place) in places.iter().take(4).enumerate() {
+            bottom = draw_close(&mut svg, scenario, *place, index, bottom);
+        }
+    }
+    svg.finish(WIDTH, bottom, &format!("{}: the scene to scale", scenario.title))
+}
+
+fn draw_whole(svg: &mut Svg, scenario: &Scenario) -> f64 {
+    let track = &scenario.track;
+    let length = (track.end() - track.start()).max(1e-3);
+    let scale = ((WIDTH - 2.0 * MARGIN) / length).min(90.0);
+    let head = if matches!(scenario.loading, Some(Loading::Static(_))) { 76.0 } else { 62.0 + 3.9 * scale.min(30.0) };
+    let view = View { start: track.start(), end: track.end(), scale, rail: head };
+    svg.text("strong", (6.0, 16.0), Anchor::Start, "The track to scale");
+    let place = Frame { x: MARGIN - 8.0, y: 20.0, width: length * scale + 16.0, height: 1000.0 };
+    svg.clipped("scene-whole", place, |svg| {
+        draw_track(svg, scenario, &view);
+        if let Some(Loading::Traffic(traffic)) = &scenario.loading {
+            vehicle::draw_train(svg, scenario, traffic, &view);
+        }
+    });
+    let mut bottom = draw_loads(svg, scenario, &view);
+    if track.sections.first().is_some_and(|section| scale * *section.spacing > 26.0) {
+        bottom = draw_numbers(svg, scenario, &view, bottom);
+    }
+    for transition in &track.transitions {
+        let x = view.x(transition.x);
+        svg.line("mark", (x, 44.0), (x, bottom + 6.0));
+        let name = if transition.name.is_empty() { "transition" } else { &transition.name };
+        svg.text("small halo", (x, 38.0), Anchor::Middle, name);
+    }
+    let bottom = draw_spans(svg, scenario, &view, bottom + 12.0);
+    draw_chainage(svg, &view, bottom)
+}
+
+fn draw_close(svg: &mut Svg, scenario: &Scenario, place: f64, index: usize, top: f64) -> f64 {
+    let track = &scenario.track;
+    let (start, end) = ((place - CLOSE).max(track.start()), (place + CLOSE).min(track.end()));
+    let scale = (WIDTH - 2.0 * MARGIN) / (end - start);
+    let view = View { start, end, scale, rail: top + 78.0 };
+    let name = track.transitions.get(index).map_or("", |t| t.name.as_str());
+    let title = match (track.transitions.is_empty(), name) {
+        (true, _) => "Around the load".to_owned(),
+        (_, "") => format!("The transition, \u{b1}{} m", plain(CLOSE, 2)),
+        (_, name) => format!("Transition `{name}`, \u{b1}{} m", plain(CLOSE, 2)),
+    };
+    svg.text("strong", (6.0, top + 18.0), Anchor::Start, &title);
+    draw_key(svg, top + 18.0);
+    let clip = Frame { x: MARGIN, y: top + 26.0, width: WIDTH - 2.0 * MARGIN, height: 400.0 };
+    svg.clipped(&format!("scene-close-{index}"), clip, |svg| draw_track(svg, scenario, &view));
+    let bottom = draw_loads(svg, scenario, &view);
+    draw_spacings(svg, scenario, &view);
+    let bottom = draw_numbers(svg, scenario, &view, bottom);
+    if let Some(transition) = track.transitions.get(index) {
+        let x = view.x(transition.x);
+        svg.line("mark", (x, view.rail - 44.0), (x, view.y(ground(scenario))));
+    }
+    draw_chainage(svg, &view, bottom + 4.0)
+}
+
+/// What the colours of a close-up mean.
+fn draw_key(svg: &mut Svg, y: f64) {
+    let mut x = WIDTH - MARGIN;
+    let entries =
+        [("slab", "slab"), ("stones", "ballast"), ("spring", "support"), ("sleeper", "sleeper"), ("pad", "rail pad")];
+    for (class, name) in entries {
+        x -= text_width(name) + 30.0;
+        match class {
+            "spring" => draw_spring(svg, (x + 7.0, y - 11.0), y + 2.0, 4.0),
+            _ => svg.rect(class, Frame { x, y: y - 9.0, width: 14.0, height: 9.0 }),
+        }
+        svg.text("small muted", (x + 19.0, y), Anchor::Start, name);
+    }
+}
+
+fn sleeper_size(section: &Section) -> (f64, f64) {
+    section.sleeper_size.map_or((0.26, 0.2), |[_, width, height]| (width, height))
+}
+
+/// Depth of the ground below the rail's top, m: one level for the whole track.
+fn ground(scenario: &Scenario) -> f64 {
+    let depth = |section: &Section| section.rail.height + PAD + sleeper_size(section).1.max(SLAB) + BED;
+    scenario.track.sections.iter().map(depth).fold(0.0, f64::max)
+}
+
+fn draw_track(svg: &mut Svg, scenario: &Scenario, view: &View) {
+    let ground = ground(scenario);
+    for (index, section) in scenario.track.sections.iter().enumerate() {
+        if section.end <= view.start || section.start >= view.end {
+            continue;
+        }
+        let base = section.rail.height + PAD;
+        let seats: Vec<&Seat> = scenario.track.seats.iter().filter(|s| s.section == index && view.shows(s.x)).collect();
+        if seats.iter().any(|seat| seat.is_ballasted()) {
+            let (_, height) = sleeper_size(section);
+            let area = view.area(section.start, section.end, base + 0.5 * height, ground);
+            svg.rect("stones", area);
+            draw_stones(svg, area, view.scale);
+        }
+        if section.slab.is_some() {
+            svg.rect("slab", view.area(section.start, section.end, base, base + SLAB));
+        }
+        for seat in &seats {
+            draw_seat(svg, view, section, seat, ground);
+        }
+        svg.rect("steel", view.area(section.start, section.end, 0.0, section.rail.height.max(2.0 / view.scale)));
+    }
+    let y = view.y(ground);
+    svg.line("ground", (view.x(view.start), y), (view.x(view.end), y));
+    let step = if view.scale > 30.0 { 14.0 } else { 9.0 };
+    let mut x = view.x(view.start);
+    while x < view.x(view.end) {
+        svg.line("ground", (x, y + 5.0), (x + 5.0, y));
+        x += step;
+    }
+}
+
+fn draw_seat(svg: &mut Svg, view: &View, section: &Section, seat: &Seat, ground: f64) {
+    let base = section.rail.height + PAD;
+    let (width, height) = sleeper_size(section);
+    let close = view.scale > 30.0;
+    if close {
+        svg.rect("pad", view.area(seat.x - 0.08, seat.x + 0.08, section.rail.height, base));
+    }
+    let x = view.x(seat.x);
+    match &seat.foot {
+        Foot::Sleeper { .. } | Foot::Rigid => {
+            svg.rect("sleeper", view.area(seat.x - width / 2.0, seat.x + width / 2.0, base, base + height));
+            let under = base + height;
+            if matches!(seat.foot, Foot::Rigid) {
+                let area = view.area(seat.x - width / 2.0, seat.x + width / 2.0, under, ground);
+                svg.rect("slab", area);
+            } else if close {
+                draw_spring(svg, (x, view.y(under)), view.y(ground), 0.09 * view.scale);
+            }
+        }
+        Foot::Slab if close => draw_spring(svg, (x, view.y(base + SLAB)), view.y(ground), 0.07 * view.scale),
+        Foot::Slab => {}
+    }
+}
+
+/// A zigzag from `top` down to `bottom`, px.
+pub(super) fn draw_spring(svg: &mut Svg, (x, top): (f64, f64), bottom: f64, half: f64) {
+    let turns = 6;
+    let lead = 0.16 * (bottom - top);
+    let step = (bottom - top - 2.0 * lead) / f64::from(turns);
+    let mut points = vec![(x, top), (x, top + lead)];
+    for turn in 0..turns {
+        let side = if turn % 2 == 0 { half } else { -half };
+        points.push((x + side, top + lead + (f64::from(turn) + 0.5) * step));
+    }
+    points.extend([(x, bottom - lead), (x, bottom)]);
+    svg.path("spring", &points, false, "");
+}
+
+/// Pebbles in rows, each row shifted, the same at every call.
+fn draw_stones(svg: &mut Svg, area: Frame, scale: f64) {
+    let size = (0.11 * scale).clamp(3.0, 8.0);
+    let mut y = area.y + 0.7 * size;
+    let mut row = 0u32;
+    while y < area.y + area.height {
+        let mut x = area.x + if row.is_multiple_of(2) { 0.5 } else { 1.1 } * size;
+        let mut count = row;
+        while x < area.x + area.width {
+            let r = 0.34 * size * (0.75 + 0.25 * f64::from((count * 7 + row * 3) % 5) / 4.0);
+            svg.path(
+                "stone",
+                &[(x - r, y), (x - 0.3 * r, y - r), (x + r, y - 0.3 * r), (x + 0.4 * r, y + r)],
+                true,
+                "",
+            );
+            x += 1.25 * size;
+            count += 1;
+        }
+        y += size;
+        row += 1;
+    }
+}
+
+/// Arrows of a static check; gives the lower edge of the track.
+fn draw_loads(svg: &mut Svg, scenario: &Scenario, view: &View) -> f64 {
+    if let Some(Loading::Static(loads)) = &scenario.loading {
+        for load in loads.iter().filter(|load| view.shows(load.x)) {
+            draw_load(svg, view, load);
+        }
+    }
+    view.y(ground(scenario)) + 6.0
+}
+
+fn draw_load(svg: &mut Svg, view: &View, load: &StaticLoad) {
+    let (x, tip) = (view.x(load.x), view.rail - 1.0);
+    svg.path("push", &[(x, tip - 34.0), (x, tip)], false, "");
+    svg.path("push", &[(x - 5.0, tip - 9.0), (x, tip), (x + 5.0, tip - 9.0)], false, "");
+    let text = format!("{}: {} kN", load.name, plain(*load.force / 1e3, 4));
+    svg.text("halo", (x + 9.0, tip - 22.0), Anchor::Start, &text);
+}
+
+fn draw_numbers(svg: &mut Svg, scenario: &Scenario, view: &View, bottom: f64) -> f64 {
+    let seats: Vec<&Seat> = scenario.track.seats.iter().filter(|seat| view.shows(seat.x)).collect();
+    let gap = seats.windows(2).map(|pair| view.x(pair[1].x) - view.x(pair[0].x)).fold(f64::INFINITY, f64::min);
+    let every = (24.0 / gap).ceil().max(1.0) as i32;
+    for seat in seats.iter().filter(|seat| seat.number % every == 0 || seat.number.abs() == 1) {
+        svg.text("small", (view.x(seat.x), bottom + 14.0), Anchor::Middle, &signed(seat.number));
+    }
+    bottom + 18.0
+}
+
+fn signed(number: i32) -> String {
+    if number < 0 { format!("\u{2212}{}", number.abs()) } else { format!("+{number}") }
+}
+
+/// The spacing of each section in a close-up, above the rail, with what carries its seats.
+fn draw_spacings(svg: &mut Svg, scenario: &Scenario, view: &View) {
+    for (index, section) in scenario.track.sections.iter().enumerate() {
+        let seats: Vec<&Seat> = scenario.track.seats.iter().filter(|s| s.section == index && view.shows(s.x)).collect();
+        let middle = seats.len() / 2;
+        let (Some(from), Some(to)) = (seats.get(middle.wrapping_sub(1)), seats.get(middle)) else { continue };
+        let (a, b, y) = (view.x(from.x), view.x(to.x), view.rail - 12.0);
+        draw_dimension(svg, a, b, y);
+        let text = format!("{} m", plain(to.x - from.x, 3));
+        svg.text("small halo", ((a + b) / 2.0, y - 6.0), Anchor::Middle, &text);
+        let (left, right) = (view.x(section.start.max(view.start)), view.x(section.end.min(view.end)));
+        let text = carried(section, &seats);
+        svg.text("small muted halo", ((left + right) / 2.0, view.rail - 34.0), Anchor::Middle, &text);
+    }
+}
+
+/// `ballasted: pads 40 MN/m, support 60 MN/m per seat`
+fn carried(section: &Section, seats: &[&Seat]) -> String {
+    let range = |values: Vec<f64>| {
+        let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = values.iter().copied().fold(0.0, f64::max);
+        let show = |value: f64| plain(value / 1e6, 3);
+        if high - low < 1e-3 * high { show(high) } else { format!("{} to {}", show(low), show(high)) }
+    };
+    let pads = range(seats.iter().map(|seat| *seat.pad.stiffness).collect());
+    let mut text = format!("{}: pads {pads} MN/m", section.name);
+    let supports: Vec<f64> = seats
+        .iter()
+        .filter_map(|seat| match &seat.foot {
+            Foot::Sleeper { support, .. } => Some(*support.stiffness),
+            _ => None,
+        })
+        .collect();
+    if !supports.is_empty() {
+        text += &format!(", support {} MN/m per seat", range(supports));
+    } else if let Some(slab) = &section.slab {
+        text += &format!(", foundation {} MN/m per m", plain(*slab.foundation_stiffness / 1e6, 3));
+    }
+    text
+}
+
+fn draw_dimension(svg: &mut Svg, from: f64, to: f64, y: f64) {
+    svg.line("dim", (from, y), (to, y));
+    for x in [from, to] {
+        svg.line("dim", (x, y - 5.0), (x, y + 5.0));
+        svg.line("dim", (x - 3.0, y + 3.0), (x + 3.0, y - 3.0));
+    }
+}
+
+/// Name, length and seats of each section.
+fn draw_spans(svg: &mut Svg, scenario: &Scenario, view: &View, y: f64) -> f64 {
+    for (index, section) in scenario.track.sections.iter().enumerate() {
+        let (a, b) = (view.x(section.start), view.x(section.end));
+        draw_dimension(svg, a, b, y);
+        let seats = scenario.track.seats.iter().filter(|seat| seat.section == index).count();
+        let length = plain(section.end - section.start, 3);
+        let full =
+            format!("{}: {length} m, {} seats at {} m", section.name, whole(seats as u64), plain(*section.spacing, 3));
+        let short = [full, format!("{}: {length} m", section.name), format!("{length} m")];
+        if let Some(text) = short.iter().find(|text| 0.9 * text_width(text) < b - a) {
+            svg.text("small", ((a + b) / 2.0, y + 15.0), Anchor::Middle, text);
+        }
+    }
+    y + 22.0
+}
+
+fn draw_chainage(svg: &mut Svg, view: &View, y: f64) -> f64 {
+    let y = y + 4.0;
+    let (left, right) = (view.x(view.start), view.x(view.end));
+    svg.line("axis", (left, y), (right, y));
+    let marks = ticks(view.start, view.end, 10);
+    let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
+    for mark in marks {
+        svg.line("axis", (view.x(mark), y), (view.x(mark), y + 4.0));
+        svg.text("small muted", (view.x(mark), y + 16.0), Anchor::Middle, &tick_label(mark, step));
+    }
+    svg.text("small muted", ((left + right) / 2.0, y + 31.0), Anchor::Middle, "Chainage [m]");
+    y + 42.0
+}
