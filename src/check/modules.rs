@@ -3,7 +3,7 @@
 use super::library;
 use crate::diag::{Code, Diagnostic, FileId, Sources, Span, nearest::nearest};
 use crate::schema::{self, Role};
-use crate::syntax::tree::{Declaration, Item, Let, Tree, Use};
+use crate::syntax::tree::{Declaration, Item, Tree, Use};
 use crate::syntax::{decode, parse};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -45,21 +45,6 @@ pub(super) struct Scope {
     pub modules: BTreeMap<String, ScopeId>,
 }
 
-impl Scope {
-    pub fn declaration(&self, item: usize) -> Option<&Declaration> {
-        match self.tree.items.get(item) {
-            Some(Item::Declaration(d)) => Some(d),
-            _ => None,
-        }
-    }
-
-    pub fn binding(&self, item: usize) -> Option<&Let> {
-        match self.tree.items.get(item) {
-            Some(Item::Let(l)) => Some(l),
-            _ => None,
-        }
-    }
-}
 
 /// Names that values have, which nothing else may have.
 const TAKEN: [&str; 6] = ["none", "auto", "yes", "no", "rest", "all"];

@@ -5,7 +5,9 @@
 
 mod execute;
 mod listing;
+mod model;
 mod substructure;
+mod system;
 mod track;
 
 pub use execute::{Checkpoint, Recorder, RunError, execute};

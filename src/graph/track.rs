@@ -96,26 +96,3 @@ impl Target {
         }
     }
 }
-
-pub(super) struct TrackSystem;
-impl TrackSystem {
-    pub fn new(_: &Graph) -> Result<Self, TrackError> {
-        Err(TrackError)
-    }
-    pub fn equilibrium(&self, _: &[StaticLoad]) -> Result<Unloaded, TrackError> {
-        Err(TrackError)
-    }
-    pub fn unloaded(&self, _: &[f64]) -> Result<Unloaded, TrackError> {
-        Err(TrackError)
-    }
-    pub fn passage(
-        &self,
-        _: u64,
-        _: &[f64],
-        _: &Unloaded,
-        _: Direction,
-        _: bool,
-    ) -> Result<PassageOutcome, TrackError> {
-        Err(TrackError)
-    }
-}

@@ -1,0 +1,113 @@
+//! From the track and train of the scene to those of the solver: plain numbers of one rail.
+
+use super::TrackNode;
+use crate::scenario::{self, Foot, RailEnds, Section, Track};
+use crate::solvers::track as solver;
+
+/// The solver's model of a track.
+pub(super) fn model(node: &TrackNode) -> solver::TrackModel {
+    let track = &node.track;
+    solver::TrackModel {
+        ends: [track.start(), track.end()],
+        rail: track.sections.iter().map(rail).collect(),
+        seats: track.seats.iter().map(seat).collect(),
+        slabs: track.sections.iter().filter_map(slab).collect(),
+        rail_ends: match track.rail_ends {
+            RailEnds::Clamped => solver::RailEnds::Clamped,
+            RailEnds::Pinned => solver::RailEnds::Pinned,
+            RailEnds::Free => solver::RailEnds::Free,
+        },
+        elements_per_bay: node.elements_per_bay as usize,
+        gravity: node.gravity,
+    }
+}
+
+fn rail(section: &Section) -> solver::RailSection {
+    solver::RailSection {
+        start: section.start,
+        end: section.end,
+        mass: *section.rail.mass,
+        bending_stiffness: *section.rail.bending_stiffness,
+    }
+}
+
+fn seat(seat: &scenario::Seat) -> solver::Seat {
+    solver::Seat {
+        x: seat.x,
+        pad_stiffness: *seat.pad.stiffness,
+        pad_damping: *seat.pad.damping,
+        foot: match &seat.foot {
+            Foot::Sleeper { mass, support } => solver::Foot::Sleeper {
+                mass: **mass,
+                support_stiffness: *support.stiffness,
+                support_damping: *support.damping,
+            },
+            Foot::Rigid => solver::Foot::Rigid,
+            Foot::Slab => solver::Foot::Slab,
+        },
+    }
+}
+
+fn slab(section: &Section) -> Option<solver::Slab> {
+    section.slab.as_ref().map(|slab| solver::Slab {
+        start: section.start,
+        end: section.end,
+        bending_stiffness: *slab.bending_stiffness,
+        mass: *slab.mass,
+        foundation_stiffness: *slab.foundation_stiffness,
+        foundation_damping: *slab.foundation_damping,
+    })
+}
+
+/// The solver's train.
+pub(super) fn train(train: &scenario::Train, direction: scenario::Direction) -> solver::Train {
+    let vehicles = train.vehicles.iter().map(vehicle).zip(train.vehicle_offsets()).collect();
+    let direction = match direction {
+        scenario::Direction::Backward => solver::Direction::Backward,
+        _ => solver::Direction::Forward,
+    };
+    solver::Train { vehicles, direction }
+}
+
+fn vehicle(v: &scenario::Vehicle) -> solver::Vehicle {
+    solver::Vehicle {
+        car_body_mass: *v.car_body_mass,
+        car_body_inertia: *v.car_body_pitch_inertia,
+        bogie_mass: *v.bogie_mass,
+        bogie_inertia: *v.bogie_pitch_inertia,
+        bogie_spacing: *v.bogie_spacing,
+        wheel_mass: *v.wheel_mass,
+        wheelset_spacing: *v.wheelset_spacing,
+        primary_stiffness: *v.primary_stiffness,
+        primary_damping: *v.primary_damping,
+        secondary_stiffness: *v.secondary_stiffness,
+        secondary_damping: *v.secondary_damping,
+        hertz: *v.hertz,
+    }
+}
+
+/// The settled track: supports where they lie, and the rail ends held at the level of the track there. A clamp that
+/// stayed at the level as built would grow a second transition at the end of the model.
+pub(super) fn level(node: &TrackNode, settlement: &[f64]) -> solver::TrackLevel {
+    let track = &node.track;
+    let end = |section: usize, seat: Option<usize>| {
+        seat.map_or(0.0, |i| settlement[i]) + sag(track, section, node.gravity)
+    };
+    let last = track.seats.len().checked_sub(1);
+    let first = (!track.seats.is_empty()).then_some(0);
+    let sections = track.sections.len().saturating_sub(1);
+    solver::TrackLevel { settlements: settlement.to_vec(), ends: [end(0, first), end(sections, last)] }
+}
+
+/// Deflection of the rail of a long uniform track under gravity, m.
+fn sag(track: &Track, section: usize, gravity: f64) -> f64 {
+    let Some(seat) = track.seats.iter().find(|s| s.section == section) else { return 0.0 };
+    let form = &track.sections[section];
+    let rail = *form.rail.mass * *form.spacing * gravity; // N a seat
+    let below = match (&seat.foot, &form.slab) {
+        (Foot::Sleeper { mass, support }, _) => (rail + **mass * gravity) / *support.stiffness,
+        (Foot::Slab, Some(slab)) => (*form.rail.mass + *slab.mass) * gravity / *slab.foundation_stiffness,
+        _ => 0.0,
+    };
+    rail / *seat.pad.stiffness + below
+}
