@@ -1,0 +1,74 @@
+//! The shipped transition zone, run as a library: what the paper says of it, and what must hold in any case.
+
+use trackbed::check::NoModules;
+use trackbed::results::{self, RunRecorder, SleeperRow};
+use trackbed::{compile, graph};
+
+struct Scene {
+    sleepers: Vec<SleeperRow>,
+    histories: Vec<results::HistoryRow>,
+    blocks: Vec<results::BlockRow>,
+}
+
+fn run(text: &str) -> Scene {
+    let compiled = compile("scene.track", text, &NoModules, &[]);
+    let errors: Vec<_> = compiled.diagnostics.iter().filter(|d| d.is_error()).collect();
+    assert!(errors.is_empty(), "{errors:?}");
+    let (scenario, plan) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
+    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
+    graph::execute(&plan, &mut recorder, None).unwrap();
+    Scene { histories: recorder.all_histories(), sleepers: recorder.tables.sleepers.clone(), blocks: recorder.tables.blocks.clone() }
+}
+
+/// The shipped scene, thinned so that a test suite can afford it: the same track and vehicle, half the elements and
+/// twice the step.
+fn transition() -> Scene {
+    let text = std::fs::read_to_string("scenarios/transition.track").unwrap();
+    run(&text.replace("elements_per_bay = 4", "elements_per_bay = 2").replace("1e-4 s", "2e-4 s"))
+}
+
+#[test]
+fn the_transition_sinks_where_the_paper_says() {
+    let scene = transition();
+    let at = |axles: u64| scene.sleepers.iter().filter(move |r| r.axles == axles).collect::<Vec<_>>();
+    let last = at(500);
+    let deepest = last.iter().max_by(|a, b| a.settlement_m.total_cmp(&b.settlement_m)).unwrap();
+    assert!((-5.0..-2.0).contains(&deepest.x_m), "largest settlement at {} m", deepest.x_m);
+    // some sleepers next to the slab hang, and the rail's weight moves to their neighbours
+    let hanging: Vec<i32> = last.iter().filter(|r| r.void_m > 1e-6).map(|r| r.sleeper.parse().unwrap()).collect();
+    assert!(hanging.contains(&-1) && hanging.iter().all(|n| *n < 0), "hanging: {hanging:?}");
+    // the rate of settlement falls
+    let far = |axles: u64| at(axles).iter().find(|r| r.sleeper == "-20").unwrap().settlement_m;
+    assert!(far(100) / 100.0 > 2.0 * (far(500) - far(100)) / 400.0);
+    // the seat on the slab's edge carries the highest load
+    let highest = last.iter().max_by(|a, b| a.max_rail_seat_load_N.total_cmp(&b.max_rail_seat_load_N)).unwrap();
+    assert_eq!(highest.sleeper, "+1");
+    // contact is never in tension, and contact is lost only where there is a sleeper
+    assert!(last.iter().all(|r| r.max_contact_force_N >= 0.0 && r.contact_loss_s >= 0.0));
+    // seats that see only some of the wheels settle as their neighbours do: no false step grows there
+    let settled: Vec<f64> = last.iter().filter(|r| r.x_m < -10.0).map(|r| r.settlement_m).collect();
+    let (min, max) = settled.iter().fold((f64::MAX, 0.0_f64), |(a, b), s| (a.min(*s), b.max(*s)));
+    assert!(max < 1.15 * min, "far-field settlement from {min} to {max} m");
+}
+
+#[test]
+fn a_uniform_track_keeps_its_wheel_forces() {
+    let text = std::fs::read_to_string("scenarios/transition.track").unwrap();
+    let text = text
+        .replace("sections    = [open: 42 m, stiff: 24 m]", "sections = [open: 66 m]")
+        .replace("  transitions = [edge: soft_to_stiff]\n", "")
+        .replace("at         = [-20, -13, -5, -3, +1, +7] sleepers", "at = 50 sleepers")
+        .replace("after      = [0, 100, 500] axles", "after = 0 axles")
+        .replace("expect { that = [-5 m < place_of_max(settlement) < -2.5 m] }", "")
+        .replace("total = 500 axles", "total = 20 axles");
+    let scene = run(&text);
+    let load = 20_000.0 / 2.0 * 9.81;
+    let wheels: Vec<f64> = scene.histories.iter().filter(|r| r.quantity == "wheel_force" && r.axles == 0).map(|r| r.value).collect();
+    assert!(wheels.len() > 1000);
+    let worst = wheels.iter().map(|f| (f / load - 1.0).abs()).fold(0.0, f64::max);
+    // sleepers pass under the wheels 93 times a second; nothing else acts
+    assert!(worst < 0.05, "wheel forces leave the static load by {worst}");
+    let mean = wheels.iter().sum::<f64>() / wheels.len() as f64;
+    assert!((mean / load - 1.0).abs() < 2e-3, "mean {mean} N");
+    assert_eq!(scene.blocks.len(), 2);
+}
