@@ -76,10 +76,10 @@ fn draw_whole(svg: &mut Svg, scenario: &Scenario) -> f64 {
     let track = &scenario.track;
     let length = (track.end() - track.start()).max(1e-3);
     let scale = ((WIDTH - 2.0 * MARGIN) / length).min(90.0);
-    let head = if matches!(scenario.loading, Some(Loading::Static(_))) { 76.0 } else { 62.0 + 3.9 * scale.min(30.0) };
+    let head = if matches!(scenario.loading, Some(Loading::Static(_))) { 76.0 } else { 48.0 + 3.9 * scale.min(30.0) };
     let view = View { start: track.start(), end: track.end(), scale, rail: head };
     svg.text("strong", (6.0, 16.0), Anchor::Start, "The track to scale");
-    let place = Frame { x: MARGIN - 8.0, y: 20.0, width: length * scale + 16.0, height: 1000.0 };
+    let place = Frame { x: MARGIN - 8.0, y: 0.0, width: length * scale + 16.0, height: 1000.0 };
     svg.clipped("scene-whole", place, |svg| {
         draw_track(svg, scenario, &view);
         if let Some(Loading::Traffic(traffic)) = &scenario.loading {
