@@ -12,6 +12,8 @@ mod page;
 mod passage;
 mod scene;
 mod svg;
+mod symbols;
+mod thin;
 mod vehicle;
 
 pub use page::page;
@@ -204,6 +206,7 @@ mod tests {
         for (name, run) in [("transition", example::transition()), ("bench", example::bench()), ("bridge", bridge())] {
             std::fs::write(directory.join(format!("{name}.html")), page(&run)).unwrap();
             std::fs::write(directory.join(format!("{name}.svg")), scene_svg(&run.scenario)).unwrap();
+            crate::results::write(&run, &directory.join(name)).unwrap();
         }
     }
 }

@@ -5,6 +5,7 @@
 
 use super::number::{plain, tick_label, ticks, whole};
 use super::svg::{Anchor, Frame, Svg, text_width};
+use super::symbols::{draw_dimension, draw_spring, draw_stones};
 use super::vehicle;
 use crate::scenario::{Foot, Loading, Scenario, Seat, Section, StaticLoad};
 
@@ -75,10 +76,10 @@ fn draw_whole(svg: &mut Svg, scenario: &Scenario) -> f64 {
     let track = &scenario.track;
     let length = (track.end() - track.start()).max(1e-3);
     let scale = ((WIDTH - 2.0 * MARGIN) / length).min(90.0);
-    let head = if matches!(scenario.loading, Some(Loading::Static(_))) { 76.0 } else { 62.0 + 3.9 * scale.min(30.0) };
+    let head = if matches!(scenario.loading, Some(Loading::Static(_))) { 76.0 } else { 48.0 + 3.9 * scale.min(30.0) };
     let view = View { start: track.start(), end: track.end(), scale, rail: head };
     svg.text("strong", (6.0, 16.0), Anchor::Start, "The track to scale");
-    let place = Frame { x: MARGIN - 8.0, y: 20.0, width: length * scale + 16.0, height: 1000.0 };
+    let place = Frame { x: MARGIN - 8.0, y: 0.0, width: length * scale + 16.0, height: 1000.0 };
     svg.clipped("scene-whole", place, |svg| {
         draw_track(svg, scenario, &view);
         if let Some(Loading::Traffic(traffic)) = &scenario.loading {
@@ -205,44 +206,6 @@ fn draw_seat(svg: &mut Svg, view: &View, section: &Section, seat: &Seat, ground:
     }
 }
 
-/// A zigzag from `top` down to `bottom`, px.
-pub(super) fn draw_spring(svg: &mut Svg, (x, top): (f64, f64), bottom: f64, half: f64) {
-    let turns = 6;
-    let lead = 0.16 * (bottom - top);
-    let step = (bottom - top - 2.0 * lead) / f64::from(turns);
-    let mut points = vec![(x, top), (x, top + lead)];
-    for turn in 0..turns {
-        let side = if turn % 2 == 0 { half } else { -half };
-        points.push((x + side, top + lead + (f64::from(turn) + 0.5) * step));
-    }
-    points.extend([(x, bottom - lead), (x, bottom)]);
-    svg.path("spring", &points, false, "");
-}
-
-/// Pebbles in rows, each row shifted, the same at every call.
-fn draw_stones(svg: &mut Svg, area: Frame, scale: f64) {
-    let size = (0.11 * scale).clamp(3.0, 8.0);
-    let mut y = area.y + 0.7 * size;
-    let mut row = 0u32;
-    while y < area.y + area.height {
-        let mut x = area.x + if row.is_multiple_of(2) { 0.5 } else { 1.1 } * size;
-        let mut count = row;
-        while x < area.x + area.width {
-            let r = 0.34 * size * (0.75 + 0.25 * f64::from((count * 7 + row * 3) % 5) / 4.0);
-            svg.path(
-                "stone",
-                &[(x - r, y), (x - 0.3 * r, y - r), (x + r, y - 0.3 * r), (x + 0.4 * r, y + r)],
-                true,
-                "",
-            );
-            x += 1.25 * size;
-            count += 1;
-        }
-        y += size;
-        row += 1;
-    }
-}
-
 /// Arrows of a static check; gives the lower edge of the track.
 fn draw_loads(svg: &mut Svg, scenario: &Scenario, view: &View) -> f64 {
     if let Some(Loading::Static(loads)) = &scenario.loading {
@@ -314,14 +277,6 @@ fn carried(section: &Section, seats: &[&Seat]) -> String {
         text += &format!(", foundation {} MN/m per m", plain(*slab.foundation_stiffness / 1e6, 3));
     }
     text
-}
-
-fn draw_dimension(svg: &mut Svg, from: f64, to: f64, y: f64) {
-    svg.line("dim", (from, y), (to, y));
-    for x in [from, to] {
-        svg.line("dim", (x, y - 5.0), (x, y + 5.0));
-        svg.line("dim", (x - 3.0, y + 3.0), (x + 3.0, y - 3.0));
-    }
 }
 
 /// Name, length and seats of each section.

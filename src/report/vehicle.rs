@@ -1,8 +1,9 @@
 //! A train on the drawing: wheels and bogies where a passage starts, the car body as a symbol.
 
 use super::number::plain;
-use super::scene::{View, draw_spring};
+use super::scene::View;
 use super::svg::{Anchor, Frame, Svg};
+use super::symbols::draw_spring;
 use crate::scenario::{Direction, Scenario, Traffic, Vehicle};
 
 /// Heights above the rail's top, m: floor and roof of the car body.
@@ -29,18 +30,12 @@ pub(super) fn draw_train(svg: &mut Svg, scenario: &Scenario, traffic: &Traffic, 
             draw_vehicle(svg, view, vehicle, first, sign);
         }
     }
-    let y = view.y(-ROOF) - 9.0;
-    let length = train.vehicles.first().map_or(10.0, |v| v.wheel_offsets()[3]);
-    let middle = view.x(lead + sign * 0.5 * length);
-    let speed = plain(*train.speed * 3.6, 3);
-    let text = format!(
-        "{}, {speed} km/h; leading wheel starts at {} m",
-        train.vehicles.first().map_or("", |v| v.name.as_str()),
-        plain(lead, 3)
-    );
-    let half = 3.1 * text.chars().count() as f64;
-    let middle = middle.clamp(view.x(view.start) + half, (view.x(view.end) - half).max(view.x(view.start) + half));
-    svg.text("small halo", (middle, y), Anchor::Middle, &text);
+    let mut text =
+        format!("{}, {} km/h", train.vehicles.first().map_or("", |v| v.name.as_str()), plain(*train.speed * 3.6, 3));
+    if let Some(start) = scenario.solve.start {
+        text += &format!("; the leading wheel starts at {} m", plain(*start, 3));
+    }
+    svg.text("small muted", (view.x(view.end), 16.0), Anchor::End, &text);
     let nose = lead - sign * train.vehicles.first().map_or(0.0, |v| (body_length(v) - v.wheel_offsets()[3]) / 2.0);
     let (tip, tail) = (view.x(nose) - sign * 32.0, view.x(nose) - sign * 8.0);
     let y = view.y(-0.5 * ROOF);

@@ -1,7 +1,7 @@
 //! What a run leaves behind: tables, histories, a summary with what made it, and the files that hold them.
 //!
 //! Values are SI; signs and names are those of the language guide. [`summarise`] and [`verdicts`] make numbers of the
-//! tables, [`write`] and [`read`] move a [`Run`] to a directory and back, bit for bit.
+//! tables, [`write()`] and [`read`] move a [`Run`] to a directory and back, bit for bit.
 
 mod atomic;
 pub mod checkpoint;
