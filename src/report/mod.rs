@@ -196,17 +196,4 @@ mod tests {
         scenario.track.seats.clear();
         assert!(roxmltree::Document::parse(&scene_svg(&scenario)).is_ok());
     }
-
-    /// Writes the example pages where a person can look at them: `cargo test --lib example_pages -- --ignored`.
-    #[test]
-    #[ignore = "for looking at"]
-    fn example_pages() {
-        let directory = std::env::temp_dir().join("trackbed-example");
-        std::fs::create_dir_all(&directory).unwrap();
-        for (name, run) in [("transition", example::transition()), ("bench", example::bench()), ("bridge", bridge())] {
-            std::fs::write(directory.join(format!("{name}.html")), page(&run)).unwrap();
-            std::fs::write(directory.join(format!("{name}.svg")), scene_svg(&run.scenario)).unwrap();
-            crate::results::write(&run, &directory.join(name)).unwrap();
-        }
-    }
 }

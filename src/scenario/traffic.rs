@@ -137,6 +137,6 @@ pub struct SettlementLaw {
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum LawForm {
-    /// Varandas, Hölscher and Silva (2014): `reference_force` F0 [N] for `reference_cycles` N0 gives `gamma` [m].
+    /// Varandas, Hölscher and Silva (2014): `reference_force` F0 in N for `reference_cycles` N0 gives `gamma` in m.
     Varandas { alpha: f64, beta: f64, gamma: f64, reference_cycles: f64, reference_force: f64 },
 }
