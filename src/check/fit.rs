@@ -62,7 +62,7 @@ impl Checker<'_> {
     fn through_name(&mut self, form: &'static Form, value: &Value, scope: ScopeId) -> Option<Slot> {
         let ValueKind::Path(path) = &value.kind else { return None };
         let error = Slot { value: Val::Error, span: value.span, origin: Origin::Written(value.span) };
-        if matches!(form, Form::Name | Form::Response | Form::Rule | Form::Comparison) {
+        if reads_names(form) {
             return None;
         }
         let words = form.words();
@@ -593,6 +593,15 @@ fn unsigned(value: &Value) -> &ValueKind {
     match &value.kind {
         ValueKind::Negate(inner) => unsigned(inner),
         kind => kind,
+    }
+}
+
+/// Whether a bare name is read by the form itself, not looked up.
+fn reads_names(form: &Form) -> bool {
+    match form {
+        Form::Name | Form::Response | Form::Rule | Form::Comparison => true,
+        Form::List(item) => reads_names(item),
+        _ => false,
     }
 }
 

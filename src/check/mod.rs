@@ -54,6 +54,7 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
         standard,
         records: HashMap::new(),
         stack: Vec::new(),
+        circles: BTreeSet::new(),
         used: BTreeSet::new(),
         defaults: HashMap::new(),
         seat_places: None,
@@ -76,6 +77,8 @@ struct Checker<'a> {
     records: HashMap<ItemId, Option<Rc<Record>>>,
     /// Items being evaluated, with the place that asked.
     stack: Vec<(ItemId, Span)>,
+    /// Circles of names reported so far.
+    circles: BTreeSet<Vec<ItemId>>,
     /// Items that something asked for.
     used: BTreeSet<ItemId>,
     /// Defaults of the schema, parsed.

@@ -17,6 +17,12 @@ impl Checker<'_> {
     pub fn within<T>(&mut self, id: ItemId, place: Span, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
         self.used.insert(id);
         if let Some(start) = self.stack.iter().position(|(item, _)| *item == id) {
+            // one circle is one mistake, wherever it is entered
+            let mut members: Vec<ItemId> = self.stack[start..].iter().map(|(item, _)| *item).collect();
+            members.sort_unstable();
+            if !self.circles.insert(members) {
+                return None;
+            }
             let names: Vec<String> =
                 self.stack[start..].iter().map(|(item, _)| *item).chain([id]).map(|i| self.item_name(i)).collect();
             let mut mistake =

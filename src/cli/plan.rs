@@ -1,6 +1,6 @@
 //! `trackbed plan`: the solver graph, what each pass decided and what the run will take.
 
-use super::scene::{SceneArguments, failed, show};
+use super::scene::{SceneArguments, failed, not_yet, show};
 use super::{Outcome, terminal};
 use clap::ValueEnum;
 
@@ -23,7 +23,9 @@ enum PlanFormat {
 pub(super) fn run(arguments: &Arguments) -> Outcome {
     let Some(compiled) = arguments.scene.compile() else { return Outcome::Usage };
     show(&compiled);
-    let Some(graph) = compiled.graph.as_ref().filter(|_| !failed(&compiled)) else { return Outcome::Failed };
+    let Some(graph) = compiled.graph.as_ref().filter(|_| !failed(&compiled)) else {
+        return not_yet(&compiled);
+    };
     let listing = graph.listing();
     match arguments.format {
         PlanFormat::Human => terminal::out(&listing.text()),

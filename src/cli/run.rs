@@ -1,6 +1,6 @@
 //! `trackbed run`: runs a scene into a directory, with checkpoints, a report and the verdict on its expectations.
 
-use super::scene::{SceneArguments, failed, show};
+use super::scene::{SceneArguments, failed, not_yet, show};
 use super::{Outcome, progress, report, terminal};
 use crate::diag::{Code, Diagnostic, render};
 use crate::graph::{self, Graph, RunError};
@@ -36,12 +36,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         return Outcome::Failed;
     }
     let (Some(scenario), Some(graph)) = (&compiled.scenario, &compiled.graph) else {
-        // holes and missing loads are warnings to `check`, and stop a run
-        terminal::error("the scene cannot be run yet: see above");
-        if compiled.diagnostics.is_empty() {
-            terminal::note("it has no `track`: a file without one is a library\n");
-        }
-        return Outcome::Failed;
+        return not_yet(&compiled);
     };
     let hash = fingerprint(&compiled.sources);
     if let Err(message) = prepare(arguments) {

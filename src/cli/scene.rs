@@ -1,6 +1,6 @@
 //! Reads and compiles the scene that a command works on, and shows what is wrong with it.
 
-use super::terminal;
+use super::{Outcome, terminal};
 use crate::check::{Folder, Override};
 use crate::diag::{self, Sources, render};
 use crate::{Compiled, compile, syntax};
@@ -47,4 +47,13 @@ pub(super) fn show(compiled: &Compiled) {
 /// Whether anything stands against a run.
 pub(super) fn failed(compiled: &Compiled) -> bool {
     diag::has_errors(&compiled.diagnostics)
+}
+
+/// Says why a scene that has no errors has no plan: holes and missing loads are warnings to `check`.
+pub(super) fn not_yet(compiled: &Compiled) -> Outcome {
+    if !failed(compiled) {
+        let reason = if compiled.diagnostics.is_empty() { "a file without a `track` is a library" } else { "see above" };
+        terminal::error(&format!("the scene cannot be run yet: {reason}"));
+    }
+    Outcome::Failed
 }
