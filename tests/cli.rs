@@ -62,7 +62,9 @@ fn the_static_check_meets_the_closed_form() {
     let mut rows = csv::Reader::from_reader(table.as_bytes());
     let column = rows.headers().unwrap().iter().position(|h| h == "max_rail_seat_load_N").unwrap();
     let loads: Vec<f64> = rows.records().map(|r| r.unwrap()[column].parse().unwrap()).collect();
-    for (seat, share) in [(9, "37.99"), (10, "25.10"), (8, "25.10"), (11, "8.67"), (7, "8.67"), (12, "0.39"), (6, "0.39")] {
+    for (seat, share) in
+        [(9, "37.99"), (10, "25.10"), (8, "25.10"), (11, "8.67"), (7, "8.67"), (12, "0.39"), (6, "0.39")]
+    {
         assert_eq!(format!("{:.2}", loads[seat] / 1e3), share, "seat {}", seat + 1);
     }
     let sum: f64 = loads.iter().sum();
@@ -83,10 +85,21 @@ fn equal_runs_give_equal_bytes() {
     let (a, b) = (run("a"), run("b"));
     same_results(&a, &b);
     assert!(!a.join("checkpoint.json").exists());
-    for name in ["axles", "max_settlement", "max_settlement_x", "far_field_settlement", "differential_settlement", "max_void",
-        "voided_sleepers", "max_wheel_force", "min_wheel_force", "dynamic_amplification", "max_rail_seat_load",
-        "max_rail_moment", "max_contact_force"]
-    {
+    for name in [
+        "axles",
+        "max_settlement",
+        "max_settlement_x",
+        "far_field_settlement",
+        "differential_settlement",
+        "max_void",
+        "voided_sleepers",
+        "max_wheel_force",
+        "min_wheel_force",
+        "dynamic_amplification",
+        "max_rail_seat_load",
+        "max_rail_moment",
+        "max_contact_force",
+    ] {
         assert!(scalar(&a, name).is_finite(), "{name}");
     }
     assert_eq!(scalar(&a, "axles"), 40.0);
@@ -168,7 +181,14 @@ fn check_speaks_json() {
 
 #[test]
 fn wrong_usage_exits_with_two() {
-    for arguments in [&["check"][..], &["check", "no/such.track"], &["explain", "E9999"], &["docs", "rial"], &["run", "x.track"], &["sing"]] {
+    for arguments in [
+        &["check"][..],
+        &["check", "no/such.track"],
+        &["explain", "E9999"],
+        &["docs", "rial"],
+        &["run", "x.track"],
+        &["sing"],
+    ] {
         let output = trackbed(arguments);
         assert_eq!(code(&output), 2, "{arguments:?}: {}", said(&output));
     }

@@ -17,7 +17,11 @@ fn run(text: &str) -> Scene {
     let (scenario, plan) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
     let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
     graph::execute(&plan, &mut recorder, None).unwrap();
-    Scene { histories: recorder.all_histories(), sleepers: recorder.tables.sleepers.clone(), blocks: recorder.tables.blocks.clone() }
+    Scene {
+        histories: recorder.all_histories(),
+        sleepers: recorder.tables.sleepers.clone(),
+        blocks: recorder.tables.blocks.clone(),
+    }
 }
 
 /// The shipped scene, thinned so that a test suite can afford it: the same track and vehicle, half the elements and
@@ -63,7 +67,8 @@ fn a_uniform_track_keeps_its_wheel_forces() {
         .replace("total = 500 axles", "total = 20 axles");
     let scene = run(&text);
     let load = 20_000.0 / 2.0 * 9.81;
-    let wheels: Vec<f64> = scene.histories.iter().filter(|r| r.quantity == "wheel_force" && r.axles == 0).map(|r| r.value).collect();
+    let wheels: Vec<f64> =
+        scene.histories.iter().filter(|r| r.quantity == "wheel_force" && r.axles == 0).map(|r| r.value).collect();
     assert!(wheels.len() > 1000);
     let worst = wheels.iter().map(|f| (f / load - 1.0).abs()).fold(0.0, f64::max);
     // sleepers pass under the wheels 93 times a second; nothing else acts

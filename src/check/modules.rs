@@ -45,7 +45,6 @@ pub(super) struct Scope {
     pub modules: BTreeMap<String, ScopeId>,
 }
 
-
 /// Names that values have, which nothing else may have.
 const TAKEN: [&str; 6] = ["none", "auto", "yes", "no", "rest", "all"];
 

@@ -52,7 +52,8 @@ pub(super) fn failed(compiled: &Compiled) -> bool {
 /// Says why a scene that has no errors has no plan: holes and missing loads are warnings to `check`.
 pub(super) fn not_yet(compiled: &Compiled) -> Outcome {
     if !failed(compiled) {
-        let reason = if compiled.diagnostics.is_empty() { "a file without a `track` is a library" } else { "see above" };
+        let reason =
+            if compiled.diagnostics.is_empty() { "a file without a `track` is a library" } else { "see above" };
         terminal::error(&format!("the scene cannot be run yet: {reason}"));
     }
     Outcome::Failed

@@ -90,9 +90,8 @@ fn vehicle(v: &scenario::Vehicle) -> solver::Vehicle {
 /// stayed at the level as built would grow a second transition at the end of the model.
 pub(super) fn level(node: &TrackNode, settlement: &[f64]) -> solver::TrackLevel {
     let track = &node.track;
-    let end = |section: usize, seat: Option<usize>| {
-        seat.map_or(0.0, |i| settlement[i]) + sag(track, section, node.gravity)
-    };
+    let end =
+        |section: usize, seat: Option<usize>| seat.map_or(0.0, |i| settlement[i]) + sag(track, section, node.gravity);
     let last = track.seats.len().checked_sub(1);
     let first = (!track.seats.is_empty()).then_some(0);
     let sections = track.sections.len().saturating_sub(1);

@@ -11,11 +11,19 @@ pub(super) fn blocks(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic) ->
     let total = *traffic.total;
     let axles = train.axles();
     let mut sound = divides(pass, total, train, "the run", traffic.total.origin.span());
-    let update = match scenario.solve.update {
-        Update::Fixed { axles } => (axles, "an update interval"),
-        Update::Geometric { first, .. } => (first, "the first block"),
-    };
-    sound &= divides(pass, update.0, train, update.1, scenario.solve.update_span);
+    let mut update = scenario.solve.update;
+    match &mut update {
+        // nobody chose the default for this train
+        Update::Geometric { first, .. } if scenario.solve.update_span.is_none() => {
+            *first = first.div_ceil(axles) * axles
+        }
+        Update::Geometric { first, .. } => {
+            sound &= divides(pass, *first, train, "the first block", scenario.solve.update_span)
+        }
+        Update::Fixed { axles } => {
+            sound &= divides(pass, *axles, train, "an update interval", scenario.solve.update_span)
+        }
+    }
     let mut recorded: Vec<u64> =
         scenario.records.iter().flat_map(|r| r.after.iter().copied()).chain([0, total]).collect();
     recorded.sort_unstable();
@@ -33,7 +41,7 @@ pub(super) fn blocks(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic) ->
     if !sound {
         return None;
     }
-    let blocks = divide(scenario.solve.update, total, &recorded, train);
+    let blocks = divide(update, total, &recorded, train);
     if axles < total {
         pass.decide(
             "share",
