@@ -1,7 +1,8 @@
 //! Runs the schedule: static state, passage, settlement, block by block, until the axles are done (paper, Fig. 3).
 
 use super::substructure::{Substructure, SubstructureState};
-use super::track::{PassageOutcome, TrackSystem, Unloaded};
+use super::system::TrackSystem;
+use super::track::{PassageOutcome, Unloaded};
 use super::{Block, Blocks, Graph, Schedule};
 use crate::scenario::Direction;
 use crate::solvers::track::TrackError;
@@ -86,7 +87,7 @@ pub fn execute(graph: &Graph, recorder: &mut dyn Recorder, from: Option<Checkpoi
 
 struct Run<'a> {
     blocks: &'a Blocks,
-    system: TrackSystem,
+    system: TrackSystem<'a>,
     recorder: &'a mut dyn Recorder,
 }
 

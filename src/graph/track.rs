@@ -1,9 +1,7 @@
-//! The track node: the 2D track and vehicle solver, spoken to in the scene's terms.
+//! What the track node yields: the track at rest, and what a passage did to it.
 
-use super::Graph;
+use crate::scenario::Track;
 use crate::scenario::response::Response;
-use crate::scenario::{Direction, StaticLoad, Track};
-use crate::solvers::track::TrackError;
 
 /// The track without a train.
 #[derive(Debug, Clone, PartialEq)]
