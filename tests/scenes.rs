@@ -63,7 +63,7 @@ fn a_uniform_track_keeps_its_wheel_forces() {
         .replace("  transitions = [edge: soft_to_stiff]\n", "")
         .replace("at         = [-20, -13, -5, -3, +1, +7] sleepers", "at = 50 sleepers")
         .replace("after      = [0, 100, 500] axles", "after = 0 axles")
-        .replace("expect { that = [-5 m < place_of_max(settlement) < -2.5 m] }", "")
+        .replace("expect { that = [-5 m < place_of_max(settlement) < -2 m] }", "")
         .replace("total = 500 axles", "total = 20 axles");
     let scene = run(&text);
     let load = 20_000.0 / 2.0 * 9.81;
@@ -72,8 +72,8 @@ fn a_uniform_track_keeps_its_wheel_forces() {
     assert!(wheels.len() > 1000);
     let worst = wheels.iter().map(|f| (f / load - 1.0).abs()).fold(0.0, f64::max);
     // sleepers pass under the wheels 93 times a second; nothing else acts
-    assert!(worst < 0.05, "wheel forces leave the static load by {worst}");
+    assert!(worst < 0.01, "wheel forces leave the static load by {worst}");
     let mean = wheels.iter().sum::<f64>() / wheels.len() as f64;
-    assert!((mean / load - 1.0).abs() < 2e-3, "mean {mean} N");
+    assert!((mean / load - 1.0).abs() < 1e-4, "mean {mean} N");
     assert_eq!(scene.blocks.len(), 2);
 }

@@ -123,9 +123,8 @@ impl Run<'_> {
         first: bool,
     ) -> Result<PassageOutcome, RunError> {
         let at = |cause: TrackError| RunError::Track { axles, cause };
-        let unloaded = self.system.unloaded(settlement).map_err(at)?;
         let recorded = first && self.blocks.recorded.contains(&axles);
-        let passage = self.system.passage(axles, settlement, &unloaded, direction, recorded).map_err(at)?;
+        let (unloaded, passage) = self.system.passage(axles, settlement, direction, recorded).map_err(at)?;
         if recorded {
             self.recorder.unloaded(axles, &unloaded);
             self.recorder.passage(axles, direction, &passage);

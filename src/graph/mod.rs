@@ -6,6 +6,7 @@
 mod execute;
 mod listing;
 mod model;
+mod sampler;
 mod substructure;
 mod system;
 mod track;

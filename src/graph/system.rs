@@ -1,21 +1,40 @@
 //! The track node at work: its statics and its passages, spoken to in the scene's terms.
 
-use super::model::{level, model};
-use super::track::{PassageOutcome, RailPoint, Unloaded, UnloadedSeat};
-use super::{Graph, TrackNode};
-use crate::scenario::{Direction, StaticLoad, Target};
-use crate::solvers::track::{Loads, StaticState, Track, TrackError, solve_static};
+use super::model::{level, model, train};
+use super::sampler::Sampler;
+use super::track::{PassageOutcome, RailPoint, SeatOutcome, Unloaded, UnloadedSeat};
+use super::{Blocks, Graph, Schedule, TrackNode};
+use crate::scenario::{Direction, Record, StaticLoad, Target};
+use crate::solvers::track::{
+    Envelope, Loads, Passage, Run, Scheme, StaticState, Stepper, Track, TrackError, solve_static,
+};
+use std::ops::Range;
+use std::sync::Arc;
 
-/// A meshed track, factored once for all passages.
+/// A meshed track, its time step factored once for all passages.
 pub(super) struct TrackSystem<'a> {
     node: &'a TrackNode,
-    track: Track,
+    records: &'a [Record],
+    track: Arc<Track>,
+    traffic: Option<(&'a Blocks, Stepper)>,
 }
+
+/// Seats whose mean stands for those near the ends of the model, see [`TrackSystem::complete`].
+const NEIGHBOURS: usize = 10;
+/// Distance that a wheel runs before it counts as passing a seat, m: about the half-width of a deflection bowl.
+const APPROACH: f64 = 1.0;
 
 impl<'a> TrackSystem<'a> {
     pub fn new(graph: &'a Graph) -> Result<Self, TrackError> {
-        let track = Track::new(model(&graph.track))?;
-        Ok(TrackSystem { node: &graph.track, track })
+        let track = Arc::new(Track::new(model(&graph.track))?);
+        let traffic = match &graph.schedule {
+            Schedule::Static { .. } => None,
+            Schedule::Blocks(blocks) => {
+                let scheme = Scheme::new(blocks.passage.time_step, blocks.passage.rho)?;
+                Some((blocks, Stepper::new(track.clone(), scheme)?))
+            }
+        };
+        Ok(TrackSystem { node: &graph.track, records: &graph.records, track, traffic })
     }
 
     /// The track under test loads.
@@ -33,44 +52,90 @@ impl<'a> TrackSystem<'a> {
         Ok(self.at_rest(&state, &settlement))
     }
 
-    /// The settled track under its own weight.
-    pub fn unloaded(&self, settlement: &[f64]) -> Result<Unloaded, TrackError> {
-        let state = solve_static(&self.track, &level(self.node, settlement), &Loads::default())?;
-        Ok(self.at_rest(&state, settlement))
-    }
-
     fn at_rest(&self, state: &StaticState, settlement: &[f64]) -> Unloaded {
-        let rail = self
-            .track
-            .nodes()
-            .iter()
-            .zip(state.rail_deflection.iter().zip(&state.rail_moment))
-            .map(|(x, (deflection, moment))| RailPoint { x: *x, deflection: *deflection, moment: *moment })
-            .collect();
-        let seats = (0..settlement.len())
-            .map(|i| UnloadedSeat {
-                settlement: settlement[i],
-                sleeper_level: state.foot_displacements[i],
-                void: if self.node.track.seats[i].is_ballasted() {
-                    (settlement[i] - state.foot_displacements[i]).max(0.0)
-                } else {
-                    0.0
-                },
-                contact_force: state.contact_forces[i],
-                seat_load: state.seat_loads[i],
-            })
-            .collect();
-        Unloaded { rail, seats }
+        let nodes = self.track.nodes().iter().zip(&state.rail_deflection).zip(&state.rail_moment);
+        let rail = nodes.map(|((x, deflection), moment)| RailPoint { x: *x, deflection: *deflection, moment: *moment });
+        let gap = |i: usize| (settlement[i] - state.foot_displacements[i]).max(0.0);
+        let seats = (0..settlement.len()).map(|i| UnloadedSeat {
+            settlement: settlement[i],
+            sleeper_level: state.foot_displacements[i],
+            void: if self.node.track.seats[i].is_ballasted() { gap(i) } else { 0.0 },
+            contact_force: state.contact_forces[i],
+            seat_load: state.seat_loads[i],
+        });
+        Unloaded { rail: rail.collect(), seats: seats.collect() }
     }
 
+    /// One train over the settled track, and the track at rest before it. `recorded` asks for histories.
     pub fn passage(
         &self,
-        _axles: u64,
-        _settlement: &[f64],
-        _unloaded: &Unloaded,
-        _direction: Direction,
-        _recorded: bool,
-    ) -> Result<PassageOutcome, TrackError> {
-        Err(TrackError::Mechanism { x: 0.0 })
+        axles: u64,
+        settlement: &[f64],
+        direction: Direction,
+        recorded: bool,
+    ) -> Result<(Unloaded, PassageOutcome), TrackError> {
+        let Some((blocks, stepper)) = &self.traffic else {
+            return Err(TrackError::Parameter { name: "trains", value: 0.0, expected: "of 1 or more" });
+        };
+        let train = train(&blocks.train, direction);
+        let (left, right, base) = (blocks.passage.left, blocks.passage.right, train.wheel_base());
+        let (start, finish) =
+            if direction == Direction::Backward { (right - base, left) } else { (left + base, right) };
+        let level = level(self.node, settlement);
+        let run = Run { train: &train, start, finish, speed: *blocks.train.speed };
+        let mut passage = Passage::new(stepper, &level, run)?;
+        let unloaded = self.at_rest(passage.unloaded(), settlement);
+        let mut envelope = Envelope::default();
+        let wanted = if recorded { self.records } else { &[] };
+        let mut sampler = Sampler::new(wanted, axles, blocks.passage.sample_every, recorded);
+        let counters = passage.run(&mut (&mut envelope, &mut sampler))?;
+
+        let seats = settlement.len();
+        let mut outcomes: Vec<SeatOutcome> = (0..seats)
+            .map(|i| SeatOutcome {
+                max_rail_seat_load: envelope.seat_loads[i].1,
+                max_contact_force: envelope.contact_forces[i],
+                max_sleeper_displacement: envelope.foot_displacements[i],
+                contact_loss: envelope.contact_losses[i],
+            })
+            .collect();
+        let mut peaks: Vec<Vec<f64>> = (0..seats).map(|i| envelope.axle_peaks_of(i).to_vec()).collect();
+        self.complete(left + base + APPROACH..right - base - APPROACH, &mut outcomes, &mut peaks);
+        let largest = |range: &[(f64, f64)]| range.iter().map(|r| r.1).fold(f64::NEG_INFINITY, f64::max);
+        let outcome = PassageOutcome {
+            seats: outcomes,
+            peaks,
+            max_wheel_force: largest(&envelope.wheel_forces),
+            min_wheel_force: envelope.wheel_forces.iter().map(|r| r.0).fold(f64::INFINITY, f64::min),
+            max_rail_moment: largest(&envelope.rail_moments),
+            time_steps: counters.steps as u64,
+            newton_iterations: counters.iterations as u64,
+            samples: sampler.samples,
+        };
+        Ok((unloaded, outcome))
+    }
+
+    /// Trains start and stop on the track, so seats near its ends see only some of their wheels. Such a ballasted seat takes
+    /// the mean of the nearest ten that every wheel passes, as if trains came from afar: otherwise a false step in the
+    /// settlement would grow where they start.
+    fn complete(&self, passed: Range<f64>, outcomes: &mut [SeatOutcome], peaks: &mut [Vec<f64>]) {
+        let seats = &self.node.track.seats;
+        let whole = |i: &usize| seats[*i].is_ballasted() && passed.contains(&seats[*i].x);
+        let left: Vec<usize> = (0..seats.len()).filter(whole).take(NEIGHBOURS).collect();
+        let right: Vec<usize> = (0..seats.len()).rev().filter(whole).take(NEIGHBOURS).collect();
+        for (i, seat) in seats.iter().enumerate().filter(|(_, s)| s.is_ballasted() && !passed.contains(&s.x)) {
+            let from = if seat.x < passed.start { &left } else { &right };
+            if from.is_empty() || seats[from[0]].section != seat.section {
+                continue;
+            }
+            let mean = |of: &dyn Fn(usize) -> f64| from.iter().map(|n| of(*n)).sum::<f64>() / from.len() as f64;
+            peaks[i] = (0..peaks[i].len()).map(|wheel| mean(&|n| peaks[n][wheel])).collect();
+            outcomes[i] = SeatOutcome {
+                max_rail_seat_load: mean(&|n| outcomes[n].max_rail_seat_load),
+                max_contact_force: mean(&|n| outcomes[n].max_contact_force),
+                max_sleeper_displacement: mean(&|n| outcomes[n].max_sleeper_displacement),
+                contact_loss: mean(&|n| outcomes[n].contact_loss),
+            };
+        }
     }
 }

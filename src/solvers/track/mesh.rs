@@ -67,7 +67,7 @@ pub(super) struct SlabMesh {
 }
 
 /// A place on the rail: its element and how a force there acts on the nodes.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct RailPoint {
     pub element: usize,
     /// Distance from the element's left node, m.

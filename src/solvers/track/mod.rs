@@ -10,17 +10,30 @@
 
 mod beam;
 mod contact;
+mod envelope;
 mod error;
+mod influence;
+mod interface;
 mod mesh;
 mod model;
+mod passage;
+mod quasi_static;
 mod scheme;
 mod statics;
 mod vehicle;
+mod view;
 
 pub use contact::SupportPhase;
+pub use envelope::Envelope;
 pub use error::TrackError;
+pub use influence::Stepper;
 pub use mesh::Track;
 pub use model::{Foot, RailEnds, RailSection, Seat, Slab, TrackLevel, TrackModel};
+pub use passage::{Counters, Passage, Run};
 pub use scheme::Scheme;
 pub use statics::{Balance, Loads, StaticState, solve_static};
 pub use vehicle::{Direction, Train, Vehicle};
+pub use view::{Observer, StepView};
+
+#[cfg(test)]
+mod tests;
