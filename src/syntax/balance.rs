@@ -39,10 +39,8 @@ fn is_balanced(text: &str, tokens: &[Token]) -> bool {
     for (i, token) in tokens.iter().enumerate() {
         match token.kind {
             Kind::Open(c) => stack.push(c),
-            Kind::Close(c) => {
-                if stack.pop() != Some(partner(c)) {
-                    return false;
-                }
+            Kind::Close(c) if stack.pop() != Some(partner(c)) => {
+                return false;
             }
             Kind::Word if !stack.is_empty() && starts_item(text, tokens, i) == Some(Certainty::Certain) => {
                 return false;
@@ -167,7 +165,7 @@ impl Scan<'_, '_> {
                         .at(self.draft.span(token.start, token.end), "the 65th"));
                 }
             }
-            "+" | "-" | "*" | "/" if !self.last.is_some_and(|t| t.of(self.draft.original) == "^") => self.end_item(),
+            "+" | "-" | "*" | "/" if self.last.is_none_or(|t| t.of(self.draft.original) != "^") => self.end_item(),
             "," | ";" => self.end_item(),
             _ => {}
         }
@@ -307,6 +305,9 @@ impl Scan<'_, '_> {
         let Opener { bracket, token, .. } = opener;
         let right = partner(*bracket);
         self.draft.insertions.push((at, right));
+        if self.draft.is_full() {
+            return;
+        }
         let line = self.draft.original[..at].matches('\n').count() + 1;
         let mut mistake = Diagnostic::new(Code::E0104, format!("`{bracket}` is never closed"))
             .at(self.draft.span(token.start, token.end), "opened here")

@@ -354,9 +354,9 @@ impl<'p> Builder<'p> {
     /// The `///` lines directly above what starts here, if it is the first on its line.
     fn docs(&self, start: usize) -> Vec<String> {
         let text = &self.prepared.text;
-        let mut line = text[..start].rfind('\n').map_or(0, |i| i + 1);
+        let mut line = text[..start].trim_end_matches([' ', '\t', '\r']).len();
         let mut docs = Vec::new();
-        if !text[line..start].trim().is_empty() {
+        if !text[..line].ends_with('\n') {
             return docs;
         }
         while line > 0 {
