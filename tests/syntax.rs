@@ -221,7 +221,7 @@ fn all_planted_mistakes_together_are_all_found() {
         expected.push((*code, 2 + 2 * i));
     }
     text.push_str("}\nsoil b { x = }\n");
-    expected.push((Code::E0101, 3 + 2 * PLANTED.len() - 1));
+    expected.push((Code::E0101, 3 + 2 * PLANTED.len()));
     assert_eq!(mistakes(&text), expected, "{text}");
 }
 

@@ -22,9 +22,8 @@ struct Opener {
     powers: usize,
 }
 
-/// Balances the brackets of a draft; refuses one that nests beyond the bounds.
-pub(super) fn balance(draft: &mut Draft, tokens: &[Token]) -> Result<(), Diagnostic> {
-    let trusting = is_balanced(draft.original, tokens);
+/// Balances the brackets of a draft, if they can not be trusted; refuses one that nests beyond the bounds.
+pub(super) fn balance(draft: &mut Draft, tokens: &[Token], trusting: bool) -> Result<(), Diagnostic> {
     let mut scan = Scan { draft, tokens, trusting, stack: Vec::new(), powers: 0, last: None, indent: 0, line: 0 };
     for i in 0..tokens.len() {
         scan.step(i)?;
@@ -34,7 +33,7 @@ pub(super) fn balance(draft: &mut Draft, tokens: &[Token]) -> Result<(), Diagnos
 }
 
 /// Whether each bracket has its partner and nothing inside one looks like the start of an item for certain.
-fn is_balanced(text: &str, tokens: &[Token]) -> bool {
+pub(super) fn is_balanced(text: &str, tokens: &[Token]) -> bool {
     let mut stack = Vec::new();
     for (i, token) in tokens.iter().enumerate() {
         match token.kind {
@@ -91,12 +90,12 @@ fn starts_item(text: &str, tokens: &[Token], i: usize) -> Option<Certainty> {
     }
 }
 
-/// Whether the tokens from here on are `path =`.
+/// Whether the tokens from here on are `path =`, in whatever spelling.
 fn starts_field(text: &str, tokens: &[Token], mut i: usize) -> bool {
     while tokens.get(i).is_some_and(|t| t.kind == Kind::Word) {
         match tokens.get(i + 1).map_or("", |t| t.of(text)) {
             "." => i += 2,
-            sign => return sign == "=",
+            sign => return matches!(sign, "=" | ":=" | "=>"),
         }
     }
     false
@@ -203,11 +202,31 @@ impl Scan<'_, '_> {
             }
             self.powers = 0;
         } else if starts_field(text, self.tokens, i) {
-            while let Some(opener) = self.stack.pop_if(|o| o.bracket == '[') {
+            // A field never starts inside a list; named arguments look the same, but then their `)` follows.
+            let is_call = |o: &Opener| o.bracket == '(' && o.line_end.is_some_and(|end| end != usize::MAX);
+            let ahead = self.is_closed_ahead(i);
+            while let Some(opener) = self.stack.pop_if(|o| o.bracket == '[' || !ahead && is_call(o)) {
                 let at = self.end_of_last();
                 self.report_unclosed(&opener, at, Some(self.tokens[i]));
             }
         }
+    }
+
+    /// Whether a `)` follows soon that everything from here on leaves to what is open now.
+    fn is_closed_ahead(&self, i: usize) -> bool {
+        let mut open = Vec::new();
+        for token in self.tokens[i..].iter().take(200) {
+            match token.kind {
+                Kind::Open(c) => open.push(c),
+                Kind::Close(c) => match open.pop() {
+                    None => return c == ')',
+                    Some(opener) if opener != partner(c) => return false,
+                    Some(_) => {}
+                },
+                _ => {}
+            }
+        }
+        false
     }
 
     fn close(&mut self, i: usize, bracket: char, first_of_line: bool) {

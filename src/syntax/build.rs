@@ -10,14 +10,14 @@ use super::tree::{Declaration, Field, Item, Let, Name, Path, Use, Value, ValueKi
 use crate::diag::{Code, Diagnostic, Span};
 
 pub(super) struct Builder<'p> {
-    pub prepared: &'p Prepared,
+    pub prepared: &'p Prepared<'p>,
     pub diagnostics: &'p mut Vec<Diagnostic>,
     /// Operations around the current place: the tree is as deep as they nest.
     pub operations: usize,
 }
 
 impl<'p> Builder<'p> {
-    pub fn new(prepared: &'p Prepared, diagnostics: &'p mut Vec<Diagnostic>) -> Self {
+    pub fn new(prepared: &'p Prepared<'p>, diagnostics: &'p mut Vec<Diagnostic>) -> Self {
         Builder { prepared, diagnostics, operations: 0 }
     }
 

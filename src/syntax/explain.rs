@@ -124,7 +124,7 @@ impl<'p> Builder<'p> {
             return None;
         }
         let before = text[..junk].trim_end_matches([' ', '\t']);
-        let start = before.rfind(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).map_or(0, |i| i + 1);
+        let start = before.trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '_').len();
         let name = &before[start..];
         let apart = before[..start].ends_with([' ', '\t']) && !before[..start].trim_end().ends_with(['=', '\n']);
         (apart && name.starts_with(|c: char| c.is_ascii_alphabetic())).then(|| self.path_at(start, name))
@@ -149,7 +149,7 @@ impl<'p> Builder<'p> {
     pub fn decimal_comma(&self, at: usize) -> Option<usize> {
         let text = &self.prepared.text;
         let whole = text[..at].strip_suffix(',')?;
-        let start = whole.rfind(|c: char| !(c.is_ascii_digit() || c == '_')).map_or(0, |i| i + 1);
+        let start = whole.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_').len();
         let before = whole[..start].chars().next_back();
         let alone = start < whole.len() && !before.is_some_and(|c| c == '.' || c.is_alphanumeric());
         (alone && text[at..].starts_with(|c: char| c.is_ascii_digit())).then_some(start)

@@ -11,12 +11,14 @@ use crate::diag::{Code, Diagnostic};
 const LOOK_ALIKES: [(&str, &str); 7] =
     [("−", "-"), ("≤", "<="), ("≥", ">="), ("×", "*"), ("÷", "/"), ("…", ".."), ("∙", "*")];
 
-/// Reports and replaces the foreign signs of a text.
-pub(super) fn replace(draft: &mut Draft, tokens: &[Token]) {
+/// Reports and replaces the foreign signs of a text. Where its brackets are not balanced, only those opened on the same
+/// line tell what a sign stands in.
+pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
     let mut brackets = Vec::new();
     for (i, token) in tokens.iter().enumerate() {
         let text = token.of(draft.original);
         match token.kind {
+            Kind::LineBreak if !balanced => brackets.clear(),
             Kind::Open(c) => brackets.push(c),
             Kind::Close(_) => {
                 brackets.pop();
