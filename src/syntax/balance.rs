@@ -10,14 +10,23 @@ use super::prepare::Draft;
 use super::token::{Kind, Token, partner};
 use crate::diag::{Code, Diagnostic};
 
+/// What is known of the end of the line that holds an opening bracket.
+#[derive(Clone, Copy, PartialEq)]
+enum LineEnd {
+    NotReached,
+    /// The item goes on in the next line, or only begins there.
+    GoesOn,
+    /// Behind the token that ends here the item could have ended too.
+    At(usize),
+}
+
 struct Opener {
     bracket: char,
     token: Token,
     /// Column of the first token of its line.
     indent: usize,
     line: usize,
-    /// The end of its line's last token, where the item it belongs to could have ended.
-    line_end: Option<usize>,
+    line_end: LineEnd,
     /// `^` seen in the current item inside it.
     powers: usize,
 }
@@ -141,7 +150,7 @@ impl Scan<'_, '_> {
                         .help("give the inner values names with `let`, or declare the inner objects"));
                 }
                 let Scan { indent, line, .. } = *self;
-                self.stack.push(Opener { bracket, token, indent, line, line_end: None, powers: 0 });
+                self.stack.push(Opener { bracket, token, indent, line, line_end: LineEnd::NotReached, powers: 0 });
             }
             Kind::Close(bracket) => self.close(i, bracket, first_of_line),
             Kind::Sign => self.sign(token)?,
@@ -182,13 +191,11 @@ impl Scan<'_, '_> {
     /// Notes where the item around the innermost bracket could have ended.
     fn end_line(&mut self) {
         let (Some(top), Some(last)) = (self.stack.last_mut(), self.last) else { return };
-        let goes_on = last.kind == Kind::Sign && !matches!(last.of(self.draft.original), "?" | "%");
-        if top.line_end.is_none() && last.start != top.token.start && !goes_on {
-            top.line_end = Some(last.end);
-        }
         // Only the line that opened the bracket counts.
-        if top.line_end.is_none() {
-            top.line_end = Some(usize::MAX);
+        if top.line_end == LineEnd::NotReached {
+            let goes_on = last.kind == Kind::Sign && !matches!(last.of(self.draft.original), "?" | "%");
+            let opens = last.start == top.token.start;
+            top.line_end = if goes_on || opens { LineEnd::GoesOn } else { LineEnd::At(last.end) };
         }
     }
 
@@ -203,7 +210,7 @@ impl Scan<'_, '_> {
             self.powers = 0;
         } else if starts_field(text, self.tokens, i) {
             // A field never starts inside a list; named arguments look the same, but then their `)` follows.
-            let is_call = |o: &Opener| o.bracket == '(' && o.line_end.is_some_and(|end| end != usize::MAX);
+            let is_call = |o: &Opener| o.bracket == '(' && matches!(o.line_end, LineEnd::At(_));
             let ahead = self.is_closed_ahead(i);
             while let Some(opener) = self.stack.pop_if(|o| o.bracket == '[' || !ahead && is_call(o)) {
                 let at = self.end_of_last();
@@ -315,7 +322,7 @@ impl Scan<'_, '_> {
     /// Arguments and objects that began on their line most likely ended on it; all else ends where the lack shows.
     fn likely_end(&self, opener: &Opener) -> usize {
         match opener.line_end {
-            Some(end) if end != usize::MAX && opener.bracket != '[' => end,
+            LineEnd::At(end) if opener.bracket != '[' => end,
             _ => self.end_of_last(),
         }
     }

@@ -52,9 +52,8 @@ impl<'p> Builder<'p> {
         }
         let mistake = match self.swallowed(junk) {
             Some(next) => {
-                let (name, _) = (next.text(), next.span);
-                Diagnostic::new(Code::E0101, format!("expected a comma or a line break before `{name}`"))
-                    .at(next.span, "a new field starts here")
+                let message = format!("expected a comma or a line break before `{}`", next.text());
+                Diagnostic::new(Code::E0101, message).at(next.span, "a new field starts here")
             }
             None => {
                 let what = self.found(found.start);

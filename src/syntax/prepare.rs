@@ -35,6 +35,15 @@ impl Draft<'_> {
         }
     }
 
+    /// A part of the text as it is now, with single blanks.
+    pub fn written(&self, start: usize, end: usize) -> String {
+        let part = String::from_utf8_lossy(&self.bytes[start..end]);
+        if part == self.original[start..end] {
+            return part.trim().to_owned();
+        }
+        part.split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
     /// Writes `new` over a token and blanks what is left of it, line breaks excepted.
     pub fn overwrite(&mut self, token: &Token, new: &str) {
         for (i, byte) in self.bytes[token.start..token.end].iter_mut().enumerate() {
