@@ -27,7 +27,7 @@ fn solve() -> Solve {
         update_span: None,
         integrator: Integrator::GeneralisedAlpha { rho: 0.9 },
         elements_per_bay: given(4),
-        time_step: given(5e-5),
+        time_step: Some(given(5e-5)),
         start: Some(given(-25.0)),
         finish: None,
         gravity: given(9.81),

@@ -10,21 +10,29 @@ use super::prepare::Draft;
 use super::token::{Kind, Token, partner};
 use crate::diag::{Code, Diagnostic};
 
+/// What is known of the end of the line that holds an opening bracket.
+#[derive(Clone, Copy, PartialEq)]
+enum LineEnd {
+    NotReached,
+    /// The item goes on in the next line, or only begins there.
+    GoesOn,
+    /// Behind the token that ends here the item could have ended too.
+    At(usize),
+}
+
 struct Opener {
     bracket: char,
     token: Token,
     /// Column of the first token of its line.
     indent: usize,
     line: usize,
-    /// The end of its line's last token, where the item it belongs to could have ended.
-    line_end: Option<usize>,
+    line_end: LineEnd,
     /// `^` seen in the current item inside it.
     powers: usize,
 }
 
-/// Balances the brackets of a draft; refuses one that nests beyond the bounds.
-pub(super) fn balance(draft: &mut Draft, tokens: &[Token]) -> Result<(), Diagnostic> {
-    let trusting = is_balanced(draft.original, tokens);
+/// Balances the brackets of a draft, if they can not be trusted; refuses one that nests beyond the bounds.
+pub(super) fn balance(draft: &mut Draft, tokens: &[Token], trusting: bool) -> Result<(), Diagnostic> {
     let mut scan = Scan { draft, tokens, trusting, stack: Vec::new(), powers: 0, last: None, indent: 0, line: 0 };
     for i in 0..tokens.len() {
         scan.step(i)?;
@@ -34,15 +42,13 @@ pub(super) fn balance(draft: &mut Draft, tokens: &[Token]) -> Result<(), Diagnos
 }
 
 /// Whether each bracket has its partner and nothing inside one looks like the start of an item for certain.
-fn is_balanced(text: &str, tokens: &[Token]) -> bool {
+pub(super) fn is_balanced(text: &str, tokens: &[Token]) -> bool {
     let mut stack = Vec::new();
     for (i, token) in tokens.iter().enumerate() {
         match token.kind {
             Kind::Open(c) => stack.push(c),
-            Kind::Close(c) => {
-                if stack.pop() != Some(partner(c)) {
-                    return false;
-                }
+            Kind::Close(c) if stack.pop() != Some(partner(c)) => {
+                return false;
             }
             Kind::Word if !stack.is_empty() && starts_item(text, tokens, i) == Some(Certainty::Certain) => {
                 return false;
@@ -93,12 +99,12 @@ fn starts_item(text: &str, tokens: &[Token], i: usize) -> Option<Certainty> {
     }
 }
 
-/// Whether the tokens from here on are `path =`.
+/// Whether the tokens from here on are `path =`, in whatever spelling.
 fn starts_field(text: &str, tokens: &[Token], mut i: usize) -> bool {
     while tokens.get(i).is_some_and(|t| t.kind == Kind::Word) {
         match tokens.get(i + 1).map_or("", |t| t.of(text)) {
             "." => i += 2,
-            sign => return sign == "=",
+            sign => return matches!(sign, "=" | ":=" | "=>"),
         }
     }
     false
@@ -144,7 +150,7 @@ impl Scan<'_, '_> {
                         .help("give the inner values names with `let`, or declare the inner objects"));
                 }
                 let Scan { indent, line, .. } = *self;
-                self.stack.push(Opener { bracket, token, indent, line, line_end: None, powers: 0 });
+                self.stack.push(Opener { bracket, token, indent, line, line_end: LineEnd::NotReached, powers: 0 });
             }
             Kind::Close(bracket) => self.close(i, bracket, first_of_line),
             Kind::Sign => self.sign(token)?,
@@ -167,7 +173,7 @@ impl Scan<'_, '_> {
                         .at(self.draft.span(token.start, token.end), "the 65th"));
                 }
             }
-            "+" | "-" | "*" | "/" if !self.last.is_some_and(|t| t.of(self.draft.original) == "^") => self.end_item(),
+            "+" | "-" | "*" | "/" if self.last.is_none_or(|t| t.of(self.draft.original) != "^") => self.end_item(),
             "," | ";" => self.end_item(),
             _ => {}
         }
@@ -185,13 +191,11 @@ impl Scan<'_, '_> {
     /// Notes where the item around the innermost bracket could have ended.
     fn end_line(&mut self) {
         let (Some(top), Some(last)) = (self.stack.last_mut(), self.last) else { return };
-        let goes_on = last.kind == Kind::Sign && !matches!(last.of(self.draft.original), "?" | "%");
-        if top.line_end.is_none() && last.start != top.token.start && !goes_on {
-            top.line_end = Some(last.end);
-        }
         // Only the line that opened the bracket counts.
-        if top.line_end.is_none() {
-            top.line_end = Some(usize::MAX);
+        if top.line_end == LineEnd::NotReached {
+            let goes_on = last.kind == Kind::Sign && !matches!(last.of(self.draft.original), "?" | "%");
+            let opens = last.start == top.token.start;
+            top.line_end = if goes_on || opens { LineEnd::GoesOn } else { LineEnd::At(last.end) };
         }
     }
 
@@ -205,11 +209,31 @@ impl Scan<'_, '_> {
             }
             self.powers = 0;
         } else if starts_field(text, self.tokens, i) {
-            while let Some(opener) = self.stack.pop_if(|o| o.bracket == '[') {
+            // A field never starts inside a list; named arguments look the same, but then their `)` follows.
+            let is_call = |o: &Opener| o.bracket == '(' && matches!(o.line_end, LineEnd::At(_));
+            let ahead = self.is_closed_ahead(i);
+            while let Some(opener) = self.stack.pop_if(|o| o.bracket == '[' || !ahead && is_call(o)) {
                 let at = self.end_of_last();
                 self.report_unclosed(&opener, at, Some(self.tokens[i]));
             }
         }
+    }
+
+    /// Whether a `)` follows soon that everything from here on leaves to what is open now.
+    fn is_closed_ahead(&self, i: usize) -> bool {
+        let mut open = Vec::new();
+        for token in self.tokens[i..].iter().take(200) {
+            match token.kind {
+                Kind::Open(c) => open.push(c),
+                Kind::Close(c) => match open.pop() {
+                    None => return c == ')',
+                    Some(opener) if opener != partner(c) => return false,
+                    Some(_) => {}
+                },
+                _ => {}
+            }
+        }
+        false
     }
 
     fn close(&mut self, i: usize, bracket: char, first_of_line: bool) {
@@ -298,7 +322,7 @@ impl Scan<'_, '_> {
     /// Arguments and objects that began on their line most likely ended on it; all else ends where the lack shows.
     fn likely_end(&self, opener: &Opener) -> usize {
         match opener.line_end {
-            Some(end) if end != usize::MAX && opener.bracket != '[' => end,
+            LineEnd::At(end) if opener.bracket != '[' => end,
             _ => self.end_of_last(),
         }
     }
@@ -307,6 +331,9 @@ impl Scan<'_, '_> {
         let Opener { bracket, token, .. } = opener;
         let right = partner(*bracket);
         self.draft.insertions.push((at, right));
+        if self.draft.is_full() {
+            return;
+        }
         let line = self.draft.original[..at].matches('\n').count() + 1;
         let mut mistake = Diagnostic::new(Code::E0104, format!("`{bracket}` is never closed"))
             .at(self.draft.span(token.start, token.end), "opened here")

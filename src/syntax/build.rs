@@ -10,14 +10,14 @@ use super::tree::{Declaration, Field, Item, Let, Name, Path, Use, Value, ValueKi
 use crate::diag::{Code, Diagnostic, Span};
 
 pub(super) struct Builder<'p> {
-    pub prepared: &'p Prepared,
+    pub prepared: &'p Prepared<'p>,
     pub diagnostics: &'p mut Vec<Diagnostic>,
     /// Operations around the current place: the tree is as deep as they nest.
     pub operations: usize,
 }
 
 impl<'p> Builder<'p> {
-    pub fn new(prepared: &'p Prepared, diagnostics: &'p mut Vec<Diagnostic>) -> Self {
+    pub fn new(prepared: &'p Prepared<'p>, diagnostics: &'p mut Vec<Diagnostic>) -> Self {
         Builder { prepared, diagnostics, operations: 0 }
     }
 
@@ -354,14 +354,17 @@ impl<'p> Builder<'p> {
     /// The `///` lines directly above what starts here, if it is the first on its line.
     fn docs(&self, start: usize) -> Vec<String> {
         let text = &self.prepared.text;
-        let mut line = text[..start].rfind('\n').map_or(0, |i| i + 1);
+        let mut line = text[..start].trim_end_matches([' ', '\t', '\r', ',']).len();
         let mut docs = Vec::new();
-        if !text[line..start].trim().is_empty() {
+        if !text[..line].ends_with('\n') {
             return docs;
         }
         while line > 0 {
             let above = text[..line - 1].rfind('\n').map_or(0, |i| i + 1);
-            match text[above..line].trim().strip_prefix("///") {
+            let content = text[above..line].trim();
+            match content.strip_prefix("///") {
+                // Of a line of commas nothing is left but the line break, which ends no comment.
+                None if !content.is_empty() && content.trim_start_matches([',', ' ', '\t']).is_empty() => {}
                 Some(doc) if !doc.starts_with('/') => docs.push(doc.trim().to_owned()),
                 _ => break,
             }

@@ -46,14 +46,14 @@ impl<'p> Builder<'p> {
             self.report(mistake.at(self.span(last, last), "").maybe_help(self.way_out(exact, start, junk, end, None)));
             return Explained::Other(path);
         };
+        let found = self.whole_word(found);
         if self.prepared.is_inserted(found.start) {
             return Explained::Other(path);
         }
         let mistake = match self.swallowed(junk) {
             Some(next) => {
-                let (name, _) = (next.text(), next.span);
-                Diagnostic::new(Code::E0101, format!("expected a comma or a line break before `{name}`"))
-                    .at(next.span, "a new field starts here")
+                let message = format!("expected a comma or a line break before `{}`", next.text());
+                Diagnostic::new(Code::E0101, message).at(next.span, "a new field starts here")
             }
             None => {
                 let what = self.found(found.start);
@@ -62,6 +62,15 @@ impl<'p> Builder<'p> {
         };
         self.report(mistake.maybe_help(self.way_out(exact, start, junk, end, Some(found))));
         Explained::Other(path)
+    }
+
+    /// A word with letters that no name has is cut before the first of them; a reader wants to see all of it.
+    fn whole_word(&self, found: Token) -> Token {
+        if found.kind != Kind::Word {
+            return found;
+        }
+        let before = &self.prepared.text[..found.start];
+        Token { start: before.trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '_').len(), ..found }
     }
 
     /// The grammar failed on the whole file.
@@ -77,10 +86,15 @@ impl<'p> Builder<'p> {
         let part = first_line(&text[start..end]);
         let word = found.map_or("", |t| t.of(text));
         let opens = |sign: &str| matches!(sign, "+" | "*" | "/" | "^" | ".." | "<" | ">" | "<=" | ">=" | "per");
-        if word.chars().any(|c| !c.is_ascii()) && matches!(found?.kind, Kind::Word) {
+        if !word.is_ascii() && matches!(found?.kind, Kind::Word) {
             return Some("names are made of ASCII letters, digits and `_`".to_owned());
         }
-        if start == junk && found.is_some_and(|t| t.start == start) && opens(word) {
+        let line = text[..start].rfind('\n').map_or(0, |i| i + 1);
+        let first = start == junk && line > 0 && text[line..start].trim().is_empty();
+        if word == "==" {
+            return Some("`=` gives a value, `<=` and `>=` compare".to_owned());
+        }
+        if first && found.is_some_and(|t| t.start == start) && opens(word) {
             return Some(format!("a line goes on behind an operator: end the line above with `{word}`"));
         }
         match exact {
@@ -109,7 +123,7 @@ impl<'p> Builder<'p> {
             return None;
         }
         let before = text[..junk].trim_end_matches([' ', '\t']);
-        let start = before.rfind(|c: char| !(c.is_ascii_alphanumeric() || c == '_')).map_or(0, |i| i + 1);
+        let start = before.trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '_').len();
         let name = &before[start..];
         let apart = before[..start].ends_with([' ', '\t']) && !before[..start].trim_end().ends_with(['=', '\n']);
         (apart && name.starts_with(|c: char| c.is_ascii_alphabetic())).then(|| self.path_at(start, name))
@@ -134,7 +148,7 @@ impl<'p> Builder<'p> {
     pub fn decimal_comma(&self, at: usize) -> Option<usize> {
         let text = &self.prepared.text;
         let whole = text[..at].strip_suffix(',')?;
-        let start = whole.rfind(|c: char| !(c.is_ascii_digit() || c == '_')).map_or(0, |i| i + 1);
+        let start = whole.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_').len();
         let before = whole[..start].chars().next_back();
         let alone = start < whole.len() && !before.is_some_and(|c| c == '.' || c.is_alphanumeric());
         (alone && text[at..].starts_with(|c: char| c.is_ascii_digit())).then_some(start)
@@ -203,7 +217,8 @@ fn offset(error: &Error<Rule>) -> usize {
 /// What could have stood there, from the loosest to the tightest.
 fn expected(error: &Error<Rule>) -> Vec<&'static str> {
     let ErrorVariant::ParsingError { positives, .. } = &error.variant else { return Vec::new() };
-    const WORDS: [(&str, &[Rule]); 9] = [
+    const WORDS: [(&str, &[Rule]); 10] = [
+        ("a field", &[Rule::exact_field]),
         ("a declaration", &[Rule::declaration, Rule::exact_item, Rule::use_item, Rule::let_item]),
         ("a name", &[Rule::name, Rule::path, Rule::base]),
         (
@@ -225,6 +240,9 @@ fn expected(error: &Error<Rule>) -> Vec<&'static str> {
                 Rule::sign,
                 Rule::object,
                 Rule::call,
+                Rule::exact_value,
+                Rule::exact_entry,
+                Rule::exact_argument,
             ],
         ),
         ("`:`", &[Rule::colon]),
@@ -232,10 +250,13 @@ fn expected(error: &Error<Rule>) -> Vec<&'static str> {
         ("`as`", &[Rule::kw_as]),
         ("`{`", &[Rule::block]),
         ("an operator", &[Rule::add_op, Rule::multiply_op, Rule::compare_op, Rule::dots, Rule::caret]),
-        ("the end of the item", &[Rule::EOI]),
+        ("the end of the line", &[Rule::EOI]),
     ];
     let has = |rules: &[Rule]| positives.iter().any(|p| rules.contains(p));
     let mut words: Vec<&str> = WORDS.iter().filter(|(_, rules)| has(rules)).map(|(word, _)| *word).collect();
+    if words.contains(&"an operator") {
+        words.retain(|w| *w != "`{`");
+    }
     if words.contains(&"a value") {
         words.retain(|w| !matches!(*w, "a name" | "`{`"));
     }

@@ -11,12 +11,14 @@ use crate::diag::{Code, Diagnostic};
 const LOOK_ALIKES: [(&str, &str); 7] =
     [("−", "-"), ("≤", "<="), ("≥", ">="), ("×", "*"), ("÷", "/"), ("…", ".."), ("∙", "*")];
 
-/// Reports and replaces the foreign signs of a text.
-pub(super) fn replace(draft: &mut Draft, tokens: &[Token]) {
+/// Reports and replaces the foreign signs of a text. Where its brackets are not balanced, only those opened on the same
+/// line tell what a sign stands in.
+pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
     let mut brackets = Vec::new();
     for (i, token) in tokens.iter().enumerate() {
         let text = token.of(draft.original);
         match token.kind {
+            Kind::LineBreak if !balanced => brackets.clear(),
             Kind::Open(c) => brackets.push(c),
             Kind::Close(_) => {
                 brackets.pop();
@@ -41,10 +43,9 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token]) {
                     draft.overwrite(token, ",");
                     let repeated = i > 0 && tokens[i - 1].of(draft.original) == ";";
                     if !repeated {
-                        let help = match line_around(draft.original, tokens, i) {
-                            "" => "remove it".to_owned(),
-                            item => format!("write `{item}`"),
-                        };
+                        let (first, _) = item_around(draft.original, tokens, i);
+                        let item = draft.written(tokens[first].start, token.start);
+                        let help = if item.is_empty() { "remove it".to_owned() } else { format!("write `{item}`") };
                         report(draft, token, "`;` does not end an item: a line break or a comma does", help);
                     }
                 }
@@ -135,12 +136,6 @@ fn rewritten(text: &str, tokens: &[Token], i: usize, sign: &str) -> String {
         sign
     };
     format!("{before}{joint}{after}").trim().to_owned()
-}
-
-/// What stands before the token in its item, on its line.
-fn line_around<'a>(text: &'a str, tokens: &[Token], i: usize) -> &'a str {
-    let (first, _) = item_around(text, tokens, i);
-    text[tokens[first].start..tokens[i].start].trim()
 }
 
 /// The first and last token of the item around a token, on its line.

@@ -10,6 +10,7 @@ mod decode;
 mod explain;
 mod foreign;
 mod format;
+mod layout;
 mod parse;
 mod prepare;
 mod token;

@@ -25,10 +25,23 @@ impl Draft<'_> {
         Span::new(self.file, start, end)
     }
 
+    pub fn is_full(&self) -> bool {
+        self.diagnostics.len() >= limits::DIAGNOSTICS
+    }
+
     pub fn report(&mut self, diagnostic: Diagnostic) {
-        if self.diagnostics.len() < limits::DIAGNOSTICS {
+        if !self.is_full() {
             self.diagnostics.push(diagnostic);
         }
+    }
+
+    /// A part of the text as it is now, with single blanks.
+    pub fn written(&self, start: usize, end: usize) -> String {
+        let part = String::from_utf8_lossy(&self.bytes[start..end]);
+        if part == self.original[start..end] {
+            return part.trim().to_owned();
+        }
+        part.split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
     /// Writes `new` over a token and blanks what is left of it, line breaks excepted.
@@ -44,24 +57,31 @@ impl Draft<'_> {
 }
 
 /// A text that the grammar can read whole.
-pub(super) struct Prepared {
+pub(super) struct Prepared<'a> {
     pub file: FileId,
+    source: &'a str,
     pub text: String,
     /// Where in `text` a bracket was put in, ascending.
     inserted: Vec<usize>,
     poisoned: BTreeSet<usize>,
-    original_length: usize,
 }
 
-impl Prepared {
+impl Prepared<'_> {
     /// The place in the original of an offset in `text`.
     pub fn original(&self, offset: usize) -> usize {
-        (offset - self.inserted.partition_point(|i| *i < offset)).min(self.original_length)
+        (offset - self.inserted.partition_point(|i| *i < offset)).min(self.source.len())
     }
 
+    /// The span in the original of a part of `text`: whole characters, also where shorter ones were written over them.
     pub fn span(&self, start: usize, end: usize) -> Span {
-        let start = self.original(start);
-        Span::new(self.file, start, self.original(end).max(start))
+        let (mut start, mut end) = (self.original(start), self.original(end));
+        while !self.source.is_char_boundary(start) {
+            start -= 1;
+        }
+        while !self.source.is_char_boundary(end) {
+            end += 1;
+        }
+        Span::new(self.file, start, end.max(start))
     }
 
     /// Whether the bracket at this offset of `text` was put in.
@@ -76,7 +96,7 @@ impl Prepared {
 }
 
 /// A text ready for the grammar, or nothing where it is beyond the bounds; and what was wrong with it.
-pub(super) fn prepare(file: FileId, original: &str) -> (Option<Prepared>, Vec<Diagnostic>) {
+pub(super) fn prepare(file: FileId, original: &str) -> (Option<Prepared<'_>>, Vec<Diagnostic>) {
     if original.len() > limits::BYTES {
         let size = original.len() as f64 / f64::from(1 << 20);
         let mistake = Diagnostic::new(Code::E0103, format!("file of {size:.1} MiB, where 8 MiB are the bound"))
@@ -93,8 +113,9 @@ pub(super) fn prepare(file: FileId, original: &str) -> (Option<Prepared>, Vec<Di
         poisoned: BTreeSet::new(),
         diagnostics: Vec::new(),
     };
-    foreign::replace(&mut draft, &tokens);
-    if let Err(beyond) = balance::balance(&mut draft, &tokens) {
+    let balanced = balance::is_balanced(original, &tokens);
+    foreign::replace(&mut draft, &tokens, balanced);
+    if let Err(beyond) = balance::balance(&mut draft, &tokens, balanced) {
         return (None, vec![beyond]);
     }
     let Draft { bytes, mut insertions, poisoned, diagnostics, .. } = draft;
@@ -111,5 +132,5 @@ pub(super) fn prepare(file: FileId, original: &str) -> (Option<Prepared>, Vec<Di
         from = offset;
     }
     text.push_str(&replaced[from..]);
-    (Some(Prepared { file, text, inserted, poisoned, original_length: original.len() }), diagnostics)
+    (Some(Prepared { file, source: original, text, inserted, poisoned }), diagnostics)
 }

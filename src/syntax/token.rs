@@ -104,10 +104,8 @@ fn quoted(rest: &str, close: char, reach: usize) -> Option<usize> {
     while let Some((i, c)) = chars.next() {
         match c {
             '\n' => return None,
-            '\\' if close == '"' => {
-                if chars.next().is_some_and(|(_, c)| c == '\n') {
-                    return None;
-                }
+            '\\' if close == '"' && chars.next().is_some_and(|(_, c)| c == '\n') => {
+                return None;
             }
             _ if c == close => return Some(i + c.len_utf8()),
             _ => {}
@@ -117,7 +115,8 @@ fn quoted(rest: &str, close: char, reach: usize) -> Option<usize> {
 }
 
 /// Looking for the partner of an odd quote or comment mark stops here, lest a file full of them takes for ever.
-const REACH: usize = 2000;
+const TEXT_REACH: usize = 200;
+const COMMENT_REACH: usize = 2000;
 
 fn odd_text(rest: &str, open: char) -> Option<usize> {
     let closing: &[char] = match open {
@@ -125,12 +124,12 @@ fn odd_text(rest: &str, open: char) -> Option<usize> {
         '‘' | '’' => &['’', '‘'],
         _ => &['”', '“'],
     };
-    let close = rest.chars().skip(1).take(REACH).find(|c| closing.contains(c))?;
-    quoted(rest, close, REACH)
+    let close = rest.chars().skip(1).take(TEXT_REACH).find(|c| closing.contains(c))?;
+    quoted(rest, close, TEXT_REACH)
 }
 
 fn block_comment_length(rest: &str) -> usize {
-    let reach = rest.char_indices().nth(REACH).map_or(rest.len(), |(i, _)| i);
+    let reach = rest.char_indices().nth(COMMENT_REACH).map_or(rest.len(), |(i, _)| i);
     rest[2..reach].find("*/").map_or_else(|| line_length(rest), |i| i + 4)
 }
 

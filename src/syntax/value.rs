@@ -176,7 +176,7 @@ impl<'p> Builder<'p> {
 
     fn exponent_beyond(&mut self, span: Span) {
         let mistake = Diagnostic::new(Code::E0103, "exponent beyond -9 .. 9");
-        self.report(mistake.at(span, "").help("powers of ten are written `1e12`"));
+        self.report(mistake.at(span, ""));
     }
 
     fn quantity(&mut self, pair: Pair<'p, Rule>) -> Value {
@@ -289,10 +289,10 @@ impl<'p> Builder<'p> {
 
     fn entry(&mut self, pair: Pair<'p, Rule>) -> Entry {
         let start = pair.as_span().start();
-        let mut parts = pair.into_inner();
+        let parts = pair.into_inner();
         let (mut values, mut sign, mut bad) = (Vec::new(), None, None);
         let mut texts = Vec::new();
-        while let Some(part) = parts.next() {
+        for part in parts {
             match part.as_rule() {
                 Rule::equals | Rule::colon => sign = Some(part),
                 Rule::missing => {
