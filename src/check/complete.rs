@@ -64,7 +64,7 @@ impl Checker<'_> {
 
     fn complete_alternative(&mut self, record: &mut Record, alternative: &'static Alternative) {
         let given = |path: &&str| record.at(path).is_some() || hidden_by_error(record, path);
-        if alternative.ways.iter().any(|way| way.iter().all(|p| given(&p))) {
+        if alternative.ways.iter().any(|way| way.iter().all(given)) {
             return;
         }
         match alternative.default {

@@ -55,7 +55,7 @@ pub(super) fn blocks(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic) ->
 /// Whether a count is a whole number of trains.
 fn divides(pass: &mut Pass, count: u64, train: &Train, what: &str, span: Option<Span>) -> bool {
     let axles = train.axles();
-    if count % axles == 0 && count > 0 {
+    if count.is_multiple_of(axles) && count > 0 {
         return true;
     }
     let below = (count / axles).max(1) * axles;
