@@ -115,17 +115,19 @@ impl<'a> TrackSystem<'a> {
         Ok((unloaded, outcome))
     }
 
-    /// Trains start and stop on the track, so seats near its ends see only some of their wheels. Such a ballasted seat takes
-    /// the mean of the nearest ten that every wheel passes, as if trains came from afar: otherwise a false step in the
-    /// settlement would grow where they start.
+    /// Trains start and stop on the track, so seats near its ends see only some of their wheels. Such a seat takes the mean of
+    /// the nearest ten of its section that every wheel passes, as if trains came from afar: otherwise a false step in the
+    /// settlement would grow where they start. A section of which no seat is passed keeps what it saw.
     fn complete(&self, passed: Range<f64>, outcomes: &mut [SeatOutcome], peaks: &mut [Vec<f64>]) {
         let seats = &self.node.track.seats;
-        let whole = |i: &usize| seats[*i].is_ballasted() && passed.contains(&seats[*i].x);
-        let left: Vec<usize> = (0..seats.len()).filter(whole).take(NEIGHBOURS).collect();
-        let right: Vec<usize> = (0..seats.len()).rev().filter(whole).take(NEIGHBOURS).collect();
-        for (i, seat) in seats.iter().enumerate().filter(|(_, s)| s.is_ballasted() && !passed.contains(&s.x)) {
-            let from = if seat.x < passed.start { &left } else { &right };
-            if from.is_empty() || seats[from[0]].section != seat.section {
+        for (i, seat) in seats.iter().enumerate().filter(|(_, s)| !passed.contains(&s.x)) {
+            let whole = |n: &usize| seats[*n].section == seat.section && passed.contains(&seats[*n].x);
+            let from: Vec<usize> = if seat.x < passed.start {
+                (0..seats.len()).filter(whole).take(NEIGHBOURS).collect()
+            } else {
+                (0..seats.len()).rev().filter(whole).take(NEIGHBOURS).collect()
+            };
+            if from.is_empty() {
                 continue;
             }
             let mean = |of: &dyn Fn(usize) -> f64| from.iter().map(|n| of(*n)).sum::<f64>() / from.len() as f64;

@@ -109,7 +109,7 @@ fn draw_close(svg: &mut Svg, scenario: &Scenario, place: f64, index: usize, top:
     let title = match (track.transitions.is_empty(), name) {
         (true, _) => "Around the load".to_owned(),
         (_, "") => format!("The transition, \u{b1}{} m", plain(CLOSE, 2)),
-        (_, name) => format!("Transition `{name}`, \u{b1}{} m", plain(CLOSE, 2)),
+        (_, name) => format!("Transition {name}, \u{b1}{} m", plain(CLOSE, 2)),
     };
     svg.text("strong", (6.0, top + 18.0), Anchor::Start, &title);
     draw_key(svg, top + 18.0);
