@@ -1,1 +1,4 @@
 //! Systems of equations; knows no physics.
+
+pub mod banded;
+pub mod dense;

@@ -1,1 +1,3 @@
 //! Solvers: SI numbers in, SI numbers out.
+
+pub mod settlement;
