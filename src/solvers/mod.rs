@@ -1,3 +1,4 @@
 //! Solvers: SI numbers in, SI numbers out.
 
 pub mod settlement;
+pub mod track;

@@ -1,0 +1,90 @@
+//! The largest and smallest of what happens during a passage.
+
+use super::view::{Observer, StepView};
+
+/// An [`Observer`] that keeps extremes; empty until it has seen the start. Lists run over seats, wheels or nodes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Envelope {
+    /// Force of the rail on each pad, smallest and largest, N.
+    pub seat_loads: Vec<(f64, f64)>,
+    /// Largest force of each sleeper on its support, N; 0 for seats without a sleeper.
+    pub contact_forces: Vec<f64>,
+    /// Largest downward displacement of each sleeper or slab seat from the unloaded state, m.
+    pub foot_displacements: Vec<f64>,
+    /// Time in which each sleeper's support carried nothing, s.
+    pub contact_losses: Vec<f64>,
+    /// Row by row for each seat: the largest contact force while each wheel was the nearest to the seat, N. A wheel that
+    /// never was the nearest, or a seat without a sleeper, has 0.
+    pub axle_peaks: Vec<f64>,
+    /// Smallest and largest force of each wheel, N.
+    pub wheel_forces: Vec<(f64, f64)>,
+    /// Sagging rail moment at each node, smallest and largest, N m.
+    pub rail_moments: Vec<(f64, f64)>,
+    moments: Vec<f64>,
+}
+
+const NOTHING: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
+
+fn widen(range: &mut (f64, f64), value: f64) {
+    range.0 = range.0.min(value);
+    range.1 = range.1.max(value);
+}
+
+impl Envelope {
+    /// The peak contact force of a seat for each wheel in turn, N.
+    pub fn axle_peaks_of(&self, seat: usize) -> &[f64] {
+        let wheels = self.wheel_forces.len();
+        &self.axle_peaks[seat * wheels..(seat + 1) * wheels]
+    }
+
+    fn begin(&mut self, view: &StepView<'_>) {
+        let (seats, wheels) = (view.track().model().seats.len(), view.wheel_forces().len());
+        let nodes = view.track().nodes().len();
+        *self = Self {
+            seat_loads: vec![NOTHING; seats],
+            contact_forces: vec![0.0; seats],
+            foot_displacements: vec![f64::NEG_INFINITY; seats],
+            contact_losses: vec![0.0; seats],
+            axle_peaks: vec![0.0; seats * wheels],
+            wheel_forces: vec![NOTHING; wheels],
+            rail_moments: vec![NOTHING; nodes],
+            moments: vec![0.0; nodes],
+        };
+    }
+}
+
+impl Observer for Envelope {
+    fn observe(&mut self, view: &StepView<'_>) {
+        if view.step() == 0 {
+            self.begin(view);
+        }
+        let wheels = view.wheel_positions();
+        for (seat, model) in view.track().model().seats.iter().enumerate() {
+            widen(&mut self.seat_loads[seat], view.seat_load(seat));
+            let lowered = view.foot_displacement(seat) - view.unloaded().foot_displacements[seat];
+            self.foot_displacements[seat] = self.foot_displacements[seat].max(lowered);
+            let Some(force) = view.contact_force(seat) else { continue };
+            self.contact_forces[seat] = self.contact_forces[seat].max(force);
+            if force == 0.0 && view.step() > 0 {
+                self.contact_losses[seat] += view.time_step();
+            }
+            let mut nearest = (f64::INFINITY, 0);
+            for (wheel, x) in wheels.iter().enumerate() {
+                let distance = (x - model.x).abs();
+                if distance < nearest.0 {
+                    nearest = (distance, wheel);
+                }
+            }
+            if let Some(peak) = self.axle_peaks.get_mut(seat * wheels.len() + nearest.1) {
+                *peak = peak.max(force);
+            }
+        }
+        for (range, force) in self.wheel_forces.iter_mut().zip(view.wheel_forces()) {
+            widen(range, *force);
+        }
+        view.rail_moments(&mut self.moments);
+        for (range, moment) in self.rail_moments.iter_mut().zip(&self.moments) {
+            widen(range, *moment);
+        }
+    }
+}

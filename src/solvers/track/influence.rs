@@ -1,0 +1,79 @@
+//! One time step of one track, factored once: the effective matrix and how far forces at its contacts reach within the step.
+//!
+//! With all supports closed the equation of a step is linear in the acceleration at its end, `M̂ a_{n+1} = r_n + (1-αf) q`,
+//! where q are the wheel forces and what open supports fail to carry. The displacement that q adds is `A q` with
+//! `A = (1-αf) β Δt² M̂⁻¹`, and A decays within a fraction of a metre for short steps: each of its columns is kept where it is
+//! not negligible, so memory grows with the length of the track and not with its square.
+
+use super::scheme::Scheme;
+use super::{Track, TrackError};
+use crate::linalg::banded::{BandedFactor, SymmetricBanded, Window};
+use std::sync::Arc;
+
+/// A time step prepared for one track; immutable and shared by all passages.
+#[derive(Debug, Clone)]
+pub struct Stepper {
+    pub(super) track: Arc<Track>,
+    pub(super) scheme: Scheme,
+    pub(super) factor: BandedFactor,
+    /// Columns of A for rail deflection and slope, node by node: displacement of all unknowns per force, m/N.
+    pub(super) of_rail: Vec<Window>,
+    /// The same columns at the sleepers alone, counted by sleeper.
+    pub(super) of_rail_at_sleepers: Vec<Window>,
+    /// Columns of A for each sleeper, at all unknowns and at the sleepers alone.
+    pub(super) of_sleeper: Vec<Window>,
+    pub(super) of_sleeper_at_sleepers: Vec<Window>,
+}
+
+/// Part of a column's largest entry below which the rest of the column is dropped.
+const NEGLIGIBLE: f64 = 1e-18;
+
+impl Stepper {
+    /// Factors one step; fails where the track is a mechanism without mass.
+    pub fn new(track: Arc<Track>, scheme: Scheme) -> Result<Self, TrackError> {
+        let (of_mass, of_damping, of_stiffness) = scheme.effective();
+        let mut matrix = SymmetricBanded::zeros(track.order(), track.mass.half_band());
+        matrix.add_scaled(of_mass, &track.mass);
+        matrix.add_scaled(of_damping, &track.damping);
+        matrix.add_scaled(of_stiffness, &track.stiffness);
+        for (unknown, _) in &track.held {
+            matrix.pin(*unknown);
+        }
+        let factor = matrix.factor().map_err(|e| TrackError::Mechanism { x: track.place_of(e.row) })?;
+
+        let mut scratch = vec![0.0; track.order()];
+        let mut column = |unknown: usize| {
+            if track.held.iter().any(|(held, _)| *held == unknown) {
+                return Window { start: unknown, values: Vec::new() };
+            }
+            let mut column = factor.inverse_column(unknown, NEGLIGIBLE, &mut scratch);
+            column.values.iter_mut().for_each(|a| *a *= of_stiffness);
+            column
+        };
+        let of_rail: Vec<Window> = track.rail.iter().flat_map(|w| [*w, *w + 1]).map(&mut column).collect();
+        let of_sleeper: Vec<Window> = track.sleepers.iter().map(|s| column(s.unknown)).collect();
+        let at_sleepers = |column: &Window| {
+            let start = track.sleepers.partition_point(|s| s.unknown < column.start);
+            let end = track.sleepers.partition_point(|s| s.unknown < column.end());
+            Window { start, values: track.sleepers[start..end].iter().map(|s| column.at(s.unknown)).collect() }
+        };
+        Ok(Self {
+            of_rail_at_sleepers: of_rail.iter().map(at_sleepers).collect(),
+            of_sleeper_at_sleepers: of_sleeper.iter().map(at_sleepers).collect(),
+            of_rail,
+            of_sleeper,
+            factor,
+            scheme,
+            track,
+        })
+    }
+
+    pub fn track(&self) -> &Track {
+        &self.track
+    }
+
+    /// s.
+    pub fn time_step(&self) -> f64 {
+        self.scheme.time_step
+    }
+}

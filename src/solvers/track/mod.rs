@@ -1,0 +1,39 @@
+//! One rail on its seats, and the vehicles that run over it: statics with lift-off, and passages in time.
+//!
+//! The rail and the slabs are Euler–Bernoulli beams of cubic Hermite elements, pads are springs and dampers, a sleeper is a
+//! mass on a support that can only push, and a vehicle is ten rigid-body unknowns on Hertz contacts. Displacements and forces
+//! are positive downward, moments positive where the rail sags, x grows to the right.
+//!
+//! [`TrackModel`] says what there is; [`Track`] is its mesh and matrices; [`solve_static`] finds the state at rest;
+//! [`Stepper`] factors one time step for all passages over that track; [`Passage`] runs one train over it and shows every
+//! step to an [`Observer`].
+
+mod beam;
+mod contact;
+mod envelope;
+mod error;
+mod influence;
+mod interface;
+mod mesh;
+mod model;
+mod passage;
+mod quasi_static;
+mod scheme;
+mod statics;
+mod vehicle;
+mod view;
+
+pub use contact::SupportPhase;
+pub use envelope::Envelope;
+pub use error::TrackError;
+pub use influence::Stepper;
+pub use mesh::Track;
+pub use model::{Foot, RailEnds, RailSection, Seat, Slab, TrackLevel, TrackModel};
+pub use passage::{Counters, Passage, Run};
+pub use scheme::Scheme;
+pub use statics::{Balance, Loads, StaticState, solve_static};
+pub use vehicle::{Direction, Train, Vehicle};
+pub use view::{Observer, StepView};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,181 @@
+//! The track as numbers, before it is meshed, and the checks that a mesh relies on. Everything belongs to one rail.
+
+use super::TrackError;
+
+/// What the track of one rail consists of; SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrackModel {
+    /// Chainage of the left and right end of the rail, m.
+    pub ends: [f64; 2],
+    /// Left to right, from end to end without gaps.
+    pub rail: Vec<RailSection>,
+    /// Left to right, no two at one place.
+    pub seats: Vec<Seat>,
+    /// Left to right; two may touch but not overlap.
+    pub slabs: Vec<Slab>,
+    pub rail_ends: RailEnds,
+    /// Rail elements between neighbouring seats; more resolve higher frequencies. Statics are exact with one.
+    pub elements_per_bay: usize,
+    /// m/s^2, 0 or more.
+    pub gravity: f64,
+}
+
+/// A stretch of rail.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RailSection {
+    /// Chainage of its ends, m.
+    pub start: f64,
+    pub end: f64,
+    /// kg/m, 0 or more.
+    pub mass: f64,
+    /// EI, N m^2.
+    pub bending_stiffness: f64,
+}
+
+/// A rail seat: a pad between the rail and its foot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seat {
+    /// Chainage, m.
+    pub x: f64,
+    /// N/m, in both directions: the clips hold the rail down.
+    pub pad_stiffness: f64,
+    /// N s/m.
+    pub pad_damping: f64,
+    pub foot: Foot,
+}
+
+/// What a pad stands on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Foot {
+    /// Half a sleeper [kg] on a support [N/m, N s/m] that pushes and never pulls.
+    Sleeper { mass: f64, support_stiffness: f64, support_damping: f64 },
+    /// Ground that does not move.
+    Rigid,
+    /// The slab under the seat; the right one where two slabs meet.
+    Slab,
+}
+
+/// Half a slab: a beam with free ends on a Winkler foundation that acts in both directions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slab {
+    /// Chainage of its ends, m.
+    pub start: f64,
+    pub end: f64,
+    /// EI, N m^2.
+    pub bending_stiffness: f64,
+    /// kg/m.
+    pub mass: f64,
+    /// N/m per metre of track.
+    pub foundation_stiffness: f64,
+    /// N s/m per metre of track.
+    pub foundation_damping: f64,
+}
+
+/// What holds the rail at both ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RailEnds {
+    /// Level given, rotation zero.
+    Clamped,
+    /// Level given.
+    Pinned,
+    Free,
+}
+
+/// How far the track has settled; zeros are the track as built.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TrackLevel {
+    /// Downward displacement of the support under each seat, m; read for sleepers only.
+    pub settlements: Vec<f64>,
+    /// Level at which clamped or pinned rail ends are held, m below the level as built. The level of the rail at rest, its
+    /// deflection under gravity included, leaves no bending at a clamped end.
+    pub ends: [f64; 2],
+}
+
+impl TrackLevel {
+    /// The track as built.
+    pub fn as_built(model: &TrackModel) -> Self {
+        Self { settlements: vec![0.0; model.seats.len()], ends: [0.0; 2] }
+    }
+}
+
+/// Places closer than this are one, m.
+pub(super) const SAME_PLACE: f64 = 1e-6;
+
+impl TrackModel {
+    /// Refuses a model that cannot be meshed.
+    pub(super) fn check(&self) -> Result<(), TrackError> {
+        let [start, end] = self.ends;
+        let fail = |x: f64, reason: &str| Err(TrackError::Model { x, reason: reason.to_owned() });
+        // Written so that a value that is not a number fails.
+        let positive = |value: f64| value > 0.0 && value.is_finite();
+        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
+        if !(start.is_finite() && positive(end - start)) {
+            return fail(start, "the right end of the track is not right of its left end");
+        }
+        if self.elements_per_bay == 0 {
+            return Err(TrackError::Parameter { name: "elements per bay", value: 0.0, expected: "of 1 or more" });
+        }
+        if !not_negative(self.gravity) {
+            return Err(TrackError::Parameter { name: "gravity", value: self.gravity, expected: "of 0 or more" });
+        }
+        let mut reached = start;
+        for section in &self.rail {
+            if (section.start - reached).abs() > SAME_PLACE || !positive(section.end - section.start) {
+                return fail(reached, "the rail sections do not follow each other");
+            }
+            if !positive(section.bending_stiffness) || !not_negative(section.mass) {
+                return fail(section.start, "the rail has no bending stiffness or a negative mass");
+            }
+            reached = section.end;
+        }
+        if (reached - end).abs() > SAME_PLACE {
+            return fail(reached, "the rail sections do not reach the end of the track");
+        }
+        let mut reached = start - SAME_PLACE;
+        for slab in &self.slabs {
+            if slab.start < reached || !positive(slab.end - slab.start) || slab.end > end + SAME_PLACE {
+                return fail(slab.start, "a slab overlaps another one or the end of the track");
+            }
+            if !positive(slab.bending_stiffness)
+                || !positive(slab.foundation_stiffness)
+                || !not_negative(slab.mass)
+                || !not_negative(slab.foundation_damping)
+            {
+                return fail(
+                    slab.start,
+                    "a slab lacks bending or foundation stiffness, or has a negative mass or damping",
+                );
+            }
+            reached = slab.end - SAME_PLACE;
+        }
+        let mut reached = f64::NEG_INFINITY;
+        for seat in &self.seats {
+            if seat.x < start - SAME_PLACE || seat.x > end + SAME_PLACE || seat.x.is_nan() {
+                return fail(seat.x, "a seat lies outside the track");
+            }
+            if seat.x - reached <= SAME_PLACE {
+                return fail(seat.x, "two seats share a place or are out of order");
+            }
+            if !positive(seat.pad_stiffness) || !not_negative(seat.pad_damping) {
+                return fail(seat.x, "a pad has no stiffness or a negative damping");
+            }
+            match seat.foot {
+                Foot::Rigid => {}
+                Foot::Sleeper { mass, support_stiffness, support_damping } => {
+                    if !positive(mass) || !positive(support_stiffness) || !not_negative(support_damping) {
+                        return fail(seat.x, "a sleeper lacks mass or support stiffness, or has a negative damping");
+                    }
+                }
+                Foot::Slab if self.slab_under(seat.x).is_none() => return fail(seat.x, "no slab under the seat"),
+                Foot::Slab => {}
+            }
+            reached = seat.x;
+        }
+        Ok(())
+    }
+
+    /// Index of the slab under x, the right one where two meet.
+    pub(super) fn slab_under(&self, x: f64) -> Option<usize> {
+        self.slabs.iter().rposition(|s| s.start - SAME_PLACE <= x && x <= s.end + SAME_PLACE)
+    }
+}

@@ -1,0 +1,414 @@
+//! One train over one track: the time loop.
+//!
+//! A step solves the linear track with all supports closed, then the contacts ([`super::interface`]), and adds what the
+//! contact forces displace. Nothing is factored and nothing allocated while it runs.
+
+use super::contact::{SupportLine, SupportPhase};
+use super::influence::Stepper;
+use super::interface::{Contact, Interface, add_scaled};
+use super::quasi_static::{self, Start};
+use super::vehicle::{UNKNOWNS, VehicleMatrix, VehicleVector, WHEEL, WHEELS};
+use super::view::{Observer, StepView};
+use super::{Loads, StaticState, TrackError, TrackLevel, Train, solve_static};
+use nalgebra::Matrix4;
+
+/// Which train runs from where to where.
+#[derive(Debug, Clone, Copy)]
+pub struct Run<'a> {
+    pub train: &'a Train,
+    /// Chainage of the leading wheel at the start and at the finish, m; all wheels stand on the track at both.
+    pub start: f64,
+    pub finish: f64,
+    /// m/s, above 0.
+    pub speed: f64,
+}
+
+/// What a passage has cost so far.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counters {
+    pub steps: usize,
+    /// Newton iterations of the contacts.
+    pub iterations: usize,
+    /// The most iterations of one step.
+    pub most_iterations: usize,
+    /// The most supports of one step that were not closed.
+    pub most_open_supports: usize,
+}
+
+/// A passage under way. All vectors run over the unknowns of the track unless said otherwise.
+#[derive(Debug, Clone)]
+pub struct Passage<'a> {
+    pub(super) stepper: &'a Stepper,
+    pub(super) level: &'a TrackLevel,
+    train: Option<Run<'a>>,
+    pub(super) unloaded: StaticState,
+    pub(super) counters: Counters,
+    planned_steps: usize,
+    pub(super) displacement: Vec<f64>,
+    pub(super) velocity: Vec<f64>,
+    pub(super) acceleration: Vec<f64>,
+    pub(super) interface: Interface,
+    /// Chainage per wheel, m.
+    pub(super) wheel_positions: Vec<f64>,
+    /// Per sleeper, N.
+    pub(super) support_forces: Vec<f64>,
+    vehicles: Vec<RunningVehicle>,
+    steady: Vec<f64>,
+    predicted: Vec<f64>,
+    predicted_velocity: Vec<f64>,
+    mean: [Vec<f64>; 3],
+}
+
+/// A vehicle's motion and the matrices of its step.
+#[derive(Debug, Clone)]
+struct RunningVehicle {
+    stiffness: VehicleMatrix,
+    damping: VehicleMatrix,
+    masses: VehicleVector,
+    weight: VehicleVector,
+    inverse: VehicleMatrix,
+    displacement: VehicleVector,
+    velocity: VehicleVector,
+    acceleration: VehicleVector,
+    predicted: VehicleVector,
+    predicted_velocity: VehicleVector,
+}
+
+impl<'a> Passage<'a> {
+    /// Places the train at its start, on a track at `level`, in quasi-static motion.
+    ///
+    /// Fails where a wheel stands off the track at the start or finish, where the speed is not above 0, where the finish does
+    /// not lie ahead, or where there is no static equilibrium.
+    pub fn new(stepper: &'a Stepper, level: &'a TrackLevel, run: Run<'a>) -> Result<Self, TrackError> {
+        let (track, sign) = (&stepper.track, run.train.direction.sign());
+        if !(run.speed > 0.0 && run.speed.is_finite()) {
+            return Err(TrackError::Parameter { name: "speed", value: run.speed, expected: "above 0" });
+        }
+        let distance = sign * (run.finish - run.start);
+        if !(distance > 0.0 && distance.is_finite()) {
+            return Err(TrackError::Parameter { name: "distance", value: distance, expected: "above 0" });
+        }
+        for x in run.train.wheel_positions(run.start).chain(run.train.wheel_positions(run.finish)) {
+            track.rail_point(x)?;
+        }
+        let start = quasi_static::start(track, level, run.train, run.start, run.speed)?;
+        let mut passage = Self::begin(stepper, level, Some(run), start)?;
+        passage.planned_steps = (distance / (run.speed * stepper.time_step()) + 1e-9).floor() as usize;
+        Ok(passage)
+    }
+
+    /// Lets go of a track without vehicles that was held in `state`, for `steps` steps.
+    pub fn released(
+        stepper: &'a Stepper,
+        level: &'a TrackLevel,
+        state: StaticState,
+        steps: usize,
+    ) -> Result<Self, TrackError> {
+        if !state.vehicles.is_empty() {
+            let value = state.vehicles.len() as f64;
+            return Err(TrackError::Parameter { name: "vehicles", value, expected: "of 0 on a released track" });
+        }
+        let track = &stepper.track;
+        let start = Start::at_rest(track, state);
+        let mut mass = track.mass.clone();
+        track.held.iter().for_each(|(unknown, _)| mass.pin(*unknown));
+        let mut passage = Self::begin(stepper, level, None, start)?;
+        // Accelerations that the forces at the first instant ask for, where every unknown has mass.
+        if let Ok(mass) = mass.factor() {
+            let forces = &mut passage.acceleration;
+            forces.copy_from_slice(&passage.steady);
+            track.stiffness.subtract_product(&passage.displacement, forces);
+            for (sleeper, q) in track.sleepers.iter().zip(&passage.interface.corrections) {
+                forces[sleeper.unknown] += q;
+            }
+            track.held.iter().for_each(|(unknown, _)| forces[*unknown] = 0.0);
+            mass.solve_in_place(forces);
+        }
+        passage.planned_steps = steps;
+        Ok(passage)
+    }
+
+    fn begin(
+        stepper: &'a Stepper,
+        level: &'a TrackLevel,
+        train: Option<Run<'a>>,
+        start: Start,
+    ) -> Result<Self, TrackError> {
+        let track = &stepper.track;
+        let unloaded = solve_static(track, level, &Loads::default())?;
+        let mut vehicles = Vec::new();
+        let (mut hertz, mut compliance, mut wheel_positions) = (Vec::new(), Vec::new(), Vec::new());
+        if let Some(run) = &train {
+            wheel_positions.extend(run.train.wheel_positions(run.start));
+            for (v, (vehicle, _)) in run.train.vehicles.iter().enumerate() {
+                let running = RunningVehicle::new(stepper, vehicle, &start, v).ok_or(TrackError::Parameter {
+                    name: "vehicle",
+                    value: v as f64,
+                    expected: "with masses that a step can move",
+                })?;
+                hertz.extend([vehicle.hertz; WHEELS]);
+                let (_, _, share) = stepper.scheme.effective();
+                let wheels: Matrix4<f64> = running.inverse.fixed_view::<WHEELS, WHEELS>(WHEEL, WHEEL).into_owned();
+                compliance.push(share * wheels);
+                vehicles.push(running);
+            }
+        }
+        let mut interface = Interface::new(hertz, compliance, track.sleepers.len());
+        interface.forces.copy_from_slice(&start.state.wheel_forces);
+        interface.indentations.copy_from_slice(&start.state.indentations);
+        for (point, x) in interface.points.iter_mut().zip(&wheel_positions) {
+            *point = track.rail_point(*x)?;
+        }
+        let mut support_forces = vec![0.0; track.sleepers.len()];
+        for (s, sleeper) in track.sleepers.iter().enumerate() {
+            let gap = start.state.unknowns[sleeper.unknown] - level.settlements[sleeper.seat];
+            let linear = sleeper.support_stiffness * gap + sleeper.support_damping * start.velocity[sleeper.unknown];
+            let carries = start.state.closed[s] && linear >= 0.0;
+            interface.gaps[s] = gap;
+            interface.phases[s] = if carries { SupportPhase::Closed } else { SupportPhase::Open };
+            interface.corrections[s] = if carries { 0.0 } else { linear };
+            support_forces[s] = if carries { linear } else { 0.0 };
+        }
+        let order = track.order();
+        Ok(Self {
+            stepper,
+            level,
+            train,
+            unloaded,
+            counters: Counters::default(),
+            planned_steps: 0,
+            displacement: start.state.unknowns,
+            velocity: start.velocity,
+            acceleration: start.acceleration,
+            interface,
+            wheel_positions,
+            support_forces,
+            vehicles,
+            steady: track.steady_forces(level),
+            predicted: vec![0.0; order],
+            predicted_velocity: vec![0.0; order],
+            mean: [vec![0.0; order], vec![0.0; order], vec![0.0; order]],
+        })
+    }
+
+    /// The track without vehicles at this level.
+    pub fn unloaded(&self) -> &StaticState {
+        &self.unloaded
+    }
+
+    pub fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    /// Steps from the start to the finish.
+    pub fn planned_steps(&self) -> usize {
+        self.planned_steps
+    }
+
+    /// The present state.
+    pub fn view(&self) -> StepView<'_> {
+        StepView { passage: self }
+    }
+
+    /// Runs to the finish; `observer` sees the start and every step.
+    pub fn run(&mut self, observer: &mut impl Observer) -> Result<Counters, TrackError> {
+        observer.observe(&self.view());
+        while self.counters.steps < self.planned_steps {
+            self.step()?;
+            observer.observe(&self.view());
+        }
+        Ok(self.counters)
+    }
+
+    /// s, since the start.
+    pub fn time(&self) -> f64 {
+        self.counters.steps as f64 * self.stepper.time_step()
+    }
+
+    /// One time step; after an error the state is not to be used.
+    pub fn step(&mut self) -> Result<(), TrackError> {
+        let (track, scheme) = (&*self.stepper.track, &self.stepper.scheme);
+        let (dt, alpha_f) = (scheme.time_step, scheme.alpha_f);
+        let (displacement_share, rate) = (scheme.displacement_share(), scheme.rate());
+
+        // Track with all supports closed and without wheel forces at the end of the step.
+        let [mean, mean_velocity, mean_acceleration] = &mut self.mean;
+        let order = track.order();
+        let (u, v, a) = (&mut self.displacement[..order], &mut self.velocity[..order], &mut self.acceleration[..order]);
+        let (predicted, predicted_velocity) = (&mut self.predicted[..order], &mut self.predicted_velocity[..order]);
+        let (from_a, velocity_from_a) = ((0.5 - scheme.beta) * dt * dt, (1.0 - scheme.gamma) * dt);
+        for i in 0..order {
+            predicted[i] = u[i] + dt * v[i] + from_a * a[i];
+            predicted_velocity[i] = v[i] + velocity_from_a * a[i];
+            mean[i] = (1.0 - alpha_f) * predicted[i] + alpha_f * u[i];
+            mean_velocity[i] = (1.0 - alpha_f) * predicted_velocity[i] + alpha_f * v[i];
+            mean_acceleration[i] = scheme.alpha_m * a[i];
+        }
+        a.copy_from_slice(&self.steady);
+        for (point, force) in self.interface.points.iter().zip(&self.interface.forces) {
+            track.add_force(point, alpha_f * force, a);
+        }
+        for (sleeper, q) in track.sleepers.iter().zip(&self.interface.corrections) {
+            a[sleeper.unknown] += alpha_f * q;
+        }
+        track.stiffness.subtract_product(mean, a);
+        track.damping.subtract_product(mean_velocity, a);
+        track.mass.subtract_product(mean_acceleration, a);
+        for (unknown, _) in &track.held {
+            a[*unknown] = 0.0;
+        }
+        self.stepper.factor.solve_in_place(a);
+
+        // Contacts.
+        self.counters.steps += 1;
+        let travelled = self.counters.steps as f64 * dt;
+        if let Some(run) = &self.train {
+            let leading = run.start + run.train.direction.sign() * run.speed * travelled;
+            for (position, x) in self.wheel_positions.iter_mut().zip(run.train.wheel_positions(leading)) {
+                *position = x;
+            }
+        }
+        for (i, vehicle) in self.vehicles.iter_mut().enumerate() {
+            let wheels = i * WHEELS..(i + 1) * WHEELS;
+            vehicle.predict(scheme, &self.interface.forces[wheels.clone()]);
+            for j in wheels {
+                let point = track.moved_point(self.interface.points[j].element, self.wheel_positions[j]);
+                let unknowns = track.element_unknowns(point.element);
+                let rail: f64 = (0..4)
+                    .map(|k| point.shape[k] * (predicted[unknowns[k]] + displacement_share * a[unknowns[k]]))
+                    .sum();
+                self.interface.points[j] = point;
+                self.interface.free_indentations[j] = vehicle.free_wheel(scheme, j % WHEELS) - rail;
+            }
+        }
+        for (s, sleeper) in track.sleepers.iter().enumerate() {
+            let (i, settlement) = (sleeper.unknown, self.level.settlements[sleeper.seat]);
+            self.interface.free_gaps[s] = predicted[i] + displacement_share * a[i] - settlement;
+            let passing_speed = predicted_velocity[i] + rate * (settlement - predicted[i]);
+            self.interface.lines[s] = SupportLine {
+                stiffness: sleeper.support_stiffness + rate * sleeper.support_damping,
+                offset: sleeper.support_damping * passing_speed,
+            };
+        }
+        let time = travelled;
+        let effort = self.interface.solve(self.stepper).map_err(|contact| TrackError::StepNotConverged {
+            step: self.counters.steps,
+            time,
+            x: match contact {
+                Contact::Wheel(j) => self.wheel_positions[j],
+                Contact::Support(s) => track.sleepers.get(s).map_or(f64::NAN, |s| track.model.seats[s.seat].x),
+            },
+        })?;
+        self.counters.iterations += effort.iterations;
+        self.counters.most_iterations = self.counters.most_iterations.max(effort.iterations);
+        self.counters.most_open_supports = self.counters.most_open_supports.max(effort.active);
+
+        // What the contact forces add, and the end of the step.
+        let per_displacement = 1.0 / displacement_share;
+        for (point, force) in self.interface.points.iter().zip(&self.interface.forces) {
+            let columns = &self.stepper.of_rail[2 * point.element..2 * point.element + 4];
+            for (column, shape) in columns.iter().zip(point.shape) {
+                add_scaled(&mut a[column.start..], &column.values, per_displacement * shape * force);
+            }
+        }
+        for (column, q) in self.stepper.of_sleeper.iter().zip(&self.interface.corrections) {
+            if *q != 0.0 {
+                add_scaled(&mut a[column.start..], &column.values, per_displacement * q);
+            }
+        }
+        let mut sum = 0.0;
+        for i in 0..order {
+            u[i] = predicted[i] + displacement_share * a[i];
+            v[i] = predicted_velocity[i] + scheme.velocity_share() * a[i];
+            sum += u[i];
+        }
+        for (i, vehicle) in self.vehicles.iter_mut().enumerate() {
+            vehicle.finish(scheme, &self.interface.forces[i * WHEELS..(i + 1) * WHEELS]);
+            sum += vehicle.displacement.sum();
+        }
+        for s in 0..self.support_forces.len() {
+            self.support_forces[s] = self.interface.support_force(s);
+        }
+        if !sum.is_finite() {
+            let x = self.wheel_positions.first().copied().unwrap_or(track.model.ends[0]);
+            return Err(TrackError::NotFinite { step: self.counters.steps, time, x });
+        }
+        Ok(())
+    }
+
+    /// Kinetic and potential energy of the track, J, from the track as built without weight.
+    #[cfg(test)]
+    pub(super) fn energy(&self) -> f64 {
+        let track = &self.stepper.track;
+        let quadratic = |matrix: &crate::linalg::banded::SymmetricBanded, x: &[f64]| {
+            let mut product = vec![0.0; x.len()];
+            matrix.subtract_product(x, &mut product);
+            -0.5 * x.iter().zip(&product).map(|(x, p)| x * p).sum::<f64>()
+        };
+        let u = &self.displacement;
+        let mut energy = quadratic(&track.mass, &self.velocity) + quadratic(&track.stiffness, u);
+        energy -= track.weight.iter().zip(u).map(|(w, u)| w * u).sum::<f64>();
+        for sleeper in &track.sleepers {
+            let (u, k) = (u[sleeper.unknown], sleeper.support_stiffness);
+            let gap = (u - self.level.settlements[sleeper.seat]).max(0.0);
+            energy += 0.5 * k * (gap * gap - u * u);
+        }
+        energy
+    }
+}
+
+impl RunningVehicle {
+    fn new(stepper: &Stepper, vehicle: &super::Vehicle, start: &Start, index: usize) -> Option<Self> {
+        let (stiffness, damping) = vehicle.suspension();
+        let masses = vehicle.masses();
+        let (of_mass, of_damping, of_stiffness) = stepper.scheme.effective();
+        let matrix =
+            VehicleMatrix::from_diagonal(&(of_mass * masses)) + of_damping * damping + of_stiffness * stiffness;
+        Some(Self {
+            stiffness,
+            damping,
+            masses,
+            weight: vehicle.weight(stepper.track.model.gravity),
+            inverse: matrix.cholesky()?.inverse(),
+            displacement: start.state.vehicles[index],
+            velocity: start.vehicle_velocity[index],
+            acceleration: start.vehicle_acceleration[index],
+            predicted: VehicleVector::zeros(),
+            predicted_velocity: VehicleVector::zeros(),
+        })
+    }
+
+    /// Begins a step: the acceleration that it would end with if the wheel forces at its end were zero.
+    fn predict(&mut self, scheme: &super::Scheme, old_forces: &[f64]) {
+        let (dt, alpha_f) = (scheme.time_step, scheme.alpha_f);
+        let acceleration = self.acceleration;
+        self.predicted = self.displacement + dt * self.velocity + (0.5 - scheme.beta) * dt * dt * acceleration;
+        self.predicted_velocity = self.velocity + (1.0 - scheme.gamma) * dt * acceleration;
+        let mean = (1.0 - alpha_f) * self.predicted + alpha_f * self.displacement;
+        let mean_velocity = (1.0 - alpha_f) * self.predicted_velocity + alpha_f * self.velocity;
+        let mut forces = self.weight
+            - self.stiffness * mean
+            - self.damping * mean_velocity
+            - scheme.alpha_m * self.masses.component_mul(&acceleration);
+        for (w, force) in old_forces.iter().enumerate() {
+            forces[WHEEL + w] -= alpha_f * force;
+        }
+        self.acceleration = self.inverse * forces;
+    }
+
+    /// Displacement of a wheel at the end of the step if the wheel forces there were zero, m.
+    fn free_wheel(&self, scheme: &super::Scheme, wheel: usize) -> f64 {
+        self.predicted[WHEEL + wheel] + scheme.displacement_share() * self.acceleration[WHEEL + wheel]
+    }
+
+    /// Ends a step with its wheel forces.
+    fn finish(&mut self, scheme: &super::Scheme, forces: &[f64]) {
+        for (w, force) in forces.iter().enumerate() {
+            for i in 0..UNKNOWNS {
+                self.acceleration[i] -= (1.0 - scheme.alpha_f) * force * self.inverse[(i, WHEEL + w)];
+            }
+        }
+        self.displacement = self.predicted + scheme.displacement_share() * self.acceleration;
+        self.velocity = self.predicted_velocity + scheme.velocity_share() * self.acceleration;
+    }
+}

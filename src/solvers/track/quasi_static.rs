@@ -1,0 +1,79 @@
+//! How a passage begins: the track and its train in the motion they would have had if the train had always been there.
+//!
+//! Velocity and acceleration are the first two differences of the static states a little behind, at and ahead of the start.
+//! The state at the start is then solved once more with the forces of inertia and damping of that motion, so that the
+//! equation of motion holds at the first instant.
+
+use super::mesh::Track;
+use super::statics::{Inertia, solve_with_inertia};
+use super::vehicle::VehicleVector;
+use super::{Loads, StaticState, TrackError, TrackLevel, Train, solve_static};
+
+/// A state in motion.
+pub(super) struct Start {
+    pub state: StaticState,
+    pub velocity: Vec<f64>,
+    pub acceleration: Vec<f64>,
+    pub vehicle_velocity: Vec<VehicleVector>,
+    pub vehicle_acceleration: Vec<VehicleVector>,
+}
+
+/// Distance of the states that are compared, m: small beside an element, large beside the rounding of a deflection.
+const DISTANCE: f64 = 2e-3;
+
+/// The train with its leading wheel at `leading` [m], moving at `speed` [m/s].
+pub(super) fn start(
+    track: &Track,
+    level: &TrackLevel,
+    train: &Train,
+    leading: f64,
+    speed: f64,
+) -> Result<Start, TrackError> {
+    let at = |x: f64| solve_static(track, level, &Loads { train: Some((train, x)), ..Loads::default() });
+    let here = at(leading)?;
+    let sign = train.direction.sign();
+    let interval = DISTANCE / speed;
+    // A wheel may stand at the very end of the track: then there is no state behind or ahead of it.
+    let (behind, ahead) = (at(leading - sign * DISTANCE), at(leading + sign * DISTANCE));
+    let (Ok(behind), Ok(ahead)) = (behind, ahead) else { return Ok(Start::at_rest(track, here)) };
+
+    let difference = |i: usize| (ahead.unknowns[i] - behind.unknowns[i]) / (2.0 * interval);
+    let second = |i: usize| (ahead.unknowns[i] - 2.0 * here.unknowns[i] + behind.unknowns[i]) / (interval * interval);
+    let velocity: Vec<f64> = (0..track.order()).map(difference).collect();
+    let acceleration: Vec<f64> = (0..track.order()).map(second).collect();
+    let vehicles = 0..train.vehicles.len();
+    let vehicle_velocity: Vec<VehicleVector> =
+        vehicles.clone().map(|v| (ahead.vehicles[v] - behind.vehicles[v]) / (2.0 * interval)).collect();
+    let vehicle_acceleration: Vec<VehicleVector> = vehicles
+        .map(|v| (ahead.vehicles[v] - 2.0 * here.vehicles[v] + behind.vehicles[v]) / (interval * interval))
+        .collect();
+
+    let mut inertia = Inertia { track: vec![0.0; track.order()], vehicles: Vec::new() };
+    track.mass.subtract_product(&acceleration, &mut inertia.track);
+    track.damping.subtract_product(&velocity, &mut inertia.track);
+    for (sleeper, _) in track.sleepers.iter().zip(&here.closed).filter(|(_, closed)| !**closed) {
+        inertia.track[sleeper.unknown] += sleeper.support_damping * velocity[sleeper.unknown];
+    }
+    for (v, (vehicle, _)) in train.vehicles.iter().enumerate() {
+        let (_, damping) = vehicle.suspension();
+        let inertial = vehicle.masses().component_mul(&vehicle_acceleration[v]);
+        inertia.vehicles.push(-inertial - damping * vehicle_velocity[v]);
+    }
+    let loads = Loads { train: Some((train, leading)), ..Loads::default() };
+    let state = solve_with_inertia(track, level, &loads, &inertia)?;
+    Ok(Start { state, velocity, acceleration, vehicle_velocity, vehicle_acceleration })
+}
+
+impl Start {
+    /// A state without velocity or acceleration.
+    pub fn at_rest(track: &Track, state: StaticState) -> Self {
+        let vehicles = state.vehicles.len();
+        Self {
+            velocity: vec![0.0; track.order()],
+            acceleration: vec![0.0; track.order()],
+            vehicle_velocity: vec![VehicleVector::zeros(); vehicles],
+            vehicle_acceleration: vec![VehicleVector::zeros(); vehicles],
+            state,
+        }
+    }
+}

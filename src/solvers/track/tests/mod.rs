@@ -1,0 +1,6 @@
+//! Cases with known answers, by what they exercise.
+
+mod dynamics;
+mod reference;
+mod scenes;
+mod statics;
