@@ -359,9 +359,7 @@ fn place_nodes(model: &TrackModel) -> Vec<f64> {
     breaks.extend(model.slabs.iter().flat_map(|s| [s.start, s.end]));
     breaks.sort_by(f64::total_cmp);
     breaks.dedup_by(|next, kept| *next - *kept <= SAME_PLACE);
-    let mut bays: Vec<f64> = model.seats.windows(2).map(|pair| pair[1].x - pair[0].x).collect();
-    bays.sort_by(f64::total_cmp);
-    let bay = bays.get(bays.len() / 2).copied().unwrap_or(model.ends[1] - model.ends[0]);
+    let bay = usual_bay(model);
 
     let mut nodes = vec![breaks[0]];
     for pair in breaks.windows(2) {
@@ -371,6 +369,13 @@ fn place_nodes(model: &TrackModel) -> Vec<f64> {
         nodes.push(pair[1]);
     }
     nodes
+}
+
+/// The median distance of neighbouring seats, m; the length of the track where there are none.
+pub(super) fn usual_bay(model: &TrackModel) -> f64 {
+    let mut bays: Vec<f64> = model.seats.windows(2).map(|pair| pair[1].x - pair[0].x).collect();
+    bays.sort_by(f64::total_cmp);
+    bays.get(bays.len() / 2).copied().unwrap_or(model.ends[1] - model.ends[0])
 }
 
 fn nearest(nodes: &[f64], x: f64) -> usize {

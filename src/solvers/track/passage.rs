@@ -52,7 +52,7 @@ pub struct Passage<'a> {
     pub(super) wheel_positions: Vec<f64>,
     /// Per sleeper, N.
     pub(super) support_forces: Vec<f64>,
-    vehicles: Vec<RunningVehicle>,
+    pub(super) vehicles: Vec<RunningVehicle>,
     steady: Vec<f64>,
     predicted: Vec<f64>,
     predicted_velocity: Vec<f64>,
@@ -61,15 +61,15 @@ pub struct Passage<'a> {
 
 /// A vehicle's motion and the matrices of its step.
 #[derive(Debug, Clone)]
-struct RunningVehicle {
+pub(super) struct RunningVehicle {
     stiffness: VehicleMatrix,
     damping: VehicleMatrix,
     masses: VehicleVector,
     weight: VehicleVector,
     inverse: VehicleMatrix,
-    displacement: VehicleVector,
-    velocity: VehicleVector,
-    acceleration: VehicleVector,
+    pub displacement: VehicleVector,
+    pub velocity: VehicleVector,
+    pub acceleration: VehicleVector,
     predicted: VehicleVector,
     predicted_velocity: VehicleVector,
 }
@@ -372,7 +372,7 @@ impl RunningVehicle {
             inverse: matrix.cholesky()?.inverse(),
             displacement: start.state.vehicles[index],
             velocity: start.vehicle_velocity[index],
-            acceleration: start.vehicle_acceleration[index],
+            acceleration: VehicleVector::zeros(),
             predicted: VehicleVector::zeros(),
             predicted_velocity: VehicleVector::zeros(),
         })

@@ -1,10 +1,13 @@
 //! How a passage begins: the track and its train in the motion they would have had if the train had always been there.
 //!
-//! Velocity and acceleration are the first two differences of the static states a little behind, at and ahead of the start.
-//! The state at the start is then solved once more with the forces of inertia and damping of that motion, so that the
-//! equation of motion holds at the first instant.
+//! Velocity and acceleration of the track are the first two differences of the static states a little behind, at and ahead of
+//! the start. The state at the start is then solved once more with the forces of inertia and damping of that motion, so that
+//! the equation of motion holds at the first instant.
+//!
+//! A vehicle cannot follow the ripple of the static states from sleeper to sleeper: followed at speed, a micrometre of it is
+//! a tenth of a car body's weight. It takes the mean slope over one bay and no acceleration.
 
-use super::mesh::Track;
+use super::mesh::{Track, usual_bay};
 use super::statics::{Inertia, solve_with_inertia};
 use super::vehicle::VehicleVector;
 use super::{Loads, StaticState, TrackError, TrackLevel, Train, solve_static};
@@ -15,7 +18,6 @@ pub(super) struct Start {
     pub velocity: Vec<f64>,
     pub acceleration: Vec<f64>,
     pub vehicle_velocity: Vec<VehicleVector>,
-    pub vehicle_acceleration: Vec<VehicleVector>,
 }
 
 /// Distance of the states that are compared, m: small beside an element, large beside the rounding of a deflection.
@@ -41,12 +43,13 @@ pub(super) fn start(
     let second = |i: usize| (ahead.unknowns[i] - 2.0 * here.unknowns[i] + behind.unknowns[i]) / (interval * interval);
     let velocity: Vec<f64> = (0..track.order()).map(difference).collect();
     let acceleration: Vec<f64> = (0..track.order()).map(second).collect();
-    let vehicles = 0..train.vehicles.len();
-    let vehicle_velocity: Vec<VehicleVector> =
-        vehicles.clone().map(|v| (ahead.vehicles[v] - behind.vehicles[v]) / (2.0 * interval)).collect();
-    let vehicle_acceleration: Vec<VehicleVector> = vehicles
-        .map(|v| (ahead.vehicles[v] - 2.0 * here.vehicles[v] + behind.vehicles[v]) / (interval * interval))
-        .collect();
+    let half = 0.5 * usual_bay(&track.model);
+    let mut vehicle_velocity = vec![VehicleVector::zeros(); train.vehicles.len()];
+    if let (Ok(behind), Ok(ahead)) = (at(leading - sign * half), at(leading + sign * half)) {
+        for (v, velocity) in vehicle_velocity.iter_mut().enumerate() {
+            *velocity = (ahead.vehicles[v] - behind.vehicles[v]) * (0.5 * speed / half);
+        }
+    }
 
     let mut inertia = Inertia { track: vec![0.0; track.order()], vehicles: Vec::new() };
     track.mass.subtract_product(&acceleration, &mut inertia.track);
@@ -56,12 +59,11 @@ pub(super) fn start(
     }
     for (v, (vehicle, _)) in train.vehicles.iter().enumerate() {
         let (_, damping) = vehicle.suspension();
-        let inertial = vehicle.masses().component_mul(&vehicle_acceleration[v]);
-        inertia.vehicles.push(-inertial - damping * vehicle_velocity[v]);
+        inertia.vehicles.push(-(damping * vehicle_velocity[v]));
     }
     let loads = Loads { train: Some((train, leading)), ..Loads::default() };
     let state = solve_with_inertia(track, level, &loads, &inertia)?;
-    Ok(Start { state, velocity, acceleration, vehicle_velocity, vehicle_acceleration })
+    Ok(Start { state, velocity, acceleration, vehicle_velocity })
 }
 
 impl Start {
@@ -72,7 +74,6 @@ impl Start {
             velocity: vec![0.0; track.order()],
             acceleration: vec![0.0; track.order()],
             vehicle_velocity: vec![VehicleVector::zeros(); vehicles],
-            vehicle_acceleration: vec![VehicleVector::zeros(); vehicles],
             state,
         }
     }

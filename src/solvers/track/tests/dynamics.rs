@@ -1,1 +1,278 @@
+//! Passages: linear limits, orders of convergence, symmetry, steadiness and lift-off.
 
+use super::scenes::*;
+use crate::solvers::track::*;
+use std::sync::Arc;
+
+const RHO: f64 = 0.85;
+
+fn stepper(model: TrackModel, time_step: f64) -> Stepper {
+    Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::new(time_step, RHO).unwrap()).unwrap()
+}
+
+/// Runs one wagon and hands every step to `look`.
+fn run(
+    stepper: &Stepper,
+    level: &TrackLevel,
+    vehicle: Vehicle,
+    ends: (f64, f64),
+    mut look: impl FnMut(&StepView<'_>),
+) -> Counters {
+    let direction = if ends.1 > ends.0 { Direction::Forward } else { Direction::Backward };
+    let train = Train::single(vehicle, direction);
+    let run = Run { train: &train, start: ends.0, finish: ends.1, speed: 55.56 };
+    Passage::new(stepper, level, run).unwrap().run(&mut look).unwrap()
+}
+
+fn envelope(stepper: &Stepper, level: &TrackLevel, ends: (f64, f64)) -> Envelope {
+    let mut envelope = Envelope::default();
+    run(stepper, level, wagon(), ends, |view| envelope.observe(view));
+    envelope
+}
+
+/// Deflection of a node over time after a load there is taken away.
+fn release(model: TrackModel, x: f64, load: f64, time_step: f64, steps: usize) -> Vec<f64> {
+    let level = TrackLevel::as_built(&model);
+    let stepper = stepper(model, time_step);
+    let track = stepper.track();
+    let node = track.nodes().iter().position(|n| (n - x).abs() < 1e-9).unwrap();
+    let state = solve_static(track, &level, &Loads { rail: &[(x, load)], ..Loads::default() }).unwrap();
+    let mut deflections = Vec::new();
+    let mut look = |view: &StepView<'_>| deflections.push(view.rail_deflection(node));
+    Passage::released(&stepper, &level, state, steps).unwrap().run(&mut look).unwrap();
+    deflections
+}
+
+/// Mean time between upward zero crossings, inverted.
+fn frequency(values: &[f64], time_step: f64) -> f64 {
+    let crossings: Vec<f64> = (1..values.len())
+        .filter(|i| values[i - 1] < 0.0 && values[*i] >= 0.0)
+        .map(|i| i as f64 - values[i] / (values[i] - values[i - 1]))
+        .collect();
+    (crossings.len() - 1) as f64 / (crossings[crossings.len() - 1] - crossings[0]) / time_step
+}
+
+#[test]
+fn first_frequencies() {
+    let values = release(beam(10.0, 2e8, 2000.0, RailEnds::Pinned, 20), 5.0, 1e3, 5e-4, 4000);
+    assert!((values[0] - 0.104_166_7e-3).abs() < 1e-9);
+    let found = frequency(&values, 5e-4);
+    assert!((found / 4.9673 - 1.0).abs() < 2e-3, "pinned {found}");
+
+    // Two stiff seats close to each other clamp the left end.
+    let mut model = beam(1.001, 2e3, 20.0, RailEnds::Free, 20);
+    let rigid = |x: f64| Seat { x, pad_stiffness: 1e13, pad_damping: 0.0, foot: Foot::Rigid };
+    (model.seats, model.elements_per_bay) = (vec![rigid(0.0), rigid(0.001)], 1);
+    model.rail = (0..10)
+        .map(|i| RailSection { start: 0.001 + 0.1 * (i as f64), end: 0.101 + 0.1 * i as f64, ..model.rail[0] })
+        .collect();
+    model.rail[0].start = 0.0;
+    let (stiff, time_step) = (model, 5e-4);
+    let values = release(stiff, 1.001, 1e3, time_step, 4000);
+    assert!((values[0] / 0.166_667 - 1.0).abs() < 3e-3, "{}", values[0]);
+    let found = frequency(&values, time_step);
+    assert!((found / 5.596 - 1.0).abs() < 4e-3, "cantilever {found}");
+}
+
+/// The error of a linear motion falls with the square of the step.
+#[test]
+fn second_order_in_time() {
+    let mut model = beam(10.0, 2e8, 2000.0, RailEnds::Pinned, 4);
+    let spring = Seat { x: 2.5, pad_stiffness: 1e7, pad_damping: 2e4, foot: Foot::Rigid };
+    model.seats = vec![spring, Seat { x: 5.0, ..spring }, Seat { x: 7.5, ..spring }];
+    let level = TrackLevel::as_built(&model);
+    let end = |steps: usize| {
+        let stepper = stepper(model.clone(), 0.2 / steps as f64);
+        // A load in the shape of the first mode, so that nothing moves faster than a step.
+        let load = |x: &f64| (*x, 1e3 * (std::f64::consts::PI * x / 10.0).sin());
+        let loads: Vec<(f64, f64)> = stepper.track().nodes().iter().map(load).collect();
+        let loads = Loads { rail: &loads, ..Loads::default() };
+        let state = solve_static(stepper.track(), &level, &loads).unwrap();
+        let mut passage = Passage::released(&stepper, &level, state, steps).unwrap();
+        passage.run(&mut ()).unwrap();
+        passage.view().rail_deflection(stepper.track().seat_node(1))
+    };
+    let values = [400, 800, 1600, 3200].map(end);
+    let changes: Vec<f64> = values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    for pair in changes.windows(2) {
+        let order = (pair[0] / pair[1]).log2();
+        println!("observed order {order:.3}");
+        assert!((order - 2.0).abs() < 0.1, "observed order {order}");
+    }
+}
+
+/// On rigid ground every wheel keeps the force at which it stands.
+#[test]
+fn rigid_track() {
+    let mut model = ballast(50);
+    model.rail[0].bending_stiffness = 6.4e14;
+    model.seats.iter_mut().for_each(|s| (s.foot, s.pad_stiffness) = (Foot::Rigid, 4e16));
+    let level = TrackLevel::as_built(&model);
+    let mut worst = 0.0f64;
+    run(&stepper(model, 1e-4), &level, wagon(), (10.0, 20.0), |view| {
+        for force in view.wheel_forces() {
+            worst = worst.max((force / (wagon().mass() * 9.81 / 4.0) - 1.0).abs());
+        }
+    });
+    println!("rigid track: wheel forces within {worst:.1e}");
+    assert!(worst < 1e-8, "{worst:.3e}");
+}
+
+/// On an even track only the passing of sleepers moves the wheels, from the first step on.
+#[test]
+fn even_track_is_steady() {
+    let model = ballast(80);
+    let level = TrackLevel::as_built(&model);
+    let stepper = stepper(model, 1e-4);
+    let (mut early, mut late) = ((f64::INFINITY, 0.0f64), (f64::INFINITY, 0.0f64));
+    let still = wagon().mass() * 9.81 / 4.0;
+    run(&stepper, &level, wagon(), (15.0, 40.0), |view| {
+        let range = if view.time() < 0.05 { &mut early } else { &mut late };
+        for force in view.wheel_forces() {
+            *range = (range.0.min(force / still), range.1.max(force / still));
+        }
+    });
+    println!("wheel forces: first 50 ms {early:?}, later {late:?}");
+    let within = |range: (f64, f64)| range.0 > 0.99 && range.1 < 1.01;
+    assert!(within(early) && within(late));
+}
+
+#[test]
+fn direction_mirrors() {
+    let model = ballast(40);
+    let level = hollow(&model, 1e-3, 1.5e-3, 9.0, 2.0);
+    let level = TrackLevel { ends: [1e-3; 2], ..level };
+    let length = model.ends[1];
+    let mut mirrored = level.clone();
+    mirrored.settlements.reverse();
+    let stepper = stepper(model, 1e-4);
+    let (mut there, mut back) = (Vec::new(), Vec::new());
+    run(&stepper, &level, wagon(), (10.0, 20.0), |view| there.extend_from_slice(view.wheel_forces()));
+    run(&stepper, &mirrored, wagon(), (length - 10.0, length - 20.0), |view| {
+        back.extend_from_slice(view.wheel_forces())
+    });
+    assert_eq!(there.len(), back.len());
+    for (a, b) in there.iter().zip(&back) {
+        assert!((a - b).abs() < 1e-8 * a, "{a} {b}");
+    }
+}
+
+/// Sleepers held up and let go bounce on their supports; nothing feeds them.
+#[test]
+fn bouncing_loses_energy() {
+    for (damping, depth) in [(50e3, 0.0), (50e3, 2e-3), (0.0, 0.0), (0.0, 2e-3)] {
+        let mut model = ballast(20);
+        for seat in &mut model.seats {
+            seat.pad_damping = 0.0;
+            seat.foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: damping };
+        }
+        let level = TrackLevel { ends: [0.0; 2], ..hollow(&model, 0.0, depth, 6.0, 3.0) };
+        let stepper = stepper(model, 1e-4);
+        let up = Loads { sleepers: &[(8, -60e3), (9, -60e3), (10, -60e3)], ..Loads::default() };
+        let state = solve_static(stepper.track(), &level, &up).unwrap();
+        assert!(state.contact_forces[9] == 0.0);
+        let mut passage = Passage::released(&stepper, &level, state, 3000).unwrap();
+        let rest = {
+            let still = solve_static(stepper.track(), &level, &Loads::default()).unwrap();
+            Passage::released(&stepper, &level, still, 1).unwrap().energy()
+        };
+        let start = passage.energy() - rest;
+        let (mut lowest, mut growth, mut opened) = (start, 0.0f64, false);
+        for _ in 0..3000 {
+            passage.step().unwrap();
+            let energy = passage.energy() - rest;
+            growth = growth.max((energy - lowest) / start);
+            lowest = lowest.min(energy);
+            let view = passage.view();
+            let forces: Vec<f64> = (0..20).filter_map(|seat| view.contact_force(seat)).collect();
+            assert!(forces.iter().all(|f| *f >= 0.0));
+            opened |= forces[..8].contains(&0.0);
+        }
+        println!("damping {damping}, hollow {depth}: largest growth {growth:.2e}, left {:.2e}", lowest / start);
+        assert!(opened && start > 0.0);
+        assert!(growth < if damping > 0.0 { 1e-4 } else { 5e-3 }, "{growth:.3e}");
+        assert!(lowest / start > -1e-6);
+    }
+}
+
+/// Voids open and close under a wagon: half the step, the same peaks.
+#[test]
+fn peaks_do_not_hang_on_the_step() {
+    let model = transition(45, 20);
+    let level = hollow(&model, 2e-3, 1e-3, -3.0, 2.4);
+    let peaks = |time_step: f64| envelope(&stepper(model.clone(), time_step), &level, (-14.0, 5.0));
+    let (coarse, fine) = (peaks(1e-4), peaks(5e-5));
+    let largest = fine.contact_forces.iter().fold(0.0f64, |m, f| m.max(*f));
+    let mut worst = 0.0f64;
+    for (a, b) in coarse.contact_forces.iter().zip(&fine.contact_forces) {
+        worst = worst.max((a - b).abs() / largest);
+    }
+    for (a, b) in coarse.wheel_forces.iter().zip(&fine.wheel_forces) {
+        worst = worst.max((a.1 - b.1).abs() / b.1);
+    }
+    for (a, b) in coarse.seat_loads.iter().zip(&fine.seat_loads) {
+        worst = worst.max((a.1 - b.1).abs() / largest);
+    }
+    println!("peaks change by {worst:.2e} with half the step; largest contact force {largest:.0} N");
+    assert!(worst < 0.02);
+    assert!(fine.contact_losses.iter().any(|t| *t > 0.0));
+    // Every axle leaves its peak, and the largest of them is the peak.
+    for seat in 20..40 {
+        let axles = fine.axle_peaks_of(seat);
+        assert_eq!(axles.len(), 4);
+        let most = axles.iter().fold(0.0f64, |m, f| m.max(*f));
+        assert_eq!(most, fine.contact_forces[seat]);
+    }
+}
+
+/// A bay of four elements is fine enough, and one of eight agrees.
+#[test]
+fn peaks_do_not_hang_on_the_mesh() {
+    let peaks = |elements: usize| {
+        let mut model = transition(45, 20);
+        model.elements_per_bay = elements;
+        let level = hollow(&model, 2e-3, 1e-3, -3.0, 2.4);
+        envelope(&stepper(model, 1e-4), &level, (-14.0, 5.0))
+    };
+    let (coarse, fine) = (peaks(4), peaks(8));
+    let largest = fine.contact_forces.iter().fold(0.0f64, |m, f| m.max(*f));
+    let change = coarse.contact_forces.iter().zip(&fine.contact_forces).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+    println!("peaks change by {:.2e} with half the elements", change / largest);
+    assert!(change / largest < 0.02);
+}
+
+/// Vehicles that share a track only through it: two wagons far apart are each as one.
+#[test]
+fn wagons_of_a_train() {
+    let model = ballast(90);
+    let level = hollow(&model, 1e-3, 1e-3, 40.0, 2.0);
+    let level = TrackLevel { ends: [1e-3; 2], ..level };
+    let stepper = stepper(model, 1e-4);
+    let train = Train { vehicles: vec![(wagon(), 0.0), (wagon(), 12.0)], direction: Direction::Forward };
+    let mut both = Envelope::default();
+    let run_ = Run { train: &train, start: 26.0, finish: 50.0, speed: 55.56 };
+    Passage::new(&stepper, &level, run_).unwrap().run(&mut both).unwrap();
+    let single = envelope(&stepper, &level, (26.0, 50.0));
+    assert_eq!(both.wheel_forces.len(), 8);
+    for (a, b) in both.wheel_forces.iter().zip(&single.wheel_forces) {
+        assert!((a.1 / b.1 - 1.0).abs() < 0.02, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn impossible_runs_are_refused() {
+    assert!(matches!(Scheme::new(0.0, RHO), Err(TrackError::Parameter { .. })));
+    assert!(matches!(Scheme::new(1e-4, 1.1), Err(TrackError::Parameter { .. })));
+    let model = ballast(40);
+    let level = TrackLevel::as_built(&model);
+    let stepper = stepper(model, 1e-4);
+    let train = Train::single(wagon(), Direction::Forward);
+    let run = Run { train: &train, start: 10.0, finish: 20.0, speed: 50.0 };
+    for broken in
+        [Run { start: 5.0, ..run }, Run { finish: 30.0, ..run }, Run { speed: 0.0, ..run }, Run { finish: 9.0, ..run }]
+    {
+        assert!(Passage::new(&stepper, &level, broken).is_err());
+    }
+    let short = TrackLevel { settlements: vec![0.0; 3], ends: [0.0; 2] };
+    assert!(matches!(Passage::new(&stepper, &short, run), Err(TrackError::Parameter { .. })));
+}

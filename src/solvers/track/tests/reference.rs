@@ -1,1 +1,251 @@
+//! The passage against a plain implementation: one dense system for track and vehicle, factored in every iteration of a full
+//! Newton method, without influence columns, phases or contact compliances.
+//!
+//! Its support law climbs the jump at contact along a ramp 1e-12 m wide.
 
+use super::scenes::*;
+use crate::solvers::track::vehicle::{UNKNOWNS, WHEEL};
+use crate::solvers::track::*;
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
+
+const RAMP: f64 = 1e-12;
+
+struct Plain<'a> {
+    track: &'a Track,
+    level: &'a TrackLevel,
+    scheme: Scheme,
+    mass: DMatrix<f64>,
+    damping: DMatrix<f64>,
+    stiffness: DMatrix<f64>,
+    weight: DVector<f64>,
+    hertz: f64,
+    u: DVector<f64>,
+    v: DVector<f64>,
+    a: DVector<f64>,
+    positions: Vec<f64>,
+    wheel_forces: Vec<f64>,
+    support_forces: Vec<f64>,
+}
+
+impl<'a> Plain<'a> {
+    fn new(passage: &Passage<'a>, vehicle: &Vehicle) -> Self {
+        let (track, level) = (&*passage.stepper.track, passage.level);
+        let (n, order) = (track.order(), track.order() + UNKNOWNS);
+        let (k_v, c_v) = vehicle.suspension();
+        let m_v = nalgebra::SMatrix::from_diagonal(&vehicle.masses());
+        let joined = |of_track: &crate::linalg::banded::SymmetricBanded, of_vehicle: nalgebra::SMatrix<f64, 10, 10>| {
+            DMatrix::from_fn(order, order, |i, j| match (i < n, j < n) {
+                (true, true) => of_track.get(i, j),
+                (false, false) => of_vehicle[(i - n, j - n)],
+                _ => 0.0,
+            })
+        };
+        let (mut stiffness, mut damping) = (joined(&track.stiffness, k_v), joined(&track.damping, c_v));
+        for sleeper in &track.sleepers {
+            stiffness[(sleeper.unknown, sleeper.unknown)] -= sleeper.support_stiffness;
+            damping[(sleeper.unknown, sleeper.unknown)] -= sleeper.support_damping;
+        }
+        let w_v = vehicle.weight(track.model.gravity);
+        let join = |of_track: &[f64], of_vehicle: &nalgebra::SVector<f64, 10>| {
+            DVector::from_iterator(order, of_track.iter().copied().chain(of_vehicle.iter().copied()))
+        };
+        let running = &passage.vehicles[0];
+        Self {
+            track,
+            level,
+            scheme: passage.stepper.scheme,
+            mass: joined(&track.mass, m_v),
+            damping,
+            stiffness,
+            weight: join(&track.weight, &w_v),
+            hertz: vehicle.hertz,
+            u: join(&passage.displacement, &running.displacement),
+            v: join(&passage.velocity, &running.velocity),
+            a: join(&passage.acceleration, &running.acceleration),
+            positions: passage.wheel_positions.clone(),
+            wheel_forces: passage.interface.forces.clone(),
+            support_forces: passage.support_forces.clone(),
+        }
+    }
+
+    /// How a unit of each wheel's force acts on all unknowns.
+    fn directions(&self, positions: &[f64]) -> Vec<(DVector<f64>, f64)> {
+        let n = self.track.order();
+        let direction = |(w, x): (usize, &f64)| {
+            let point = self.track.rail_point(*x).unwrap();
+            let mut direction = DVector::zeros(n + UNKNOWNS);
+            self.track.add_force(&point, -1.0, direction.as_mut_slice());
+            direction[n + WHEEL + w] = 1.0;
+            (direction, point.local_compliance)
+        };
+        positions.iter().enumerate().map(direction).collect()
+    }
+
+    /// Force and its derivative of a wheel that approaches the rail's nodes by `approach`.
+    fn wheel(&self, approach: f64, local: f64) -> (f64, f64) {
+        if approach <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let mut d = approach; // Hertz part
+        for _ in 0..60 {
+            let (f, slope) = (self.hertz * d.powf(1.5), 1.5 * self.hertz * d.sqrt());
+            d -= (d + local * f - approach) / (1.0 + local * slope);
+        }
+        let slope = 1.5 * self.hertz * d.sqrt();
+        (self.hertz * d.powf(1.5), slope / (1.0 + local * slope))
+    }
+
+    /// Force of a support and its derivative by displacement and by velocity.
+    fn support(&self, s: usize, u: f64, v: f64, rate: f64) -> (f64, f64) {
+        let sleeper = &self.track.sleepers[s];
+        let (k, c) = (sleeper.support_stiffness, sleeper.support_damping);
+        let gap = u - self.level.settlements[sleeper.seat];
+        let passing = v - rate * gap; // speed at which the gap closes within this step
+        if passing <= 0.0 {
+            let force = k * gap + c * v;
+            if force > 0.0 { (force, k + rate * c) } else { (0.0, 0.0) }
+        } else if gap <= 0.0 {
+            (0.0, 0.0)
+        } else if gap < RAMP {
+            (c * passing * gap / RAMP, c * passing / RAMP)
+        } else {
+            (k * gap + c * v, k + rate * c)
+        }
+    }
+
+    fn step(&mut self, positions: &[f64]) {
+        let scheme = self.scheme;
+        let (dt, alpha_m, alpha_f) = (scheme.time_step, scheme.alpha_m, scheme.alpha_f);
+        let (share, velocity_share, rate) = (scheme.displacement_share(), scheme.velocity_share(), scheme.rate());
+        let (old, new) = (self.directions(&self.positions), self.directions(positions));
+        let u_star = &self.u + dt * &self.v + (0.5 - scheme.beta) * dt * dt * &self.a;
+        let v_star = &self.v + (1.0 - scheme.gamma) * dt * &self.a;
+        let mut old_forces = &self.stiffness * &self.u + &self.damping * &self.v;
+        for ((direction, _), force) in old.iter().zip(&self.wheel_forces) {
+            old_forces += *force * direction;
+        }
+        for (sleeper, force) in self.track.sleepers.iter().zip(&self.support_forces) {
+            old_forces[sleeper.unknown] += force;
+        }
+        let mut a = self.a.clone();
+        let residual = |a: &DVector<f64>, mut jacobian: Option<&mut DMatrix<f64>>| {
+            let (u, v) = (&u_star + share * a, &v_star + velocity_share * a);
+            let mut forces = &self.stiffness * &u + &self.damping * &v;
+            if let Some(jacobian) = &mut jacobian {
+                **jacobian = &self.stiffness * share + &self.damping * velocity_share;
+            }
+            let mut wheel_forces = Vec::new();
+            for (direction, local) in &new {
+                let (force, slope) = self.wheel(direction.dot(&u), *local);
+                forces += force * direction;
+                wheel_forces.push(force);
+                if let Some(jacobian) = &mut jacobian {
+                    **jacobian += share * slope * direction * direction.transpose();
+                }
+            }
+            let mut support_forces = Vec::new();
+            for (s, sleeper) in self.track.sleepers.iter().enumerate() {
+                let i = sleeper.unknown;
+                let (force, slope) = self.support(s, u[i], v[i], rate);
+                forces[i] += force;
+                support_forces.push(force);
+                if let Some(jacobian) = &mut jacobian {
+                    jacobian[(i, i)] += share * slope;
+                }
+            }
+            let mut r = &self.mass * ((1.0 - alpha_m) * a + alpha_m * &self.a)
+                + (1.0 - alpha_f) * forces
+                + alpha_f * &old_forces
+                - &self.weight;
+            if let Some(jacobian) = &mut jacobian {
+                **jacobian *= 1.0 - alpha_f;
+                **jacobian += &self.mass * (1.0 - alpha_m);
+            }
+            for (unknown, _) in &self.track.held {
+                r[*unknown] = 0.0;
+                if let Some(jacobian) = &mut jacobian {
+                    jacobian.fill_row(*unknown, 0.0);
+                    jacobian[(*unknown, *unknown)] = 1.0;
+                }
+            }
+            (r, wheel_forces, support_forces)
+        };
+        for iteration in 0.. {
+            let mut jacobian = DMatrix::zeros(a.len(), a.len());
+            let (r, wheel_forces, support_forces) = residual(&a, Some(&mut jacobian));
+            let size = r.amax();
+            if size < 1e-6 {
+                (self.wheel_forces, self.support_forces) = (wheel_forces, support_forces);
+                break;
+            }
+            assert!(iteration < 200, "the plain Newton method fails, residual {size} N");
+            let step = jacobian.lu().solve(&r).unwrap();
+            let mut factor = 1.0;
+            while factor > 1e-6 && residual(&(&a - factor * &step), None).0.norm() > (1.0 - 1e-4 * factor) * r.norm() {
+                factor *= 0.5;
+            }
+            a -= factor * step;
+        }
+        self.u = u_star + share * &a;
+        self.v = v_star + velocity_share * &a;
+        self.a = a;
+        self.positions = positions.to_vec();
+    }
+}
+
+/// Largest differences of wheel forces and support forces, N, and of displacements, m; changes of phase, and supports that
+/// were touching, over all steps.
+fn compare(passage: &mut Passage<'_>, vehicle: &Vehicle, steps: usize) -> ([f64; 3], usize, usize) {
+    let mut plain = Plain::new(passage, vehicle);
+    let (mut worst, mut changes, mut touching) = ([0.0f64; 3], 0, 0);
+    let mut phases = passage.interface.phases.clone();
+    for _ in 0..steps {
+        passage.step().unwrap();
+        plain.step(&passage.wheel_positions);
+        let differ = |a: &[f64], b: &[f64]| a.iter().zip(b).fold(0.0f64, |m, (a, b)| m.max((a - b).abs()));
+        worst[0] = worst[0].max(differ(&passage.interface.forces, &plain.wheel_forces));
+        worst[1] = worst[1].max(differ(&passage.support_forces, &plain.support_forces));
+        worst[2] = worst[2].max(differ(&passage.displacement, plain.u.as_slice()));
+        changes += phases.iter().zip(&passage.interface.phases).filter(|(a, b)| a != b).count();
+        touching += passage.interface.phases.iter().filter(|p| **p == SupportPhase::Touching).count();
+        phases.clone_from(&passage.interface.phases);
+    }
+    println!("{changes} changes of phase, {touching} touching; wheels, supports, displacements differ by {worst:.1e?}");
+    (worst, changes, touching)
+}
+
+#[test]
+fn agrees_with_a_plain_implementation() {
+    // A short wagon, so that a short track carries it.
+    let vehicle =
+        Vehicle { bogie_spacing: 1.3, wheelset_spacing: 0.5, car_body_mass: 6e3, car_body_inertia: 4e3, ..wagon() };
+    let train = Train::single(vehicle, Direction::Forward);
+    let mut seen = 0;
+    // Strong dampers make sleepers touch before they close; the last wagon runs into a step in the level.
+    for (damping, depth, time_step, speed) in
+        [(50e3, 1e-3, 1e-4, 55.56), (400e3, 1e-3, 1e-4, 55.56), (10e3, 4e-3, 2e-4, 90.0)]
+    {
+        let mut model = ballast(9);
+        model.elements_per_bay = 2;
+        model.rail_ends = RailEnds::Pinned;
+        for seat in &mut model.seats {
+            seat.foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: damping };
+        }
+        let mut level = TrackLevel { ends: [1e-3; 2], ..hollow(&model, 1e-3, depth, 2.4, 1.2) };
+        if time_step > 1e-4 {
+            level.settlements.iter_mut().enumerate().for_each(|(i, s)| *s = if i % 3 == 1 { 0.0 } else { 4e-3 });
+        }
+        let stepper =
+            Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::new(time_step, 0.85).unwrap()).unwrap();
+        let run = Run { train: &train, start: 1.9, finish: 5.3, speed };
+        let mut passage = Passage::new(&stepper, &level, run).unwrap();
+        let steps = passage.planned_steps();
+        let (worst, changes, touching) = compare(&mut passage, &vehicle, steps);
+        let still = vehicle.mass() * 9.81 / 4.0;
+        assert!(worst[0] < 1e-6 * still && worst[1] < 1e-6 * still && worst[2] < 1e-10, "{worst:?}");
+        assert!(changes >= 4);
+        seen += touching;
+    }
+    assert!(seen > 0, "no sleeper touched");
+}
