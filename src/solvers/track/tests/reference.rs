@@ -211,7 +211,7 @@ fn compare(passage: &mut Passage<'_>, vehicle: &Vehicle, steps: usize) -> ([f64;
         touching += passage.interface.phases.iter().filter(|p| **p == SupportPhase::Touching).count();
         phases.clone_from(&passage.interface.phases);
     }
-    println!("{changes} changes of phase, {touching} touching; wheels, supports, displacements differ by {worst:.1e?}");
+    println!("{changes} changes of phase, {touching} touching; wheels, supports, displacements differ by {worst:?}");
     (worst, changes, touching)
 }
 
