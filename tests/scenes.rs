@@ -77,3 +77,15 @@ fn a_uniform_track_keeps_its_wheel_forces() {
     assert!((mean / load - 1.0).abs() < 1e-4, "mean {mean} N");
     assert_eq!(scene.blocks.len(), 2);
 }
+
+#[test]
+fn the_scenes_of_the_readme_check() {
+    let text = std::fs::read_to_string("README.md").unwrap();
+    let blocks: Vec<&str> = text.split("```track\n").skip(1).filter_map(|b| b.split("```").next()).collect();
+    assert!(!blocks.is_empty());
+    for block in blocks {
+        let compiled = compile("readme.track", block, &NoModules, &[]);
+        let errors: Vec<_> = compiled.diagnostics.iter().filter(|d| d.is_error()).collect();
+        assert!(errors.is_empty() && compiled.graph.is_some(), "{errors:?}");
+    }
+}

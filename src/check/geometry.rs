@@ -282,7 +282,8 @@ impl Places {
             Some(t) => {
                 let here =
                     |s: usize| self.seats.iter().enumerate().filter(move |(_, seat)| seat.1 == s).map(|(i, _)| i);
-                let (first_right, last_left) = (here(transition + 1).next()? as i32, here(transition).next_back()? as i32);
+                let (first_right, last_left) =
+                    (here(transition + 1).next()? as i32, here(transition).next_back()? as i32);
                 let steps = if section == transition {
                     last_left - i as i32 + 1
                 } else if section == transition + 1 {

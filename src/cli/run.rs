@@ -133,7 +133,9 @@ fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compil
         scalars: &scalars,
     };
     let expectations = results::verdicts(scenario, view);
-    let main = compiled.sources.iter().next().map(|(_, s)| (s.name.clone(), s.text.clone())).unwrap_or_default();
+    // the name alone: equal scenes give equal files wherever they lie
+    let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_string();
+    let main = compiled.sources.iter().next().map(|(_, s)| (name(&s.name), s.text.clone())).unwrap_or_default();
     let provenance = Provenance {
         program: env!("CARGO_PKG_NAME").into(),
         version: env!("CARGO_PKG_VERSION").into(),
