@@ -16,9 +16,9 @@ use nalgebra::{DMatrix, DVector};
 /// What stands on the track besides its own weight.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Loads<'a> {
-    /// Chainage [m] and force [N, down] on the rail.
+    /// Chainage (m) and force (N, down) on the rail.
     pub rail: &'a [(f64, f64)],
-    /// Index of a seat with a sleeper and force [N, down] on that sleeper.
+    /// Index of a seat with a sleeper and force (N, down) on that sleeper.
     pub sleepers: &'a [(usize, f64)],
     /// A train with its leading wheel at this chainage, m.
     pub train: Option<(&'a Train, f64)>,
