@@ -255,8 +255,9 @@ fn agrees_with_a_plain_implementation() {
         let steps = passage.planned_steps();
         let (worst, changes, touching) = compare(&mut passage, &vehicle, steps);
         let still = vehicle.mass() * 9.81 / 4.0;
-        let tolerance = if touching > 0 { 1e-4 } else { 1e-6 };
-        assert!(worst[0] < tolerance * still && worst[1] < tolerance * still && worst[2] < 1e-10, "{worst:?}");
+        // Where sleepers touch, the plain method stops at half a newton on its ramp, and that is what differs.
+        let (force, displacement) = if touching > 0 { (1e-4 * still, 1e-9) } else { (1e-6 * still, 1e-12) };
+        assert!(worst[0] < force && worst[1] < force && worst[2] < displacement, "{worst:?}");
         assert!(changes >= 4);
         seen += touching;
     }
