@@ -261,7 +261,8 @@ pub(super) fn span(
     span: Span,
 ) -> Option<(f64, f64)> {
     let places = places.as_ref()?;
-    let (a, b) = (checker.chainage(places, a, from, span)?, checker.chainage(places, b, from, span)?);
+    let (a, b) = (checker.chainage(places, a, from, span), checker.chainage(places, b, from, span));
+    let (a, b) = (a?, b?);
     Some((a.min(b), a.max(b)))
 }
 

@@ -54,6 +54,9 @@ impl Checker<'_> {
     /// Name and side of every boundary.
     fn sides(&mut self, record: &Record, sections: usize) -> Option<Vec<(String, Side)>> {
         let Some(slot) = record.get("transitions") else {
+            if sections > 2 && record.partial {
+                return None;
+            }
             if sections > 2 {
                 self.report(
                     Diagnostic::new(
@@ -81,6 +84,18 @@ impl Checker<'_> {
                 .at(slot.span, "one for each inner boundary"),
             );
             return None;
+        }
+        for (i, (name, _)) in pairs.iter().enumerate() {
+            let Val::Text(text) = &name.value else { continue };
+            let first = pairs[..i].iter().find(|(n, _)| matches!(&n.value, Val::Text(t) if t == text));
+            if let Some((first, _)) = first {
+                self.report(
+                    Diagnostic::new(Code::E0202, format!("two transitions are called `{text}`"))
+                        .at(name.span, "again here")
+                        .at(first.span, "first here"),
+                );
+                return None;
+            }
         }
         pairs
             .iter()
@@ -137,10 +152,9 @@ impl Checker<'_> {
         }
         if !form.unknown(name) {
             let span = form.get(name).map_or(form.span, |slot| slot.span);
-            self.report(
-                Diagnostic::new(Code::E0403, format!("trackform `{}` needs a `{name}` {why}", form.name))
-                    .at(span, "not given"),
-            );
+            let mistake = Diagnostic::new(Code::E0403, format!("trackform `{}` needs a `{name}` {why}", form.name))
+                .at(span, "not given");
+            self.lacks(form, name, mistake);
         }
         None
     }

@@ -16,16 +16,18 @@ impl Checker<'_> {
         let bogie_mass = given(record, "bogie.mass")?;
         let wheel_mass = given(record, "wheelset.mass")?;
         let unsprung = 2.0 * *bogie_mass + 4.0 * *wheel_mass;
-        let car_body_mass = self.car_body_mass(record, unsprung)?;
+        let car_body_mass = self.car_body_mass(record, unsprung);
         let body = record.record("car_body")?.clone();
-        let by_radius =
-            given(&body, "radius_of_gyration").map(|r| Given { value: *r * *r * *car_body_mass, origin: r.origin });
+        let by_radius = given(&body, "radius_of_gyration")
+            .zip(car_body_mass)
+            .map(|(r, m)| Given { value: *r * *r * *m, origin: r.origin });
         let inertia = self.agree(
             &body,
             "pitch inertia",
             &[("pitch_inertia", given(&body, "pitch_inertia")), ("mass * radius_of_gyration^2", by_radius)],
             "kg m^2",
-        )?;
+        );
+        let (car_body_mass, inertia) = (car_body_mass?, inertia?);
         let hertz = match &record.get("contact")?.value {
             Val::Word { arguments, .. } => match arguments.get("constant").map(|s| (&s.value, s.origin)) {
                 Some((Val::Number(n), origin)) => Given { value: n.value, origin },
