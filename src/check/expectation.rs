@@ -58,10 +58,12 @@ impl Checker<'_> {
     fn expression(&mut self, value: &Value, scope: ScopeId) -> Option<Typed> {
         self.operands += 1;
         if self.operands > MOST_OPERANDS {
-            self.report(
-                Diagnostic::new(Code::E0103, format!("a comparison of more than {MOST_OPERANDS} operands"))
-                    .at(value.span, "given up here"),
-            );
+            if self.operands == MOST_OPERANDS + 1 {
+                self.report(
+                    Diagnostic::new(Code::E0103, format!("a comparison of more than {MOST_OPERANDS} operands"))
+                        .at(value.span, "given up here"),
+                );
+            }
             return None;
         }
         self.deeper(1, value.span, |c| c.expression_of(value, scope))
@@ -165,6 +167,9 @@ impl Checker<'_> {
             match (name, &argument.value.kind) {
                 ("over", ValueKind::Range(from, to)) => {
                     let Val::Range(a, b) = self.span(from, to, scope)? else { return None };
+                    if self.seat_places.is_none() {
+                        continue; // the track is not understood, and the scene not made
+                    }
                     let counted = transition.as_ref().map(|(name, span)| (name.as_str(), *span));
                     measure.over = Some(self.chainages(a, b, counted, argument.value.span)?);
                 }

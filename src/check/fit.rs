@@ -506,6 +506,7 @@ impl Checker<'_> {
             return None;
         }
         let mut slots = BTreeMap::new();
+        let mut unknown = false;
         for (i, argument) in arguments.iter().enumerate() {
             let field = match &argument.name {
                 Some(name) => word.arguments.iter().find(|a| a.name == name.text),
@@ -521,6 +522,7 @@ impl Checker<'_> {
                         .at(place, "unknown argument")
                         .help(help),
                 );
+                unknown = true;
                 continue;
             };
             let slot = self.fit(&field.form, &argument.value, scope);
@@ -529,6 +531,13 @@ impl Checker<'_> {
                     Diagnostic::new(Code::E0404, format!("`{}` of `{}` is given twice", field.name, word.name))
                         .at(argument.value.span, "again here"),
                 );
+            }
+        }
+        if unknown {
+            // it may stand for one that seems to be missing
+            let origin = self.origin(name.span, scope);
+            for argument in word.arguments {
+                slots.entry(argument.name).or_insert(Slot { value: Val::Error, span: name.span, origin });
             }
         }
         Some(Val::Word { word, arguments: slots })

@@ -145,14 +145,6 @@ impl Checker<'_> {
             }
             _ => None,
         };
-        let rho = match &record.get("integrator")?.value {
-            Val::Word { arguments, .. } => match arguments.get("rho")?.value {
-                Val::Number(n) => n.value,
-                _ => return None,
-            },
-            _ => return None,
-        };
-        let elements = record.number("elements_per_bay")?;
         let mut place = |name: &str| -> Option<Option<Given>> {
             let slot = record.get(name)?;
             match slot.value {
@@ -168,6 +160,14 @@ impl Checker<'_> {
             }
         };
         let (start, finish) = (place("start"), place("finish"));
+        let rho = match &record.get("integrator")?.value {
+            Val::Word { arguments, .. } => match arguments.get("rho")?.value {
+                Val::Number(n) => n.value,
+                _ => return None,
+            },
+            _ => return None,
+        };
+        let elements = record.number("elements_per_bay")?;
         Some(Solve {
             law: law?,
             update: exchange?,
@@ -187,18 +187,23 @@ impl Checker<'_> {
         let quantities = quantities
             .iter()
             .map(|slot| if let Val::Response(r) = slot.value { Some(r) } else { None })
-            .collect::<Option<Vec<_>>>()?;
+            .collect::<Option<Vec<_>>>();
         let seats = places.as_ref().and_then(|places| self.kept_seats(record, places));
         let after = match (record.get("after").map(|s| &s.value), traffic) {
             (Some(Val::List(counts)), Some(traffic)) => {
                 let counts: Vec<Option<u64>> = counts.iter().map(|slot| self.recorded(slot, traffic)).collect();
-                counts.into_iter().collect::<Option<Vec<_>>>()?
+                counts.into_iter().collect::<Option<Vec<_>>>()
             }
-            (None, Some(traffic)) => vec![*traffic.total],
-            (Some(Val::List(_)) | None, None) => Vec::new(),
-            _ => return None,
+            (None, Some(traffic)) => Some(vec![*traffic.total]),
+            (Some(Val::List(_)) | None, None) => Some(Vec::new()),
+            _ => None,
         };
-        Some(Kept { quantities, seats: seats?, after, every: record.number("every").map(|n| n.value) })
+        Some(Kept {
+            quantities: quantities?,
+            seats: seats?,
+            after: after?,
+            every: record.number("every").map(|n| n.value),
+        })
     }
 
     fn recorded(&mut self, slot: &Slot, traffic: &Traffic) -> Option<u64> {

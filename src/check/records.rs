@@ -83,20 +83,27 @@ impl Checker<'_> {
     }
 
     fn kind_of(&mut self, name: &Name) -> Option<&'static Kind> {
-        let found = schema::kind(&name.text).filter(|k| k.role != schema::Role::Nested);
-        if found.is_none() {
-            self.report(if PLANNED_KINDS.contains(&name.text.as_str()) {
-                Diagnostic::new(Code::E0411, format!("this version does not read `{}` yet", name.text))
-                    .at(name.span, "planned")
-            } else {
-                let kinds = schema::KINDS.iter().filter(|k| k.role != schema::Role::Nested).map(|k| k.name);
-                let near = nearest(&name.text, kinds).map(|k| format!("did you mean `{k}`?"));
-                Diagnostic::new(Code::E0401, format!("unknown kind `{}`", name.text))
-                    .at(name.span, "not a kind")
-                    .help(near.unwrap_or_else(|| "`trackbed docs` lists the kinds".into()))
-            });
+        let stands = |k: &&Kind| k.role != schema::Role::Nested;
+        let found = schema::kind(&name.text).filter(stands);
+        if found.is_some() {
+            return found;
         }
-        found
+        if PLANNED_KINDS.contains(&name.text.as_str()) {
+            self.report(
+                Diagnostic::new(Code::E0411, format!("this version does not read `{}` yet", name.text))
+                    .at(name.span, "planned"),
+            );
+            return None;
+        }
+        // what is misspelt is read on as what was probably meant
+        let near = nearest(&name.text, schema::KINDS.iter().filter(stands).map(|k| k.name));
+        let help = near.map_or("`trackbed docs` lists the kinds".to_string(), |k| format!("did you mean `{k}`?"));
+        self.report(
+            Diagnostic::new(Code::E0401, format!("unknown kind `{}`", name.text))
+                .at(name.span, "not a kind")
+                .help(help),
+        );
+        schema::kind(near?)
     }
 
     /// What `: base` or an object's path names, of the same kind.

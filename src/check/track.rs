@@ -31,10 +31,11 @@ impl Checker<'_> {
         let mut forms: Vec<Rc<Record>> = Vec::new();
         let mut plans = Vec::new();
         for (key, length) in pairs {
-            let (Val::Record(form), Val::Number(n)) = (&key.value, &length.value) else { continue };
-            let Some(spacing) = form.number("spacing") else { continue };
-            plans.push(Plan { name: form.name.clone(), spacing: spacing.value, length: *n, span: length.span });
+            let Val::Record(form) = &key.value else { continue };
             forms.push(form.clone());
+            if let (Some(spacing), Val::Number(n)) = (form.number("spacing"), &length.value) {
+                plans.push(Plan { name: form.name.clone(), spacing: spacing.value, length: *n, span: length.span });
+            }
         }
         let built: Vec<Option<Built>> = forms.iter().map(|form| self.trackform(form)).collect();
         if plans.len() < pairs.len() || plans.is_empty() {
@@ -116,15 +117,13 @@ impl Checker<'_> {
         let sleeper = form.record("sleeper").cloned();
         let slab = form.record("slab").cloned();
         let foot = if let Some(slab_record) = &slab {
-            if let (Some(_), Some(slot)) = (&sleeper, form.get("sleeper")) {
-                let mut mistake =
+            if let (Some(_), Some(slab), Some(slot)) = (&sleeper, form.get("slab"), form.get("sleeper")) {
+                self.report(
                     Diagnostic::new(Code::E0407, format!("trackform `{}` has a slab and sleepers", form.name))
-                        .at(slot.span, "sleepers")
-                        .help("write `sleeper = none`: the pads stand on the slab");
-                if let Some(slab) = form.get("slab") {
-                    mistake = mistake.at(slab.span, "and a slab");
-                }
-                self.report(mistake);
+                        .at(slab.span, "a slab")
+                        .at(slot.span, "and sleepers")
+                        .help("write `sleeper = none`: the pads stand on the slab"),
+                );
             }
             let slab = self.slab(slab_record)?;
             return Some(Built {
@@ -135,6 +134,8 @@ impl Checker<'_> {
                 foot: Foot::Slab,
                 sleeper: None,
             });
+        } else if form.unknown("slab") {
+            None
         } else if form.word("support") == Some("rigid") {
             Some(Foot::Rigid)
         } else {
