@@ -1,8 +1,8 @@
 //! Numbers: literals with units, arithmetic with checked dimensions, and the paths that lead to numbers.
 
-use super::Checker;
 use super::modules::ScopeId;
 use super::value::{Number, Val};
+use super::{Checker, DEEPEST};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Argument, BinaryOp, Name, Path, UnitText, Value, ValueKind};
 use crate::units::{Dimension, UnitError, parse_unit};
@@ -23,6 +23,26 @@ pub(super) struct Raw {
 impl Checker<'_> {
     /// Evaluates arithmetic; `None` where a diagnostic has been given.
     pub fn raw(&mut self, value: &Value, scope: ScopeId) -> Option<Raw> {
+        self.deeper(1, value.span, |c| c.raw_of(value, scope))
+    }
+
+    /// Goes a step further down, unless that is too deep for the machine.
+    pub fn deeper<T>(&mut self, steps: usize, span: Span, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        if self.depth + steps > DEEPEST {
+            self.report(
+                Diagnostic::new(Code::E0103, "values lead to values that lead to values, too far to follow")
+                    .at(span, "given up here")
+                    .help("write the value itself"),
+            );
+            return None;
+        }
+        self.depth += steps;
+        let result = f(self);
+        self.depth -= steps;
+        result
+    }
+
+    fn raw_of(&mut self, value: &Value, scope: ScopeId) -> Option<Raw> {
         let span = value.span;
         match &value.kind {
             ValueKind::Number { value, unit } => self.literal(*value, unit.as_ref(), span),
@@ -52,6 +72,22 @@ impl Checker<'_> {
         }
     }
 
+    /// Reads the units of a value that nothing has asked for.
+    pub fn units_in(&mut self, value: &Value) {
+        match &value.kind {
+            ValueKind::Number { value: number, unit } => {
+                self.literal(*number, unit.as_ref(), value.span);
+            }
+            ValueKind::Negate(inner) | ValueKind::Per(inner, _) => self.units_in(inner),
+            ValueKind::Binary(left, _, right) | ValueKind::Range(left, right) => {
+                self.units_in(left);
+                self.units_in(right);
+            }
+            ValueKind::List { entries, .. } => entries.iter().for_each(|e| self.units_in(&e.value)),
+            _ => {}
+        }
+    }
+
     fn literal(&mut self, value: f64, unit: Option<&UnitText>, span: Span) -> Option<Raw> {
         let Some(unit) = unit else {
             return Some(Raw { value, dimension: Dimension::NONE, basis: None, span, bare: true });
@@ -68,9 +104,15 @@ impl Checker<'_> {
     fn raw_path(&mut self, path: &Path, scope: ScopeId) -> Option<Raw> {
         let target = self.resolve(path, scope, &[])?;
         if target.is_let {
+            if let Some(known) = self.numbers.get(&target.id) {
+                self.used.insert(target.id);
+                return known.clone();
+            }
             let tree = self.scopes[target.id.scope].tree.clone();
             let crate::syntax::tree::Item::Let(binding) = &tree.items[target.id.item] else { return None };
-            return self.within(target.id, path.span, |c| c.raw(&binding.value, target.id.scope));
+            let raw = self.within(target.id, path.span, |c| c.raw(&binding.value, target.id.scope));
+            self.numbers.insert(target.id, raw.clone());
+            return raw;
         }
         let slot = self.slot_at(&target, path)?;
         match slot.value {
@@ -121,7 +163,12 @@ impl Checker<'_> {
                 Raw { bare, ..raw(value, a.dimension, basis(&a, &b)) }
             }
             BinaryOp::Multiply => raw(a.value * b.value, a.dimension * b.dimension, basis(&a, &b)),
-            BinaryOp::Divide => raw(a.value / b.value, a.dimension / b.dimension, basis(&a, &b)),
+            BinaryOp::Divide => {
+                // a ratio of two values of the same thing is of nothing
+                let both = matches!((&a.basis, &b.basis), (Some(x), Some(y)) if x.0 == y.0);
+                let of = if both { None } else { basis(&a, &b) };
+                raw(a.value / b.value, a.dimension / b.dimension, of)
+            }
             BinaryOp::Power => {
                 let hundredths = (b.value * 100.0).round();
                 let plain =

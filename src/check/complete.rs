@@ -88,11 +88,10 @@ impl Checker<'_> {
         } else {
             format!("{} `{}`", record.kind.name, record.name)
         };
-        self.report(
-            Diagnostic::new(Code::E0403, format!("{who} needs {what}"))
-                .at(record.span, "not given")
-                .help(format!("`trackbed docs {}` says what it means", record.kind.name)),
-        );
+        let mistake = Diagnostic::new(Code::E0403, format!("{who} needs {what}"))
+            .at(record.span, "not given")
+            .help(format!("`trackbed docs {}` says what it means", record.kind.name));
+        self.lacks(record, what, mistake);
     }
 
     fn default_slot(&mut self, field: &'static Field, text: &'static str) -> Slot {

@@ -12,6 +12,9 @@ use crate::units::{Dimension, parse_unit};
 /// An expression with its dimension.
 type Typed = (Expression, Dimension);
 
+/// Operands of one comparison, those of its lets counted wherever they are used.
+const MOST_OPERANDS: usize = 10_000;
+
 const REDUCTIONS: [(&str, Reduction); 4] = [
     ("max", Reduction::Max),
     ("min", Reduction::Min),
@@ -29,6 +32,7 @@ impl Checker<'_> {
             );
             return None;
         };
+        self.operands = 0;
         let typed: Vec<Option<Typed>> = operands.iter().map(|o| self.expression(o, scope)).collect();
         let typed: Vec<Typed> = typed.into_iter().collect::<Option<_>>()?;
         let first = typed[0].1;
@@ -52,6 +56,20 @@ impl Checker<'_> {
     }
 
     fn expression(&mut self, value: &Value, scope: ScopeId) -> Option<Typed> {
+        self.operands += 1;
+        if self.operands > MOST_OPERANDS {
+            if self.operands == MOST_OPERANDS + 1 {
+                self.report(
+                    Diagnostic::new(Code::E0103, format!("a comparison of more than {MOST_OPERANDS} operands"))
+                        .at(value.span, "given up here"),
+                );
+            }
+            return None;
+        }
+        self.deeper(1, value.span, |c| c.expression_of(value, scope))
+    }
+
+    fn expression_of(&mut self, value: &Value, scope: ScopeId) -> Option<Typed> {
         match &value.kind {
             ValueKind::Call { word, arguments } if REDUCTIONS.iter().any(|(n, _)| *n == word.text) => {
                 self.measure(word, arguments, scope)
@@ -130,21 +148,42 @@ impl Checker<'_> {
             }
         };
         let mut measure = Measure { reduction, response, over: None, after: None };
+        let named = |wanted: &str| {
+            arguments.iter().skip(1).find(|a| a.name.as_ref().is_some_and(|n| n.text == wanted)).map(|a| &a.value)
+        };
+        let transition = match named("from").map(|v| (&v.kind, v.span)) {
+            Some((ValueKind::Path(path), span)) if path.names.len() == 1 => Some((path.text(), span)),
+            Some((other, span)) => {
+                self.report(
+                    Diagnostic::new(Code::E0406, format!("expected the name of a transition, found {}", shape(other)))
+                        .at(span, "not a transition"),
+                );
+                return None;
+            }
+            None => None,
+        };
         for argument in &arguments[1..] {
             let name = argument.name.as_ref().map_or("", |n| n.text.as_str());
             match (name, &argument.value.kind) {
                 ("over", ValueKind::Range(from, to)) => {
                     let Val::Range(a, b) = self.span(from, to, scope)? else { return None };
-                    measure.over = Some(self.chainages(a, b, argument.value.span)?);
+                    if self.seat_places.is_none() {
+                        continue; // the track is not understood, and the scene not made
+                    }
+                    let counted = transition.as_ref().map(|(name, span)| (name.as_str(), *span));
+                    measure.over = Some(self.chainages(a, b, counted, argument.value.span)?);
                 }
+                ("from", _) => {}
                 ("after", _) => measure.after = Some(self.count(&argument.value, scope)?),
                 _ => {
                     let place = argument.name.as_ref().map_or(argument.value.span, |n| n.span);
-                    let near = nearest(name, ["over", "after"]).map(|n| format!("did you mean `{n}`?"));
+                    let near = nearest(name, ["over", "from", "after"]).map(|n| format!("did you mean `{n}`?"));
                     self.report(
                         Diagnostic::new(Code::E0402, format!("`{}` has no such argument", word.text))
                             .at(place, "unknown argument")
-                            .help(near.unwrap_or_else(|| "it takes `over = span` and `after = axles`".into())),
+                            .help(near.unwrap_or_else(|| {
+                                "it takes `over = span`, `from = transition` and `after = axles`".into()
+                            })),
                     );
                     return None;
                 }
@@ -164,13 +203,13 @@ impl Checker<'_> {
             );
             return None;
         }
-        Some(raw.value.round() as u64)
+        self.whole_axles(raw.value, raw.span)
     }
 
     /// The chainages of a span whose ends may be sleepers; geometry is known before any expectation is read.
-    fn chainages(&mut self, a: Number, b: Number, span: Span) -> Option<(f64, f64)> {
+    fn chainages(&mut self, a: Number, b: Number, from: Option<(&str, Span)>, span: Span) -> Option<(f64, f64)> {
         let seats = self.seat_places.clone();
-        super::geometry::span(self, &seats, a, b, None, span)
+        super::geometry::span(self, &seats, a, b, from, span)
     }
 }
 

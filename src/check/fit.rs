@@ -65,6 +65,10 @@ impl Checker<'_> {
         if reads_names(form) {
             return None;
         }
+        let bound = |c: &Self, name: &Name| match c.scopes[scope].names.get(&name.text) {
+            Some(item) => matches!(c.scopes[scope].tree.items.get(*item), Some(Item::Let(_))),
+            None => false,
+        };
         let words = form.words();
         if let [name] = path.names.as_slice()
             && let Some(word) = words.iter().find(|w| w.name == name.text)
@@ -78,7 +82,7 @@ impl Checker<'_> {
                 None => error,
             });
         }
-        if matches!(form, Form::Words(_)) {
+        if matches!(form, Form::Words(_)) && !bound(self, &path.names[0]) {
             self.unknown_word(&path.names[0], &words);
             return Some(error);
         }
@@ -137,7 +141,7 @@ impl Checker<'_> {
             (Form::Span, ValueKind::Range(from, to)) => self.span(from, to, scope),
             (Form::Object(kind), ValueKind::Object { base, fields }) => {
                 let kind = schema::kind(kind)?;
-                self.object(base.as_ref(), fields, kind, value.span, scope).map(|r| Val::Record(Rc::new(r)))
+                Some(Val::Record(Rc::new(self.object(base.as_ref(), fields, kind, value.span, scope))))
             }
             (Form::Words(_) | Form::OneOf(_), ValueKind::Call { word, arguments })
                 if form.word(&word.text).is_some() =>
@@ -502,6 +506,7 @@ impl Checker<'_> {
             return None;
         }
         let mut slots = BTreeMap::new();
+        let mut unknown = false;
         for (i, argument) in arguments.iter().enumerate() {
             let field = match &argument.name {
                 Some(name) => word.arguments.iter().find(|a| a.name == name.text),
@@ -517,6 +522,7 @@ impl Checker<'_> {
                         .at(place, "unknown argument")
                         .help(help),
                 );
+                unknown = true;
                 continue;
             };
             let slot = self.fit(&field.form, &argument.value, scope);
@@ -525,6 +531,13 @@ impl Checker<'_> {
                     Diagnostic::new(Code::E0404, format!("`{}` of `{}` is given twice", field.name, word.name))
                         .at(argument.value.span, "again here"),
                 );
+            }
+        }
+        if unknown {
+            // it may stand for one that seems to be missing
+            let origin = self.origin(name.span, scope);
+            for argument in word.arguments {
+                slots.entry(argument.name).or_insert(Slot { value: Val::Error, span: name.span, origin });
             }
         }
         Some(Val::Word { word, arguments: slots })
@@ -624,7 +637,7 @@ fn form_has_object(form: &Form, kind: &str) -> bool {
 /// `, 5 .. 3000 MN/m`, for a hole.
 fn range_of(form: &Form) -> String {
     match form {
-        Form::Number(m) => format!(", {} .. {} {}", number(m.min), number(m.max), m.unit),
+        Form::Number(m) => format!(", {} .. {} {}", number(m.min), number(m.max), m.unit).trim_end().to_string(),
         Form::OneOf(forms) => forms.iter().map(range_of).find(|t| !t.is_empty()).unwrap_or_default(),
         _ => String::new(),
     }

@@ -41,6 +41,7 @@ enum Edge {
     Stiff,
 }
 
+const MOST_SEATS: usize = 1_000_000;
 const TINY: f64 = 1e-6; // m: two places closer than this are one
 
 impl Checker<'_> {
@@ -51,11 +52,20 @@ impl Checker<'_> {
         let mut offsets = Vec::new();
         let mut x = 0.0;
         let mut sound = true;
+        let mut most = MOST_SEATS;
         for (plan, &edge) in plans.iter().zip(&edges) {
             let Some((length, seats)) = self.section(plan, edge) else {
                 sound = false;
                 continue;
             };
+            let Some(left) = most.checked_sub(seats.len()) else {
+                self.report(
+                    Diagnostic::new(Code::E0103, format!("a track of more than {MOST_SEATS} seats"))
+                        .at(plan.span, "too many from here on"),
+                );
+                return None;
+            };
+            most = left;
             sections.push((x, x + length));
             offsets.push(seats);
             x += length;
@@ -261,7 +271,8 @@ pub(super) fn span(
     span: Span,
 ) -> Option<(f64, f64)> {
     let places = places.as_ref()?;
-    let (a, b) = (checker.chainage(places, a, from, span)?, checker.chainage(places, b, from, span)?);
+    let (a, b) = (checker.chainage(places, a, from, span), checker.chainage(places, b, from, span));
+    let (a, b) = (a?, b?);
     Some((a.min(b), a.max(b)))
 }
 

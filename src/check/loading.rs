@@ -9,7 +9,6 @@ use crate::scenario::{
     Given, Integrator, LawForm, Record as Kept, SettlementLaw, Solve, StaticLoad, Target, Traffic, Train, Update,
 };
 use crate::units::{Dimension, number};
-use std::collections::BTreeMap;
 
 impl Checker<'_> {
     pub(super) fn traffic(&mut self, record: &Record) -> Option<Traffic> {
@@ -59,14 +58,19 @@ impl Checker<'_> {
             let trains = (n.value / mass).round().max(1.0);
             return Some(trains as u64 * train.axles());
         }
-        if n.value.fract() != 0.0 {
+        self.whole_axles(n.value, slot.span)
+    }
+
+    /// An axle count, which is a whole number.
+    pub(super) fn whole_axles(&mut self, axles: f64, span: Span) -> Option<u64> {
+        if axles.fract() != 0.0 {
             self.report(
-                Diagnostic::new(Code::E0405, format!("expected a whole number of axles, found {}", number(n.value)))
-                    .at(slot.span, "not whole"),
+                Diagnostic::new(Code::E0405, format!("expected a whole number of axles, found {}", number(axles)))
+                    .at(span, "not whole"),
             );
             return None;
         }
-        Some(n.value as u64)
+        Some(axles as u64)
     }
 
     pub(super) fn loads(&mut self, record: &Record, places: &Option<Places>) -> Option<Vec<StaticLoad>> {
@@ -86,15 +90,19 @@ impl Checker<'_> {
         }
         let places = places.as_ref()?;
         let from = record.get("from").and_then(|s| Some((record.text("from")?, s.span)));
-        let Val::List(at) = &record.get("at")?.value else { return None };
-        at.iter()
+        let slot = record.get("at")?;
+        let Val::List(at) = &slot.value else { return None };
+        self.transition(places, from, slot.span)?;
+        let loads: Vec<Option<StaticLoad>> = at
+            .iter()
             .map(|slot| {
                 let Val::Number(n) = slot.value else { return None };
                 let x = self.chainage(places, n, from, slot.span)?;
                 let x = if on == Target::Sleepers { places.seats[places.nearest_seat(x)?].0 } else { x };
                 Some(StaticLoad { name: record.name.clone(), on, x, force: given(record, "force")? })
             })
-            .collect()
+            .collect();
+        loads.into_iter().collect()
     }
 
     fn law(&mut self, record: &Record) -> Option<SettlementLaw> {
@@ -123,21 +131,35 @@ impl Checker<'_> {
     }
 
     pub(super) fn solve(&mut self, record: &Record, places: &Option<Places>) -> Option<Solve> {
-        let law = record.record("law")?.clone();
-        let law = self.law(&law);
+        let law = record.record("law").cloned().and_then(|law| self.law(&law));
         let update = record.get("update_every")?;
-        let geometric = |arguments: &BTreeMap<&str, Slot>| {
-            let of = |name: &str| match arguments.get(name).map(|s| &s.value) {
-                Some(Val::Number(n)) => Some(n.value),
-                _ => None,
-            };
-            Some(Update::Geometric { first: of("first")?.round() as u64, ratio: of("ratio")? })
-        };
         let exchange = match &update.value {
-            Val::Number(n) => Update::Fixed { axles: n.value.round() as u64 },
-            Val::Word { arguments, .. } => geometric(arguments)?,
-            _ => return None,
+            Val::Number(n) => self.whole_axles(n.value, update.span).map(|axles| Update::Fixed { axles }),
+            Val::Word { arguments, .. } => {
+                let of = |name: &str| match arguments.get(name).map(|s| (&s.value, s.span)) {
+                    Some((Val::Number(n), span)) => Some((n.value, span)),
+                    _ => None,
+                };
+                let first = of("first").and_then(|(axles, span)| self.whole_axles(axles, span));
+                first.zip(of("ratio")).map(|(first, (ratio, _))| Update::Geometric { first, ratio })
+            }
+            _ => None,
         };
+        let mut place = |name: &str| -> Option<Option<Given>> {
+            let slot = record.get(name)?;
+            match slot.value {
+                Val::Number(n) => {
+                    let places = places.as_ref()?;
+                    // the passage has no `from`: its ends count from the first transition
+                    let from = places.transitions.first().filter(|_| places.transitions.len() > 1);
+                    let x = self.chainage(places, n, from.map(|t| (t.name.as_str(), slot.span)), slot.span)?;
+                    Some(Some(Given { value: x, origin: slot.origin }))
+                }
+                Val::Word { .. } => Some(None),
+                _ => None,
+            }
+        };
+        let (start, finish) = (place("start"), place("finish"));
         let rho = match &record.get("integrator")?.value {
             Val::Word { arguments, .. } => match arguments.get("rho")?.value {
                 Val::Number(n) => n.value,
@@ -146,21 +168,9 @@ impl Checker<'_> {
             _ => return None,
         };
         let elements = record.number("elements_per_bay")?;
-        let mut place = |name: &str| -> Option<Option<Given>> {
-            let slot = record.get(name)?;
-            match slot.value {
-                Val::Number(n) => {
-                    let x = self.chainage(places.as_ref()?, n, None, slot.span)?;
-                    Some(Some(Given { value: x, origin: slot.origin }))
-                }
-                Val::Word { .. } => Some(None),
-                _ => None,
-            }
-        };
-        let (start, finish) = (place("start"), place("finish"));
         Some(Solve {
             law: law?,
-            update: exchange,
+            update: exchange?,
             update_span: update.origin.span(),
             integrator: Integrator::GeneralisedAlpha { rho },
             elements_per_bay: Given { value: elements.value as u32, origin: record.get("elements_per_bay")?.origin },
@@ -177,17 +187,23 @@ impl Checker<'_> {
         let quantities = quantities
             .iter()
             .map(|slot| if let Val::Response(r) = slot.value { Some(r) } else { None })
-            .collect::<Option<Vec<_>>>()?;
-        let seats = self.kept_seats(record, places.as_ref()?)?;
+            .collect::<Option<Vec<_>>>();
+        let seats = places.as_ref().and_then(|places| self.kept_seats(record, places));
         let after = match (record.get("after").map(|s| &s.value), traffic) {
             (Some(Val::List(counts)), Some(traffic)) => {
-                counts.iter().map(|slot| self.recorded(slot, traffic)).collect::<Option<Vec<_>>>()?
+                let counts: Vec<Option<u64>> = counts.iter().map(|slot| self.recorded(slot, traffic)).collect();
+                counts.into_iter().collect::<Option<Vec<_>>>()
             }
-            (None, Some(traffic)) => vec![*traffic.total],
-            (Some(Val::List(_)) | None, None) => Vec::new(),
-            _ => return None,
+            (None, Some(traffic)) => Some(vec![*traffic.total]),
+            (Some(Val::List(_)) | None, None) => Some(Vec::new()),
+            _ => None,
         };
-        Some(Kept { quantities, seats, after, every: record.number("every").map(|n| n.value) })
+        Some(Kept {
+            quantities: quantities?,
+            seats: seats?,
+            after: after?,
+            every: record.number("every").map(|n| n.value),
+        })
     }
 
     fn recorded(&mut self, slot: &Slot, traffic: &Traffic) -> Option<u64> {
@@ -196,6 +212,19 @@ impl Checker<'_> {
             self.report(
                 Diagnostic::new(Code::E0602, format!("the run ends after {} axles", *traffic.total))
                     .at(slot.span, format!("{count} axles are never reached")),
+            );
+            return None;
+        }
+        let axles = traffic.train.axles();
+        if !count.is_multiple_of(axles) && count != *traffic.total {
+            let below = count / axles * axles;
+            self.report(
+                Diagnostic::new(
+                    Code::E0602,
+                    format!("{count} recorded axles are no whole number of trains of {axles} axles"),
+                )
+                .at(slot.span, "in the middle of a train")
+                .help(format!("write {below} or {} axles", below + axles)),
             );
             return None;
         }
@@ -214,12 +243,19 @@ impl Checker<'_> {
         let from = record.get("from").and_then(|s| Some((record.text("from")?, s.span)));
         let mut seats = Vec::new();
         let mut any = false;
+        if let Some(place) = record.get("at").or(record.get("over")) {
+            self.transition(places, from, place.span)?;
+        }
         if let Some(Slot { value: Val::List(at), .. }) = record.get("at") {
             any = true;
-            for slot in at {
-                let Val::Number(n) = slot.value else { return None };
-                seats.push(self.seat_of(places, n, from, slot.span)?);
-            }
+            let found: Vec<Option<usize>> = at
+                .iter()
+                .map(|slot| match slot.value {
+                    Val::Number(n) => self.seat_of(places, n, from, slot.span),
+                    _ => None,
+                })
+                .collect();
+            seats = found.into_iter().collect::<Option<_>>()?;
         }
         if let Some(Slot { value: Val::Range(a, b), span, .. }) = record.get("over") {
             any = true;

@@ -28,7 +28,7 @@ use crate::syntax::tree::{Item, Value};
 use geometry::Places;
 use modules::{Loader, Scope, ScopeId};
 use names::ItemId;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 use std::rc::Rc;
 use value::{Record, Val};
 
@@ -47,8 +47,11 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
     let main = loader.load(name, text.to_string(), false, |l, tree| overrides::apply(l, tree, overrides));
     let standard = loader.standard_scope();
     let scopes = std::mem::take(&mut loader.scopes);
+    let diagnostics = std::mem::take(&mut loader.diagnostics);
+    let lost = |d: &&Diagnostic| matches!(d.code, Code::E0101 | Code::E0104 | Code::E0106);
+    let unreadable = diagnostics.iter().filter(lost).filter_map(|d| Some(d.labels.first()?.span)).collect();
     let mut checker = Checker {
-        diagnostics: std::mem::take(&mut loader.diagnostics),
+        diagnostics,
         loader,
         scopes,
         standard,
@@ -57,6 +60,12 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
         circles: BTreeSet::new(),
         used: BTreeSet::new(),
         defaults: HashMap::new(),
+        numbers: HashMap::new(),
+        reported: HashSet::new(),
+        missing: Vec::new(),
+        unreadable,
+        depth: 0,
+        operands: 0,
         seat_places: None,
     };
     let scenario = checker.scene(main);
@@ -83,15 +92,70 @@ struct Checker<'a> {
     used: BTreeSet<ItemId>,
     /// Defaults of the schema, parsed.
     defaults: HashMap<&'static str, Rc<Value>>,
+    /// Values of lets that are numbers.
+    numbers: HashMap<ItemId, Option<arithmetic::Raw>>,
+    /// What has been reported, by code, message and place.
+    reported: HashSet<(Code, String, Option<Span>)>,
+    /// What objects lack, until all of them are known.
+    missing: Vec<Missing>,
+    /// Where the text could not be read.
+    unreadable: Vec<Span>,
+    /// Values inside values at this moment, against [`DEEPEST`].
+    depth: usize,
+    /// Operands of the comparison that is being read.
+    operands: usize,
     /// Known once the track is laid out.
     seat_places: Option<Places>,
 }
 
+/// Something that an object lacks.
+struct Missing {
+    span: Span,
+    bases: Vec<Span>,
+    what: String,
+    diagnostic: Diagnostic,
+}
+
+/// Values that lead to values: deeper than people write, shallow enough for any stack.
+const DEEPEST: usize = 1_200;
+/// What following a name costs of that.
+const NAME: usize = 20;
+
 impl Checker<'_> {
+    /// Takes a mistake once: what is said of a place is not said again because another way leads there.
     fn report(&mut self, diagnostic: Diagnostic) {
-        if !self.diagnostics.contains(&diagnostic) {
+        let place = diagnostic.labels.first().map(|l| l.span);
+        if self.reported.insert((diagnostic.code, diagnostic.message.clone(), place)) {
             self.diagnostics.push(diagnostic);
         }
+    }
+
+    /// Notes that an object lacks something. What a base lacks as well is said of the base alone, see [`Self::say_missing`].
+    fn lacks(&mut self, record: &Record, what: &str, diagnostic: Diagnostic) {
+        if !record.partial {
+            self.missing.push(Missing {
+                span: record.span,
+                bases: record.bases.clone(),
+                what: what.to_string(),
+                diagnostic,
+            });
+        }
+    }
+
+    /// Reports what is missing, once where several objects inherit the gap.
+    fn say_missing(&mut self) {
+        let missing = std::mem::take(&mut self.missing);
+        let gaps: HashSet<(Span, &str)> = missing.iter().map(|m| (m.span, m.what.as_str())).collect();
+        for gap in &missing {
+            if !gap.bases.iter().any(|base| gaps.contains(&(*base, gap.what.as_str()))) {
+                self.report(gap.diagnostic.clone());
+            }
+        }
+    }
+
+    /// Whether something inside a span could not be read as text.
+    fn unread(&self, span: Span) -> bool {
+        self.unreadable.iter().any(|s| s.file == span.file && s.start >= span.start && s.end <= span.end)
     }
 
     /// Evaluates every declaration of the user's files, then builds the scene.
@@ -111,7 +175,10 @@ impl Checker<'_> {
         let track_record = self.only(main, "track");
         let scenario = track_record.as_ref().and_then(|record| self.build(main, record));
         self.expectations_elsewhere(main);
-        if track_record.is_some() {
+        self.idle_lets();
+        self.say_missing();
+        // what is misspelt or unread may be what would have used it
+        if track_record.is_some() && !diag::has_errors(&self.diagnostics) {
             self.unused(main, &roots);
         }
         scenario
@@ -141,6 +208,20 @@ impl Checker<'_> {
             }
         }
         roots
+    }
+
+    /// Bindings that nothing asks for may have unknown units all the same.
+    fn idle_lets(&mut self) {
+        for scope in (0..self.scopes.len()).filter(|s| !self.scopes[*s].library).collect::<Vec<_>>() {
+            let tree = self.scopes[scope].tree.clone();
+            for (item, thing) in tree.items.iter().enumerate() {
+                if let Item::Let(binding) = thing
+                    && !self.used.contains(&ItemId { scope, item })
+                {
+                    self.units_in(&binding.value);
+                }
+            }
+        }
     }
 
     /// Expectations of a file without a track are read all the same.
@@ -210,8 +291,7 @@ impl Checker<'_> {
     fn default_solve(&mut self) -> Record {
         let Some(kind) = schema::kind("solve") else { unreachable!("the vocabulary has `solve`") };
         let span = Span::new(FileId(0), 0, 0);
-        let empty = Record { kind, name: "solve".into(), span, fields: BTreeMap::new() };
-        self.complete(&empty)
+        self.complete(&Record::empty(kind, "solve", span))
     }
 
     fn expectations(&mut self, main: ScopeId) -> Vec<crate::scenario::response::Expectation> {

@@ -5,7 +5,7 @@ use crate::diag::{Code, Diagnostic, FileId, Sources, Span, nearest::nearest};
 use crate::schema::{self, Role};
 use crate::syntax::tree::{Declaration, Item, Tree, Use};
 use crate::syntax::{decode, parse};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -43,6 +43,17 @@ pub(super) struct Scope {
     /// Declarations and lets by name: indices of items.
     pub names: BTreeMap<String, usize>,
     pub modules: BTreeMap<String, ScopeId>,
+    /// Modules that could not be brought in: what is named in them is not reported again.
+    pub broken: BTreeSet<String>,
+}
+
+/// The modules that a file brings in.
+#[derive(Default)]
+struct BroughtIn {
+    modules: BTreeMap<String, ScopeId>,
+    broken: BTreeSet<String>,
+    /// Where the file itself names a module, by name.
+    places: BTreeMap<String, Span>,
 }
 
 /// Names that values have, which nothing else may have.
@@ -56,6 +67,8 @@ pub(super) struct Loader<'a> {
     modules: &'a dyn Modules,
     /// Scopes by file; `None` while a file is being read.
     known: BTreeMap<String, Option<ScopeId>>,
+    /// Files being read, each used by the one before it.
+    reading: Vec<String>,
 }
 
 impl<'a> Loader<'a> {
@@ -66,6 +79,7 @@ impl<'a> Loader<'a> {
             diagnostics: Vec::new(),
             modules,
             known: BTreeMap::new(),
+            reading: Vec::new(),
         }
     }
 
@@ -77,23 +91,30 @@ impl<'a> Loader<'a> {
         library: bool,
         edit: impl FnOnce(&mut Self, &mut Tree),
     ) -> ScopeId {
-        self.known.insert(name.to_string(), None);
+        // modules know the main file by its name below its own folder
+        let key =
+            if self.scopes.is_empty() && self.reading.is_empty() { name.rsplit(['/', '\\']).next() } else { None };
+        let key = key.unwrap_or(name).to_string();
+        self.known.insert(key.clone(), None);
+        self.reading.push(key.clone());
         let file = self.sources.add(name, text, library);
         let text = self.sources.get(file).text.clone();
         let (mut tree, mistakes) = parse(file, &text);
         self.diagnostics.extend(mistakes);
         edit(self, &mut tree);
         let tree = Rc::new(tree);
-        let mut modules = BTreeMap::new();
+        let mut brought = BroughtIn::default();
         for item in &tree.items {
             if let Item::Use(used) = item {
-                self.bring_in(used, name, &mut modules);
+                self.bring_in(used, &mut brought);
             }
         }
+        let BroughtIn { modules, broken, .. } = brought;
         let names = self.names(&tree, &modules);
-        self.scopes.push(Scope { tree, library, names, modules });
+        self.scopes.push(Scope { tree, library, names, modules, broken });
         let id = self.scopes.len() - 1;
-        self.known.insert(name.to_string(), Some(id));
+        self.reading.pop();
+        self.known.insert(key, Some(id));
         id
     }
 
@@ -103,7 +124,8 @@ impl<'a> Loader<'a> {
         let modules =
             library::MODULES.iter().filter_map(|(name, _)| Some((name.to_string(), self.library(name)?))).collect();
         let tree = Rc::new(Tree { file, items: Vec::new() });
-        self.scopes.push(Scope { tree, library: true, names: BTreeMap::new(), modules });
+        let (names, broken) = (BTreeMap::new(), BTreeSet::new());
+        self.scopes.push(Scope { tree, library: true, names, modules, broken });
         self.scopes.len() - 1
     }
 
@@ -116,12 +138,12 @@ impl<'a> Loader<'a> {
         Some(self.load(&name, text.to_string(), true, |_, _| {}))
     }
 
-    fn bring_in(&mut self, used: &Use, user: &str, modules: &mut BTreeMap<String, ScopeId>) {
+    fn bring_in(&mut self, used: &Use, brought: &mut BroughtIn) {
         let names: Vec<&str> = used.path.names.iter().map(|n| n.text.as_str()).collect();
         if names == ["std"] && used.alias.is_none() {
             for (module, _) in library::MODULES {
                 if let Some(scope) = self.library(module) {
-                    modules.entry(module.to_string()).or_insert(scope);
+                    brought.modules.entry(module.to_string()).or_insert(scope);
                 }
             }
             return;
@@ -142,23 +164,51 @@ impl<'a> Loader<'a> {
             }
             found
         } else {
-            self.file(&names, used.path.span, user)
+            self.file(&names, used.path.span)
         };
-        if let Some(scope) = scope {
-            modules.insert(alias, scope);
+        let place = used.alias.as_ref().map_or(used.path.span, |n| n.span);
+        if let Some(first) = brought.places.insert(alias.clone(), place)
+            && scope.is_none_or(|s| brought.modules.get(&alias) != Some(&s))
+        {
+            self.diagnostics.push(
+                Diagnostic::new(Code::E0202, format!("two modules are called `{alias}`"))
+                    .at(place, "again here")
+                    .at(first, "first used here")
+                    .help(format!("give one of them another name: `use {} as other`", used.path.text())),
+            );
+            return;
+        }
+        match scope {
+            Some(scope) => {
+                brought.modules.insert(alias, scope);
+            }
+            None => {
+                brought.broken.insert(alias);
+            }
         }
     }
 
-    fn file(&mut self, names: &[&str], span: Span, user: &str) -> Option<ScopeId> {
+    fn file(&mut self, names: &[&str], span: Span) -> Option<ScopeId> {
         let relative = format!("{}.track", names.join("/"));
         match self.known.get(&relative) {
             Some(Some(scope)) => return Some(*scope),
             Some(None) => {
-                self.diagnostics.push(
-                    Diagnostic::new(Code::E0206, format!("`{user}` and `{relative}` use each other"))
-                        .at(span, "closes the circle")
-                        .help("move what both need into a third file"),
+                let start = self.reading.iter().position(|f| *f == relative).unwrap_or(0);
+                let circle = &self.reading[start..];
+                let message = match circle {
+                    [one] => format!("`{one}` uses itself"),
+                    _ => {
+                        let quoted: Vec<String> = circle.iter().map(|f| format!("`{f}`")).collect();
+                        let (last, first) =
+                            quoted.split_last().map_or((String::new(), &[][..]), |(l, f)| (l.clone(), f));
+                        format!("{} and {last} use each other", first.join(", "))
+                    }
+                };
+                let help = format!(
+                    "the circle is {} -> {relative}; move what several of them need into a file of its own",
+                    circle.join(" -> ")
                 );
+                self.diagnostics.push(Diagnostic::new(Code::E0206, message).at(span, "closes the circle").help(help));
                 return None;
             }
             None => {}
@@ -214,7 +264,6 @@ impl<'a> Loader<'a> {
                         .at(span, "declared here")
                         .help("rename it, or give the module another name with `as`"),
                 );
-                continue;
             }
             places.insert(name.clone(), span);
             names.insert(name, index);

@@ -25,8 +25,17 @@ impl Checker<'_> {
     /// stood there besides names.
     pub fn resolve(&mut self, path: &Path, scope: ScopeId, words: &[&str]) -> Option<Target> {
         let first = &path.names[0];
+        // where a name is that of a module too, which has been reported, the longer path decides
+        if let (Some(&module), Some(second)) = (self.scopes[scope].modules.get(&first.text), path.names.get(1))
+            && let Some(target) = self.lookup(module, second, 2)
+        {
+            return Some(target);
+        }
         if let Some(target) = self.lookup(scope, first, 1) {
             return Some(target);
+        }
+        if self.scopes[scope].broken.contains(&first.text) {
+            return None;
         }
         if let Some(&module) = self.scopes[scope].modules.get(&first.text) {
             let Some(second) = path.names.get(1) else {
@@ -39,9 +48,6 @@ impl Checker<'_> {
                 );
                 return None;
             };
-            if let Some(target) = self.lookup(module, second, 2) {
-                return Some(target);
-            }
             let names: Vec<&str> = self.scopes[module].names.keys().map(String::as_str).collect();
             let help = match nearest(&second.text, names.iter().copied()) {
                 Some(near) => format!("did you mean `{}.{near}`?", first.text),
@@ -65,6 +71,9 @@ impl Checker<'_> {
     }
 
     fn unknown_name(&mut self, name: &Name, scope: ScopeId, words: &[&str]) {
+        if self.unread_word(name) {
+            return;
+        }
         let here = &self.scopes[scope];
         let candidates = here.names.keys().chain(here.modules.keys()).map(String::as_str).chain(words.iter().copied());
         let near = nearest(&name.text, candidates).map(|n| format!("did you mean `{n}`?"));
@@ -84,6 +93,14 @@ impl Checker<'_> {
         );
     }
 
+    /// Whether a name may have been declared where the text could not be read.
+    fn unread_word(&self, name: &Name) -> bool {
+        let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        self.unreadable.iter().any(|s| {
+            s.file == name.span.file && self.loader.sources.text(*s).split(|c| !word(c)).any(|w| w == name.text)
+        })
+    }
+
     /// The slot that the rest of a path names inside a declaration.
     pub fn slot_at(&mut self, target: &Target, path: &Path) -> Option<Slot> {
         let record = self.record(target.id, path.span)?;
@@ -100,7 +117,7 @@ impl Checker<'_> {
             match record.get(&name.text) {
                 Some(inner) => slot = inner.clone(),
                 None => {
-                    if self.field_of(record.kind, name).is_some() {
+                    if self.field_of(record.kind, name).is_some() && !record.partial {
                         self.report(
                             Diagnostic::new(
                                 Code::E0403,

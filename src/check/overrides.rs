@@ -2,6 +2,7 @@
 
 use super::modules::Loader;
 use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
+use crate::schema;
 use crate::syntax::parse;
 use crate::syntax::tree::{Argument, Field, Item, Name, Path, Tree, Value, ValueKind};
 
@@ -27,11 +28,23 @@ impl Override {
 /// Edits the tree of the main file.
 pub(super) fn apply(loader: &mut Loader<'_>, tree: &mut Tree, overrides: &[Override]) {
     for wanted in overrides {
+        // read as a binding of the same length, shown as the path that it sets
         let text = format!("let {} = {}", wanted.path.replace('.', "_"), wanted.value);
-        let file = loader.sources.add("--set", text.as_str(), false);
+        let shown = format!("    {} = {}", wanted.path, wanted.value);
+        let file = loader.sources.add("--set", shown.as_str(), false);
         let (parsed, mistakes) = parse(file, &text);
+        let sound = mistakes.is_empty();
         loader.diagnostics.extend(mistakes);
-        let [Item::Let(binding)] = parsed.items.as_slice() else { continue };
+        let [Item::Let(binding)] = parsed.items.as_slice() else {
+            if sound {
+                loader.diagnostics.push(
+                    Diagnostic::new(Code::E0101, format!("expected one value, found `{}`", wanted.value))
+                        .at(Span::new(file, 4, shown.len()), "more than one value")
+                        .help("give each path a `--set` of its own"),
+                );
+            }
+            continue;
+        };
         let span = binding.name.span;
         let names = wanted.path.split('.').map(|n| Name { text: n.trim().to_string(), span }).collect::<Vec<_>>();
         if let Err(mistake) = edit(tree, &names, &binding.value, span) {
@@ -98,8 +111,14 @@ fn inside(target: &mut Value, rest: &[Name], value: &Value, span: Span) -> bool 
             target.kind = ValueKind::Object { base: Some(path.clone()), fields: vec![field] };
             true
         }
-        ValueKind::Call { arguments, .. } if rest.len() == 1 => {
-            match arguments.iter_mut().find(|a| a.name.as_ref().is_some_and(|n| n.text == rest[0].text)) {
+        ValueKind::Call { word, arguments } if rest.len() == 1 => {
+            let named = arguments.iter().position(|a| a.name.as_ref().is_some_and(|n| n.text == rest[0].text));
+            // an argument given by its place is replaced there
+            let placed = || {
+                let place = schema::word(&word.text)?.arguments.iter().position(|a| a.name == rest[0].text)?;
+                arguments.get(place).filter(|a| a.name.is_none()).map(|_| place)
+            };
+            match named.or_else(placed).and_then(|i| arguments.get_mut(i)) {
                 Some(argument) => argument.value = value.clone(),
                 None => arguments.push(Argument { name: Some(rest[0].clone()), value: value.clone() }),
             }

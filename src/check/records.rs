@@ -1,14 +1,13 @@
 //! Objects: declarations and what they extend. `=` replaces a whole value, a path replaces inside it; nothing merges.
 
-use super::Checker;
 use super::modules::ScopeId;
 use super::names::ItemId;
 use super::value::{Record, Slot, Val};
+use super::{Checker, NAME};
 use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
 use crate::scenario::Origin;
 use crate::schema::{self, Form, Kind, PLANNED_KINDS};
 use crate::syntax::tree::{Declaration, Field, Item, Name, Path, ValueKind};
-use std::collections::BTreeMap;
 use std::rc::Rc;
 
 impl Checker<'_> {
@@ -37,7 +36,7 @@ impl Checker<'_> {
         }
         self.stack.push((id, place));
         let before = self.diagnostics.len();
-        let result = f(self);
+        let result = self.deeper(NAME, place, f);
         self.stack.pop();
         if matches!(self.scopes[id.scope].tree.items[id.item], Item::Let(_)) {
             for diagnostic in &mut self.diagnostics[before..] {
@@ -77,30 +76,34 @@ impl Checker<'_> {
         let kind = self.kind_of(&declaration.kind)?;
         let header = declaration.name.as_ref().map_or(declaration.kind.span, |n| declaration.kind.span.to(n.span));
         let name = declaration.name.as_ref().unwrap_or(&declaration.kind).text.clone();
-        let fields = match &declaration.base {
-            Some(base) => self.base(base, kind, scope)?.fields.clone(),
-            None => BTreeMap::new(),
-        };
-        let mut record = Record { kind, name, span: header, fields };
+        let mut record = self.extended(declaration.base.as_ref(), kind, &name, header, scope);
+        record.partial |= self.unread(declaration.span);
         self.apply(&mut record, &declaration.fields, scope);
         Some(record)
     }
 
     fn kind_of(&mut self, name: &Name) -> Option<&'static Kind> {
-        let found = schema::kind(&name.text).filter(|k| k.role != schema::Role::Nested);
-        if found.is_none() {
-            self.report(if PLANNED_KINDS.contains(&name.text.as_str()) {
-                Diagnostic::new(Code::E0411, format!("this version does not read `{}` yet", name.text))
-                    .at(name.span, "planned")
-            } else {
-                let kinds = schema::KINDS.iter().filter(|k| k.role != schema::Role::Nested).map(|k| k.name);
-                let near = nearest(&name.text, kinds).map(|k| format!("did you mean `{k}`?"));
-                Diagnostic::new(Code::E0401, format!("unknown kind `{}`", name.text))
-                    .at(name.span, "not a kind")
-                    .help(near.unwrap_or_else(|| "`trackbed docs` lists the kinds".into()))
-            });
+        let stands = |k: &&Kind| k.role != schema::Role::Nested;
+        let found = schema::kind(&name.text).filter(stands);
+        if found.is_some() {
+            return found;
         }
-        found
+        if PLANNED_KINDS.contains(&name.text.as_str()) {
+            self.report(
+                Diagnostic::new(Code::E0411, format!("this version does not read `{}` yet", name.text))
+                    .at(name.span, "planned"),
+            );
+            return None;
+        }
+        // what is misspelt is read on as what was probably meant
+        let near = nearest(&name.text, schema::KINDS.iter().filter(stands).map(|k| k.name));
+        let help = near.map_or("`trackbed docs` lists the kinds".to_string(), |k| format!("did you mean `{k}`?"));
+        self.report(
+            Diagnostic::new(Code::E0401, format!("unknown kind `{}`", name.text))
+                .at(name.span, "not a kind")
+                .help(help),
+        );
+        schema::kind(near?)
     }
 
     /// What `: base` or an object's path names, of the same kind.
@@ -130,6 +133,19 @@ impl Checker<'_> {
         }
     }
 
+    /// An object before its own fields: empty, or with those of what it extends.
+    fn extended(&mut self, base: Option<&Path>, kind: &'static Kind, name: &str, span: Span, scope: ScopeId) -> Record {
+        let empty = Record::empty(kind, name, span);
+        let Some(path) = base else { return empty };
+        match self.base(path, kind, scope) {
+            Some(base) => {
+                let bases = std::iter::once(base.span).chain(base.bases.iter().copied()).collect();
+                Record { bases, fields: base.fields.clone(), partial: base.partial, ..empty }
+            }
+            None => Record { partial: true, ..empty },
+        }
+    }
+
     /// An object written in place.
     pub fn object(
         &mut self,
@@ -138,16 +154,12 @@ impl Checker<'_> {
         kind: &'static Kind,
         span: Span,
         scope: ScopeId,
-    ) -> Option<Record> {
-        let mut record = match base {
-            Some(path) => {
-                let base = self.base(path, kind, scope)?;
-                Record { span, ..(*base).clone() }
-            }
-            None => Record { kind, name: kind.name.to_string(), span, fields: BTreeMap::new() },
-        };
+    ) -> Record {
+        let name = base.and_then(|p| p.names.last()).map_or(kind.name, |n| n.text.as_str());
+        let mut record = self.extended(base, kind, name, span, scope);
+        record.partial |= self.unread(span);
         self.apply(&mut record, fields, scope);
-        Some(record)
+        record
     }
 
     /// Puts the fields of a block into a record.
@@ -200,10 +212,25 @@ impl Checker<'_> {
         }
     }
 
+    /// A field that is not known may stand for one that is: that one is not reported as missing too.
+    fn excuse(&self, record: &mut Record, name: &Name, field: &Field) {
+        if record.kind.planned.contains(&name.text.as_str()) {
+            record.partial = true;
+        } else if let Some(near) = nearest(&name.text, record.kind.fields.iter().map(|f| f.name))
+            && let Some(known) = record.kind.field(near)
+        {
+            let origin = Origin::Written(field.span);
+            record.fields.entry(known.name).or_insert(Slot { value: Val::Error, span: field.span, origin });
+        }
+    }
+
     /// Follows a path into a record and replaces what is there.
     fn put(&mut self, record: &mut Record, path: &[Name], field: &Field, scope: ScopeId) {
         let name = &path[0];
-        let Some(known) = self.field_of(record.kind, name) else { return };
+        let Some(known) = self.field_of(record.kind, name) else {
+            self.excuse(record, name, field);
+            return;
+        };
         let [_, rest @ ..] = path else { return };
         if rest.is_empty() {
             let slot = self.fit(&known.form, &field.value, scope);
@@ -214,7 +241,7 @@ impl Checker<'_> {
             let inner = match record.fields.get(known.name).map(|s| &s.value) {
                 Some(Val::Record(inner)) => (**inner).clone(),
                 Some(Val::Error | Val::Hole) => return,
-                _ => Record { kind, name: kind.name.to_string(), span: field.path.span, fields: BTreeMap::new() },
+                _ => Record { partial: record.partial, ..Record::empty(kind, kind.name, field.path.span) },
             };
             let mut inner = inner;
             let tail = Field { path: Path { names: rest.to_vec(), span: field.path.span }, ..field.clone() };
@@ -256,6 +283,7 @@ impl Checker<'_> {
                 }
             }
             Some(Val::Error | Val::Hole) => return,
+            _ if record.partial => return,
             _ => {}
         }
         self.report(

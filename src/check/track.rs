@@ -31,10 +31,11 @@ impl Checker<'_> {
         let mut forms: Vec<Rc<Record>> = Vec::new();
         let mut plans = Vec::new();
         for (key, length) in pairs {
-            let (Val::Record(form), Val::Number(n)) = (&key.value, &length.value) else { continue };
-            let Some(spacing) = form.number("spacing") else { continue };
-            plans.push(Plan { name: form.name.clone(), spacing: spacing.value, length: *n, span: length.span });
+            let Val::Record(form) = &key.value else { continue };
             forms.push(form.clone());
+            if let (Some(spacing), Val::Number(n)) = (form.number("spacing"), &length.value) {
+                plans.push(Plan { name: form.name.clone(), spacing: spacing.value, length: *n, span: length.span });
+            }
         }
         let built: Vec<Option<Built>> = forms.iter().map(|form| self.trackform(form)).collect();
         if plans.len() < pairs.len() || plans.is_empty() {
@@ -54,6 +55,9 @@ impl Checker<'_> {
     /// Name and side of every boundary.
     fn sides(&mut self, record: &Record, sections: usize) -> Option<Vec<(String, Side)>> {
         let Some(slot) = record.get("transitions") else {
+            if sections > 2 && record.partial {
+                return None;
+            }
             if sections > 2 {
                 self.report(
                     Diagnostic::new(
@@ -82,6 +86,18 @@ impl Checker<'_> {
             );
             return None;
         }
+        for (i, (name, _)) in pairs.iter().enumerate() {
+            let Val::Text(text) = &name.value else { continue };
+            let first = pairs[..i].iter().find(|(n, _)| matches!(&n.value, Val::Text(t) if t == text));
+            if let Some((first, _)) = first {
+                self.report(
+                    Diagnostic::new(Code::E0202, format!("two transitions are called `{text}`"))
+                        .at(name.span, "again here")
+                        .at(first.span, "first here"),
+                );
+                return None;
+            }
+        }
         pairs
             .iter()
             .map(|(name, side)| match (&name.value, &side.value) {
@@ -101,15 +117,13 @@ impl Checker<'_> {
         let sleeper = form.record("sleeper").cloned();
         let slab = form.record("slab").cloned();
         let foot = if let Some(slab_record) = &slab {
-            if let (Some(_), Some(slot)) = (&sleeper, form.get("sleeper")) {
-                let mut mistake =
+            if let (Some(_), Some(slab), Some(slot)) = (&sleeper, form.get("slab"), form.get("sleeper")) {
+                self.report(
                     Diagnostic::new(Code::E0407, format!("trackform `{}` has a slab and sleepers", form.name))
-                        .at(slot.span, "sleepers")
-                        .help("write `sleeper = none`: the pads stand on the slab");
-                if let Some(slab) = form.get("slab") {
-                    mistake = mistake.at(slab.span, "and a slab");
-                }
-                self.report(mistake);
+                        .at(slab.span, "a slab")
+                        .at(slot.span, "and sleepers")
+                        .help("write `sleeper = none`: the pads stand on the slab"),
+                );
             }
             let slab = self.slab(slab_record)?;
             return Some(Built {
@@ -120,6 +134,8 @@ impl Checker<'_> {
                 foot: Foot::Slab,
                 sleeper: None,
             });
+        } else if form.unknown("slab") {
+            None
         } else if form.word("support") == Some("rigid") {
             Some(Foot::Rigid)
         } else {
@@ -137,10 +153,9 @@ impl Checker<'_> {
         }
         if !form.unknown(name) {
             let span = form.get(name).map_or(form.span, |slot| slot.span);
-            self.report(
-                Diagnostic::new(Code::E0403, format!("trackform `{}` needs a `{name}` {why}", form.name))
-                    .at(span, "not given"),
-            );
+            let mistake = Diagnostic::new(Code::E0403, format!("trackform `{}` needs a `{name}` {why}", form.name))
+                .at(span, "not given");
+            self.lacks(form, name, mistake);
         }
         None
     }

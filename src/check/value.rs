@@ -62,9 +62,18 @@ pub(super) struct Record {
     /// Where it stands: the header of a declaration, or the whole object.
     pub span: Span,
     pub fields: BTreeMap<&'static str, Slot>,
+    /// Where the objects stand that it extends, the nearest first.
+    pub bases: Vec<Span>,
+    /// Part of it could not be understood and has been reported, so that nobody knows what is missing.
+    pub partial: bool,
 }
 
 impl Record {
+    /// An object that says nothing yet.
+    pub fn empty(kind: &'static Kind, name: &str, span: Span) -> Record {
+        Record { kind, name: name.to_string(), span, fields: BTreeMap::new(), bases: Vec::new(), partial: false }
+    }
+
     pub fn get(&self, name: &str) -> Option<&Slot> {
         self.fields.get(name)
     }

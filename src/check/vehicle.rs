@@ -16,16 +16,18 @@ impl Checker<'_> {
         let bogie_mass = given(record, "bogie.mass")?;
         let wheel_mass = given(record, "wheelset.mass")?;
         let unsprung = 2.0 * *bogie_mass + 4.0 * *wheel_mass;
-        let car_body_mass = self.car_body_mass(record, unsprung)?;
+        let car_body_mass = self.car_body_mass(record, unsprung);
         let body = record.record("car_body")?.clone();
-        let by_radius =
-            given(&body, "radius_of_gyration").map(|r| Given { value: *r * *r * *car_body_mass, origin: r.origin });
+        let by_radius = given(&body, "radius_of_gyration")
+            .zip(car_body_mass)
+            .map(|(r, m)| Given { value: *r * *r * *m, origin: r.origin });
         let inertia = self.agree(
             &body,
             "pitch inertia",
             &[("pitch_inertia", given(&body, "pitch_inertia")), ("mass * radius_of_gyration^2", by_radius)],
             "kg m^2",
-        )?;
+        );
+        let (car_body_mass, inertia) = (car_body_mass?, inertia?);
         let hertz = match &record.get("contact")?.value {
             Val::Word { arguments, .. } => match arguments.get("constant").map(|s| (&s.value, s.origin)) {
                 Some((Val::Number(n), origin)) => Given { value: n.value, origin },
@@ -77,6 +79,7 @@ impl Checker<'_> {
         let span = record.get("axle_load").map_or(record.span, |s| s.span);
         let derived = 2.0 * axle - unsprung;
         let tonnes = |kg: f64| format!("{} t", number((kg / 10.0).round() / 100.0));
+        let axle_load = |kg: f64| format!("{} t", number((kg / 100.0).round() / 10.0));
         if let Some(body) = body {
             let by_masses = (*body + unsprung) / 2.0;
             if (by_masses - axle).abs() > 0.02 * axle {
@@ -86,23 +89,23 @@ impl Checker<'_> {
                         format!(
                             "the masses of `{}` give an axle load of {}, but {} is stated",
                             record.name,
-                            tonnes(by_masses),
-                            tonnes(axle)
+                            axle_load(by_masses),
+                            axle_load(axle)
                         ),
                     )
-                    .at(span, format!("{} stated", tonnes(axle)))
+                    .at(span, format!("{} stated", axle_load(axle)))
                     .at(
                         body.origin.span().unwrap_or(record.span),
                         format!(
                             "{} with bogies and wheelsets of {} make {}",
                             tonnes(2.0 * *body),
                             tonnes(2.0 * unsprung),
-                            tonnes(by_masses)
+                            axle_load(by_masses)
                         ),
                     )
                     .help(format!(
                         "leave out the car body's mass (an axle load of {} needs {}), or leave out `axle_load`",
-                        tonnes(axle),
+                        axle_load(axle),
                         tonnes(2.0 * derived)
                     )),
                 );
@@ -114,7 +117,7 @@ impl Checker<'_> {
             self.report(
                 Diagnostic::new(
                     Code::E0407,
-                    format!("an axle load of {} leaves nothing for the car body of `{}`", tonnes(axle), record.name),
+                    format!("an axle load of {} leaves nothing for the car body of `{}`", axle_load(axle), record.name),
                 )
                 .at(span, format!("bogies and wheelsets alone make {} an axle", tonnes(unsprung / 2.0))),
             );

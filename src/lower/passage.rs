@@ -87,13 +87,16 @@ fn ends(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<(f64, f64
         if left_end { left = hindmost } else { right = foremost }
     }
     if right - left < base + LEAST_MARGIN {
-        pass.diagnostics.push(Diagnostic::new(
+        let mut mistake = Diagnostic::new(
             Code::E0503,
-            format!(
-                "the train starts and ends its passage at the same place: {} m are left to run",
-                number(right - left - base)
-            ),
-        ));
+            format!("the passage ends before it begins: {} m are left to run", number((right - left - base).max(0.0))),
+        );
+        for (given, text) in [(scenario.solve.start, "starts here"), (scenario.solve.finish, "ends here")] {
+            if let Some(span) = given.and_then(|g| g.origin.span()) {
+                mistake = mistake.at(span, text);
+            }
+        }
+        pass.diagnostics.push(mistake);
         return None;
     }
     pass.decide(

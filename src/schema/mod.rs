@@ -135,6 +135,11 @@ pub fn kind(name: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|k| k.name == name)
 }
 
+/// The word of that name, in whichever field it stands.
+pub fn word(name: &str) -> Option<&'static Word> {
+    KINDS.iter().flat_map(|k| k.fields).find_map(|f| f.form.word(name))
+}
+
 impl Kind {
     pub fn field(&self, name: &str) -> Option<&'static Field> {
         self.fields.iter().chain(COMMON).find(|f| f.name == name)
