@@ -14,7 +14,11 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
     let speed = blocks.train.speed;
     let mut found = Vec::new();
-    for section in &scenario.track.sections {
+    for (i, section) in scenario.track.sections.iter().enumerate() {
+        // sleepers as far apart have been heard before
+        if scenario.track.sections[..i].iter().any(|s| *s.spacing == *section.spacing) {
+            continue;
+        }
         let passing = *speed / *section.spacing;
         for vehicle in &blocks.train.vehicles {
             let stiffness = 2.0 * *vehicle.primary_stiffness;
@@ -35,7 +39,11 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
                         number(frequency.round())
                     ),
                 )
-                .help(format!("at {} km/h they part", number((*speed * 3.6 * (1.0 + 2.0 * NEAR)).round())));
+                .help(format!(
+                    "below {} km/h and above {} km/h they are apart",
+                    number((frequency * (1.0 - NEAR) * *section.spacing * 3.6).floor()),
+                    number((frequency * (1.0 + NEAR) * *section.spacing * 3.6).ceil())
+                ));
                 let diagnostic = match speed.origin.span() {
                     Some(span) => diagnostic.at(span, "this speed"),
                     None => diagnostic,

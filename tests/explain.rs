@@ -1,0 +1,183 @@
+//! Every code has a page; what it says fails does fail with that code, and what it says passes does pass.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use trackbed::check::Modules;
+use trackbed::diag::{Code, Severity};
+use trackbed::{Compiled, compile};
+
+/// Codes that no text alone can show, and what shows them instead.
+const RUN_TIME: [(Code, &str); 3] = [
+    (Code::E0802, "a run into a directory that is taken: `tests/cli.rs`"),
+    (Code::E0803, "a checkpoint of another scene: `a_checkpoint_of_another_scene_is_refused` below"),
+    (Code::E0804, "a finished run that misses an expectation: `tests/cli.rs`"),
+];
+
+/// Pages whose failing example is no scene: the bytes of the file are the mistake.
+const NOT_TEXT: [Code; 1] = [Code::E0102];
+
+/// A fenced block: what stands behind the fence, and its lines.
+struct Block<'a> {
+    kind: &'a str,
+    text: &'a str,
+}
+
+fn blocks(section: &str) -> Vec<Block<'_>> {
+    section
+        .split("```")
+        .skip(1)
+        .step_by(2)
+        .map(|block| {
+            let (kind, text) = block.split_once('\n').unwrap();
+            Block { kind, text }
+        })
+        .collect()
+}
+
+/// The failing and the passing part of a page.
+fn parts(code: Code) -> (&'static str, &'static str) {
+    let (_, examples) = code.page().split_once("\n## Fails\n").unwrap_or_else(|| panic!("{code} has `## Fails`"));
+    examples.split_once("\n## Passes\n").unwrap_or_else(|| panic!("{code} has `## Passes`"))
+}
+
+struct Files<'a>(BTreeMap<&'a str, &'a str>);
+
+impl Modules for Files<'_> {
+    fn read(&self, relative: &Path) -> Option<Vec<u8>> {
+        self.0.get(relative.to_str()?).map(|text| text.as_bytes().to_vec())
+    }
+}
+
+/// Compiles a block; `// file: name` lines divide it into a main file and its modules.
+fn compiled(text: &str) -> Compiled {
+    let mut files = text.split("// file: ").map(|part| part.split_once('\n').unwrap_or((part, "")));
+    let first = files.next();
+    if !text.starts_with("// file: ") {
+        assert_eq!(files.count(), 0, "the first of several files has its name too");
+        return compile("main.track", text, &Files(BTreeMap::new()), &[]);
+    }
+    assert_eq!(first, Some(("", "")));
+    let (name, main) = files.next().unwrap();
+    compile(name, main, &Files(files.chain([(name, main)]).collect()), &[])
+}
+
+fn codes(compiled: &Compiled) -> Vec<Code> {
+    compiled.diagnostics.iter().map(|d| d.code).collect()
+}
+
+fn told(compiled: &Compiled) -> String {
+    trackbed::diag::render::human(&compiled.diagnostics, &compiled.sources, false, 120)
+}
+
+/// Runs a block in memory and says how it ended.
+fn outcome(text: &str) -> Result<(), Code> {
+    let compiled = compiled(text);
+    assert!(codes(&compiled).is_empty(), "{}", told(&compiled));
+    let (scenario, graph) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
+    let mut recorder = trackbed::results::RunRecorder::new(&scenario, None, |_, _| {});
+    trackbed::graph::execute(&graph, &mut recorder, None).map_err(|_| Code::E0801)?;
+    let (tables, histories) = (&recorder.tables, recorder.all_histories());
+    let scalars = trackbed::results::summarise(&scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+    let view = trackbed::results::Tables {
+        sleepers: &tables.sleepers,
+        blocks: &tables.blocks,
+        histories: &histories,
+        scalars: &scalars,
+    };
+    let held = trackbed::results::verdicts(&scenario, view).iter().all(|v| v.met);
+    if held { Ok(()) } else { Err(Code::E0804) }
+}
+
+#[test]
+fn every_page_has_its_title_and_its_parts() {
+    for code in Code::ALL {
+        let page = code.page();
+        assert!(page.starts_with(&format!("# {code}: {}\n\n", code.title())), "{code}");
+        let (fails, passes) = parts(*code);
+        assert_eq!((blocks(fails).len(), blocks(passes).len()), (1, 1), "{code}");
+        let prose = page.split("\n## Fails\n").next().unwrap().split("\n\n").skip(1).filter(|p| !p.trim().is_empty());
+        assert!((1..=3).contains(&prose.count()), "{code} says in one to three paragraphs what it means");
+        let widest = page.lines().map(|l| l.chars().count()).max().unwrap();
+        assert!(widest <= 120, "{code}: a line of {widest} characters");
+        if let Some(rule) = code.rule() {
+            assert!(page.contains(&format!("Rule `{rule}`")) && page.contains(&format!("allow = [{rule}: ")), "{code}");
+        }
+    }
+}
+
+#[test]
+fn what_fails_gives_its_code_alone() {
+    for code in Code::ALL.iter().filter(|c| !NOT_TEXT.contains(c)) {
+        for block in blocks(parts(*code).0) {
+            match block.kind {
+                "track" => {
+                    let compiled = compiled(block.text);
+                    assert!(!codes(&compiled).is_empty(), "{code} finds nothing");
+                    assert!(codes(&compiled).iter().all(|c| c == code), "{code}:\n{}", told(&compiled));
+                    assert!(compiled.diagnostics.iter().all(|d| d.severity == code.severity()), "{code}");
+                    // errors are said once; rules may speak of each end or side
+                    assert!(compiled.diagnostics.len() == 1 || code.rule().is_some(), "{code}:\n{}", told(&compiled));
+                }
+                "track run" => assert_eq!(outcome(block.text), Err(*code), "{code}"),
+                kind => {
+                    assert_eq!(kind, "console", "{code}");
+                    assert!(RUN_TIME.iter().any(|(c, _)| c == code), "{code} needs an example that can be tested");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_passes_gives_nothing() {
+    for code in Code::ALL {
+        for block in blocks(parts(*code).1) {
+            match block.kind {
+                "track" => {
+                    let compiled = compiled(block.text);
+                    assert!(codes(&compiled).is_empty(), "{code}:\n{}", told(&compiled));
+                }
+                "track run" => assert_eq!(outcome(block.text), Ok(()), "{code}"),
+                kind => assert_eq!(kind, "console", "{code}"),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_rule_can_be_allowed_and_denied() {
+    for code in Code::ALL {
+        let Some(rule) = code.rule() else { continue };
+        let scene = blocks(parts(*code).0)[0].text;
+        let allowed = compiled(&format!("{scene}\nscenario {{ allow = [{rule}: \"an example\"] }}\n"));
+        assert!(codes(&allowed).is_empty(), "{code}:\n{}", told(&allowed));
+        let denied = compiled(&format!("{scene}\nscenario {{ deny = {rule} }}\n"));
+        assert!(denied.diagnostics.iter().all(|d| d.severity == Severity::Error), "{code}:\n{}", told(&denied));
+        assert!(!denied.diagnostics.is_empty());
+    }
+}
+
+#[test]
+fn a_file_that_is_not_text_is_refused() {
+    let mistake = trackbed::syntax::decode("scene.track", b"// ges\xE4ttigt").unwrap_err();
+    assert_eq!(mistake.code, Code::E0102);
+    assert!(blocks(parts(Code::E0102).0)[0].kind == "text");
+}
+
+#[test]
+fn a_checkpoint_of_another_scene_is_refused() {
+    let directory = tempfile::tempdir().unwrap();
+    let text = blocks(parts(Code::L1006).1)[0].text.replace("400 axles", "40 axles");
+    let compiled = compiled(&text);
+    let (scenario, graph) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
+    let store = |hash: &str| trackbed::results::Store {
+        directory: directory.path().to_owned(),
+        scene_sha256: hash.to_string(),
+    };
+    let mut recorder = trackbed::results::RunRecorder::new(&scenario, Some(store("one")), |_, _| {});
+    trackbed::graph::execute(&graph, &mut recorder, None).unwrap();
+    let mut other = trackbed::results::RunRecorder::new(&scenario, Some(store("two")), |_, _| {});
+    assert!(other.resume().is_err());
+    let mut same = trackbed::results::RunRecorder::new(&scenario, Some(store("one")), |_, _| {});
+    assert!(same.resume().unwrap().is_some());
+}
