@@ -219,7 +219,7 @@ impl Planted {
     }
 
     fn line(&self) -> usize {
-        line_of(SCENE, self.offset()).strict_add_signed(self.below)
+        line_of(SCENE, self.offset()).saturating_add_signed(self.below)
     }
 
     fn touched(&self) -> std::ops::RangeInclusive<usize> {
@@ -288,7 +288,8 @@ fn together(choice: Vec<prop::sample::Index>) -> Vec<&'static Planted> {
     let mut chosen: Vec<&Planted> = Vec::new();
     for index in choice {
         let mistake = index.get(PLANTED);
-        if chosen.iter().all(|other| mistake.goes_with(other)) && !(mistake.needs == "*" && !chosen.is_empty()) {
+        let alone = mistake.needs == "*";
+        if chosen.iter().all(|other| mistake.goes_with(other)) && (!alone || chosen.is_empty()) {
             chosen.push(mistake);
         }
     }

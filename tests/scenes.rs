@@ -37,7 +37,7 @@ fn the_transition_sinks_where_the_paper_says() {
     let at = |axles: u64| scene.sleepers.iter().filter(move |r| r.axles == axles).collect::<Vec<_>>();
     let last = at(500);
     let deepest = last.iter().max_by(|a, b| a.settlement_m.total_cmp(&b.settlement_m)).unwrap();
-    assert!((-5.0..-2.0).contains(&deepest.x_m), "largest settlement at {} m", deepest.x_m);
+    assert!((-5.0..-2.5).contains(&deepest.x_m), "largest settlement at {} m", deepest.x_m);
     // some sleepers next to the slab hang, and the rail's weight moves to their neighbours
     let hanging: Vec<i32> = last.iter().filter(|r| r.void_m > 1e-6).map(|r| r.sleeper.parse().unwrap()).collect();
     assert!(hanging.contains(&-1) && hanging.iter().all(|n| *n < 0), "hanging: {hanging:?}");
@@ -63,7 +63,7 @@ fn a_uniform_track_keeps_its_wheel_forces() {
         .replace("  transitions = [edge: soft_to_stiff]\n", "")
         .replace("at         = [-20, -13, -5, -3, +1, +7] sleepers", "at = 50 sleepers")
         .replace("after      = [0, 100, 500] axles", "after = 0 axles")
-        .replace("expect { that = [-5 m < place_of_max(settlement) < -2 m] }", "")
+        .replace("expect { that = [-5 m < place_of_max(settlement) < -2.5 m] }", "")
         .replace("total = 500 axles", "total = 20 axles");
     let scene = run(&text);
     let load = 20_000.0 / 2.0 * 9.81;

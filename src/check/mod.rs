@@ -10,6 +10,7 @@ mod fit;
 mod geometry;
 mod library;
 mod loading;
+mod measure;
 mod modules;
 mod names;
 mod overrides;
@@ -17,6 +18,7 @@ mod records;
 mod track;
 mod value;
 mod vehicle;
+mod words;
 
 pub use modules::{Folder, Modules, NoModules};
 pub use overrides::Override;

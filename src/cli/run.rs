@@ -6,6 +6,7 @@ use crate::diag::{Code, Diagnostic, render};
 use crate::graph::{self, Graph, RunError};
 use crate::results::{self, Provenance, Run, RunRecorder, Store, Summary, checkpoint};
 use crate::scenario::Scenario;
+use crate::solvers::track::TrackError;
 use crate::units::number;
 use crate::{Compiled, fingerprint};
 use std::collections::BTreeMap;
@@ -110,15 +111,29 @@ fn explain(error: &RunError, compiled: &Compiled) -> Diagnostic {
         RunError::Recorder(message) => {
             Diagnostic::new(Code::E0802, message.clone()).help("the run can be resumed with `--resume`")
         }
-        RunError::Track { .. } => {
-            let diagnostic = Diagnostic::new(Code::E0801, error.to_string())
-                .help("a smaller `solve.time_step` or shorter blocks in `solve.update_every` often help; a track that nothing holds has no equilibrium");
-            let span = compiled.scenario.as_ref().and_then(|s| s.solve.update_span);
+        RunError::Track { cause, .. } => {
+            let diagnostic = Diagnostic::new(Code::E0801, error.to_string()).help(way_out(cause));
+            let span = compiled.scenario.as_ref().and_then(|s| match cause {
+                TrackError::StepNotConverged { .. } | TrackError::NotFinite { .. } => s.solve.time_step?.origin.span(),
+                TrackError::NoEquilibrium { .. } => s.solve.update_span,
+                _ => None,
+            });
             match span {
-                Some(span) => diagnostic.at(span, "exchanged here"),
+                Some(span) => diagnostic.at(span, "given here"),
                 None => diagnostic,
             }
         }
+    }
+}
+
+/// What to change in the scene.
+fn way_out(cause: &TrackError) -> &'static str {
+    match cause {
+        TrackError::Mechanism { .. } => "let something hold it: `rail_ends = clamped`, or more seats in `sections`",
+        TrackError::StepNotConverged { .. } | TrackError::NotFinite { .. } => "halve `solve.time_step`",
+        TrackError::NoEquilibrium { .. } => "exchange more often: shorten `solve.update_every`",
+        TrackError::OffTrack { .. } => "move `solve.start` or `solve.finish`, or lengthen the track",
+        TrackError::Model { .. } | TrackError::Parameter { .. } => "change the value that the message names",
     }
 }
 

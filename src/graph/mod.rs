@@ -115,6 +115,9 @@ pub struct Estimate {
     pub bytes: u64,
 }
 
+/// Distance that a wheel runs before it counts as passing a seat, m: about the half-width of a deflection bowl.
+const APPROACH: f64 = 1.0;
+
 impl Blocks {
     /// Directions of the passages that a block needs, with the number of trains of each.
     pub fn passages(&self, block: &Block) -> Vec<(Direction, u64)> {
@@ -122,6 +125,12 @@ impl Blocks {
             .into_iter()
             .filter(|(_, trains)| *trains > 0)
             .collect()
+    }
+
+    /// Chainages between which every wheel of a train comes and goes: seats there see the whole train.
+    pub fn passed(&self) -> std::ops::Range<f64> {
+        let base = self.train.wheel_base();
+        self.passage.left + base + APPROACH..self.passage.right - base - APPROACH
     }
 
     /// The direction of the passage that shows the state after the last block.

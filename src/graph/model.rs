@@ -105,7 +105,7 @@ fn sag(track: &Track, section: usize, gravity: f64) -> f64 {
     let rail = *form.rail.mass * *form.spacing * gravity; // N a seat
     let below = match (&seat.foot, &form.slab) {
         (Foot::Sleeper { mass, support }, _) => (rail + **mass * gravity) / *support.stiffness,
-        (Foot::Slab, Some(slab)) => (*form.rail.mass + *slab.mass) * gravity / *slab.foundation_stiffness,
+        (Foot::Slab, Some(slab)) => *form.rail.mass * gravity / *slab.foundation_stiffness,
         _ => 0.0,
     };
     rail / *seat.pad.stiffness + below

@@ -21,8 +21,6 @@ pub(super) struct TrackSystem<'a> {
 
 /// Seats whose mean stands for those near the ends of the model, see [`TrackSystem::complete`].
 const NEIGHBOURS: usize = 10;
-/// Distance that a wheel runs before it counts as passing a seat, m: about the half-width of a deflection bowl.
-const APPROACH: f64 = 1.0;
 
 impl<'a> TrackSystem<'a> {
     pub fn new(graph: &'a Graph) -> Result<Self, TrackError> {
@@ -100,7 +98,7 @@ impl<'a> TrackSystem<'a> {
             })
             .collect();
         let mut peaks: Vec<Vec<f64>> = (0..seats).map(|i| envelope.axle_peaks_of(i).to_vec()).collect();
-        self.complete(left + base + APPROACH..right - base - APPROACH, &mut outcomes, &mut peaks);
+        self.complete(blocks.passed(), &mut outcomes, &mut peaks);
         let largest = |range: &[(f64, f64)]| range.iter().map(|r| r.1).fold(f64::NEG_INFINITY, f64::max);
         let outcome = PassageOutcome {
             seats: outcomes,

@@ -1,17 +1,17 @@
 //! Symmetric banded matrices: products, `L D Lᵀ` without pivoting, and columns of the inverse where they are not negligible.
 //!
-//! Both the matrix and its factor hold rows of `width` entries beside the diagonal, oldest column first, so that a solve
-//! runs through memory once forward and once back with the last `width` unknowns in registers. The width is the half band
-//! rounded up to one that has an unrolled kernel; the entries added are zeros.
+//! The matrix is stored by diagonals, which makes a product a few straight runs through memory. The factor is stored by rows
+//! of `width` entries beside the diagonal, oldest column first, so that a solve runs through memory once forward and once
+//! back with the last `width` unknowns in registers. The width is the half band rounded up to one that has an unrolled
+//! kernel; the entries added are zeros.
 
 /// A symmetric matrix of which only the entries with `|i - j| <= half_band` differ from zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SymmetricBanded {
+    order: usize,
     half_band: usize,
-    width: usize,
-    diagonal: Vec<f64>,
-    /// Row i: columns `i - width .. i`.
-    lower: Vec<f64>,
+    /// Diagonal d, from d `order` on: at row i the entry (i, i - d), the main diagonal first.
+    diagonals: Vec<f64>,
 }
 
 /// A pivot that is not positive: the matrix is singular or indefinite at this row.
@@ -54,12 +54,11 @@ fn kernel_width(half_band: usize) -> usize {
 impl SymmetricBanded {
     /// The zero matrix.
     pub fn zeros(order: usize, half_band: usize) -> Self {
-        let width = kernel_width(half_band);
-        Self { half_band, width, diagonal: vec![0.0; order], lower: vec![0.0; order * width] }
+        Self { order, half_band, diagonals: vec![0.0; order * (half_band + 1)] }
     }
 
     pub fn order(&self) -> usize {
-        self.diagonal.len()
+        self.order
     }
 
     pub fn half_band(&self) -> usize {
@@ -71,23 +70,15 @@ impl SymmetricBanded {
     /// # Panics
     /// Where the entry lies outside the matrix or its band.
     pub fn add(&mut self, i: usize, j: usize, value: f64) {
-        let (row, column) = if i >= j { (i, j) } else { (j, i) };
-        assert!(row - column <= self.half_band, "entry ({i}, {j}) outside a half band of {}", self.half_band);
-        if row == column {
-            self.diagonal[row] += value;
-        } else {
-            self.lower[row * self.width + self.width - (row - column)] += value;
-        }
+        let (row, distance) = (i.max(j), i.abs_diff(j));
+        assert!(distance <= self.half_band, "entry ({i}, {j}) outside a half band of {}", self.half_band);
+        self.diagonals[distance * self.order + row] += value;
     }
 
     /// The entry (i, j); zero outside the band.
     pub fn get(&self, i: usize, j: usize) -> f64 {
-        let (row, column) = if i >= j { (i, j) } else { (j, i) };
-        match row - column {
-            0 => self.diagonal[row],
-            d if d <= self.half_band => self.lower[row * self.width + self.width - d],
-            _ => 0.0,
-        }
+        let (row, distance) = (i.max(j), i.abs_diff(j));
+        if distance <= self.half_band { self.diagonals[distance * self.order + row] } else { 0.0 }
     }
 
     /// Adds `factor` times a matrix of the same shape.
@@ -95,85 +86,47 @@ impl SymmetricBanded {
     /// # Panics
     /// Where the shapes differ.
     pub fn add_scaled(&mut self, factor: f64, other: &SymmetricBanded) {
-        assert!(self.half_band == other.half_band && self.order() == other.order(), "matrices of two shapes");
-        for (a, b) in self.diagonal.iter_mut().zip(&other.diagonal) {
-            *a += factor * b;
-        }
-        for (a, b) in self.lower.iter_mut().zip(&other.lower) {
+        assert!(self.half_band == other.half_band && self.order == other.order, "matrices of two shapes");
+        for (a, b) in self.diagonals.iter_mut().zip(&other.diagonals) {
             *a += factor * b;
         }
     }
 
     /// Replaces row and column `i` by those of the identity: the unknown `i` becomes its right-hand side.
     pub fn pin(&mut self, i: usize) {
-        self.diagonal[i] = 1.0;
+        self.diagonals[i] = 1.0;
         for d in 1..=self.half_band {
-            if d <= i {
-                self.lower[i * self.width + self.width - d] = 0.0;
-            }
-            if i + d < self.order() {
-                self.lower[(i + d) * self.width + self.width - d] = 0.0;
+            self.diagonals[d * self.order + i] = 0.0;
+            if i + d < self.order {
+                self.diagonals[d * self.order + i + d] = 0.0;
             }
         }
     }
 
     /// Computes `y -= A x`.
     pub fn subtract_product(&self, x: &[f64], y: &mut [f64]) {
-        match self.width {
-            4 => self.subtract_product_unrolled::<4>(x, y),
-            5 => self.subtract_product_unrolled::<5>(x, y),
-            8 => self.subtract_product_unrolled::<8>(x, y),
-            _ => self.subtract_product_any(x, y),
-        }
-    }
-
-    fn subtract_product_unrolled<const W: usize>(&self, x: &[f64], y: &mut [f64]) {
-        let (rows, _) = self.lower.as_chunks::<W>();
-        let n = self.diagonal.len();
-        let (x, y) = (&x[..n], &mut y[..n]);
-        let mut known = [0.0; W]; // x of the last W rows
-        let mut pending = [0.0; W]; // their products, which later rows still add to
-        for i in 0..n {
-            let (row, xi) = (&rows[i], x[i]);
-            let mut product = self.diagonal[i] * xi;
-            for k in 0..W {
-                product += row[k] * known[k];
-                pending[k] += row[k] * xi;
+        for d in 0..=self.half_band.min(self.order.saturating_sub(1)) {
+            let diagonal = &self.diagonals[d * self.order + d..(d + 1) * self.order];
+            for ((y, a), x) in y[d..].iter_mut().zip(diagonal).zip(x) {
+                *y -= a * x;
             }
-            if i >= W {
-                y[i - W] -= pending[0];
+            if d > 0 {
+                for ((y, a), x) in y.iter_mut().zip(diagonal).zip(&x[d..]) {
+                    *y -= a * x;
+                }
             }
-            for k in 1..W {
-                known[k - 1] = known[k];
-                pending[k - 1] = pending[k];
-            }
-            known[W - 1] = xi;
-            pending[W - 1] = product;
-        }
-        for (k, p) in pending.iter().enumerate() {
-            if n + k >= W {
-                y[n + k - W] -= p;
-            }
-        }
-    }
-
-    fn subtract_product_any(&self, x: &[f64], y: &mut [f64]) {
-        for i in 0..self.order() {
-            let reach = self.width.min(i);
-            let row = &self.lower[(i + 1) * self.width - reach..(i + 1) * self.width];
-            let mut product = self.diagonal[i] * x[i];
-            for (k, l) in row.iter().enumerate() {
-                product += l * x[i - reach + k];
-                y[i - reach + k] -= l * x[i];
-            }
-            y[i] -= product;
         }
     }
 
     /// Factors the matrix; fails with the first row whose pivot is not clearly positive.
     pub fn factor(&self) -> Result<BandedFactor, NotPositiveDefinite> {
-        let (n, width) = (self.order(), self.width);
-        let mut lower = self.lower.clone();
+        let (n, width) = (self.order, kernel_width(self.half_band));
+        let mut lower = vec![0.0; n * width];
+        for d in 1..=self.half_band {
+            for i in d..n {
+                lower[i * width + width - d] = self.diagonals[d * n + i];
+            }
+        }
         let mut pivots = vec![0.0; n];
         for i in 0..n {
             let reach = width.min(i);
@@ -189,14 +142,14 @@ impl SymmetricBanded {
                 }
                 row[width - d] = t;
             }
-            let mut pivot = self.diagonal[i];
+            let mut pivot = self.diagonals[i];
             for d in 1..=reach {
                 let t = row[width - d];
                 let l = t / pivots[i - d];
                 pivot -= t * l;
                 row[width - d] = l;
             }
-            if pivot.is_nan() || pivot <= SINGULAR * self.diagonal[i] {
+            if pivot.is_nan() || pivot <= SINGULAR * self.diagonals[i] {
                 return Err(NotPositiveDefinite { row: i });
             }
             pivots[i] = pivot;

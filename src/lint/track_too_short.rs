@@ -1,14 +1,17 @@
-//! L1003: wheels come so near to the ends of the model that the ends take part in the answer.
+//! L1003: the track is too short for its train. Wheels come so near to the ends of the model that the ends take part in the
+//! answer, or a ballasted section has too few sleepers that see the whole train.
 //!
-//! The static deflection decays as exp(-lambda x); three characteristic lengths leave 5 %.
+//! The static deflection decays as exp(-lambda x); three characteristic lengths leave 5 %. Trains start on the track, and
+//! sleepers that only some wheels pass take the mean of ten that all pass.
 
 use super::winkler::Winkler;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule};
+use crate::graph::{Blocks, Graph, Schedule};
 use crate::scenario::{RailEnds, Scenario};
 use crate::units::number;
 
 const LENGTHS: f64 = 3.0;
+const PASSED: usize = 10;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
@@ -18,7 +21,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     }
     let last = track.sections.len().saturating_sub(1);
     let ends = [(0, blocks.passage.left - track.start(), "left"), (last, track.end() - blocks.passage.right, "right")];
-    ends.into_iter()
+    let mut found: Vec<Diagnostic> = ends
+        .into_iter()
         .filter_map(|(section, distance, side)| {
             let needed = LENGTHS / Winkler::of(track, section)?.lambda();
             (distance < needed).then(|| {
@@ -33,5 +37,33 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
                 ))
             })
         })
-        .collect()
+        .collect();
+    found.extend((0..track.sections.len()).filter_map(|section| sparsely_passed(scenario, blocks, section)));
+    found
+}
+
+/// A ballasted section in which fewer than ten sleepers see every wheel.
+fn sparsely_passed(scenario: &Scenario, blocks: &Blocks, section: usize) -> Option<Diagnostic> {
+    let track = &scenario.track;
+    let ballasted = || track.seats.iter().filter(|s| s.section == section && s.is_ballasted());
+    let passed = blocks.passed();
+    let seen = ballasted().filter(|s| passed.contains(&s.x)).count();
+    if seen >= PASSED || ballasted().next().is_none() {
+        return None;
+    }
+    let form = &track.sections[section];
+    let missing = (PASSED - seen) as f64 * *form.spacing;
+    let starts = if seen == 0 && passed.start > form.end { passed.start - form.end } else { 0.0 };
+    Some(
+        Diagnostic::new(
+            Code::L1003,
+            format!(
+                "{} of the {} sleepers of section `{}` see every wheel of the train; the others settle less than they would",
+                if seen == 0 { "none".to_string() } else { seen.to_string() },
+                ballasted().count(),
+                form.name
+            ),
+        )
+        .help(format!("lengthen section `{}` to about {} m", form.name, number((form.end - form.start + missing + starts).ceil()))),
+    )
 }

@@ -1,6 +1,6 @@
 //! The one vocabulary: every kind, field, word, unit, range and default of the language.
 //!
-//! Checking, defaults and `trackbed docs` all read this table; a field is added in one place, [`kinds`].
+//! Checking, defaults and `trackbed docs` all read this table; a field is added in one place, `kinds.rs`.
 
 mod docs;
 mod kinds;

@@ -26,7 +26,7 @@ impl Law {
         }
     }
 
-    /// Adds `count` cycles whose contact force peaks at `peak` [N]. A peak that is not positive settles nothing.
+    /// Adds `count` cycles whose contact force peaks at `peak` (N). A peak that is not positive settles nothing.
     pub fn add_cycles(&self, state: &mut SupportState, peak: f64, count: u64) {
         match (self, state) {
             (Law::Varandas(_), SupportState::Varandas(state)) => state.add_cycles(peak, count),

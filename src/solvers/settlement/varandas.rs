@@ -1,4 +1,4 @@
-//! Settlement of a support after Varandas, Hölscher and Silva (2014), doi 10.1177/0954409712459154: every band of force
+//! Settlement of a support after Varandas, Hölscher and Silva (2014): every band of force
 //! settles by a power of the number of times it was reached.
 //!
 //! The n-th cycle, of peak `F_n`, adds `u_n = (γ/M) ∫₀^{F_n} F^α (h(F) + 1)^-β dF`, where h(F) counts the earlier cycles of
@@ -31,7 +31,7 @@ pub struct Varandas {
 /// The cycles that one support has carried.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct VarandasState {
-    /// Peak force [N] and number of cycles, strongest first, every peak once.
+    /// Peak force (N) and number of cycles, strongest first, every peak once.
     cycles: Vec<(f64, u64)>,
 }
 
@@ -58,7 +58,7 @@ impl Varandas {
 }
 
 impl VarandasState {
-    /// Adds `count` cycles of peak force `peak` [N]; a peak that is not positive leaves no trace.
+    /// Adds `count` cycles of peak force `peak` (N); a peak that is not positive leaves no trace.
     pub fn add_cycles(&mut self, peak: f64, count: u64) {
         if count == 0 || peak.is_nan() || peak <= 0.0 {
             return;
@@ -70,7 +70,7 @@ impl VarandasState {
         }
     }
 
-    /// Peak force [N] and number of cycles, strongest first.
+    /// Peak force (N) and number of cycles, strongest first.
     pub fn cycles(&self) -> &[(f64, u64)] {
         &self.cycles
     }

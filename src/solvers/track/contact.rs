@@ -55,7 +55,7 @@ impl SupportLine {
     }
 }
 
-/// Force of a wheel that indents the rail by `indentation` [m], N.
+/// Force of a wheel that indents the rail by `indentation` (m), N.
 #[inline]
 pub(super) fn hertz_force(constant: f64, indentation: f64) -> f64 {
     let d = indentation.max(0.0);
@@ -68,7 +68,7 @@ pub(super) fn hertz_stiffness(constant: f64, indentation: f64) -> f64 {
     1.5 * constant * indentation.max(0.0).sqrt()
 }
 
-/// The indentation under `force` [N], m.
+/// The indentation under `force` (N), m.
 pub(super) fn hertz_indentation(constant: f64, force: f64) -> f64 {
     (force.max(0.0) / constant).powf(2.0 / 3.0)
 }

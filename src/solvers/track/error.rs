@@ -4,19 +4,19 @@ use std::fmt;
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum TrackError {
-    /// The model contradicts itself near `x` [m].
+    /// The model contradicts itself near `x` (m).
     Model { x: f64, reason: String },
     /// A number of the call is out of its range.
     Parameter { name: &'static str, value: f64, expected: &'static str },
     /// A wheel or a load stands outside the track.
     OffTrack { x: f64, start: f64, end: f64 },
-    /// Nothing holds the track near `x` [m], or a vehicle whose leading wheel is there: it moves without resistance.
+    /// Nothing holds the track near `x` (m), or a vehicle whose leading wheel is there: it moves without resistance.
     Mechanism { x: f64 },
-    /// No set of closed supports was found that is in equilibrium; `x` [m] is where it last changed.
+    /// No set of closed supports was found that is in equilibrium; `x` (m) is where it last changed.
     NoEquilibrium { x: f64, iterations: usize },
-    /// The contacts of a time step did not settle; `x` [m] is where they last changed.
+    /// The contacts of a time step did not settle; `x` (m) is where they last changed.
     StepNotConverged { step: usize, time: f64, x: f64 },
-    /// A displacement is not a number; `x` [m] is the position of the leading wheel.
+    /// A displacement is not a number; `x` (m) is the position of the leading wheel.
     NotFinite { step: usize, time: f64, x: f64 },
 }
 

@@ -186,7 +186,6 @@ impl Track {
                 add_element(&mut self.stiffness, unknowns, beam::spread(slab.foundation_stiffness, length));
                 add_element(&mut self.damping, unknowns, beam::spread(slab.foundation_damping, length));
                 add_element(&mut self.mass, unknowns, beam::spread(slab.mass, length));
-                add_load(&mut self.weight, unknowns, beam::even_load(slab.mass * gravity, length));
             }
         }
         for (i, seat) in self.model.seats.iter().enumerate() {
@@ -233,7 +232,7 @@ impl Track {
         self.weight.len()
     }
 
-    /// The place x [m] on the rail; fails outside the track.
+    /// The place x (m) on the rail; fails outside the track.
     pub(super) fn rail_point(&self, x: f64) -> Result<RailPoint, TrackError> {
         let [start, end] = self.model.ends;
         let inside = start - SAME_PLACE <= x && x <= end + SAME_PLACE;
@@ -244,7 +243,7 @@ impl Track {
         Ok(self.point_in(element, x))
     }
 
-    /// The place x [m] near `element`, for a point that has moved a little.
+    /// The place x (m) near `element`, for a point that has moved a little.
     #[inline]
     pub(super) fn moved_point(&self, mut element: usize, x: f64) -> RailPoint {
         while element > 0 && x < self.nodes[element] {
@@ -281,7 +280,7 @@ impl Track {
         (0..4).map(|k| point.shape[k] * u[unknowns[k]]).sum()
     }
 
-    /// Adds the nodal forces of `force` [N, down] at a point of the rail.
+    /// Adds the nodal forces of `force` (N, down) at a point of the rail.
     #[inline]
     pub(super) fn add_force(&self, point: &RailPoint, force: f64, nodal: &mut [f64]) {
         let unknowns = self.element_unknowns(point.element);

@@ -47,7 +47,7 @@ pub struct Seat {
 /// What a pad stands on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Foot {
-    /// Half a sleeper [kg] on a support [N/m, N s/m] that pushes and never pulls.
+    /// Half a sleeper (kg) on a support (N/m, N s/m) that pushes and never pulls.
     Sleeper { mass: f64, support_stiffness: f64, support_damping: f64 },
     /// Ground that does not move.
     Rigid,
@@ -55,7 +55,8 @@ pub enum Foot {
     Slab,
 }
 
-/// Half a slab: a beam with free ends on a Winkler foundation that acts in both directions.
+/// Half a slab: a beam with free ends on a Winkler foundation that acts in both directions. Its level as built is that of the
+/// slab at rest: it lies there before the rail does, so its own weight has moved it already and moves it no further.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slab {
     /// Chainage of its ends, m.

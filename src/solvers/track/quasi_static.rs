@@ -23,7 +23,7 @@ pub(super) struct Start {
 /// Distance of the states that are compared, m: small beside an element, large beside the rounding of a deflection.
 const DISTANCE: f64 = 2e-3;
 
-/// The train with its leading wheel at `leading` [m], moving at `speed` [m/s].
+/// The train with its leading wheel at `leading` (m), moving at `speed` (m/s).
 pub(super) fn start(
     track: &Track,
     level: &TrackLevel,

@@ -24,7 +24,7 @@ pub struct Scheme {
 }
 
 impl Scheme {
-    /// A step of `time_step` [s]; `spectral_radius` (0 to 1) is what is left after one step of a motion much faster than it:
+    /// A step of `time_step` (s); `spectral_radius` (0 to 1) is what is left after one step of a motion much faster than it:
     /// smaller damps more.
     pub fn new(time_step: f64, spectral_radius: f64) -> Result<Self, TrackError> {
         if !(time_step > 0.0 && time_step.is_finite()) {

@@ -16,9 +16,9 @@ use nalgebra::{DMatrix, DVector};
 /// What stands on the track besides its own weight.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Loads<'a> {
-    /// Chainage [m] and force [N, down] on the rail.
+    /// Chainage (m) and force (N, down) on the rail.
     pub rail: &'a [(f64, f64)],
-    /// Index of a seat with a sleeper and force [N, down] on that sleeper.
+    /// Index of a seat with a sleeper and force (N, down) on that sleeper.
     pub sleepers: &'a [(usize, f64)],
     /// A train with its leading wheel at this chainage, m.
     pub train: Option<(&'a Train, f64)>,
@@ -57,11 +57,12 @@ pub struct StaticState {
 /// The sums of forces in an equilibrium, N, loads downward and supports upward.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Balance {
-    /// Gravity on track and vehicles, and the point loads.
+    /// Gravity on rail, sleepers and vehicles, and the point loads; a slab lies at rest under its own weight already.
     pub loads: f64,
     /// Of the sleepers' supports.
     pub sleeper_supports: f64,
     pub rigid_seats: f64,
+    /// Beyond the slabs' own weight.
     pub slab_foundations: f64,
     pub rail_ends: f64,
 }
@@ -402,15 +403,6 @@ fn describe(
             length * model.rail.iter().find(|s| middle <= s.end).or(model.rail.last()).map_or(0.0, |s| s.mass)
         })
         .sum();
-    let slab_weight: f64 = model
-        .slabs
-        .iter()
-        .zip(&track.slabs)
-        .map(|(slab, mesh)| {
-            let last = mesh.first_node + mesh.unknowns.len() - 1;
-            slab.mass * (track.nodes[last] - track.nodes[mesh.first_node])
-        })
-        .sum();
     let sleeper_weight: f64 = track
         .sleepers
         .iter()
@@ -426,7 +418,7 @@ fn describe(
     }
     track.stiffness.subtract_product(u, &mut reactions);
     let balance = Balance {
-        loads: model.gravity * (rail_weight + slab_weight + sleeper_weight) + vehicle_weight + point_loads,
+        loads: model.gravity * (rail_weight + sleeper_weight) + vehicle_weight + point_loads,
         sleeper_supports: contact_forces.iter().sum(),
         rigid_seats: (0..model.seats.len())
             .filter(|i| track.feet[*i] == FootUnknown::Rigid)

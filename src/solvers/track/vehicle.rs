@@ -168,7 +168,7 @@ impl Train {
         WHEELS * self.vehicles.len()
     }
 
-    /// Chainage of every wheel while the leading one is at `leading` [m], vehicle by vehicle.
+    /// Chainage of every wheel while the leading one is at `leading` (m), vehicle by vehicle.
     pub fn wheel_positions(&self, leading: f64) -> impl Iterator<Item = f64> + '_ {
         let sign = self.direction.sign();
         self.vehicles

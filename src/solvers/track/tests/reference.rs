@@ -175,15 +175,26 @@ impl<'a> Plain<'a> {
             let mut jacobian = DMatrix::zeros(a.len(), a.len());
             let (r, wheel_forces, support_forces) = residual(&a, Some(&mut jacobian));
             let size = r.amax();
-            if size < 1e-6 {
+            // On the ramp the rounding of a displacement alone makes some tenths of a newton.
+            let on_ramp = self.track.sleepers.iter().any(|sleeper| {
+                let u = u_star[sleeper.unknown] + share * a[sleeper.unknown];
+                (0.0..RAMP).contains(&(u - self.level.settlements[sleeper.seat]))
+            });
+            if size < if on_ramp { 0.5 } else { 1e-6 } {
                 (self.wheel_forces, self.support_forces) = (wheel_forces, support_forces);
                 break;
             }
             assert!(iteration < 200, "the plain Newton method fails, residual {size} N");
             let step = jacobian.lu().solve(&r).unwrap();
-            let mut factor = 1.0;
-            while factor > 1e-6 && residual(&(&a - factor * &step), None).0.norm() > (1.0 - 1e-4 * factor) * r.norm() {
-                factor *= 0.5;
+            // The residual is the gradient of a convex function: go where it stops to fall along the step.
+            let fall = |factor: f64| step.dot(&residual(&(&a - factor * &step), None).0);
+            let (mut low, mut factor) = (0.0, 1.0);
+            if fall(1.0) < -0.1 * step.dot(&r) {
+                let mut high = 1.0;
+                for _ in 0..50 {
+                    factor = 0.5 * (low + high);
+                    if fall(factor) > 0.0 { low = factor } else { high = factor }
+                }
             }
             a -= factor * step;
         }
@@ -222,28 +233,31 @@ fn agrees_with_a_plain_implementation() {
         Vehicle { bogie_spacing: 1.3, wheelset_spacing: 0.5, car_body_mass: 6e3, car_body_inertia: 4e3, ..wagon() };
     let train = Train::single(vehicle, Direction::Forward);
     let mut seen = 0;
-    // Strong dampers make sleepers touch before they close; the last wagon runs into a step in the level.
-    for (damping, depth, time_step, speed) in
-        [(50e3, 1e-3, 1e-4, 55.56), (400e3, 1e-3, 1e-4, 55.56), (10e3, 4e-3, 2e-4, 90.0)]
+    // Voids under the middle of the track close ahead of the wagon and open behind it; strong dampers make sleepers touch
+    // before they close; at last every third sleeper alone carries.
+    for (damping, void, every, time_step, speed) in
+        [(50e3, 1e-3, 1, 1e-4, 55.56), (2e6, 1e-3, 1, 1e-4, 55.56), (10e3, 4e-3, 3, 2e-4, 90.0)]
     {
-        let mut model = ballast(9);
+        let mut model = ballast(13);
         model.elements_per_bay = 2;
         model.rail_ends = RailEnds::Pinned;
         for seat in &mut model.seats {
             seat.foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: damping };
         }
-        let mut level = TrackLevel { ends: [1e-3; 2], ..hollow(&model, 1e-3, depth, 2.4, 1.2) };
-        if time_step > 1e-4 {
-            level.settlements.iter_mut().enumerate().for_each(|(i, s)| *s = if i % 3 == 1 { 0.0 } else { 4e-3 });
+        let mut level = TrackLevel { ends: [0.0; 2], ..TrackLevel::as_built(&model) };
+        for (i, settlement) in level.settlements.iter_mut().enumerate() {
+            *settlement = if every == 1 && (3..11).contains(&i) || i % every != 0 { void } else { 0.0 };
         }
         let stepper =
             Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::new(time_step, 0.85).unwrap()).unwrap();
-        let run = Run { train: &train, start: 1.9, finish: 5.3, speed };
+        let run = Run { train: &train, start: 1.9, finish: 7.7, speed };
         let mut passage = Passage::new(&stepper, &level, run).unwrap();
         let steps = passage.planned_steps();
         let (worst, changes, touching) = compare(&mut passage, &vehicle, steps);
         let still = vehicle.mass() * 9.81 / 4.0;
-        assert!(worst[0] < 1e-6 * still && worst[1] < 1e-6 * still && worst[2] < 1e-10, "{worst:?}");
+        // Where sleepers touch, the plain method stops at half a newton on its ramp, and that is what differs.
+        let (force, displacement) = if touching > 0 { (1e-4 * still, 1e-9) } else { (1e-6 * still, 1e-12) };
+        assert!(worst[0] < force && worst[1] < force && worst[2] < displacement, "{worst:?}");
         assert!(changes >= 4);
         seen += touching;
     }

@@ -81,7 +81,7 @@ pub fn wagon() -> Vehicle {
     }
 }
 
-/// A settled level with a smooth hollow `depth` [m] deep and `half_width` [m] wide to each side of `middle`.
+/// A settled level with a smooth hollow `depth` (m) deep and `half_width` (m) wide to each side of `middle`.
 pub fn hollow(model: &TrackModel, even: f64, depth: f64, middle: f64, half_width: f64) -> TrackLevel {
     let settlement = |seat: &Seat| match seat.foot {
         Foot::Sleeper { .. } => {
