@@ -625,3 +625,17 @@ fn a_hole_names_what_the_library_has_for_it() {
 fn codes_of(compiled: &Compiled) -> Vec<Code> {
     compiled.diagnostics.iter().map(|d| d.code).collect()
 }
+
+#[test]
+fn functions_hold_their_values_together() {
+    let scene = |value: &str| SCENE.replace("let bay = 0.6 m", &format!("let bay = {value}"));
+    assert_eq!(codes(&scene("min(0.6 m, 700 mm)")), []);
+    assert_eq!(codes(&scene("min(0.6 m, 3 s)")), [Code::E0305]);
+    assert_eq!(codes(&scene("max(0.6, 0.5)")), [Code::E0301]);
+    let support = |value: &str| {
+        SCENE.replace("{ stiffness = 50 MN/m per seat, damping = 50", &format!("{{ stiffness = {value}, damping = 50"))
+    };
+    assert_eq!(codes(&support("min(50 MN/m per seat, 80 MN/m)")), []);
+    assert_eq!(codes(&support("min(50 MN/m per seat, 80 MN/m per sleeper)")), [Code::E0305]);
+    assert_eq!(codes(&support("40 MN/m per seat + 80 MN/m per sleeper")), [Code::E0305]);
+}

@@ -49,7 +49,7 @@ impl Checker<'_> {
         let first = typed[0].1;
         if let Some(i) = typed.iter().position(|(_, d)| *d != first) {
             self.report(
-                Diagnostic::new(Code::E0305, "a comparison needs values of the same kind")
+                Diagnostic::new(Code::E0305, "a comparison needs values of the same dimension")
                     .at(operands[i].span, typed[i].1.describe())
                     .at(operands[0].span, first.describe()),
             );
@@ -136,7 +136,7 @@ impl Checker<'_> {
             _ if a.1 == b.1 => a.1,
             _ => {
                 self.report(
-                    Diagnostic::new(Code::E0305, format!("`{}` needs two values of the same kind", op.symbol()))
+                    Diagnostic::new(Code::E0305, format!("`{}` needs two values of the same dimension", op.symbol()))
                         .at(left, a.1.describe())
                         .at(right, b.1.describe()),
                 );

@@ -131,8 +131,11 @@ impl Checker<'_> {
             Val::Word { word, .. } if words.iter().any(|w| w.name == word.name) => Some(slot),
             _ => {
                 self.report(
-                    Diagnostic::new(Code::E0406, format!("expected {}", form.describe()))
-                        .at(path.span, "of another form"),
+                    Diagnostic::new(
+                        Code::E0406,
+                        format!("expected {}, found {}", form.describe(), slot.value.describe()),
+                    )
+                    .at(path.span, "of another form"),
                 );
                 Some(error)
             }

@@ -98,7 +98,7 @@ impl Checker<'_> {
                 None => {
                     let text = self.loader.sources.text(raw.span).to_string();
                     self.report(
-                        Diagnostic::new(Code::E0304, format!("of what is this? say {}", basis.list()))
+                        Diagnostic::new(Code::E0304, format!("expected {}, found none of them", basis.list()))
                             .at(raw.span, "could be of a half or of the whole")
                             .help(format!("write `{text} per {}`, if that is what it is", basis.names[0].0)),
                     );
