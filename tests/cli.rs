@@ -265,3 +265,17 @@ fn the_report_can_be_made_again() {
     assert!(fs::read(out.join("report.html")).unwrap() == page);
     assert_eq!(code(&trackbed(&["report", dir.path().to_str().unwrap()])), 2);
 }
+
+#[test]
+fn a_track_that_nothing_holds_ends_in_a_diagnostic() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string("scenarios/static_check.track").unwrap();
+    let text = text.replace("20 sleepers", "1 sleeper").replace("at = 10 sleepers", "at = 1 sleeper");
+    let scene = write(dir.path(), "one.track", &text);
+    let out = dir.path().join("run");
+    let output = trackbed(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 1);
+    let said = said(&output);
+    assert!(said.contains("E0801") && said.contains("x = 0.6 m") && said.contains("rail_ends = clamped"), "{said}");
+    assert!(!out.join("summary.json").exists(), "no result without an equilibrium");
+}

@@ -17,7 +17,8 @@ pub fn settlement(run: &Run) -> Option<Figure> {
     chart.series = per_seat(run, true, |row| row.settlement_m);
     chart.series.retain(|series| series.points.iter().any(|point| point.1.is_finite() && point.1 != 0.0));
     let caption = "Permanent settlement of each sleeper's support, downwards as in the track; shaded where no ballast \
-                   carries the seats.";
+         carries the seats. Sleepers near the ends, which only some wheels of a train pass, take the mean of their \
+         neighbours.";
     figure(&chart, "settlement", "Settlement along the track", caption)
 }
 
