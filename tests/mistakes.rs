@@ -598,3 +598,44 @@ fn wrong_overrides_get_their_codes() {
     assert!(Override::parse("open.spacing").is_err());
     assert!(Override::parse("=3 m").is_err());
 }
+
+#[test]
+fn what_a_value_is_of_is_read_everywhere() {
+    for (find, replace) in [
+        ("< 80 kN per seat", "< 80 kN per seet"),
+        ("[-20, -5, -1, +1] sleepers", "[-20 sleepers per seat, -5 sleepers]"),
+        ("elements_per_bay = 4", "elements_per_bay = 4 per rail"),
+        ("let bay = 0.6 m", "let bay = 0.6 m per sleeper"),
+    ] {
+        let compiled = compiled(&SCENE.replace(find, replace));
+        assert_eq!(codes_of(&compiled), [Code::E0304], "{replace}\n{}", told(&compiled));
+    }
+    let ratio = SCENE.replace("elements_per_bay = 4", "elements_per_bay = (80 kN per seat) / (20 kN per seat)");
+    assert_eq!(codes(&ratio), [], "a ratio is of nothing");
+}
+
+#[test]
+fn a_hole_names_what_the_library_has_for_it() {
+    let compiled = compiled(&SCENE.replace("slab    = slabs.half_width_1600", "slab    = ?"));
+    assert_eq!(found(&compiled), [(Code::E0410, 24)], "{}", told(&compiled));
+    assert!(compiled.diagnostics[0].help.as_ref().unwrap().contains("`slabs.half_width_1600`"));
+    assert!(compiled.scenario.is_none());
+}
+
+fn codes_of(compiled: &Compiled) -> Vec<Code> {
+    compiled.diagnostics.iter().map(|d| d.code).collect()
+}
+
+#[test]
+fn functions_hold_their_values_together() {
+    let scene = |value: &str| SCENE.replace("let bay = 0.6 m", &format!("let bay = {value}"));
+    assert_eq!(codes(&scene("min(0.6 m, 700 mm)")), []);
+    assert_eq!(codes(&scene("min(0.6 m, 3 s)")), [Code::E0305]);
+    assert_eq!(codes(&scene("max(0.6, 0.5)")), [Code::E0301]);
+    let support = |value: &str| {
+        SCENE.replace("{ stiffness = 50 MN/m per seat, damping = 50", &format!("{{ stiffness = {value}, damping = 50"))
+    };
+    assert_eq!(codes(&support("min(50 MN/m per seat, 80 MN/m)")), []);
+    assert_eq!(codes(&support("min(50 MN/m per seat, 80 MN/m per sleeper)")), [Code::E0305]);
+    assert_eq!(codes(&support("40 MN/m per seat + 80 MN/m per sleeper")), [Code::E0305]);
+}

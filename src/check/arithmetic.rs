@@ -147,14 +147,11 @@ impl Checker<'_> {
             BinaryOp::Add | BinaryOp::Subtract => {
                 let bases_differ = matches!((&a.basis, &b.basis), (Some(x), Some(y)) if x.0 != y.0);
                 if a.dimension != b.dimension || bases_differ {
-                    let say = |r: &Raw| match &r.basis {
-                        Some((basis, _)) => format!("{} per {basis}", r.dimension.describe()),
-                        None => r.dimension.describe(),
-                    };
+                    let same = if a.dimension == b.dimension { "basis" } else { "dimension" };
                     self.report(
-                        Diagnostic::new(Code::E0305, format!("`{}` needs two values of the same kind", op.symbol()))
-                            .at(left.span, say(&a))
-                            .at(right.span, say(&b)),
+                        Diagnostic::new(Code::E0305, format!("`{}` needs two values of the same {same}", op.symbol()))
+                            .at(left.span, a.describe())
+                            .at(right.span, b.describe()),
                     );
                     return None;
                 }
@@ -219,11 +216,15 @@ impl Checker<'_> {
             );
             return None;
         };
-        if let Some(other) = values.iter().find(|v| v.dimension != first.dimension) {
+        let basis = values.iter().find_map(|v| v.basis.clone());
+        let of = basis.as_ref().map(|(name, _)| name.as_str());
+        let unlike = |v: &&Raw| v.dimension != first.dimension || v.basis_name().is_some_and(|name| Some(name) != of);
+        if let Some(other) = values.iter().find(unlike) {
+            let same = if other.dimension == first.dimension { "basis" } else { "dimension" };
             self.report(
-                Diagnostic::new(Code::E0305, format!("`{}` needs values of the same kind", word.text))
-                    .at(other.span, other.dimension.describe())
-                    .at(first.span, first.dimension.describe()),
+                Diagnostic::new(Code::E0305, format!("`{}` needs values of the same {same}", word.text))
+                    .at(other.span, other.describe())
+                    .at(first.span, first.describe()),
             );
             return None;
         }
@@ -234,7 +235,21 @@ impl Checker<'_> {
             "min" => (numbers.fold(f64::INFINITY, f64::min), first.dimension),
             _ => (numbers.fold(f64::NEG_INFINITY, f64::max), first.dimension),
         };
-        self.finite(Raw { value, dimension, basis: first.basis.clone(), span, bare: false }, span)
+        self.finite(Raw { value, dimension, basis, span, bare: values.iter().all(|v| v.bare) }, span)
+    }
+}
+
+impl Raw {
+    fn basis_name(&self) -> Option<&str> {
+        self.basis.as_ref().map(|(name, _)| name.as_str())
+    }
+
+    /// `a stiffness per seat`
+    fn describe(&self) -> String {
+        match self.basis_name() {
+            Some(basis) => format!("{} per {basis}", self.dimension.describe()),
+            None => self.dimension.describe(),
+        }
     }
 }
 

@@ -4,13 +4,24 @@ use super::Checker;
 use super::arithmetic::{Raw, shape};
 use super::modules::ScopeId;
 use super::value::{Number, Val};
-use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
+use crate::diag::{Code, Diagnostic, Span, nearest::nearest, or_list};
 use crate::scenario::response::{Expectation, Expression, Measure, Place, Reduction, Response};
 use crate::syntax::tree::{Argument, BinaryOp, Item, Name, Path, Value, ValueKind};
 use crate::units::{Dimension, parse_unit};
 
 /// An expression with its dimension.
 type Typed = (Expression, Dimension);
+
+/// What a value in a comparison may be of, with its factor to the value of one rail or seat.
+const BASES: [(&str, f64); 7] = [
+    ("seat", 1.0),
+    ("sleeper", 0.5),
+    ("rail", 1.0),
+    ("track", 0.5),
+    ("wheel", 1.0),
+    ("wheelset", 0.5),
+    ("bogie", 0.25),
+];
 
 /// Operands of one comparison, those of its lets counted wherever they are used.
 const MOST_OPERANDS: usize = 10_000;
@@ -38,7 +49,7 @@ impl Checker<'_> {
         let first = typed[0].1;
         if let Some(i) = typed.iter().position(|(_, d)| *d != first) {
             self.report(
-                Diagnostic::new(Code::E0305, "a comparison needs values of the same kind")
+                Diagnostic::new(Code::E0305, "a comparison needs values of the same dimension")
                     .at(operands[i].span, typed[i].1.describe())
                     .at(operands[0].span, first.describe()),
             );
@@ -85,7 +96,8 @@ impl Checker<'_> {
             ValueKind::Path(path) => self.expression_path(path, value, scope),
             _ => {
                 let raw = self.raw(value, scope)?;
-                Some((Expression::Number(of_rail(&raw)), raw.dimension))
+                let value = self.of_rail(&raw)?;
+                Some((Expression::Number(value), raw.dimension))
             }
         }
     }
@@ -113,7 +125,8 @@ impl Checker<'_> {
             return self.within(target.id, path.span, |c| c.expression(&binding.value, target.id.scope));
         }
         let raw = self.raw(value, scope)?;
-        Some((Expression::Number(of_rail(&raw)), raw.dimension))
+        let value = self.of_rail(&raw)?;
+        Some((Expression::Number(value), raw.dimension))
     }
 
     fn combine(&mut self, a: Typed, op: BinaryOp, b: Typed, left: Span, right: Span) -> Option<Typed> {
@@ -123,7 +136,7 @@ impl Checker<'_> {
             _ if a.1 == b.1 => a.1,
             _ => {
                 self.report(
-                    Diagnostic::new(Code::E0305, format!("`{}` needs two values of the same kind", op.symbol()))
+                    Diagnostic::new(Code::E0305, format!("`{}` needs two values of the same dimension", op.symbol()))
                         .at(left, a.1.describe())
                         .at(right, b.1.describe()),
                 );
@@ -193,6 +206,22 @@ impl Checker<'_> {
         Some((Expression::Measure(measure), Dimension::of(unit)))
     }
 
+    /// Values in a comparison are of one rail or one seat, as responses are.
+    fn of_rail(&mut self, raw: &Raw) -> Option<f64> {
+        let Some((name, span)) = &raw.basis else { return Some(raw.value) };
+        match BASES.iter().find(|(basis, _)| basis == name) {
+            Some((_, factor)) => Some(raw.value * factor),
+            None => {
+                let names: Vec<String> = BASES.iter().map(|(basis, _)| format!("`per {basis}`")).collect();
+                self.report(
+                    Diagnostic::new(Code::E0304, format!("expected {}, found `per {name}`", or_list(&names)))
+                        .at(*span, "not of this"),
+                );
+                None
+            }
+        }
+    }
+
     /// An axle count.
     fn count(&mut self, value: &Value, scope: ScopeId) -> Option<u64> {
         let raw = self.raw(value, scope)?;
@@ -210,15 +239,6 @@ impl Checker<'_> {
     fn chainages(&mut self, a: Number, b: Number, from: Option<(&str, Span)>, span: Span) -> Option<(f64, f64)> {
         let seats = self.seat_places.clone();
         super::geometry::span(self, &seats, a, b, from, span)
-    }
-}
-
-/// Values in a comparison are of one rail or one seat, as responses are.
-fn of_rail(raw: &Raw) -> f64 {
-    match raw.basis.as_ref().map(|(name, _)| name.as_str()) {
-        Some("sleeper" | "track" | "wheelset") => raw.value * 0.5,
-        Some("bogie") => raw.value * 0.25,
-        _ => raw.value,
     }
 }
 

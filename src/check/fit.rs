@@ -31,7 +31,7 @@ impl Checker<'_> {
             self.report(
                 Diagnostic::new(Code::E0410, format!("`?` stands for {}{}", form.describe(), range_of(form)))
                     .at(span, "to be given before a run")
-                    .help("write a value here, or give one with `--set`"),
+                    .help(self.fitting(form)),
             );
             return Slot { value: Val::Hole, span, origin };
         }
@@ -40,6 +40,25 @@ impl Checker<'_> {
         }
         let fitted = self.fit_form(form, value, scope).unwrap_or(Val::Error);
         Slot { value: fitted, span, origin }
+    }
+
+    /// What could stand in the place of a hole.
+    fn fitting(&self, form: &Form) -> String {
+        let mut entries = Vec::new();
+        for (module, scope) in &self.scopes[self.standard].modules {
+            for item in &self.scopes[*scope].tree.items {
+                if let Item::Declaration(d) = item
+                    && let Some(name) = &d.name
+                    && form_has_object(form, &d.kind.text)
+                {
+                    entries.push(format!("`{module}.{}`", name.text));
+                }
+            }
+        }
+        if entries.is_empty() {
+            return "write a value here, or give one with `--set`".into();
+        }
+        format!("write a value here, such as {}, or give one with `--set`", or_list(&entries))
     }
 
     pub(super) fn origin(&self, span: Span, scope: ScopeId) -> Origin {
@@ -112,8 +131,11 @@ impl Checker<'_> {
             Val::Word { word, .. } if words.iter().any(|w| w.name == word.name) => Some(slot),
             _ => {
                 self.report(
-                    Diagnostic::new(Code::E0406, format!("expected {}", form.describe()))
-                        .at(path.span, "of another form"),
+                    Diagnostic::new(
+                        Code::E0406,
+                        format!("expected {}, found {}", form.describe(), slot.value.describe()),
+                    )
+                    .at(path.span, "of another form"),
                 );
                 Some(error)
             }

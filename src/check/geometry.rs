@@ -203,7 +203,7 @@ impl Checker<'_> {
             None if places.transitions.len() > 1 => {
                 let names: Vec<&str> = places.transitions.iter().map(|t| t.name.as_str()).collect();
                 self.report(
-                    Diagnostic::new(Code::E0504, "from which transition does this place count?")
+                    Diagnostic::new(Code::E0504, "expected the transition from which this place counts, found none")
                         .at(place, "the track has several")
                         .help(format!("add `from = {}`", names.join("` or `from = "))),
                 );

@@ -66,17 +66,21 @@ impl Checker<'_> {
         Some(Number { value: raw.value, dimension: raw.dimension, basis, factor })
     }
 
+    /// Refuses `per` of a value that is of one thing only.
+    fn of_one_thing(&mut self, raw: &Raw) -> Option<()> {
+        let Some((name, span)) = &raw.basis else { return Some(()) };
+        self.report(
+            Diagnostic::new(Code::E0304, format!("`per {name}` says nothing here: the value is of one thing only"))
+                .at(*span, "leave it out"),
+        );
+        None
+    }
+
     pub(super) fn basis(&mut self, measure: &'static Measure, raw: &Raw) -> Option<(Option<&'static str>, f64)> {
         match (measure.basis, &raw.basis) {
             (None, None) => Some((None, 1.0)),
-            (None, Some((name, span))) => {
-                self.report(
-                    Diagnostic::new(
-                        Code::E0304,
-                        format!("`per {name}` says nothing here: the value is of one thing only"),
-                    )
-                    .at(*span, "leave it out"),
-                );
+            (None, Some(_)) => {
+                self.of_one_thing(raw)?;
                 None
             }
             (Some(basis), Some((name, span))) => match basis.names.iter().find(|(n, _)| n == name) {
@@ -94,7 +98,7 @@ impl Checker<'_> {
                 None => {
                     let text = self.loader.sources.text(raw.span).to_string();
                     self.report(
-                        Diagnostic::new(Code::E0304, format!("of what is this? say {}", basis.list()))
+                        Diagnostic::new(Code::E0304, format!("expected {}, found none of them", basis.list()))
                             .at(raw.span, "could be of a half or of the whole")
                             .help(format!("write `{text} per {}`, if that is what it is", basis.names[0].0)),
                     );
@@ -124,6 +128,7 @@ impl Checker<'_> {
 
     pub(super) fn integer(&mut self, min: u32, max: u32, value: &Value, scope: ScopeId) -> Option<Number> {
         let raw = self.raw(value, scope)?;
+        self.of_one_thing(&raw)?;
         if !raw.dimension.is_none() {
             self.report(
                 Diagnostic::new(Code::E0302, format!("expected a whole number, found {}", raw.dimension.describe()))
@@ -194,6 +199,7 @@ impl Checker<'_> {
 
     pub(super) fn hold_place(&mut self, raw: Raw) -> Option<Number> {
         if raw.dimension == Dimension::LENGTH || raw.dimension == Dimension::SLEEPERS {
+            self.of_one_thing(&raw)?;
             return Some(raw.into());
         }
         let text = self.loader.sources.text(raw.span).to_string();

@@ -25,7 +25,7 @@ impl Checker<'_> {
             let names: Vec<String> =
                 self.stack[start..].iter().map(|(item, _)| *item).chain([id]).map(|i| self.item_name(i)).collect();
             let mut mistake =
-                Diagnostic::new(Code::E0203, format!("{} need each other", names[..names.len() - 1].join(", ")))
+                Diagnostic::new(Code::E0203, format!("{} need each other", and_list(&names[..names.len() - 1])))
                     .at(place, "closes the circle")
                     .help(format!("the circle is {}", names.join(" -> ")));
             if names.len() == 2 {
@@ -302,7 +302,7 @@ impl Checker<'_> {
             self.report(
                 Diagnostic::new(
                     Code::E0411,
-                    format!("this version does not read `{}` of a {} yet", name.text, kind.name),
+                    format!("this version does not read `{}` of `{}` yet", name.text, kind.name),
                 )
                 .at(name.span, "planned"),
             );
@@ -311,11 +311,21 @@ impl Checker<'_> {
         let near = nearest(&name.text, kind.fields.iter().map(|f| f.name)).map(|n| format!("did you mean `{n}`?"));
         let help = near.unwrap_or_else(|| format!("`trackbed docs {}` lists its fields", kind.name));
         self.report(
-            Diagnostic::new(Code::E0402, format!("a {} has no field `{}`", kind.name, name.text))
+            Diagnostic::new(Code::E0402, format!("`{}` has no field `{}`", kind.name, name.text))
                 .at(name.span, "unknown field")
                 .help(help),
         );
         None
+    }
+}
+
+/// `a`, `b` and `c`
+fn and_list(names: &[String]) -> String {
+    let quoted: Vec<String> = names.iter().map(|n| format!("`{n}`")).collect();
+    match quoted.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, first)) => format!("{} and {last}", first.join(", ")),
+        None => String::new(),
     }
 }
 

@@ -36,6 +36,24 @@ pub(super) enum Val {
     Error,
 }
 
+impl Val {
+    /// What it looks like, for a message.
+    pub fn describe(&self) -> &'static str {
+        match self {
+            Val::Number(_) => "a number",
+            Val::Text(_) => "text",
+            Val::Word { .. } => "a word",
+            Val::Record(_) => "an object",
+            Val::List(_) | Val::Pairs(_) => "a list",
+            Val::Range(..) => "a range",
+            Val::Response(_) => "a response",
+            Val::Comparison(_) => "a comparison",
+            Val::Hole => "a hole",
+            Val::Error => "something unreadable",
+        }
+    }
+}
+
 /// A number in SI as written, with what it is of.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Number {
