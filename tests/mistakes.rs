@@ -637,5 +637,5 @@ fn functions_hold_their_values_together() {
     };
     assert_eq!(codes(&support("min(50 MN/m per seat, 80 MN/m)")), []);
     assert_eq!(codes(&support("min(50 MN/m per seat, 80 MN/m per sleeper)")), [Code::E0305]);
-    assert_eq!(codes(&support("40 MN/m per seat + 80 MN/m per sleeper")), [Code::E0305]);
+    assert_eq!(codes(&support("(40 MN/m per seat) + (80 MN/m per sleeper)")), [Code::E0305]);
 }
