@@ -69,14 +69,15 @@ pub fn compile(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overr
     let mut graph = None;
     if let Some(scenario) = &checked.scenario {
         let (lowered, found) = lower::lower(scenario);
-        diagnostics.extend(found);
-        if let Some(lowered) = &lowered {
-            diagnostics.extend(lint::lint(scenario, lowered));
+        // beside errors of the text, only further errors are worth a word
+        diagnostics.extend(found.into_iter().filter(|d| checked.sound || d.is_error()));
+        if let Some(lowered) = lowered.filter(|_| checked.sound) {
+            diagnostics.extend(lint::lint(scenario, &lowered));
+            graph = Some(lowered);
         }
-        graph = lowered;
     }
     diag::sort(&mut diagnostics);
-    Compiled { sources: checked.sources, diagnostics, scenario: checked.scenario, graph }
+    Compiled { sources: checked.sources, diagnostics, scenario: checked.scenario.filter(|_| checked.sound), graph }
 }
 
 /// SHA-256 over every text that a scene is made of, overrides included, in hexadecimal.

@@ -39,8 +39,11 @@ use value::{Record, Val};
 pub struct Checked {
     pub sources: Sources,
     pub diagnostics: Vec<Diagnostic>,
-    /// `None` for a library, for a scene with errors and for one with holes.
+    /// `None` for a library, and where a mistake or a hole leaves a part unknown. Beside errors it serves to find more of
+    /// them; it is not to be run.
     pub scenario: Option<Scenario>,
+    /// Whether nothing stands against a run.
+    pub sound: bool,
 }
 
 /// Checks a text that a person calls `name`.
@@ -73,8 +76,8 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
     let scenario = checker.scene(main);
     let mut diagnostics = checker.diagnostics;
     diag::sort(&mut diagnostics);
-    let stopped = diagnostics.iter().any(|d| d.is_error() || d.code == Code::E0410);
-    Checked { sources: checker.loader.sources, diagnostics, scenario: scenario.filter(|_| !stopped) }
+    let sound = !diagnostics.iter().any(|d| d.is_error() || d.code == Code::E0410);
+    Checked { sources: checker.loader.sources, diagnostics, scenario, sound }
 }
 
 /// The state of a check.
