@@ -30,6 +30,7 @@ impl Checker<'_> {
         let sides = self.sides(record, pairs.len());
         let mut forms: Vec<Rc<Record>> = Vec::new();
         let mut plans = Vec::new();
+        let lengths: Vec<Origin> = pairs.iter().map(|(_, length)| length.origin).collect();
         for (key, length) in pairs {
             let Val::Record(form) = &key.value else { continue };
             forms.push(form.clone());
@@ -49,7 +50,7 @@ impl Checker<'_> {
         let places = self.lay_out(&plans, &sides?)?;
         self.seat_places = Some(places.clone());
         let built: Vec<Built> = built.into_iter().collect::<Option<_>>()?;
-        Some(assemble(record, &places, &forms, &built))
+        Some(assemble(record, &places, &forms, &built, &lengths))
     }
 
     /// Name and side of every boundary.
@@ -256,7 +257,7 @@ struct Built {
     sleeper: Option<Rc<Record>>,
 }
 
-fn assemble(record: &Record, places: &Places, forms: &[Rc<Record>], built: &[Built]) -> Track {
+fn assemble(record: &Record, places: &Places, forms: &[Rc<Record>], built: &[Built], lengths: &[Origin]) -> Track {
     let size = |r: &Rc<Record>| {
         let of = |f: &str| r.number(f).map(|n: Number| n.value);
         Some([of("length")?, of("base_width")?, of("height")?])
@@ -264,11 +265,12 @@ fn assemble(record: &Record, places: &Places, forms: &[Rc<Record>], built: &[Bui
     let sections = built
         .iter()
         .zip(forms)
-        .zip(&places.sections)
-        .map(|((b, form), &(start, end))| Section {
+        .zip(places.sections.iter().zip(lengths))
+        .map(|((b, form), (&(start, end), length_origin))| Section {
             name: form.name.clone(),
             start,
             end,
+            length_origin: *length_origin,
             rail: b.rail.clone(),
             spacing: b.spacing,
             slab: b.slab.clone(),

@@ -7,7 +7,7 @@
 use super::winkler::Winkler;
 use crate::diag::{Code, Diagnostic};
 use crate::graph::{Blocks, Graph, Schedule};
-use crate::scenario::{RailEnds, Scenario};
+use crate::scenario::{RailEnds, Scenario, Section};
 use crate::units::number;
 
 const LENGTHS: f64 = 3.0;
@@ -26,7 +26,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         .filter_map(|(section, distance, side)| {
             let needed = LENGTHS / Winkler::of(track, section)?.lambda();
             (distance < needed).then(|| {
-                Diagnostic::new(
+                let diagnostic = Diagnostic::new(
                     Code::L1003,
                     format!("wheels come within {} m of the {side} end of the track", number((distance * 10.0).round() / 10.0)),
                 )
@@ -34,7 +34,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
                     "lengthen section `{}`: {} m, three characteristic lengths of the rail, keep the end out of the answer",
                     track.sections[section].name,
                     number((needed * 10.0).ceil() / 10.0)
-                ))
+                ));
+                at_length(diagnostic, &track.sections[section])
             })
         })
         .collect();
@@ -54,16 +55,27 @@ fn sparsely_passed(scenario: &Scenario, blocks: &Blocks, section: usize) -> Opti
     let form = &track.sections[section];
     let missing = (PASSED - seen) as f64 * *form.spacing;
     let starts = if seen == 0 && passed.start > form.end { passed.start - form.end } else { 0.0 };
-    Some(
-        Diagnostic::new(
-            Code::L1003,
-            format!(
-                "{} of the {} sleepers of section `{}` see every wheel of the train; the others settle less than they would",
-                if seen == 0 { "none".to_string() } else { seen.to_string() },
-                ballasted().count(),
-                form.name
-            ),
-        )
-        .help(format!("lengthen section `{}` to about {} m", form.name, number((form.end - form.start + missing + starts).ceil()))),
-    )
+    let count = ballasted().count();
+    let message = match seen {
+        0 => format!(
+            "no sleeper of section `{}` sees every wheel of the train: they settle by the wheels that they see",
+            form.name
+        ),
+        n => format!(
+            "only {n} of the {count} sleepers of section `{}` see every wheel of the train: the others take their mean",
+            form.name
+        ),
+    };
+    let wanted = number((form.end - form.start + missing + starts).ceil());
+    let diagnostic =
+        Diagnostic::new(Code::L1003, message).help(format!("lengthen section `{}` to about {wanted} m", form.name));
+    Some(at_length(diagnostic, form))
+}
+
+/// Points at the length of a section.
+fn at_length(diagnostic: Diagnostic, section: &Section) -> Diagnostic {
+    match section.length_origin.span() {
+        Some(span) => diagnostic.at(span, format!("section `{}`", section.name)),
+        None => diagnostic,
+    }
 }

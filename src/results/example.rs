@@ -65,6 +65,7 @@ pub(crate) fn transition() -> Run {
         spacing: given(0.6),
         slab,
         sleeper_size,
+        length_origin: Origin::Default,
     };
     let slab = Slab {
         bending_stiffness: given(7e7),
@@ -264,6 +265,7 @@ pub(crate) fn bench() -> Run {
                 spacing: given(0.6),
                 slab: None,
                 sleeper_size: Some([2.6, 0.3, 0.2]),
+                length_origin: Origin::Default,
             }],
             transitions: vec![],
             seats,

@@ -1,6 +1,6 @@
 //! The track at rest: sections side by side, the transitions between them, and every rail seat.
 
-use super::Given;
+use super::{Given, Origin};
 use serde::{Deserialize, Serialize};
 
 /// The whole track of the model, of one rail.
@@ -32,6 +32,8 @@ pub struct Section {
     /// Chainage of its ends, m.
     pub start: f64,
     pub end: f64,
+    /// Where its length is given.
+    pub length_origin: Origin,
     pub rail: Rail,
     /// Sleeper or seat spacing, m.
     pub spacing: Given,
