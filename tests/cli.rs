@@ -279,3 +279,18 @@ fn a_track_that_nothing_holds_ends_in_a_diagnostic() {
     assert!(said.contains("E0801") && said.contains("x = 0.6 m") && said.contains("rail_ends = clamped"), "{said}");
     assert!(!out.join("summary.json").exists(), "no result without an equilibrium");
 }
+
+#[test]
+fn a_silenced_rule_is_silent_and_the_report_says_why() {
+    let dir = tempfile::tempdir().unwrap();
+    let warned = write(dir.path(), "warned.track", SMALL);
+    assert!(said(&trackbed(&["check", warned.to_str().unwrap()])).contains("L1003"));
+    let text = format!("scenario {{ allow = [track_too_short: \"a <test> track\"] }}\n{SMALL}");
+    let scene = write(dir.path(), "silenced.track", &text);
+    let out = dir.path().join("run");
+    let output = trackbed(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert!(code(&output) == 0 && !said(&output).contains("L1003"), "{}", said(&output));
+    assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("a &lt;test&gt; track"));
+    let denied = write(dir.path(), "denied.track", &format!("scenario {{ deny = track_too_short }}\n{SMALL}"));
+    assert_eq!(code(&trackbed(&["check", denied.to_str().unwrap()])), 1);
+}

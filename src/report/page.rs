@@ -199,6 +199,10 @@ fn provenance(html: &mut String, run: &Run) {
         escape(&made.source_sha256),
         made.seed
     );
+    for (rule, reason) in &run.scenario.allow {
+        let _ =
+            writeln!(html, "<p class=\"note\">Rule <code>{}</code> is silenced: {}</p>", escape(rule), escape(reason));
+    }
     if !made.plan.is_empty() {
         let _ = writeln!(html, "<p class=\"note\">The plan</p><pre>{}</pre>", escape(&made.plan));
     }
