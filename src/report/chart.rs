@@ -5,7 +5,7 @@
 
 use super::number::{nice_step, significant, tick_label, ticks};
 use super::svg::{Anchor, Frame, Svg, text_width};
-use super::thin::thin;
+use super::thin::{straighten, thin};
 
 /// A direction of the diagram.
 #[derive(Debug, Clone)]
@@ -274,7 +274,7 @@ fn draw_series(svg: &mut Svg, plane: &Plane, series: &Series, chart: &Chart) {
     let pixels: Vec<(f64, f64)> = series.points.iter().map(|point| plane.at(*point)).collect();
     let (kind, column) = if series.mark == Mark::Faint { ("faint", 2.0) } else { ("line", 1.0) };
     for piece in pixels.split(|point| !finite(point)) {
-        svg.path(&class(kind), &thin(piece, column), false, &series.name);
+        svg.path(&class(kind), &straighten(&thin(piece, column)), false, &series.name);
     }
     if series.mark == Mark::Dots && series.points.len() <= 400 {
         let radius = if series.points.len() > 150 { 1.8 } else { 2.2 };

@@ -1,5 +1,31 @@
 //! Thins a long series to what the pixels can show, with every peak kept.
 
+/// Distance from a straight line that nobody sees, px.
+const UNSEEN: f64 = 0.08;
+/// Points that one straight piece may stand for, so that the search stays linear.
+const LONGEST: usize = 128;
+
+/// Leaves out points on a straight line between those that stay; x grows.
+pub fn straighten(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut kept: Vec<(f64, f64)> = points.first().copied().into_iter().collect();
+    let mut from = 0;
+    for next in 2..points.len() {
+        if next - from > LONGEST || !straight(&points[from..=next]) {
+            from = next - 1;
+            kept.push(points[from]);
+        }
+    }
+    kept.extend(points.get(1..).and_then(<[_]>::last));
+    kept
+}
+
+/// Whether everything between the ends lies on the line between them.
+fn straight(points: &[(f64, f64)]) -> bool {
+    let (Some(a), Some(b)) = (points.first(), points.last()) else { return true };
+    let slope = (b.1 - a.1) / (b.0 - a.0);
+    points.iter().all(|p| (a.1 + slope * (p.0 - a.0) - p.1).abs() <= UNSEEN)
+}
+
 /// Keeps the first, lowest, highest and last point of each column of `column` px; the order stays.
 pub fn thin(points: &[(f64, f64)], column: f64) -> Vec<(f64, f64)> {
     let mut kept: Vec<(f64, f64)> = Vec::new();
@@ -23,6 +49,24 @@ pub fn thin(points: &[(f64, f64)], column: f64) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn straight_pieces_keep_their_ends() {
+        let corner: Vec<(f64, f64)> = (0..=100).map(f64::from).map(|x| (x, (x - 50.0).abs())).collect();
+        assert_eq!(straighten(&corner), [(0.0, 50.0), (50.0, 0.0), (100.0, 50.0)]);
+        let wave: Vec<(f64, f64)> = (0..400).map(f64::from).map(|k| (k / 4.0, 40.0 * (k / 40.0).sin())).collect();
+        let kept = straighten(&wave);
+        assert!(kept.len() < 200 && kept[0] == wave[0] && kept[kept.len() - 1] == wave[399]);
+        // what is left out lies on what stays
+        for (x, y) in &wave {
+            let after = kept.iter().position(|p| p.0 >= *x).unwrap().max(1);
+            let (a, b) = (kept[after - 1], kept[after]);
+            assert!((a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0) - y).abs() <= UNSEEN);
+        }
+        assert_eq!(straighten(&[]), []);
+        assert_eq!(straighten(&wave[..1]), wave[..1]);
+        assert_eq!(straighten(&wave[..2]), wave[..2]);
+    }
 
     #[test]
     fn thinning_keeps_peaks_and_ends() {
