@@ -79,7 +79,7 @@ codes! {
     E0804 Error "expectation not met"
     L1001 Warning "stiffness jump without mitigation"
     L1002 Warning "speed near the critical speed"
-    L1003 Warning "track too short for its ends to be far"
+    L1003 Warning "track too short for its train"
     L1004 Warning "settlement law outside its calibration"
     L1005 Warning "time step coarse for the contact"
     L1006 Warning "update interval that overshoots"

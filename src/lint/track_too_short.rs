@@ -15,32 +15,34 @@ const PASSED: usize = 10;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let sections = 0..scenario.track.sections.len();
+    let sparse = sections.filter_map(|section| sparsely_passed(scenario, blocks, section));
+    near_ends(scenario, blocks).into_iter().chain(sparse).collect()
+}
+
+/// Ends that wheels come near; free ends have been asked for.
+fn near_ends(scenario: &Scenario, blocks: &Blocks) -> Vec<Diagnostic> {
     let track = &scenario.track;
     if track.rail_ends == RailEnds::Free {
-        return Vec::new(); // asked for
+        return Vec::new();
     }
     let last = track.sections.len().saturating_sub(1);
     let ends = [(0, blocks.passage.left - track.start(), "left"), (last, track.end() - blocks.passage.right, "right")];
-    let mut found: Vec<Diagnostic> = ends
-        .into_iter()
-        .filter_map(|(section, distance, side)| {
-            let needed = LENGTHS / Winkler::of(track, section)?.lambda();
-            (distance < needed).then(|| {
-                let diagnostic = Diagnostic::new(
-                    Code::L1003,
-                    format!("wheels come within {} m of the {side} end of the track", number((distance * 10.0).round() / 10.0)),
-                )
-                .help(format!(
-                    "lengthen section `{}`: {} m, three characteristic lengths of the rail, keep the end out of the answer",
-                    track.sections[section].name,
-                    number((needed * 10.0).ceil() / 10.0)
-                ));
-                at_length(diagnostic, &track.sections[section])
-            })
-        })
-        .collect();
-    found.extend((0..track.sections.len()).filter_map(|section| sparsely_passed(scenario, blocks, section)));
-    found
+    let near = ends.into_iter().filter_map(|(section, distance, side)| {
+        let needed = LENGTHS / Winkler::of(track, section)?.lambda();
+        let form = &track.sections[section];
+        let diagnostic = Diagnostic::new(
+            Code::L1003,
+            format!("wheels come within {} m of the {side} end of the track", number((distance * 10.0).round() / 10.0)),
+        )
+        .help(format!(
+            "lengthen section `{}`: {} m, three characteristic lengths of the rail, keep the end out of the answer",
+            form.name,
+            number((needed * 10.0).ceil() / 10.0)
+        ));
+        (distance < needed).then(|| at_length(diagnostic, form))
+    });
+    near.collect()
 }
 
 /// A ballasted section in which fewer than ten sleepers see every wheel.
