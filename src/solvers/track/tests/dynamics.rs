@@ -7,7 +7,7 @@ use std::sync::Arc;
 const RHO: f64 = 0.85;
 
 fn stepper(model: TrackModel, time_step: f64) -> Stepper {
-    Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::new(time_step, RHO).unwrap()).unwrap()
+    Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::generalised_alpha(time_step, RHO).unwrap()).unwrap()
 }
 
 /// Runs one wagon and hands every step to `look`.
@@ -261,8 +261,8 @@ fn wagons_of_a_train() {
 
 #[test]
 fn impossible_runs_are_refused() {
-    assert!(matches!(Scheme::new(0.0, RHO), Err(TrackError::Parameter { .. })));
-    assert!(matches!(Scheme::new(1e-4, 1.1), Err(TrackError::Parameter { .. })));
+    assert!(matches!(Scheme::generalised_alpha(0.0, RHO), Err(TrackError::Parameter { .. })));
+    assert!(matches!(Scheme::generalised_alpha(1e-4, 1.1), Err(TrackError::Parameter { .. })));
     let model = ballast(40);
     let level = TrackLevel::as_built(&model);
     let stepper = stepper(model, 1e-4);
