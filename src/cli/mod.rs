@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 all is well, 1 the scene or its run has errors, 2 the command was used wrongly.
 
+mod chart;
 mod check;
 mod docs;
 mod explain;
@@ -12,6 +13,8 @@ mod progress;
 mod report;
 mod run;
 mod scene;
+mod stability;
+mod study;
 mod terminal;
 
 use clap::{Parser, Subcommand, ValueEnum};
@@ -31,6 +34,8 @@ enum Command {
     Plan(plan::Arguments),
     Run(run::Arguments),
     Report(report::Arguments),
+    Chart(chart::Arguments),
+    Stability(stability::Arguments),
     Fmt(fmt::Arguments),
     Explain(explain::Arguments),
     Docs(docs::Arguments),
@@ -69,6 +74,8 @@ pub fn main() -> ExitCode {
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
+        Command::Chart(arguments) => chart::run(&arguments),
+        Command::Stability(arguments) => stability::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Docs(arguments) => docs::run(&arguments),

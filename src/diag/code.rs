@@ -73,6 +73,8 @@ codes! {
     E0601 Error "scene without something to run"
     E0602 Error "axle counts that do not divide"
     E0603 Error "step too coarse to be stable"
+    E0701 Error "study of a scene without trains"
+    E0702 Error "axle count between two exchanges"
     E0801 Error "no equilibrium found"
     E0802 Error "output folder that cannot be used"
     E0803 Error "checkpoint of another scene"

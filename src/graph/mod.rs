@@ -5,7 +5,7 @@
 
 mod execute;
 mod listing;
-mod model;
+pub mod model;
 mod sampler;
 mod substructure;
 mod system;

@@ -5,7 +5,7 @@ use crate::scenario::{self, Foot, RailEnds, Section, Track};
 use crate::solvers::track as solver;
 
 /// The solver's model of a track.
-pub(super) fn model(node: &TrackNode) -> solver::TrackModel {
+pub fn model(node: &TrackNode) -> solver::TrackModel {
     let track = &node.track;
     solver::TrackModel {
         ends: [track.start(), track.end()],
@@ -63,7 +63,7 @@ fn slab(section: &Section) -> Option<solver::Slab> {
 }
 
 /// The solver's train.
-pub(super) fn train(train: &scenario::Train, direction: scenario::Direction) -> solver::Train {
+pub fn train(train: &scenario::Train, direction: scenario::Direction) -> solver::Train {
     let vehicles = train.vehicles.iter().map(vehicle).zip(train.vehicle_offsets()).collect();
     let direction = match direction {
         scenario::Direction::Backward => solver::Direction::Backward,
@@ -91,7 +91,7 @@ fn vehicle(v: &scenario::Vehicle) -> solver::Vehicle {
 
 /// The settled track: supports where they lie, and the rail ends held at the level of the track there. A clamp that
 /// stayed at the level as built would grow a second transition at the end of the model.
-pub(super) fn level(node: &TrackNode, settlement: &[f64]) -> solver::TrackLevel {
+pub fn level(node: &TrackNode, settlement: &[f64]) -> solver::TrackLevel {
     let track = &node.track;
     let end =
         |section: usize, seat: Option<usize>| seat.map_or(0.0, |i| settlement[i]) + sag(track, section, node.gravity);

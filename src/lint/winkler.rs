@@ -3,7 +3,7 @@
 use crate::scenario::{Foot, Section, Track};
 
 /// A section smeared along the rail.
-pub(super) struct Winkler {
+pub struct Winkler {
     /// Foundation modulus: seat stiffness over spacing, N/m per metre.
     pub modulus: f64,
     /// EI of the rail, N m^2.

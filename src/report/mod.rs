@@ -11,13 +11,17 @@ mod number;
 mod page;
 mod passage;
 mod scene;
+mod stability;
 mod svg;
 mod symbols;
 mod thin;
 mod vehicle;
+mod work_precision;
 
 pub use page::page;
 pub use scene::scene_svg;
+pub use stability::stability_svg;
+pub use work_precision::chart_svg;
 
 use crate::results::Run;
 use crate::scenario::Loading;

@@ -6,6 +6,7 @@
 mod atomic;
 pub mod checkpoint;
 mod error;
+mod failure;
 mod evaluate;
 mod files;
 mod histories;
@@ -19,6 +20,7 @@ pub(crate) mod example;
 
 pub use atomic::write as write_atomically;
 pub use error::ResultsError;
+pub use failure::diagnose;
 pub use evaluate::{Tables, evaluate, verdicts};
 pub use files::{read, read_timings, write, write_timings};
 pub use recorder::{RunRecorder, RunTables, Store};
