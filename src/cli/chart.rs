@@ -3,10 +3,10 @@
 use super::scene::SceneArguments;
 use super::study::{self, Subject};
 use super::{Format, Outcome, progress, terminal};
+use crate::report;
 use crate::study::chart::{Request, chart};
 use crate::study::{Chart, Outcome as Ended, Sweep, Variant, chart_csv};
 use crate::units::number;
-use crate::report;
 use std::path::PathBuf;
 
 /// Chart the error of a passage against its time
@@ -110,11 +110,18 @@ fn text(chart: &Chart) -> String {
         out.push('\n');
     }
     out += "  * the scene's own, + nothing cheaper has a smaller error of the wheel force, = reference\n\n";
-    out += "order in the time step, of the wheel forces       as built   settled\n";
+    out += "order in the time step, of the wheel forces      light   as built   settled\n";
     for order in &chart.orders {
         let shown = |order: Option<f64>| order.map_or("-".to_owned(), |o| format!("{o:.2}"));
-        out += &format!("  {:<46}{:>10}{:>10}\n", order.method.to_string(), shown(order.as_built), shown(order.settled));
+        out += &format!(
+            "  {:<42}{:>12}{:>11}{:>10}\n",
+            order.method.to_string(),
+            shown(order.light),
+            shown(order.as_built),
+            shown(order.settled)
+        );
     }
+    out += "  light: as built, under a train so light that no sleeper lifts\n";
     if let Some(model) = &chart.model_error {
         out += &format!(
             "\nEuler against Timoshenko: wheel force {}, seat load {}, rail moment {}\n",
@@ -136,10 +143,21 @@ fn text(chart: &Chart) -> String {
 
 /// As `solve` spells it.
 fn spelled(v: &Variant) -> String {
-    format!("integrator = {}, time_step = {} s, elements_per_bay = {}", v.method, number(v.time_step), v.elements_per_bay)
+    format!(
+        "integrator = {}, time_step = {} s, elements_per_bay = {}",
+        v.method,
+        number(v.time_step),
+        v.elements_per_bay
+    )
 }
 
 fn share(error: f64) -> String {
     let percent = 100.0 * error;
-    if percent == 0.0 { "0 %".into() } else if percent < 0.01 { format!("{percent:.1e} %") } else { format!("{percent:.2} %") }
+    if percent == 0.0 {
+        "0 %".into()
+    } else if percent < 0.01 {
+        format!("{percent:.1e} %")
+    } else {
+        format!("{percent:.2} %")
+    }
 }

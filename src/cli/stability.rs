@@ -5,7 +5,7 @@ use super::study::{self, Subject};
 use super::{Format, Outcome, progress, terminal};
 use crate::report;
 use crate::study::stability::stability;
-use crate::study::{Stability, Verdict, stability_csv};
+use crate::study::{Stability, stability_csv};
 use std::path::PathBuf;
 
 /// Map where a passage is stable, and try the scene under stress
@@ -61,7 +61,7 @@ fn text(stability: &Stability) -> String {
         let meaning = match name {
             "stable" => "within 10 % of the reference",
             "coarse" => "further off, and a rule has warned",
-            "unstable" => "ran away, and a rule has warned",
+            "unstable" => "ran away, and the run says so",
             "refused" => "with a diagnostic",
             _ => "neither right nor diagnosed",
         };
@@ -81,19 +81,12 @@ fn text(stability: &Stability) -> String {
     out += "\nhard scenes\n";
     for row in &stability.stresses {
         let force = row.wheel_force.map_or(String::new(), |f| format!("{f:.2}"));
-        let said = match &row.verdict {
-            Verdict::Stable { error } => format!("{:.2} %", 100.0 * error),
-            Verdict::Coarse { error, code } => format!("{:.2} %, {code}", 100.0 * error),
-            Verdict::Unstable { why, code } => format!("{why}, {code}"),
-            Verdict::Refused { code, message } => format!("{code} {message}"),
-            Verdict::Wrong { why } => why.clone(),
-        };
-        out += &format!("  {:<9} {:<58}{force:>8}  {said}", row.verdict.name(), row.name);
+        out += &format!("  {:<9} {:<58}{force:>8}  {}", row.verdict.name(), row.name, row.told());
         if !row.warnings.is_empty() {
             out += &format!("; {}", row.warnings.join(" "));
         }
         out.push('\n');
     }
-    out += "  columns: largest wheel force over the static one, difference at a quarter of the step, rules that warn\n";
+    out += "  columns: largest wheel force over the static one, distance from a quarter of the step, rules that warn\n";
     out
 }

@@ -36,8 +36,11 @@ impl<'a> Subject<'a> {
             Schedule::Blocks(blocks) => Ok(Subject { compiled, scenario, graph, blocks }),
             Schedule::Static { .. } => Err(stop(
                 compiled,
-                Diagnostic::new(Code::E0701, format!("`{command}` compares passages, and no train passes in this scene"))
-                    .help("give the scene a `train` and a `traffic`"),
+                Diagnostic::new(
+                    Code::E0701,
+                    format!("`{command}` compares passages, and no train passes in this scene"),
+                )
+                .help("give the scene a `train` and a `traffic`"),
             )),
         }
     }

@@ -75,6 +75,7 @@ codes! {
     E0603 Error "step too coarse to be stable"
     E0701 Error "study of a scene without trains"
     E0702 Error "axle count between two exchanges"
+    E0703 Error "wheel force that has run away"
     E0801 Error "no equilibrium found"
     E0802 Error "output folder that cannot be used"
     E0803 Error "checkpoint of another scene"

@@ -14,6 +14,7 @@ mod track;
 pub use execute::{Checkpoint, Recorder, RunError, execute};
 pub use listing::Listing;
 pub use substructure::SubstructureState;
+pub use system::RUNAWAY;
 pub use track::{PassageOutcome, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
 
 use crate::scenario::{Direction, Record, StaticLoad, Track, Train};

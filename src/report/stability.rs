@@ -6,7 +6,7 @@ use super::svg::{Anchor, Frame, Svg};
 use crate::study::{Cell, Stability, Stress, Verdict, Void};
 use crate::units::number;
 
-const CELL: f64 = 25.0;
+const CELL: f64 = 28.0;
 const GAP: f64 = 16.0;
 const LEFT: f64 = 136.0;
 const TOP: f64 = 112.0;
@@ -29,7 +29,12 @@ pub fn stability_svg(stability: &Stability) -> String {
         for (row, method) in map.methods.iter().enumerate() {
             let y = TOP + row as f64 * (up + GAP);
             if column == 0 {
-                svg.text("small", (12.0, y + up / 2.0 + 4.0), Anchor::Start, &method.to_string().replace("generalised_alpha", "gen. alpha"));
+                svg.text(
+                    "small",
+                    (12.0, y + up / 2.0 + 4.0),
+                    Anchor::Start,
+                    &method.to_string().replace("generalised_alpha", "gen. alpha"),
+                );
             }
             for cell in map.cells.iter().filter(|c| (c.method, c.void) == (*method, *void)) {
                 let i = map.time_steps.iter().position(|s| *s == cell.time_step).unwrap_or(0) as f64;
@@ -66,7 +71,7 @@ fn legend(svg: &mut Svg) {
         (Verdict::Stable { error: 5e-3 }, "below 1 %", 84.0),
         (Verdict::Stable { error: 5e-2 }, "below 10 %", 92.0),
         (Verdict::Coarse { error: 1.0, code: "" }, "further off, warned before", 164.0),
-        (Verdict::Unstable { why: String::new(), code: "" }, "runs away, warned before", 160.0),
+        (Verdict::Unstable { why: String::new(), code: "" }, "runs away, and says so", 160.0),
         (Verdict::Refused { code: "", message: String::new() }, "refused with a diagnostic", 160.0),
         (Verdict::Wrong { why: String::new() }, "silently wrong", 100.0),
     ];
@@ -84,7 +89,7 @@ fn void_name(void: &Void) -> (String, String) {
     }
     let depth = format!("{} mm", number(void.depth * 1e3));
     let under = match void.sleepers {
-        None => "under all sleepers".into(),
+        None => "step at the transition".into(),
         Some(1) => "under one sleeper".into(),
         Some(n) => format!("under {n} sleepers"),
     };
@@ -110,18 +115,13 @@ fn sign(svg: &mut Svg, frame: Frame, verdict: &Verdict, title: &str) {
 
 fn cell_title(cell: &Cell) -> String {
     let (depth, under) = void_name(&cell.void);
-    let head = format!("{}, {} ms, contact \u{d7}{}, {depth} {under}", cell.method, number(cell.time_step * 1e3), number(cell.contact));
-    format!("{head}: {}", told(&cell.verdict))
-}
-
-fn told(verdict: &Verdict) -> String {
-    match verdict {
-        Verdict::Stable { error } => format!("{} % from the reference", significant(100.0 * error, 2)),
-        Verdict::Coarse { error, code } => format!("{} % from the reference, {code} warns", significant(100.0 * error, 2)),
-        Verdict::Unstable { why, code } => format!("{why}, {code} warns"),
-        Verdict::Refused { code, message } => format!("{code}: {message}"),
-        Verdict::Wrong { why } => why.clone(),
-    }
+    let head = format!(
+        "{}, {} ms, contact \u{d7}{}, {depth} {under}",
+        cell.method,
+        number(cell.time_step * 1e3),
+        number(cell.contact)
+    );
+    format!("{head}: {}", cell.verdict.told())
 }
 
 /// The list of hard scenes from `top` down; gives its lower end.
@@ -131,12 +131,12 @@ fn stresses(svg: &mut Svg, rows: &[Stress], top: f64) -> f64 {
     svg.text("small muted", (590.0, top), Anchor::Start, "how it ends");
     for (index, row) in rows.iter().enumerate() {
         let y = top + (index as f64 + 1.0) * ROW;
-        sign(svg, Frame { x: 16.0, y: y - 12.0, width: 15.0, height: 15.0 }, &row.verdict, &told(&row.verdict));
+        sign(svg, Frame { x: 16.0, y: y - 12.0, width: 15.0, height: 15.0 }, &row.verdict, &row.told());
         svg.text("small", (40.0, y), Anchor::Start, &row.name);
         if let Some(force) = row.wheel_force {
             svg.text("small", (440.0, y), Anchor::End, &significant(force, 3));
         }
-        let mut text: String = told(&row.verdict).chars().take(58).collect();
+        let mut text: String = row.told().chars().take(64).collect();
         if let Some(seats) = row.losing_contact.filter(|n| *n > 0) {
             text += &format!("; {seats} seats lose contact");
         }

@@ -9,9 +9,8 @@ use crate::units::number;
 const WIDTH: f64 = 1080.0;
 const PANEL: (f64, f64) = (500.0, 350.0);
 const HEAD: f64 = 104.0;
-/// Errors outside are drawn on the edge.
+/// Errors below are drawn on the edge.
 const LEAST: f64 = 1e-5;
-const MOST: f64 = 1e1;
 
 /// The whole picture.
 pub fn chart_svg(chart: &Chart) -> String {
@@ -42,6 +41,8 @@ struct Picture<'a> {
     methods: Vec<Method>,
     /// Decades of the time axis.
     decades: (f64, f64),
+    /// Upper end of the axis of errors.
+    most: f64,
 }
 
 type Read = fn(&Errors) -> f64;
@@ -61,7 +62,10 @@ impl<'a> Picture<'a> {
         let low = logs.iter().copied().fold(f64::INFINITY, f64::min);
         let high = logs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let decades = if low.is_finite() { (low - 0.12, high + 0.12) } else { (-3.0, 0.0) };
-        Picture { chart, beam, methods, decades }
+        let of_point = |p: &Point| p.outcome.done().map(|(_, errors)| QUANTITIES.map(|(_, error)| error(errors)));
+        let settled = chart.points.iter().filter(|p| p.level == Level::Settled);
+        let largest = settled.filter_map(of_point).flatten().fold(1e-2, f64::max);
+        Picture { chart, beam, methods, decades, most: 10f64.powf(largest.log10().ceil().min(1.0)) }
     }
 
     /// Points of a line, from the cheapest to the dearest, whatever became of them.
@@ -110,8 +114,14 @@ impl<'a> Picture<'a> {
     fn panel(&self, svg: &mut Svg, index: usize, name: &str, error: Read, frame: Frame) {
         svg.text("strong", (frame.x, frame.y + 12.0), Anchor::Start, &format!("Error of the {name}"));
         let plane = Plane {
-            frame: Frame { x: frame.x + 58.0, y: frame.y + 22.0, width: frame.width - 62.0, height: frame.height - 58.0 },
+            frame: Frame {
+                x: frame.x + 58.0,
+                y: frame.y + 22.0,
+                width: frame.width - 62.0,
+                height: frame.height - 58.0,
+            },
             decades: self.decades,
+            most: self.most,
         };
         plane.axes(svg);
         svg.clipped(&format!("plane{index}"), plane.grown(), |svg| {
@@ -172,7 +182,7 @@ impl<'a> Picture<'a> {
                         Some(at) if beam == self.beam => marker(svg, index, at, &title(point, error)),
                         Some(at) => svg.circle(&format!("hollow {}", class(index)), at, 2.4, &title(point, error)),
                         None => {
-                            let top = plane.at(point.outcome.seconds().max(10f64.powf(plane.decades.0)), MOST);
+                            let top = plane.at(point.outcome.seconds().max(10f64.powf(plane.decades.0)), self.most);
                             cross(svg, class(index), (top.0, top.1 + 8.0), &title(point, error));
                         }
                     }
@@ -243,14 +253,15 @@ fn cross(svg: &mut Svg, class: &str, (x, y): (f64, f64), title: &str) {
 struct Plane {
     frame: Frame,
     decades: (f64, f64),
+    most: f64,
 }
 
 impl Plane {
     fn at(&self, seconds: f64, error: f64) -> (f64, f64) {
         let (low, high) = self.decades;
         let across = (seconds.max(1e-9).log10() - low) / (high - low);
-        let (bottom, top) = (LEAST.log10(), MOST.log10());
-        let up = (error.clamp(LEAST, MOST).log10() - bottom) / (top - bottom);
+        let (bottom, top) = (LEAST.log10(), self.most.log10());
+        let up = (error.clamp(LEAST, self.most).log10() - bottom) / (top - bottom);
         (self.frame.x + across * self.frame.width, self.frame.y + (1.0 - up) * self.frame.height)
     }
 
@@ -263,7 +274,7 @@ impl Plane {
     fn axes(&self, svg: &mut Svg) {
         let f = self.frame;
         let (right, bottom) = (f.x + f.width, f.y + f.height);
-        for decade in -5..=1 {
+        for decade in -5..=self.most.log10().round() as i32 {
             let error = 10f64.powi(decade);
             let y = self.at(1.0, error).1;
             svg.line("grid", (f.x, y), (right, y));
@@ -278,7 +289,11 @@ impl Plane {
                 }
                 let x = self.at(seconds, 1.0).0;
                 svg.line("grid", (x, f.y), (x, bottom));
-                let text = if seconds < 0.0999 { format!("{} ms", round(seconds * 1e3)) } else { format!("{} s", round(seconds)) };
+                let text = if seconds < 0.0999 {
+                    format!("{} ms", round(seconds * 1e3))
+                } else {
+                    format!("{} s", round(seconds))
+                };
                 svg.text("small muted", (x, bottom + 16.0), Anchor::Middle, &text);
             }
         }

@@ -17,7 +17,8 @@ pub fn diagnose(error: &RunError, scenario: &Scenario, graph: &Graph) -> Diagnos
     let scene = Scene { scenario, graph };
     let (labels, help) = scene.blame(axles, cause);
     let labels = labels.into_iter().filter_map(|(span, text)| Some((span?, text)));
-    labels.fold(Diagnostic::new(Code::E0801, error.to_string()).help(help), |d, (span, text)| d.at(span, text))
+    let code = if matches!(cause, TrackError::RanAway { .. }) { Code::E0703 } else { Code::E0801 };
+    labels.fold(Diagnostic::new(code, error.to_string()).help(help), |d, (span, text)| d.at(span, text))
 }
 
 struct Scene<'a> {
@@ -38,7 +39,8 @@ impl Scene<'_> {
             }
             TrackError::NoEquilibrium { x, .. } => (
                 vec![self.place(*x), self.support(*x)],
-                "let gravity and the supports hold the track: `gravity = 9.81 m/s^2`, no load that lifts the rail".into(),
+                "let gravity and the supports hold the track: `gravity = 9.81 m/s^2`, no load that lifts the rail"
+                    .into(),
             ),
             TrackError::Mechanism { x } => (
                 vec![self.place(*x)],
@@ -57,6 +59,15 @@ impl Scene<'_> {
                     number((start - x).max(x - end).max(0.0).ceil())
                 );
                 (labels, help)
+            }
+            TrackError::RanAway { x, .. } => {
+                let speed = self.traffic().map(|t| t.train.speed);
+                let help = format!(
+                    "the linear track cannot follow: write a lower `speed`{}, a stiffer support, or a smaller step in settlement",
+                    speed.map_or(String::new(), |v| format!(", {} km/h", number((*v * 1.8).round())))
+                );
+                let fast = (speed.and_then(|v| v.origin.span()), "at this speed".into());
+                (vec![self.place(*x), self.support(*x), fast], help)
             }
             TrackError::Model { x, .. } => {
                 (vec![self.place(*x)], "change the value that the message names, in that section".into())
@@ -82,7 +93,9 @@ impl Scene<'_> {
     /// The section at a place.
     fn place(&self, x: f64) -> (Option<Span>, String) {
         match self.section(x) {
-            Some(s) => (s.length_origin.span(), format!("x = {} m lies in `{}`", number((x * 1e3).round() / 1e3), s.name)),
+            Some(s) => {
+                (s.length_origin.span(), format!("x = {} m lies in `{}`", number((x * 1e3).round() / 1e3), s.name))
+            }
             None => (None, String::new()),
         }
     }
@@ -95,7 +108,7 @@ impl Scene<'_> {
             Foot::Sleeper { support, .. } => support.stiffness.origin.span(),
             _ => None,
         });
-        (span, "this support pushes and never pulls".into())
+        (span, "the nearest support".into())
     }
 
     fn time_step(&self) -> (Option<Span>, String) {

@@ -6,8 +6,8 @@
 mod atomic;
 pub mod checkpoint;
 mod error;
-mod failure;
 mod evaluate;
+mod failure;
 mod files;
 mod histories;
 mod recorder;
@@ -20,8 +20,8 @@ pub(crate) mod example;
 
 pub use atomic::write as write_atomically;
 pub use error::ResultsError;
-pub use failure::diagnose;
 pub use evaluate::{Tables, evaluate, verdicts};
+pub use failure::diagnose;
 pub use files::{read, read_timings, write, write_timings};
 pub use recorder::{RunRecorder, RunTables, Store};
 pub use summarise::{RailMaxima, VOID_THRESHOLD, static_wheel_load, summarise};

@@ -4,6 +4,7 @@
 //! numerics, contacts and voids that no scene should have, and a list of hard scenes, and says of each how it ends.
 
 pub mod chart;
+mod clock;
 mod settled;
 pub mod stability;
 mod stress;

@@ -16,15 +16,14 @@ pub struct Settled {
 pub enum NotSettled {
     Run(RunError),
     /// No exchange of forces and settlement falls on that count; the nearest ones that do.
-    Between { below: Option<u64>, above: Option<u64> },
+    Between {
+        below: Option<u64>,
+        above: Option<u64>,
+    },
 }
 
 /// Runs the scene with its own numerics until `after` axles, or to its end.
-pub fn settled(
-    graph: &Graph,
-    after: Option<u64>,
-    progress: &mut dyn FnMut(u64, u64),
-) -> Result<Settled, NotSettled> {
+pub fn settled(graph: &Graph, after: Option<u64>, progress: &mut dyn FnMut(u64, u64)) -> Result<Settled, NotSettled> {
     let mut keeper = Keeper { after, last: None, above: None, progress };
     let ended = graph::execute(graph, &mut keeper, None);
     let Keeper { last, above, .. } = keeper;

@@ -4,16 +4,16 @@
 //! track, contact and void at a sixteenth of the scene's step. A cell that is far from it, that has run away or holds what is
 //! no number, and of which nothing has warned, is **wrong**: the one end that must not be.
 
-use super::chart::RUNAWAY;
 use super::stress::{Stress, stresses};
 use super::variant::{Case, Measured, Method, Prepared, Variant};
 use crate::diag::Code;
-use crate::graph::{Blocks, Graph, RunError, Schedule};
+use crate::graph::{Blocks, Graph, RUNAWAY, RunError, Schedule};
 use crate::lint::lint;
 use crate::lower::lower;
 use crate::results::diagnose;
 use crate::scenario::{Given, Loading, Scenario, Track};
 use crate::solvers::track::TrackError;
+use crate::units::number;
 use serde::Serialize;
 
 /// How a trial ended.
@@ -24,7 +24,7 @@ pub enum Verdict {
     Stable { error: f64 },
     /// Further away, and a diagnostic has said so before the run.
     Coarse { error: f64, code: &'static str },
-    /// Ran away, and a diagnostic has said so before the run.
+    /// Ran away by its numerics, where the reference does not, and a run says so.
     Unstable { why: String, code: &'static str },
     /// Refused, before or during the run.
     Refused { code: &'static str, message: String },
@@ -61,6 +61,18 @@ impl Verdict {
         }
     }
 
+    /// In a line.
+    pub fn told(&self) -> String {
+        let percent = |error: &f64| number((error * 1e5).round() / 1e3);
+        match self {
+            Verdict::Stable { error } => format!("{} % off", percent(error)),
+            Verdict::Coarse { error, code } => format!("{} % off, {code} warns", percent(error)),
+            Verdict::Unstable { why, code } => format!("{code}: {why}"),
+            Verdict::Refused { code, message } => format!("{code}: {message}"),
+            Verdict::Wrong { why } => why.clone(),
+        }
+    }
+
     /// What else is to be said.
     pub fn why(&self) -> &str {
         match self {
@@ -80,7 +92,7 @@ pub const TOLERATED: f64 = 0.1;
 pub struct Void {
     /// m.
     pub depth: f64,
-    /// Under so many sleepers nearest to the transition; under all where absent.
+    /// Under so many sleepers nearest to the transition; where absent all supports lie lower, and the stiff side does not.
     pub sleepers: Option<usize>,
 }
 
@@ -178,12 +190,7 @@ pub fn stability(
     Ok(Stability { title: scenario.title.clone(), time_step: blocks.passage.time_step, map, stresses })
 }
 
-fn map(
-    scenario: &Scenario,
-    graph: &Graph,
-    blocks: &Blocks,
-    tick: &mut dyn FnMut(),
-) -> Result<Map, TrackError> {
+fn map(scenario: &Scenario, graph: &Graph, blocks: &Blocks, tick: &mut dyn FnMut()) -> Result<Map, TrackError> {
     let own = Variant::of(graph, blocks);
     let time_steps: Vec<f64> = STEPS.iter().map(|s| s * own.time_step).collect();
     let prepare = |variant| Prepared::new(&graph.track, variant, own.time_step);
@@ -209,7 +216,9 @@ fn map(
                     (_, Err(cause)) => refused(cause, scenario, graph),
                     (foreseen, Ok(prepared)) => match (prepared.run(&case), &reference) {
                         (Err(failure), _) => refused(&failure.cause, scenario, graph),
-                        (Ok(_), Err(failure)) => Verdict::Wrong { why: format!("the reference fails: {}", failure.cause) },
+                        (Ok(_), Err(failure)) => {
+                            Verdict::Wrong { why: format!("the reference fails: {}", failure.cause) }
+                        }
                         (Ok(measured), Ok(reference)) => {
                             judge(&measured, reference, case.static_wheel_force(), foreseen.warning())
                         }
@@ -298,22 +307,20 @@ pub(super) fn judge(
 ) -> Verdict {
     let errors = measured.errors(reference, static_force);
     let error = errors.wheel_force_rms.max(errors.seat_load);
-    let ran_away =
-        measured.wheel_peak > RUNAWAY * static_force && reference.wheel_peak < 0.5 * RUNAWAY * static_force;
-    let why = if !error.is_finite() {
-        "a force is not a number".to_owned()
-    } else if ran_away {
-        format!("a wheel force of {:.1} times the static one", measured.wheel_peak / static_force)
-    } else if error > TOLERATED {
-        return match warning {
-            Some(code) => Verdict::Coarse { error, code },
-            None => Verdict::Wrong { why: format!("{:.0} % from the reference", 100.0 * error) },
+    let code = Code::E0703.as_str();
+    if measured.wheel_peak > RUNAWAY * static_force {
+        let message = format!("a wheel force of {:.1} times the static one", measured.wheel_peak / static_force);
+        // of the scene itself, or of its numerics
+        return if reference.wheel_peak > 0.5 * RUNAWAY * static_force {
+            Verdict::Refused { code, message }
+        } else {
+            Verdict::Unstable { why: message, code }
         };
-    } else {
-        return Verdict::Stable { error };
-    };
+    }
     match warning {
-        Some(code) => Verdict::Unstable { why, code },
-        None => Verdict::Wrong { why },
+        _ if !error.is_finite() => Verdict::Wrong { why: "a force is not a number".into() },
+        _ if error <= TOLERATED => Verdict::Stable { error },
+        Some(code) => Verdict::Coarse { error, code },
+        None => Verdict::Wrong { why: format!("{:.0} % from the reference", 100.0 * error) },
     }
 }

@@ -6,9 +6,27 @@ use super::stability::Stability;
 /// One row a passage of the chart.
 pub fn chart_csv(chart: &Chart) -> String {
     let mut table = Table::new(&[
-        "level", "sweep", "beam", "integrator", "time_step_s", "elements_per_bay", "default", "efficient", "outcome",
-        "seconds", "setup_s", "steps", "newton_iterations", "wheel_force_error", "wheel_force_error_rms",
-        "wheel_peak_error", "seat_load_error", "contact_loss_error_s", "contact_loss_error", "rail_moment_error", "reason",
+        "level",
+        "sweep",
+        "beam",
+        "integrator",
+        "time_step_s",
+        "elements_per_bay",
+        "default",
+        "efficient",
+        "outcome",
+        "seconds",
+        "setup_s",
+        "steps",
+        "newton_iterations",
+        "wheel_force_error",
+        "wheel_force_error_rms",
+        "wheel_peak_error",
+        "seat_load_error",
+        "contact_loss_error_s",
+        "contact_loss_error",
+        "rail_moment_error",
+        "reason",
     ]);
     for point in &chart.points {
         let v = point.variant;
@@ -24,7 +42,13 @@ pub fn chart_csv(chart: &Chart) -> String {
         ];
         match &point.outcome {
             Outcome::Done { seconds, setup_s, steps, iterations, errors } => {
-                row.extend(["done".to_owned(), short(*seconds), short(*setup_s), steps.to_string(), iterations.to_string()]);
+                row.extend([
+                    "done".to_owned(),
+                    short(*seconds),
+                    short(*setup_s),
+                    steps.to_string(),
+                    iterations.to_string(),
+                ]);
                 let errors = [
                     Some(errors.wheel_force),
                     Some(errors.wheel_force_rms),
@@ -52,8 +76,19 @@ pub fn chart_csv(chart: &Chart) -> String {
 /// One row a cell of the map, then one a hard scene.
 pub fn stability_csv(stability: &Stability) -> String {
     let mut table = Table::new(&[
-        "trial", "integrator", "time_step_s", "contact_factor", "void_m", "hanging_sleepers", "verdict", "error", "code",
-        "wheel_force_over_static", "seats_losing_contact", "warnings", "reason",
+        "trial",
+        "integrator",
+        "time_step_s",
+        "contact_factor",
+        "void_m",
+        "hanging_sleepers",
+        "verdict",
+        "error",
+        "code",
+        "wheel_force_over_static",
+        "seats_losing_contact",
+        "warnings",
+        "reason",
     ]);
     for cell in &stability.map.cells {
         table.row(vec![
