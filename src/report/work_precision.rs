@@ -2,8 +2,8 @@
 
 use super::number::significant;
 use super::svg::{Anchor, Frame, Svg, text_width};
-use crate::study::chart::QUANTITIES;
-use crate::study::{Beam, Chart, Errors, Level, Method, Outcome, Point, Sweep};
+use crate::study::chart::{QUANTITIES, ReadError};
+use crate::study::{Beam, Chart, Level, Method, Outcome, Point, Sweep};
 use crate::units::number;
 
 const WIDTH: f64 = 1080.0;
@@ -44,8 +44,6 @@ struct Picture<'a> {
     /// Upper end of the axis of errors.
     most: f64,
 }
-
-type Read = fn(&Errors) -> f64;
 
 impl<'a> Picture<'a> {
     fn new(chart: &'a Chart) -> Self {
@@ -111,7 +109,7 @@ impl<'a> Picture<'a> {
         svg.text("", (x + 30.0, y), Anchor::Start, "slope 2");
     }
 
-    fn panel(&self, svg: &mut Svg, index: usize, name: &str, error: Read, frame: Frame) {
+    fn panel(&self, svg: &mut Svg, index: usize, name: &str, error: ReadError, frame: Frame) {
         svg.text("strong", (frame.x, frame.y + 12.0), Anchor::Start, &format!("Error of the {name}"));
         let plane = Plane {
             frame: Frame {
@@ -137,7 +135,7 @@ impl<'a> Picture<'a> {
     }
 
     /// Error that falls with the square of the step, through the scene's own point.
-    fn guide(&self, svg: &mut Svg, plane: &Plane, error: Read) {
+    fn guide(&self, svg: &mut Svg, plane: &Plane, error: ReadError) {
         let Some((seconds, errors)) = self.chart.points.iter().find(|p| p.default).and_then(|p| p.outcome.done())
         else {
             return;
@@ -146,7 +144,7 @@ impl<'a> Picture<'a> {
         svg.line("mark", at(0.25), at(8.0));
     }
 
-    fn frontier(&self, svg: &mut Svg, plane: &Plane, error: Read) {
+    fn frontier(&self, svg: &mut Svg, plane: &Plane, error: ReadError) {
         let mut points: Vec<(f64, f64)> = self
             .chart
             .points
@@ -159,7 +157,7 @@ impl<'a> Picture<'a> {
         svg.path("frontier", &path, false, "nothing cheaper is better");
     }
 
-    fn model(&self, svg: &mut Svg, plane: &Plane, error: Read) {
+    fn model(&self, svg: &mut Svg, plane: &Plane, error: ReadError) {
         let Some(model) = &self.chart.model_error else { return };
         let (left, y) = plane.at(10f64.powf(plane.decades.0), error(model));
         svg.line("load", (left, y), (left + plane.frame.width, y));
@@ -167,7 +165,7 @@ impl<'a> Picture<'a> {
         svg.text("small muted halo", (left + plane.frame.width - 6.0, y - 5.0), Anchor::End, &text);
     }
 
-    fn lines(&self, svg: &mut Svg, plane: &Plane, error: Read) {
+    fn lines(&self, svg: &mut Svg, plane: &Plane, error: ReadError) {
         let other = if self.beam == Beam::Euler { Beam::Timoshenko } else { Beam::Euler };
         for (index, method) in self.methods.iter().enumerate() {
             for (beam, kind) in [(other, "other"), (self.beam, "line")] {
@@ -191,7 +189,7 @@ impl<'a> Picture<'a> {
         }
     }
 
-    fn meshes(&self, svg: &mut Svg, plane: &Plane, error: Read) {
+    fn meshes(&self, svg: &mut Svg, plane: &Plane, error: ReadError) {
         let meshes = self.chart.points.iter().filter(|p| p.sweep == Sweep::Elements && p.variant.beam == self.beam);
         for point in meshes {
             let Some((seconds, errors)) = point.outcome.done() else { continue };
@@ -201,7 +199,7 @@ impl<'a> Picture<'a> {
         }
     }
 
-    fn own(&self, svg: &mut Svg, plane: &Plane, error: Read) {
+    fn own(&self, svg: &mut Svg, plane: &Plane, error: ReadError) {
         let own = self.chart.points.iter().find(|p| p.default);
         if let Some((seconds, errors)) = own.and_then(|p| p.outcome.done()) {
             svg.circle("ring", plane.at(seconds, error(errors)), 8.0, "the scene's own numerics");
@@ -209,7 +207,7 @@ impl<'a> Picture<'a> {
     }
 }
 
-fn title(point: &Point, error: Read) -> String {
+fn title(point: &Point, error: ReadError) -> String {
     let v = &point.variant;
     let head = format!(
         "{}, {} ms, {} elements a bay, {}",

@@ -139,8 +139,11 @@ pub struct Chart {
     pub model_error: Option<Errors>,
 }
 
+/// Reads one error.
+pub type ReadError = fn(&Errors) -> f64;
+
 /// The quantities of a chart, and how to read their errors.
-pub const QUANTITIES: [(&str, fn(&Errors) -> f64); 4] = [
+pub const QUANTITIES: [(&str, ReadError); 4] = [
     ("wheel force", |e| e.wheel_force),
     ("seat load", |e| e.seat_load),
     ("contact-loss time", |e| e.contact_loss.unwrap_or(e.contact_loss_s)),
