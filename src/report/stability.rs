@@ -61,7 +61,7 @@ pub fn stability_svg(stability: &Stability) -> String {
     }
     let top = TOP + map.methods.len() as f64 * (up + GAP) + 36.0;
     let bottom = stresses(&mut svg, &stability.stresses, top);
-    let width = LEFT + map.voids.len().max(7) as f64 * (across + GAP) + 4.0;
+    let width = LEFT + map.voids.len().max(7) as f64 * (across + GAP) + 44.0;
     svg.finish(width, bottom + 12.0, &format!("Stability of {}", stability.title))
 }
 
