@@ -1,7 +1,7 @@
 //! From the track and train of the scene to those of the solver: plain numbers of one rail.
 
 use super::TrackNode;
-use crate::scenario::{self, Foot, RailEnds, Section, Track};
+use crate::scenario::{self, Foot, Integrator, RailEnds, Section, Track};
 use crate::solvers::track as solver;
 
 /// The solver's model of a track.
@@ -16,6 +16,8 @@ pub(super) fn model(node: &TrackNode) -> solver::TrackModel {
             RailEnds::Clamped => solver::RailEnds::Clamped,
             RailEnds::Pinned => solver::RailEnds::Pinned,
             RailEnds::Free => solver::RailEnds::Free,
+            // refused by lowering, see `lower::pending`
+            RailEnds::Absorbing => solver::RailEnds::Clamped,
         },
         elements_per_bay: node.elements_per_bay as usize,
         gravity: node.gravity,
@@ -37,11 +39,14 @@ fn seat(seat: &scenario::Seat) -> solver::Seat {
         pad_stiffness: *seat.pad.stiffness,
         pad_damping: *seat.pad.damping,
         foot: match &seat.foot {
-            Foot::Sleeper { mass, support } => solver::Foot::Sleeper {
-                mass: **mass,
-                support_stiffness: *support.stiffness,
-                support_damping: *support.damping,
-            },
+            Foot::Sleeper { mass, support } => {
+                let spring = support.spring();
+                solver::Foot::Sleeper {
+                    mass: **mass,
+                    support_stiffness: spring.stiffness,
+                    support_damping: spring.damping,
+                }
+            }
             Foot::Rigid => solver::Foot::Rigid,
             Foot::Slab => solver::Foot::Slab,
         },
@@ -86,6 +91,18 @@ fn vehicle(v: &scenario::Vehicle) -> solver::Vehicle {
     }
 }
 
+/// The solver's time integration.
+pub(super) fn scheme(integrator: Integrator, time_step: f64) -> Result<solver::Scheme, solver::TrackError> {
+    match integrator {
+        Integrator::GeneralisedAlpha { rho } => solver::Scheme::new(time_step, rho),
+        Integrator::Hht { .. } | Integrator::Newmark => Err(solver::TrackError::Parameter {
+            name: "integrator",
+            value: time_step,
+            expected: "of the generalised-alpha family",
+        }),
+    }
+}
+
 /// The settled track: supports where they lie, and the rail ends held at the level of the track there. A clamp that
 /// stayed at the level as built would grow a second transition at the end of the model.
 pub(super) fn level(node: &TrackNode, settlement: &[f64]) -> solver::TrackLevel {
@@ -104,7 +121,7 @@ fn sag(track: &Track, section: usize, gravity: f64) -> f64 {
     let form = &track.sections[section];
     let rail = *form.rail.mass * *form.spacing * gravity; // N a seat
     let below = match (&seat.foot, &form.slab) {
-        (Foot::Sleeper { mass, support }, _) => (rail + **mass * gravity) / *support.stiffness,
+        (Foot::Sleeper { mass, support }, _) => support.spring().compression(rail + **mass * gravity),
         (Foot::Slab, Some(slab)) => *form.rail.mass * gravity / *slab.foundation_stiffness,
         _ => 0.0,
     };
