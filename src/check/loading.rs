@@ -6,8 +6,8 @@ use super::track::given;
 use super::value::{Number, Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{
-    Beam, Given, Integrator, LawForm, Record as Kept, SettlementLaw, Solve, StaticLoad, Target, TimeStep, Traffic, Train,
-    Update,
+    Beam, Given, Integrator, LawForm, Record as Kept, SettlementLaw, Solve, StaticLoad, Target, TimeStep, Traffic,
+    Train, Update,
 };
 use crate::units::{Dimension, number};
 

@@ -71,7 +71,12 @@ fn is_profile(value: &Value) -> bool {
 
 impl Checker<'_> {
     /// A number, or where the field may vary along the track a profile.
-    pub(super) fn number_or_profile(&mut self, measure: &'static Measure, value: &Value, scope: ScopeId) -> Option<Val> {
+    pub(super) fn number_or_profile(
+        &mut self,
+        measure: &'static Measure,
+        value: &Value,
+        scope: ScopeId,
+    ) -> Option<Val> {
         if !is_profile(value) {
             if measure.varies == Varies::Yes && self.misspelt_profile(value) {
                 return None;
@@ -112,7 +117,13 @@ impl Checker<'_> {
         self.deeper(1, value.span, |c| c.shape_of_value(measure, value, outer, scope))
     }
 
-    fn shape_of_value(&mut self, measure: &'static Measure, value: &Value, outer: Per, scope: ScopeId) -> Option<Shape> {
+    fn shape_of_value(
+        &mut self,
+        measure: &'static Measure,
+        value: &Value,
+        outer: Per,
+        scope: ScopeId,
+    ) -> Option<Shape> {
         let (inner, per) = bare(value);
         let per = per.or(outer);
         let kind = match &inner.kind {
@@ -354,7 +365,13 @@ impl Checker<'_> {
     }
 
     /// The columns of the places and of the values.
-    fn columns(&mut self, table: &Table, file: &str, wanted: Option<(String, Span)>, span: Span) -> Option<(usize, usize)> {
+    fn columns(
+        &mut self,
+        table: &Table,
+        file: &str,
+        wanted: Option<(String, Span)>,
+        span: Span,
+    ) -> Option<(usize, usize)> {
         let list = || table.columns.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
         let Some(place) = table.column("x").filter(|i| table.columns[*i].unit.dimension == Dimension::LENGTH) else {
             self.report(
@@ -377,7 +394,10 @@ impl Checker<'_> {
             (Some((name, asked)), _) => Diagnostic::new(Code::E0509, format!("`{file}` has no column `{name}`"))
                 .at(table.header, format!("has {}", list()))
                 .at(*asked, "asked for here")
-                .maybe_help(nearest(name, table.columns.iter().map(|c| c.name.as_str())).map(|n| format!("did you mean `{n}`?"))),
+                .maybe_help(
+                    nearest(name, table.columns.iter().map(|c| c.name.as_str()))
+                        .map(|n| format!("did you mean `{n}`?")),
+                ),
             (None, true) => Diagnostic::new(Code::E0509, format!("`{file}` has places and no values"))
                 .at(table.header, "one column only")
                 .at(span, "read here"),

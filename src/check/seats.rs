@@ -138,7 +138,8 @@ impl Checker<'_> {
             let [(a, first), (b, second)] = [pair[0], pair[1]];
             if b[0] - a[0] < TINY {
                 let same = (b[0] - a[0]).abs() < TINY;
-                let message = if same { "one place has two values" } else { "the places of a profile follow each other" };
+                let message =
+                    if same { "one place has two values" } else { "the places of a profile follow each other" };
                 self.report(
                     Diagnostic::new(Code::E0507, message)
                         .at(first.max(second), if same { "again here" } else { "goes back from here" })

@@ -112,7 +112,9 @@ fn refusal(name: &str, error: &DataError) -> Diagnostic {
             format!("`{name}` has {} MiB, more than {} MiB", bytes.div_ceil(1 << 20), LARGEST_DATA_FILE >> 20),
             "thin the data: a row every 0.1 m shows all that a wheel feels",
         ),
-        DataError::Unreadable(cause) => (format!("`{name}` cannot be read: {cause}"), "make it a file that can be read"),
+        DataError::Unreadable(cause) => {
+            (format!("`{name}` cannot be read: {cause}"), "make it a file that can be read")
+        }
     };
     Diagnostic::new(Code::E0508, message).help(help)
 }
@@ -153,7 +155,8 @@ impl Reader {
     /// `level_mm`: a name and its unit.
     fn column(&mut self, at: usize, text: &str) -> Option<Column> {
         let span = Span::new(self.file, at, at + text.len());
-        let Some((name, unit)) = text.rsplit_once('_').filter(|(name, unit)| !name.is_empty() && !unit.is_empty()) else {
+        let Some((name, unit)) = text.rsplit_once('_').filter(|(name, unit)| !name.is_empty() && !unit.is_empty())
+        else {
             self.mistakes.push(
                 Diagnostic::new(Code::E0509, format!("column `{text}` does not say its unit"))
                     .at(span, "name, `_` and unit are wanted")

@@ -7,9 +7,7 @@ use super::seats::{Along, Cover, Laid};
 use super::track::given;
 use super::value::{Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::scenario::{
-    AuxiliaryRails, Beam, Foot, Given, Origin, Pad, Rail, Seat, Seating, Slab, Support, Usp,
-};
+use crate::scenario::{AuxiliaryRails, Beam, Foot, Given, Origin, Pad, Rail, Seat, Seating, Slab, Support, Usp};
 use crate::units::number;
 use std::rc::Rc;
 
@@ -32,7 +30,12 @@ pub(super) struct Built {
 
 /// What the pads stand on.
 enum Base {
-    Sleeper { mass: Option<Given>, support: Option<Damped>, seating: Option<Option<Seating>>, usp: Option<Option<Cushion>> },
+    Sleeper {
+        mass: Option<Given>,
+        support: Option<Damped>,
+        seating: Option<Option<Seating>>,
+        usp: Option<Option<Cushion>>,
+    },
     Rigid,
     Slab,
 }
@@ -138,7 +141,10 @@ impl Checker<'_> {
                 self.report(
                     Diagnostic::new(
                         Code::E0407,
-                        format!("trackform `{}` {stands} and has a `{name}`, which only sleepers on a support have", form.name),
+                        format!(
+                            "trackform `{}` {stands} and has a `{name}`, which only sleepers on a support have",
+                            form.name
+                        ),
                     )
                     .at(slot.span, format!("`{name}`"))
                     .at(base, "instead of a support that gives")
@@ -321,8 +327,11 @@ impl Checker<'_> {
                 };
                 let seats = places.seats[range.clone()].iter().map(|seat| seat.0);
                 let soft = seating.filter(|s| support.as_ref().is_none_or(|l| self.seats_softly(built, *s, l, seats)));
-                support.zip(usp).zip(*mass).zip(soft).map(|(((support, usp), mass), seating)| {
-                    LaidFoot::Sleeper { mass, support, seating, usp }
+                support.zip(usp).zip(*mass).zip(soft).map(|(((support, usp), mass), seating)| LaidFoot::Sleeper {
+                    mass,
+                    support,
+                    seating,
+                    usp,
                 })
             }
             Some(Base::Rigid) => Some(LaidFoot::Fixed(Foot::Rigid)),
@@ -357,7 +366,8 @@ impl Checker<'_> {
         mut seats: impl Iterator<Item = f64>,
     ) -> bool {
         let Some(seating) = seating else { return true };
-        let Some(stiffness) = seats.find_map(|x| Some(support.stiffness.at(x)).filter(|k| **k < *seating.stiffness)) else {
+        let Some(stiffness) = seats.find_map(|x| Some(support.stiffness.at(x)).filter(|k| **k < *seating.stiffness))
+        else {
             return true;
         };
         let shown = |given: Given| format!("{} MN/m per seat", number(*given / 1e6));
@@ -415,16 +425,15 @@ impl Checker<'_> {
 
     fn without_shear(&mut self, rail: &Record, asked: Option<Span>) {
         let name = if rail.name == "rail" { "the rail".into() } else { format!("rail `{}`", rail.name) };
-        let mut mistake = Diagnostic::new(
-            Code::E0403,
-            format!("{name} needs its `shear_stiffness` for `beam = timoshenko`"),
-        )
-        .at(rail.span, "not given");
+        let mut mistake =
+            Diagnostic::new(Code::E0403, format!("{name} needs its `shear_stiffness` for `beam = timoshenko`"))
+                .at(rail.span, "not given");
         if let Some(span) = asked {
             mistake = mistake.at(span, "asked for here");
         }
         // 0.4 G A with G = 80.8 GPa and A = m / rho, to whole MN
-        let mass = given(rail, "mass").or_else(|| Some(Given::derived(*given(rail, "density")? * *given(rail, "area")?)));
+        let mass =
+            given(rail, "mass").or_else(|| Some(Given::derived(*given(rail, "density")? * *given(rail, "area")?)));
         let area = given(rail, "area").map(|area| *area).or(mass.map(|mass| *mass / STEEL_DENSITY));
         let typical = area.map_or(240.0, |area| (0.4 * 80.8e9 * area / 1e6).round());
         self.report(mistake.help(format!(

@@ -138,7 +138,8 @@ impl Checker<'_> {
                 let cover = Cover { what, start, end, seats: None, smooth: false };
                 let profile = self.profile(&shape, origin, &places, &cover)?;
                 // straight or level between knots, so that no greater speed lies between them
-                let knots = profile.pieces.iter().flat_map(|piece| piece.knots().into_iter().map(|x| piece.curve.value(x)));
+                let knots =
+                    profile.pieces.iter().flat_map(|piece| piece.knots().into_iter().map(|x| piece.curve.value(x)));
                 let value = knots.fold(0.0, f64::max);
                 Some((Given { value, origin }, Some(profile)))
             }

@@ -6,9 +6,7 @@ use super::substructure::initial_settlement;
 use super::track::{PassageOutcome, RailPoint, SeatOutcome, Unloaded, UnloadedSeat};
 use super::{Blocks, Graph, Schedule, TrackNode};
 use crate::scenario::{Direction, Record, StaticLoad, Target};
-use crate::solvers::track::{
-    Envelope, Loads, Passage, Run, StaticState, Stepper, Track, TrackError, solve_static,
-};
+use crate::solvers::track::{Envelope, Loads, Passage, Run, StaticState, Stepper, Track, TrackError, solve_static};
 use std::ops::Range;
 use std::sync::Arc;
 

@@ -26,10 +26,13 @@ fn too_sharp(profile: &Profile, radius: f64) -> Option<Diagnostic> {
     let (found, wheel) = (number((sharpest * 1e3).round() / 1e3), number(radius));
     let message = match sharpest {
         0.0 => format!("the rail has a corner at x = {} m that a wheel of radius {wheel} m bridges", number(round(x))),
-        _ => format!("the rail dips with a radius of {found} m at x = {} m, the wheels have {wheel} m", number(round(x))),
+        _ => {
+            format!("the rail dips with a radius of {found} m at x = {} m, the wheels have {wheel} m", number(round(x)))
+        }
     };
-    let diagnostic = Diagnostic::new(Code::L1011, message)
-        .help("level the data with a wheel's radius in mind: the model's wheel touches at one point and falls into every dip");
+    let diagnostic = Diagnostic::new(Code::L1011, message).help(
+        "level the data with a wheel's radius in mind: the model's wheel touches at one point and falls into every dip",
+    );
     Some(match profile.origin.span() {
         Some(span) => diagnostic.at(span, "sharper than the wheel"),
         None => diagnostic,

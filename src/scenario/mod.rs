@@ -13,7 +13,8 @@ mod traffic;
 pub use given::{Given, Origin};
 pub use profile::{Curve, Piece, Profile};
 pub use track::{
-    AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, Spring, Support, Track, Transition, Usp,
+    AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, Spring, Support, Track, Transition,
+    Usp,
 };
 pub use traffic::{Direction, LawForm, SettlementLaw, StaticLoad, Target, Traffic, Train, Vehicle};
 

@@ -39,7 +39,6 @@ impl Profile {
         let after = self.pieces.partition_point(|piece| piece.start <= x + TINY);
         self.pieces.get(after.saturating_sub(1)).map_or(0.0, |piece| piece.curve.value(x))
     }
-
 }
 
 impl Piece {
@@ -106,7 +105,11 @@ impl Curve {
 }
 
 /// The two points around x; beyond the ends the end point.
-fn between<const N: usize>(points: &[[f64; N]], x: f64, of: impl Fn(&[f64; N]) -> f64) -> Result<[[f64; N]; 2], Option<[f64; N]>> {
+fn between<const N: usize>(
+    points: &[[f64; N]],
+    x: f64,
+    of: impl Fn(&[f64; N]) -> f64,
+) -> Result<[[f64; N]; 2], Option<[f64; N]>> {
     let after = points.partition_point(|p| of(p) <= x);
     match (after.checked_sub(1).and_then(|i| points.get(i)), points.get(after)) {
         (Some(a), Some(b)) => Ok([*a, *b]),
@@ -159,7 +162,10 @@ mod tests {
             let step = 4.0 * std::f64::consts::PI / n as f64;
             let points: Vec<[f64; 2]> = (0..=n).map(|i| i as f64 * step).map(|x| [x, x.sin()]).collect();
             let spline = Curve::natural(&points);
-            (0..4000).map(|i| i as f64 * 1e-3 * std::f64::consts::PI).map(|x| (spline.value(x) - x.sin()).abs()).fold(0.0, f64::max)
+            (0..4000)
+                .map(|i| i as f64 * 1e-3 * std::f64::consts::PI)
+                .map(|x| (spline.value(x) - x.sin()).abs())
+                .fold(0.0, f64::max)
         };
         let order = (error(40) / error(80)).log2();
         assert!((3.8..4.2).contains(&order), "order {order}");
@@ -167,7 +173,8 @@ mod tests {
 
     #[test]
     fn pieces_stand_side_by_side() {
-        let steps = profile(vec![(-4.0, 0.0, Curve::constant(1.0)), (0.0, 2.0, Curve::Linear(vec![[0.0, 5.0], [2.0, 7.0]]))]);
+        let steps =
+            profile(vec![(-4.0, 0.0, Curve::constant(1.0)), (0.0, 2.0, Curve::Linear(vec![[0.0, 5.0], [2.0, 7.0]]))]);
         for (x, value) in [(-9.0, 1.0), (-0.5, 1.0), (0.0, 5.0), (-1e-9, 5.0), (1.0, 6.0), (3.0, 7.0)] {
             assert!((steps.value(x) - value).abs() < 1e-6, "{x}");
         }

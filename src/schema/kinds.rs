@@ -205,7 +205,12 @@ pub const KINDS: &[Kind] = &[
             ),
             way("damping", along(per("kN s/m", 0.0, 5000.0, &SEAT_OR_SLEEPER)), ""),
             way("damping_time", number("ms", 0.0, 5.0), "damping / stiffness"),
-            default("seating", SEATING, "none", "a softer first part of its compression: ballast without load is far softer"),
+            default(
+                "seating",
+                SEATING,
+                "none",
+                "a softer first part of its compression: ballast without load is far softer",
+            ),
         ],
         alternatives: &[Alternative {
             ways: &[&["damping"], &["damping_time"]],
