@@ -4,6 +4,7 @@
 //! depends on it.
 
 mod arithmetic;
+mod columns;
 mod complete;
 mod expectation;
 mod fit;
@@ -17,6 +18,7 @@ mod overrides;
 mod profile;
 mod records;
 mod seats;
+mod springs;
 mod table;
 mod track;
 mod trackform;

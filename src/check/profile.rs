@@ -5,7 +5,6 @@ use super::Checker;
 use super::arithmetic::{Raw, shape};
 use super::fit::with_unit;
 use super::modules::ScopeId;
-use super::table::{Cell, Table};
 use super::value::{Number, Val};
 use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
 use crate::schema::{Form, Measure, Varies};
@@ -49,7 +48,7 @@ pub(super) struct Reach {
 }
 
 /// `per` after a profile, with its place: it holds for every value in it.
-type Per = Option<(String, Span)>;
+pub(super) type Per = Option<(String, Span)>;
 
 const WORDS: [&str; 4] = ["ramp", "smooth", "random", "file"];
 
@@ -131,7 +130,7 @@ impl Checker<'_> {
                 self.ramp(measure, word, arguments, per, scope)?
             }
             ValueKind::Call { word, arguments } if word.text == "file" => {
-                self.file(measure, word, arguments, per, inner.span)?
+                self.data_profile(measure, word, arguments, per, inner.span)?
             }
             ValueKind::Call { word, .. } if word.text == "random" => {
                 self.report(
@@ -221,7 +220,7 @@ impl Checker<'_> {
     }
 
     /// Refuses arguments that a word does not have: one by its place, and these by name.
-    fn arguments_of(&mut self, word: &Name, arguments: &[Argument], named: &[&str]) -> Option<()> {
+    pub(super) fn arguments_of(&mut self, word: &Name, arguments: &[Argument], named: &[&str]) -> Option<()> {
         let mut seen: Vec<&str> = Vec::new();
         for (i, argument) in arguments.iter().enumerate() {
             let name = argument.name.as_ref().map_or("", |n| n.text.as_str());
@@ -322,137 +321,6 @@ impl Checker<'_> {
             return None;
         }
         Some(Reach { from: place, to: place, span: key.span })
-    }
-
-    /// `file("level.csv")`, or `file("survey.csv", column = level)`
-    fn file(
-        &mut self,
-        measure: &'static Measure,
-        word: &Name,
-        arguments: &[Argument],
-        per: Per,
-        whole: Span,
-    ) -> Option<ShapeKind> {
-        self.arguments_of(word, arguments, &["column"])?;
-        let Some((ValueKind::Text(name), span)) = arguments.first().map(|a| (&a.value.kind, a.value.span)) else {
-            self.report(
-                Diagnostic::new(Code::E0403, "`file` needs the name of a data file")
-                    .at(word.span, "which file?")
-                    .help("write something like `file(\"level.csv\")`"),
-            );
-            return None;
-        };
-        let wanted = match arguments.get(1).map(|a| &a.value) {
-            None => None,
-            Some(Value { kind: ValueKind::Path(path), span }) if path.names.len() == 1 => Some((path.text(), *span)),
-            Some(other) => {
-                self.wrong_form(&Form::Name, shape(&other.kind), other.span);
-                return None;
-            }
-        };
-        let table = self.table(name, span)?;
-        let (place, value) = self.columns(&table, name, wanted, span)?;
-        let column = &table.columns[value];
-        let dimension = column.unit.dimension;
-        let raw = Raw { value: column.unit.factor, dimension, basis: per.clone(), span: whole, bare: false };
-        if dimension != Dimension::of(measure.unit) {
-            let expected = format!("expected {}", Form::Number(*measure).describe());
-            self.wrong_dimension(&Raw { span: column.span, ..raw }, measure, &expected);
-            return None;
-        }
-        self.basis(measure, &raw)?;
-        self.rows(measure, &table, [place, value], per, span)
-    }
-
-    /// The columns of the places and of the values.
-    fn columns(
-        &mut self,
-        table: &Table,
-        file: &str,
-        wanted: Option<(String, Span)>,
-        span: Span,
-    ) -> Option<(usize, usize)> {
-        let list = || table.columns.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
-        let Some(place) = table.column("x").filter(|i| table.columns[*i].unit.dimension == Dimension::LENGTH) else {
-            self.report(
-                Diagnostic::new(Code::E0509, format!("`{file}` has no column `x` of places"))
-                    .at(table.header, format!("has {}", list()))
-                    .at(span, "read here")
-                    .help("name the column of chainages `x_m`"),
-            );
-            return None;
-        };
-        let others: Vec<usize> = (0..table.columns.len()).filter(|i| *i != place).collect();
-        let found = match &wanted {
-            Some((name, _)) => table.column(name).filter(|i| *i != place),
-            None => others.first().copied().filter(|_| others.len() == 1),
-        };
-        if let Some(value) = found {
-            return Some((place, value));
-        }
-        let mistake = match (&wanted, others.is_empty()) {
-            (Some((name, asked)), _) => Diagnostic::new(Code::E0509, format!("`{file}` has no column `{name}`"))
-                .at(table.header, format!("has {}", list()))
-                .at(*asked, "asked for here")
-                .maybe_help(
-                    nearest(name, table.columns.iter().map(|c| c.name.as_str()))
-                        .map(|n| format!("did you mean `{n}`?")),
-                ),
-            (None, true) => Diagnostic::new(Code::E0509, format!("`{file}` has places and no values"))
-                .at(table.header, "one column only")
-                .at(span, "read here"),
-            (None, false) => Diagnostic::new(Code::E0509, format!("`{file}` has several columns of values"))
-                .at(table.header, format!("has {}", list()))
-                .at(span, "read here")
-                .help(format!("name one: `file(\"{file}\", column = {})`", table.columns[others[0]].name)),
-        };
-        self.report(mistake);
-        None
-    }
-
-    /// Places that ascend, each with a value that fits the field.
-    fn rows(
-        &mut self,
-        measure: &'static Measure,
-        table: &Table,
-        [place, value]: [usize; 2],
-        per: Per,
-        span: Span,
-    ) -> Option<ShapeKind> {
-        let mut rows: Vec<(f64, Number)> = Vec::new();
-        let mut ends: Option<[Span; 2]> = None;
-        let mut sound = true;
-        let mut last: Option<Cell> = None;
-        for cells in table.rows() {
-            let x = cells[place];
-            if let Some(before) = last.filter(|before| before.value >= x.value) {
-                self.report(
-                    Diagnostic::new(Code::E0510, "the places of a data file ascend from row to row")
-                        .at(x.span, "not beyond the row before")
-                        .at(before.span, "the row before")
-                        .at(span, "read here"),
-                );
-                return None;
-            }
-            last = Some(x);
-            let dimension = table.columns[value].unit.dimension;
-            let basis = per.clone();
-            let raw = Raw { value: cells[value].value, dimension, basis, span: cells[value].span, bare: false };
-            match self.hold(measure, raw) {
-                Some(held) => rows.push((x.value, held)),
-                None => sound = false,
-            }
-            ends = Some([ends.map_or(x.span, |e| e[0]), x.span]);
-        }
-        if rows.len() < 2 && sound {
-            self.report(
-                Diagnostic::new(Code::E0510, format!("expected two rows of numbers or more, found {}", rows.len()))
-                    .at(table.header, "too few rows below")
-                    .at(span, "read here"),
-            );
-            return None;
-        }
-        Some(ShapeKind::Table { rows, ends: ends? }).filter(|_| sound)
     }
 
     /// A profile read elsewhere, held against another field.

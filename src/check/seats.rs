@@ -229,9 +229,13 @@ impl Checker<'_> {
         second: Option<(Span, &str)>,
     ) -> Option<()> {
         let (start, end) = (from.max(within.start), to.min(within.end));
-        let asked = |x: f64| x > from + TINY && x < to - TINY && x > within.start - TINY && x < within.end + TINY;
+        let (left, right) = ((from + TINY).max(within.start - TINY), (to - TINY).min(within.end + TINY));
         let seats: Vec<i32> = match &cover.seats {
-            Some(seats) => seats.clone().map(|i| &places.seats[i]).filter(|s| asked(s.0)).map(|s| s.3).collect(),
+            Some(seats) => {
+                let seats = &places.seats[seats.clone()];
+                let first = seats.partition_point(|seat| seat.0 <= left);
+                seats[first..].iter().take_while(|seat| seat.0 < right).map(|seat| seat.3).collect()
+            }
             None => Vec::new(),
         };
         let missing = if cover.seats.is_some() { !seats.is_empty() } else { end - start > TINY };
