@@ -266,6 +266,13 @@ impl Track {
         }
     }
 
+    /// Deflection at one point under a unit force at another of the same element, beyond that of the cubic, m/N.
+    #[inline]
+    pub(super) fn local_deflection(&self, at: &RailPoint, load: &RailPoint) -> f64 {
+        let RailElement { length, bending_stiffness } = self.elements[at.element];
+        beam::clamped_deflection(at.offset, load.offset, bending_stiffness, length)
+    }
+
     /// The four unknowns of the rail element `element`.
     #[inline]
     pub(super) fn element_unknowns(&self, element: usize) -> [usize; 4] {

@@ -248,7 +248,7 @@ fn wagons_of_a_train() {
     let level = hollow(&model, 1e-3, 1e-3, 40.0, 2.0);
     let level = TrackLevel { ends: [1e-3; 2], ..level };
     let stepper = stepper(model, 1e-4);
-    let train = Train { vehicles: vec![(wagon(), 0.0), (wagon(), 12.0)], direction: Direction::Forward };
+    let train = Train { vehicles: vec![(wagon().into(), 0.0), (wagon().into(), 12.0)], direction: Direction::Forward };
     let mut both = Envelope::default();
     let run_ = Run { train: &train, start: 26.0, finish: 50.0, speed: 55.56 };
     Passage::new(&stepper, &level, run_).unwrap().run(&mut both).unwrap();
