@@ -2,12 +2,11 @@
 
 use super::scenes::*;
 use crate::solvers::track::*;
-use std::sync::Arc;
 
 const RHO: f64 = 0.85;
 
 fn stepper(model: TrackModel, time_step: f64) -> Stepper {
-    Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::new(time_step, RHO).unwrap()).unwrap()
+    super::scenes::stepper(model, time_step, RHO)
 }
 
 /// Runs one wagon and hands every step to `look`.
@@ -115,7 +114,7 @@ fn rigid_track() {
         }
     });
     println!("rigid track: wheel forces within {worst:.1e}");
-    assert!(worst < 1e-8, "{worst:.3e}");
+    assert!(worst < 1e-9, "{worst:.3e}");
 }
 
 /// On an even track only the passing of sleepers moves the wheels, from the first step on.

@@ -4,3 +4,4 @@ mod dynamics;
 mod reference;
 mod scenes;
 mod statics;
+mod vehicles;

@@ -282,3 +282,22 @@ fn agrees_with_a_plain_implementation() {
     }
     assert!(seen > 0, "no sleeper touched");
 }
+
+/// Wheels on springs and dampers beside a given force.
+#[test]
+fn linear_wheels_agree_with_a_plain_implementation() {
+    let mut vehicle =
+        Multibody::sprung_wheel(3e3, 2e6, 20e3, 300.0, WheelContact::Linear { stiffness: 40e6, damping: 30e3 });
+    vehicle.wheels.push(Wheel { unknown: None, offset: 1.1, contact: WheelContact::Given(25e3) });
+    vehicle.wheels.push(Wheel { unknown: Some(1), offset: 0.4, contact: WheelContact::Hertz(2e9) });
+    let train = Train::single(vehicle.clone(), Direction::Backward);
+    let mut model = ballast(13);
+    model.elements_per_bay = 2;
+    let level = TrackLevel { ends: [0.0; 2], ..hollow(&model, 0.0, 1e-3, 4.0, 1.5) };
+    let stepper = stepper(model, 1e-4, 0.85);
+    let run = Run { train: &train, start: 5.7, finish: 1.9, speed: 55.56 };
+    let mut passage = Passage::new(&stepper, &level, run).unwrap();
+    let steps = passage.planned_steps();
+    let (worst, ..) = compare(&mut passage, &vehicle, steps);
+    assert!(worst[0] < 1e-5 && worst[1] < 1e-5 && worst[2] < 1e-11, "{worst:?}");
+}
