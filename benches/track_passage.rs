@@ -23,6 +23,7 @@ fn main() -> Result<(), TrackError> {
             foundation_damping: 160e3,
         }],
         rail_ends: RailEnds::Clamped,
+        irregularity: Irregularity::default(),
         elements_per_bay: 4,
         gravity: 9.81,
     };
@@ -62,8 +63,9 @@ fn main() -> Result<(), TrackError> {
     for (direction, start, finish) in [(Direction::Forward, -27.0, 20.0), (Direction::Backward, 10.0, -30.0)] {
         for observed in [false, true] {
             let train = Train::single(vehicle, direction);
+            let run = Run { train: &train, start, finish, motion: &Motion::Constant(55.56) };
             let clock = Instant::now();
-            let mut passage = Passage::new(&stepper, &level, Run { train: &train, start, finish, speed: 55.56 })?;
+            let mut passage = Passage::new(&stepper, &level, run)?;
             let begun = clock.elapsed().as_secs_f64();
             let clock = Instant::now();
             let mut envelope = Envelope::default();

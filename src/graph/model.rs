@@ -17,6 +17,7 @@ pub(super) fn model(node: &TrackNode) -> solver::TrackModel {
             RailEnds::Pinned => solver::RailEnds::Pinned,
             RailEnds::Free => solver::RailEnds::Free,
         },
+        irregularity: solver::Irregularity::default(),
         elements_per_bay: node.elements_per_bay as usize,
         gravity: node.gravity,
     }

@@ -6,7 +6,7 @@ use super::track::{PassageOutcome, RailPoint, SeatOutcome, Unloaded, UnloadedSea
 use super::{Blocks, Graph, Schedule, TrackNode};
 use crate::scenario::{Direction, Record, StaticLoad, Target};
 use crate::solvers::track::{
-    Envelope, Loads, Passage, Run, Scheme, StaticState, Stepper, Track, TrackError, solve_static,
+    Envelope, Loads, Motion, Passage, Run, Scheme, StaticState, Stepper, Track, TrackError, solve_static,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -80,7 +80,8 @@ impl<'a> TrackSystem<'a> {
         let (start, finish) =
             if direction == Direction::Backward { (right - base, left) } else { (left + base, right) };
         let level = level(self.node, settlement);
-        let run = Run { train: &train, start, finish, speed: *blocks.train.speed };
+        let motion = Motion::Constant(*blocks.train.speed);
+        let run = Run { train: &train, start, finish, motion: &motion };
         let mut passage = Passage::new(stepper, &level, run)?;
         let unloaded = self.at_rest(passage.unloaded(), settlement);
         let mut envelope = Envelope::default();

@@ -1,6 +1,6 @@
 //! The track as numbers, before it is meshed, and the checks that a mesh relies on. Everything belongs to one rail.
 
-use super::TrackError;
+use super::{Irregularity, TrackError};
 
 /// What the track of one rail consists of; SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,6 +14,8 @@ pub struct TrackModel {
     /// Left to right; two may touch but not overlap.
     pub slabs: Vec<Slab>,
     pub rail_ends: RailEnds,
+    /// Of the rail's running surface.
+    pub irregularity: Irregularity,
     /// Rail elements between neighbouring seats; more resolve higher frequencies. Statics are exact with one.
     pub elements_per_bay: usize,
     /// m/s^2, 0 or more.

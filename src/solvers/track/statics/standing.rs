@@ -26,6 +26,8 @@ pub(super) struct StandingTrain {
     leading: f64,
     bodies: Vec<Body>,
     pub points: Vec<RailPoint>,
+    /// Of the running surface under the wheel, m.
+    unevenness: Vec<f64>,
     laws: Vec<WheelLaw>,
     pub forces: Vec<f64>,
     pub indentations: Vec<f64>,
@@ -57,6 +59,7 @@ impl StandingTrain {
             leading: 0.0,
             bodies: Vec::new(),
             points: Vec::new(),
+            unevenness: Vec::new(),
             laws: Vec::new(),
             forces: Vec::new(),
             indentations: Vec::new(),
@@ -89,6 +92,7 @@ impl StandingTrain {
         }
         for x in train.wheel_positions(leading) {
             standing.points.push(track.rail_point(x)?);
+            standing.unevenness.push(track.model.irregularity.at(x));
         }
         Ok(standing)
     }
@@ -160,7 +164,8 @@ impl StandingTrain {
     /// displacements under a unit force at each wheel are `columns`.
     fn stand(&mut self, track: &Track, free: &[f64], columns: &[Vec<f64>]) -> Result<(), TrackError> {
         let wheels = self.points.len();
-        let level: Vec<f64> = self.points.iter().map(|p| track.deflection_at(p, free)).collect();
+        let surface = |(point, unevenness): (&RailPoint, &f64)| track.deflection_at(point, free) + unevenness;
+        let level: Vec<f64> = self.points.iter().zip(&self.unevenness).map(surface).collect();
         let compliance: Vec<Vec<f64>> = (0..wheels)
             .map(|j| {
                 let of = |k: usize| track.deflection_at(&self.points[j], &columns[k]) + self.local(track, j, k);

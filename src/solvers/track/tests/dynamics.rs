@@ -19,7 +19,7 @@ fn run(
 ) -> Counters {
     let direction = if ends.1 > ends.0 { Direction::Forward } else { Direction::Backward };
     let train = Train::single(vehicle, direction);
-    let run = Run { train: &train, start: ends.0, finish: ends.1, speed: 55.56 };
+    let run = Run { train: &train, start: ends.0, finish: ends.1, motion: &Motion::Constant(55.56) };
     Passage::new(stepper, level, run).unwrap().run(&mut look).unwrap()
 }
 
@@ -249,7 +249,7 @@ fn wagons_of_a_train() {
     let stepper = stepper(model, 1e-4);
     let train = Train { vehicles: vec![(wagon().into(), 0.0), (wagon().into(), 12.0)], direction: Direction::Forward };
     let mut both = Envelope::default();
-    let run_ = Run { train: &train, start: 26.0, finish: 50.0, speed: 55.56 };
+    let run_ = Run { train: &train, start: 26.0, finish: 50.0, motion: &Motion::Constant(55.56) };
     Passage::new(&stepper, &level, run_).unwrap().run(&mut both).unwrap();
     let single = envelope(&stepper, &level, (26.0, 50.0));
     assert_eq!(both.wheel_forces.len(), 8);
@@ -266,10 +266,13 @@ fn impossible_runs_are_refused() {
     let level = TrackLevel::as_built(&model);
     let stepper = stepper(model, 1e-4);
     let train = Train::single(wagon(), Direction::Forward);
-    let run = Run { train: &train, start: 10.0, finish: 20.0, speed: 50.0 };
-    for broken in
-        [Run { start: 5.0, ..run }, Run { finish: 30.0, ..run }, Run { speed: 0.0, ..run }, Run { finish: 9.0, ..run }]
-    {
+    let run = Run { train: &train, start: 10.0, finish: 20.0, motion: &Motion::Constant(50.0) };
+    for broken in [
+        Run { start: 5.0, ..run },
+        Run { finish: 30.0, ..run },
+        Run { motion: &Motion::Constant(0.0), ..run },
+        Run { finish: 9.0, ..run },
+    ] {
         assert!(Passage::new(&stepper, &level, broken).is_err());
     }
     let short = TrackLevel { settlements: vec![0.0; 3], ends: [0.0; 2] };

@@ -4,4 +4,5 @@ mod dynamics;
 mod reference;
 mod scenes;
 mod statics;
+mod uneven;
 mod vehicles;

@@ -73,8 +73,8 @@ impl<'a> Plain<'a> {
         }
     }
 
-    /// How a unit of each wheel's force acts on all unknowns.
-    fn directions(&self, positions: &[f64]) -> Vec<(DVector<f64>, f64)> {
+    /// How a unit of each wheel's force acts on all unknowns, with the compliance and the unevenness of the rail there.
+    fn directions(&self, positions: &[f64]) -> Vec<(DVector<f64>, f64, f64)> {
         let n = self.track.order();
         let direction = |(w, x): (usize, &f64)| {
             let point = self.track.rail_point(*x).unwrap();
@@ -83,7 +83,7 @@ impl<'a> Plain<'a> {
             if let Some(unknown) = self.unknowns[w] {
                 direction[n + unknown] = 1.0;
             }
-            (direction, point.local_compliance)
+            (direction, point.local_compliance, self.track.model.irregularity.at(*x))
         };
         positions.iter().enumerate().map(direction).collect()
     }
@@ -137,7 +137,7 @@ impl<'a> Plain<'a> {
         let u_star = &self.u + dt * &self.v + (0.5 - scheme.beta) * dt * dt * &self.a;
         let v_star = &self.v + (1.0 - scheme.gamma) * dt * &self.a;
         let mut old_forces = &self.stiffness * &self.u + &self.damping * &self.v;
-        for ((direction, _), force) in old.iter().zip(&self.wheel_forces) {
+        for ((direction, ..), force) in old.iter().zip(&self.wheel_forces) {
             old_forces += *force * direction;
         }
         for (sleeper, force) in self.track.sleepers.iter().zip(&self.support_forces) {
@@ -151,8 +151,8 @@ impl<'a> Plain<'a> {
                 **jacobian = &self.stiffness * share + &self.damping * velocity_share;
             }
             let mut wheel_forces = Vec::new();
-            for (w, (direction, local)) in new.iter().enumerate() {
-                let (force, slope) = self.wheel(w, direction.dot(&u), *local);
+            for (w, (direction, local, uneven)) in new.iter().enumerate() {
+                let (force, slope) = self.wheel(w, direction.dot(&u) - uneven, *local);
                 forces += force * direction;
                 wheel_forces.push(force);
                 if let Some(jacobian) = &mut jacobian {
@@ -214,8 +214,8 @@ impl<'a> Plain<'a> {
             a -= factor * step;
         }
         self.u = u_star + share * &a;
-        for (w, (direction, local)) in new.iter().enumerate() {
-            let indentation = direction.dot(&self.u) - local * self.wheel_forces[w];
+        for (w, (direction, local, uneven)) in new.iter().enumerate() {
+            let indentation = direction.dot(&self.u) - uneven - local * self.wheel_forces[w];
             self.indentations[w] = [self.indentations[w][1], indentation];
         }
         self.v = v_star + velocity_share * &a;
@@ -269,7 +269,7 @@ fn agrees_with_a_plain_implementation() {
         }
         let stepper =
             Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::new(time_step, 0.85).unwrap()).unwrap();
-        let run = Run { train: &train, start: 1.9, finish: 7.7, speed };
+        let run = Run { train: &train, start: 1.9, finish: 7.7, motion: &Motion::Constant(speed) };
         let mut passage = Passage::new(&stepper, &level, run).unwrap();
         let steps = passage.planned_steps();
         let (worst, changes, touching) = compare(&mut passage, &vehicle.into(), steps);
@@ -283,7 +283,7 @@ fn agrees_with_a_plain_implementation() {
     assert!(seen > 0, "no sleeper touched");
 }
 
-/// Wheels on springs and dampers beside a given force.
+/// Wheels on springs and dampers beside a given force, on an uneven rail.
 #[test]
 fn linear_wheels_agree_with_a_plain_implementation() {
     let mut vehicle =
@@ -293,9 +293,11 @@ fn linear_wheels_agree_with_a_plain_implementation() {
     let train = Train::single(vehicle.clone(), Direction::Backward);
     let mut model = ballast(13);
     model.elements_per_bay = 2;
+    let wave = |i: i32| (0.1 * f64::from(i), 2e-4 * f64::from(i).sin());
+    model.irregularity = Irregularity::spline((0..80).map(wave).collect()).unwrap();
     let level = TrackLevel { ends: [0.0; 2], ..hollow(&model, 0.0, 1e-3, 4.0, 1.5) };
     let stepper = stepper(model, 1e-4, 0.85);
-    let run = Run { train: &train, start: 5.7, finish: 1.9, speed: 55.56 };
+    let run = Run { train: &train, start: 5.7, finish: 1.9, motion: &Motion::Constant(55.56) };
     let mut passage = Passage::new(&stepper, &level, run).unwrap();
     let steps = passage.planned_steps();
     let (worst, ..) = compare(&mut passage, &vehicle, steps);

@@ -23,6 +23,7 @@ pub fn beam(length: f64, bending_stiffness: f64, mass: f64, rail_ends: RailEnds,
         slabs: Vec::new(),
         rail_ends,
         elements_per_bay: elements,
+        irregularity: Irregularity::default(),
         gravity: 0.0,
     }
 }
@@ -37,6 +38,7 @@ pub fn ballast(seats: usize) -> TrackModel {
         slabs: Vec::new(),
         rail_ends: RailEnds::Clamped,
         elements_per_bay: 4,
+        irregularity: Irregularity::default(),
         gravity: 9.81,
     }
 }
@@ -60,6 +62,7 @@ pub fn transition(sleepers: usize, slab_seats: usize) -> TrackModel {
         }],
         rail_ends: RailEnds::Clamped,
         elements_per_bay: 4,
+        irregularity: Irregularity::default(),
         gravity: 9.81,
     }
 }
