@@ -7,7 +7,8 @@
 
 use super::scheme::Scheme;
 use super::{Track, TrackError};
-use crate::linalg::banded::{BandedFactor, SymmetricBanded, Window};
+use crate::linalg::banded::{NotPositiveDefinite, SymmetricBanded, Window};
+use crate::linalg::twisted::TwistedFactor;
 use std::sync::Arc;
 
 /// A time step prepared for one track; immutable and shared by all passages.
@@ -15,8 +16,8 @@ use std::sync::Arc;
 pub struct Stepper {
     pub(super) track: Arc<Track>,
     pub(super) scheme: Scheme,
-    pub(super) factor: BandedFactor,
-    /// Columns of A for rail deflection and slope, node by node: displacement of all unknowns per force, m/N.
+    pub(super) factor: TwistedFactor,
+    /// Columns of A for the unknowns of the rail: displacement of all unknowns per force, m/N.
     pub(super) of_rail: Vec<Window>,
     /// The same columns at the sleepers alone, counted by sleeper.
     pub(super) of_rail_at_sleepers: Vec<Window>,
@@ -39,7 +40,8 @@ impl Stepper {
         for (unknown, _) in &track.held {
             matrix.pin(*unknown);
         }
-        let factor = matrix.factor().map_err(|e| TrackError::Mechanism { x: track.place_of(e.row) })?;
+        let mechanism = |e: NotPositiveDefinite| TrackError::Mechanism { x: track.place_of(e.row) };
+        let factor = matrix.factor().map_err(mechanism)?;
 
         let mut scratch = vec![0.0; track.order()];
         let mut column = |unknown: usize| {
@@ -50,7 +52,7 @@ impl Stepper {
             column.values.iter_mut().for_each(|a| *a *= of_stiffness);
             column
         };
-        let of_rail: Vec<Window> = track.rail.iter().flat_map(|w| [*w, *w + 1]).map(&mut column).collect();
+        let of_rail: Vec<Window> = track.rail_unknowns.iter().map(|u| column(*u)).collect();
         let of_sleeper: Vec<Window> = track.sleepers.iter().map(|s| column(s.unknown)).collect();
         let at_sleepers = |column: &Window| {
             let start = track.sleepers.partition_point(|s| s.unknown < column.start);
@@ -62,10 +64,22 @@ impl Stepper {
             of_sleeper_at_sleepers: of_sleeper.iter().map(at_sleepers).collect(),
             of_rail,
             of_sleeper,
-            factor,
+            factor: TwistedFactor::new(&matrix).map_err(mechanism)?,
             scheme,
             track,
         })
+    }
+
+    /// Columns of A for the unknowns of a rail element.
+    #[inline]
+    pub(super) fn columns(&self, element: usize) -> [&Window; 4] {
+        self.track.elements[element].columns.map(|column| &self.of_rail[column])
+    }
+
+    /// The same at the sleepers alone, counted by sleeper.
+    #[inline]
+    pub(super) fn columns_at_sleepers(&self, element: usize) -> [&Window; 4] {
+        self.track.elements[element].columns.map(|column| &self.of_rail_at_sleepers[column])
     }
 
     pub fn track(&self) -> &Track {

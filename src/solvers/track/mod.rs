@@ -1,16 +1,18 @@
 //! One rail on its seats, and the vehicles that run over it: statics with lift-off, and passages in time.
 //!
-//! The rail and the slabs are Euler–Bernoulli beams of cubic Hermite elements, pads are springs and dampers, a sleeper is a
-//! mass on a support that can only push, and a vehicle is a linear multibody system on wheels that press on the rail by the law
-//! of Hertz, a spring or a given force. Displacements and forces are positive downward, moments positive where the rail sags,
-//! x grows to the right.
+//! The rail is a beam after Euler–Bernoulli or Timoshenko, slabs and auxiliary rails are beams after Euler–Bernoulli, pads are
+//! springs and dampers, a sleeper is a mass on a support that can only push, and a vehicle is a linear multibody system on
+//! wheels that press on the rail by the law of Hertz, a spring or a given force. Displacements and forces are positive
+//! downward, moments positive where the rail sags, x grows to the right.
 //!
 //! [`TrackModel`] says what there is; [`Track`] is its mesh and matrices; [`solve_static`] finds the state at rest;
 //! [`Stepper`] factors one time step for all passages over that track; [`Passage`] runs one train over it and shows every
 //! step to an [`Observer`].
 
+mod assembly;
 mod beam;
 mod contact;
+mod ends;
 mod envelope;
 mod error;
 mod influence;
@@ -25,22 +27,23 @@ mod quasi_static;
 mod running;
 mod scheme;
 mod statics;
+mod support;
 mod train;
 mod vehicle;
 mod view;
 
-pub use contact::SupportPhase;
 pub use envelope::Envelope;
 pub use error::TrackError;
 pub use influence::Stepper;
 pub use irregularity::Irregularity;
 pub use mesh::Track;
-pub use model::{Foot, RailEnds, RailSection, Seat, Slab, TrackLevel, TrackModel};
+pub use model::{AuxiliaryRail, Foot, RailEnds, RailSection, Seat, Shear, Slab, TrackLevel, TrackModel};
 pub use motion::Motion;
 pub use multibody::{Multibody, Wheel, WheelContact};
 pub use passage::{Counters, Passage, Run};
 pub use scheme::Scheme;
 pub use statics::{Balance, Loads, StaticState, solve_static};
+pub use support::{Seating, SupportPhase};
 pub use train::{Direction, Train};
 pub use vehicle::Vehicle;
 pub use view::{Observer, StepView};

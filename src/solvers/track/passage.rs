@@ -3,7 +3,6 @@
 //! A step solves the linear track with all supports closed, then the contacts ([`super::interface`]), and adds what the
 //! contact forces displace. Nothing is factored and nothing allocated while it runs.
 
-use super::contact::{SupportLine, SupportPhase};
 use super::influence::Stepper;
 use super::interface::{Contact, Interface, add_scaled};
 use super::motion::Timetable;
@@ -11,7 +10,7 @@ use super::quasi_static::{self, Start};
 use super::running::RunningVehicle;
 
 use super::view::{Observer, StepView};
-use super::{Loads, Motion, StaticState, TrackError, TrackLevel, Train, WheelContact, solve_static};
+use super::{Loads, Motion, StaticState, SupportPhase, TrackError, TrackLevel, Train, WheelContact, solve_static};
 use std::ops::Range;
 
 /// Which train runs from where to where.
@@ -142,12 +141,15 @@ impl<'a> Passage<'a> {
         let mut support_forces = vec![0.0; track.sleepers.len()];
         for (s, sleeper) in track.sleepers.iter().enumerate() {
             let gap = start.state.unknowns[sleeper.unknown] - level.settlements[sleeper.seat];
-            let linear = sleeper.support_stiffness * gap + sleeper.support_damping * start.velocity[sleeper.unknown];
-            let carries = start.state.closed[s] && linear >= 0.0;
+            let damper = sleeper.support_damping * start.velocity[sleeper.unknown];
+            let phase = start.state.phases[s];
+            let force = sleeper.spring_force(phase, gap) + damper;
+            let carries = phase != SupportPhase::Open && force >= 0.0;
+            support_forces[s] = if carries { force } else { 0.0 };
             interface.gaps[s] = gap;
-            interface.phases[s] = if carries { SupportPhase::Closed } else { SupportPhase::Open };
-            interface.corrections[s] = if carries { 0.0 } else { linear };
-            support_forces[s] = if carries { linear } else { 0.0 };
+            interface.phases[s] = if carries { phase } else { SupportPhase::Open };
+            let closed = sleeper.spring_force(SupportPhase::Closed, gap) + damper;
+            interface.corrections[s] = closed - support_forces[s];
         }
         let order = track.order();
         Ok(Self {
@@ -266,10 +268,7 @@ impl<'a> Passage<'a> {
             let (i, settlement) = (sleeper.unknown, self.level.settlements[sleeper.seat]);
             self.interface.free_gaps[s] = predicted[i] + displacement_share * a[i] - settlement;
             let passing_speed = predicted_velocity[i] + rate * (settlement - predicted[i]);
-            self.interface.lines[s] = SupportLine {
-                stiffness: sleeper.support_stiffness + rate * sleeper.support_damping,
-                offset: sleeper.support_damping * passing_speed,
-            };
+            self.interface.lines[s] = sleeper.lines(rate, passing_speed);
         }
         let time = travelled;
         let effort = self.interface.solve(self.stepper).map_err(|contact| TrackError::StepNotConverged {
@@ -287,8 +286,7 @@ impl<'a> Passage<'a> {
         // What the contact forces add, and the end of the step.
         let per_displacement = 1.0 / displacement_share;
         for (point, force) in self.interface.points.iter().zip(&self.interface.forces) {
-            let columns = &self.stepper.of_rail[2 * point.element..2 * point.element + 4];
-            for (column, shape) in columns.iter().zip(point.shape) {
+            for (column, shape) in self.stepper.columns(point.element).into_iter().zip(point.shape) {
                 add_scaled(&mut a[column.start..], &column.values, per_displacement * shape * force);
             }
         }
@@ -332,7 +330,9 @@ impl<'a> Passage<'a> {
         for sleeper in &track.sleepers {
             let (u, k) = (u[sleeper.unknown], sleeper.support_stiffness);
             let gap = (u - self.level.settlements[sleeper.seat]).max(0.0);
-            energy += 0.5 * k * (gap * gap - u * u);
+            let (soft, closure) = sleeper.seating.map_or((k, 0.0), |s| (s.stiffness, s.closure));
+            let (first, then) = (gap.min(closure), (gap - closure).max(0.0));
+            energy += 0.5 * (soft * first * first + k * then * then - k * u * u) + soft * closure * then;
         }
         energy
     }

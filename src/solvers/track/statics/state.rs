@@ -1,9 +1,9 @@
 //! What an equilibrium is like: deflections, forces and their balance.
 
 use super::standing::StandingTrain;
-use crate::solvers::track::beam;
+use crate::solvers::track::ends;
 use crate::solvers::track::mesh::{FootUnknown, RailPoint, Track};
-use crate::solvers::track::{Foot, TrackError, TrackLevel};
+use crate::solvers::track::{RailEnds, SupportPhase, TrackError, TrackLevel};
 
 /// An equilibrium of the track. Lists run over nodes, seats or wheels as the fields say; all positive down.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,12 +23,12 @@ pub struct StaticState {
     /// Per wheel, vehicle by vehicle, N.
     pub wheel_forces: Vec<f64>,
     pub balance: Balance,
-    /// Sets of closed supports that were tried.
+    /// Choices of the supports' phases that were tried.
     pub iterations: usize,
     /// All unknowns of the track.
     pub(in super::super) unknowns: Vec<f64>,
     /// Per sleeper.
-    pub(in super::super) closed: Vec<bool>,
+    pub(in super::super) phases: Vec<SupportPhase>,
     pub(in super::super) vehicles: Vec<Vec<f64>>,
     /// Per wheel, m; 0 under a given force.
     pub(in super::super) indentations: Vec<f64>,
@@ -38,7 +38,7 @@ pub struct StaticState {
 /// The sums of forces in an equilibrium, N, loads downward and supports upward.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Balance {
-    /// Gravity on rail, sleepers and vehicles, and the point loads; a slab lies at rest under its own weight already.
+    /// Gravity on rails, sleepers and vehicles, and the point loads; a slab lies at rest under its own weight already.
     pub loads: f64,
     /// Of the sleepers' supports.
     pub sleeper_supports: f64,
@@ -60,7 +60,7 @@ pub(super) fn describe(
     track: &Track,
     level: &TrackLevel,
     unknowns: Vec<f64>,
-    closed: Vec<bool>,
+    phases: Vec<SupportPhase>,
     on_rail: Vec<(RailPoint, f64)>,
     wheels: StandingTrain,
     point_loads: f64,
@@ -86,27 +86,11 @@ pub(super) fn describe(
         .map(|i| model.seats[i].pad_stiffness * (rail_deflection[track.seat_nodes[i]] - foot_displacements[i]))
         .collect();
     let mut contact_forces = vec![0.0; model.seats.len()];
-    for (sleeper, _) in track.sleepers.iter().zip(&closed).filter(|(_, closed)| **closed) {
+    for (sleeper, phase) in track.sleepers.iter().zip(&phases) {
         let gap = u[sleeper.unknown] - level.settlements[sleeper.seat];
-        contact_forces[sleeper.seat] = (sleeper.support_stiffness * gap).max(0.0);
+        contact_forces[sleeper.seat] = sleeper.spring_force(*phase, gap).max(0.0);
     }
 
-    let lengths = track.nodes.windows(2).map(|pair| pair[1] - pair[0]);
-    let rail_weight: f64 = lengths
-        .zip(track.nodes.windows(2))
-        .map(|(length, pair)| {
-            let middle = 0.5 * (pair[0] + pair[1]);
-            length * model.rail.iter().find(|s| middle <= s.end).or(model.rail.last()).map_or(0.0, |s| s.mass)
-        })
-        .sum();
-    let sleeper_weight: f64 = track
-        .sleepers
-        .iter()
-        .map(|s| match model.seats[s.seat].foot {
-            Foot::Sleeper { mass, .. } => mass,
-            _ => 0.0,
-        })
-        .sum();
     let vehicle_weight = wheels.weight();
     let mut reactions = track.weight.clone();
     for (point, force) in &on_rail {
@@ -114,14 +98,20 @@ pub(super) fn describe(
     }
     track.stiffness.subtract_product(u, &mut reactions);
     let balance = Balance {
-        loads: model.gravity * (rail_weight + sleeper_weight) + vehicle_weight + point_loads,
+        loads: track.dead_weight + vehicle_weight + point_loads,
         sleeper_supports: contact_forces.iter().sum(),
         rigid_seats: (0..model.seats.len())
             .filter(|i| track.feet[*i] == FootUnknown::Rigid)
             .map(|i| seat_loads[i])
             .sum(),
         slab_foundations: slab_reactions(track, u),
-        rail_ends: track.held.iter().filter(|(_, end)| end.is_some()).map(|(unknown, _)| reactions[*unknown]).sum(),
+        rail_ends: track
+            .held
+            .iter()
+            .filter(|(_, end)| end.is_some())
+            .map(|(unknown, _)| reactions[*unknown])
+            .sum::<f64>()
+            + if model.rail_ends == RailEnds::Absorbing { ends::carried(track, level, u) } else { 0.0 },
     };
     StaticState {
         rail_slope: track.rail.iter().map(|w| u[*w + 1]).collect(),
@@ -134,7 +124,7 @@ pub(super) fn describe(
         balance,
         iterations,
         unknowns,
-        closed,
+        phases,
         vehicles: wheels.vehicles,
         indentations: wheels.indentations,
         on_rail,
@@ -144,10 +134,8 @@ pub(super) fn describe(
 fn slab_reactions(track: &Track, u: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (slab, mesh) in track.model.slabs.iter().zip(&track.slabs) {
-        for (i, pair) in mesh.unknowns.windows(2).enumerate() {
-            let node = mesh.first_node + i;
-            let load = beam::even_load(slab.foundation_stiffness, track.nodes[node + 1] - track.nodes[node]);
-            let unknowns = [pair[0], pair[0] + 1, pair[1], pair[1] + 1];
+        for (unknowns, beam) in mesh.elements(&track.nodes, slab.bending_stiffness) {
+            let load = beam.even_load(slab.foundation_stiffness);
             sum += unknowns.into_iter().zip(load).map(|(unknown, load)| load * u[unknown]).sum::<f64>();
         }
     }

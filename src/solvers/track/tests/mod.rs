@@ -1,6 +1,8 @@
 //! Cases with known answers, by what they exercise.
 
+mod beams;
 mod dynamics;
+mod ends;
 mod reference;
 mod scenes;
 mod statics;

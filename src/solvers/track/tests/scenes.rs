@@ -3,7 +3,7 @@
 use crate::solvers::track::*;
 use std::sync::Arc;
 
-pub const SLEEPER: Foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 50e3 };
+pub const SLEEPER: Foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 50e3, seating: None };
 
 pub fn seat(x: f64, foot: Foot) -> Seat {
     Seat { x, pad_stiffness: 40e6, pad_damping: 5e3, foot }
@@ -11,7 +11,7 @@ pub fn seat(x: f64, foot: Foot) -> Seat {
 
 /// One kind of rail from end to end.
 pub fn rail(ends: [f64; 2], mass: f64, bending_stiffness: f64) -> Vec<RailSection> {
-    vec![RailSection { start: ends[0], end: ends[1], mass, bending_stiffness }]
+    vec![RailSection { start: ends[0], end: ends[1], mass, bending_stiffness, shear: None }]
 }
 
 /// A beam without seats, of `elements` elements.
@@ -21,6 +21,8 @@ pub fn beam(length: f64, bending_stiffness: f64, mass: f64, rail_ends: RailEnds,
         rail: rail([0.0, length], mass, bending_stiffness),
         seats: Vec::new(),
         slabs: Vec::new(),
+        auxiliary_rails: Vec::new(),
+        joints: Vec::new(),
         rail_ends,
         elements_per_bay: elements,
         irregularity: Irregularity::default(),
@@ -36,6 +38,8 @@ pub fn ballast(seats: usize) -> TrackModel {
         rail: rail(ends, 60.0, 6.4e6),
         seats: (0..seats).map(|i| seat(0.3 + 0.6 * i as f64, SLEEPER)).collect(),
         slabs: Vec::new(),
+        auxiliary_rails: Vec::new(),
+        joints: Vec::new(),
         rail_ends: RailEnds::Clamped,
         elements_per_bay: 4,
         irregularity: Irregularity::default(),
@@ -60,6 +64,8 @@ pub fn transition(sleepers: usize, slab_seats: usize) -> TrackModel {
             foundation_stiffness: 160e6,
             foundation_damping: 160e3,
         }],
+        auxiliary_rails: Vec::new(),
+        joints: Vec::new(),
         rail_ends: RailEnds::Clamped,
         elements_per_bay: 4,
         irregularity: Irregularity::default(),
@@ -99,5 +105,6 @@ pub fn hollow(model: &TrackModel, even: f64, depth: f64, middle: f64, half_width
 
 /// A meshed track with a step of `time_step` (s).
 pub fn stepper(model: TrackModel, time_step: f64, spectral_radius: f64) -> Stepper {
-    Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::new(time_step, spectral_radius).unwrap()).unwrap()
+    Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::generalised_alpha(time_step, spectral_radius).unwrap())
+        .unwrap()
 }

@@ -41,7 +41,7 @@ fn a_vehicle_swings_at_its_frequencies() {
     let body = Multibody::from(wagon);
     let scaled = |i, j| body.stiffness[(i, j)] / (body.masses[i] * body.masses[j]).sqrt();
     let modes = DMatrix::from_fn(10, 10, scaled).symmetric_eigen();
-    let scheme = Scheme::new(2e-5, 1.0).unwrap();
+    let scheme = Scheme::generalised_alpha(2e-5, 1.0).unwrap();
     for (square, mode) in modes.eigenvalues.iter().zip(modes.eigenvectors.column_iter()).filter(|(s, _)| **s > 1.0) {
         let (expected, shape) = (square.sqrt() / (2.0 * PI), |i: usize| mode[i] / body.masses[i].sqrt());
         let start: Vec<f64> = (0..10).map(shape).collect();
