@@ -1,7 +1,7 @@
 //! From the track and train of the scene to those of the solver: plain numbers of one rail.
 
 use super::TrackNode;
-use crate::scenario::{self, Beam, Foot, Integrator, RailEnds, Section, Track};
+use crate::scenario::{self, Beam, Foot, Integrator, Piece, Profile, RailEnds, Section, Track};
 use crate::solvers::track as solver;
 
 /// The solver's model of a track.
@@ -20,9 +20,16 @@ pub(super) fn model(node: &TrackNode) -> solver::TrackModel {
             RailEnds::Free => solver::RailEnds::Free,
             RailEnds::Absorbing => solver::RailEnds::Absorbing,
         },
+        irregularity: track.irregularity.as_ref().map(irregularity).unwrap_or_default(),
         elements_per_bay: node.elements_per_bay as usize,
         gravity: node.gravity,
     }
+}
+
+fn irregularity(profile: &Profile) -> solver::Irregularity {
+    let cubics = profile.pieces.iter().flat_map(Piece::cubics);
+    let cubic = |c: scenario::Cubic| solver::Cubic { ends: c.ends, values: c.values, curvatures: c.curvatures };
+    solver::Irregularity::cubics(cubics.map(cubic).collect())
 }
 
 fn rail(section: &Section, beam: Beam) -> solver::RailSection {
@@ -52,6 +59,7 @@ fn seat(seat: &scenario::Seat) -> solver::Seat {
                     mass: **mass,
                     support_stiffness: spring.stiffness,
                     support_damping: spring.damping,
+                    seating: spring.seating.map(|(stiffness, closure)| solver::Seating { stiffness, closure }),
                 }
             }
             Foot::Rigid => solver::Foot::Rigid,
@@ -84,12 +92,21 @@ fn auxiliary_rail(section: &Section) -> Option<solver::AuxiliaryRail> {
 
 /// The solver's train.
 pub(super) fn train(train: &scenario::Train, direction: scenario::Direction) -> solver::Train {
-    let vehicles = train.vehicles.iter().map(vehicle).zip(train.vehicle_offsets()).collect();
+    let vehicles = train.vehicles.iter().map(|v| vehicle(v).into()).zip(train.vehicle_offsets()).collect();
     let direction = match direction {
         scenario::Direction::Backward => solver::Direction::Backward,
         _ => solver::Direction::Forward,
     };
     solver::Train { vehicles, direction }
+}
+
+/// How fast it runs.
+pub(super) fn motion(train: &scenario::Train) -> solver::Motion {
+    let Some(profile) = &train.speed_profile else { return solver::Motion::Constant(*train.speed) };
+    let points = profile.pieces.iter().flat_map(|piece| piece.knots().into_iter().map(|x| (x, profile.value(x))));
+    let mut knots: Vec<(f64, f64)> = points.collect();
+    knots.dedup_by(|next, kept| next.0 <= kept.0);
+    solver::Motion::ByChainage(knots)
 }
 
 fn vehicle(v: &scenario::Vehicle) -> solver::Vehicle {

@@ -1,6 +1,6 @@
 //! The track node at work: its statics and its passages, spoken to in the scene's terms.
 
-use super::model::{level, model, scheme, train};
+use super::model::{level, model, motion, scheme, train};
 use super::sampler::Sampler;
 use super::substructure::initial_settlement;
 use super::track::{PassageOutcome, RailPoint, SeatOutcome, Unloaded, UnloadedSeat};
@@ -79,7 +79,8 @@ impl<'a> TrackSystem<'a> {
         let (start, finish) =
             if direction == Direction::Backward { (right - base, left) } else { (left + base, right) };
         let level = level(self.node, settlement);
-        let run = Run { train: &train, start, finish, speed: *blocks.train.speed };
+        let motion = motion(&blocks.train);
+        let run = Run { train: &train, start, finish, motion: &motion };
         let mut passage = Passage::new(stepper, &level, run)?;
         let unloaded = self.at_rest(passage.unloaded(), settlement);
         let mut envelope = Envelope::default();

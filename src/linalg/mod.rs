@@ -2,4 +2,5 @@
 
 pub mod banded;
 pub mod dense;
+pub mod skyline;
 pub mod twisted;

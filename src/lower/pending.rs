@@ -2,7 +2,7 @@
 
 use super::Pass;
 use crate::diag::{Code, Diagnostic, Span};
-use crate::scenario::{Foot, Loading, Scenario, TimeStep};
+use crate::scenario::{Scenario, TimeStep};
 
 /// Refuses what no solver takes.
 pub(super) fn refuse(pass: &mut Pass, scenario: &Scenario) {
@@ -16,25 +16,10 @@ pub(super) fn refuse(pass: &mut Pass, scenario: &Scenario) {
 }
 
 fn pending(scenario: &Scenario) -> Vec<(&'static str, Option<Span>)> {
-    let (track, solve) = (&scenario.track, &scenario.solve);
+    let solve = &scenario.solve;
     let mut found = Vec::new();
     if let TimeStep::Adaptive { tolerance } = solve.time_step {
         found.push(("an `adaptive` time step", tolerance.origin.span()));
-    }
-    if let Some(irregularity) = &track.irregularity {
-        found.push(("an `irregularity` of the rail", irregularity.origin.span()));
-    }
-    if let Some(Loading::Traffic(traffic)) = &scenario.loading
-        && let Some(speed) = &traffic.train.speed_profile
-    {
-        found.push(("a `speed` that varies", speed.origin.span()));
-    }
-    let seating = track.seats.iter().find_map(|seat| match &seat.foot {
-        Foot::Sleeper { support, .. } => support.seating,
-        _ => None,
-    });
-    if let Some(seating) = seating {
-        found.push(("the `seating` of a support", seating.stiffness.origin.span()));
     }
     found
 }

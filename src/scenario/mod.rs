@@ -11,7 +11,7 @@ mod track;
 mod traffic;
 
 pub use given::{Given, Origin};
-pub use profile::{Curve, Piece, Profile};
+pub use profile::{Cubic, Curve, Piece, Profile};
 pub use track::{
     AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, Spring, Support, Track, Transition,
     Usp,

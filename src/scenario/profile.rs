@@ -33,6 +33,15 @@ pub enum Curve {
     Natural(Vec<[f64; 3]>),
 }
 
+/// A cubic between two chainages by its values and second derivatives at both.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cubic {
+    /// m.
+    pub ends: [f64; 2],
+    pub values: [f64; 2],
+    pub curvatures: [f64; 2],
+}
+
 impl Profile {
     /// The value at a chainage; where two pieces meet, that of the right one.
     pub fn value(&self, x: f64) -> f64 {
@@ -46,6 +55,18 @@ impl Piece {
     pub fn knots(&self) -> Vec<f64> {
         let inside = self.curve.knots().into_iter().filter(|x| *x > self.start + TINY && *x < self.end - TINY);
         [self.start].into_iter().chain(inside).chain([self.end]).collect()
+    }
+
+    /// The piece, knot by knot.
+    pub fn cubics(&self) -> Vec<Cubic> {
+        let cubic = |pair: &[f64]| {
+            let ends = [pair[0], pair[1]];
+            // beyond its points a curve is level
+            let inside = self.curve.covers(0.5 * (ends[0] + ends[1]));
+            let curvatures = if inside { ends.map(|x| self.curve.curvature(x)) } else { [0.0; 2] };
+            Cubic { ends, values: ends.map(|x| self.curve.value(x)), curvatures }
+        };
+        self.knots().windows(2).map(cubic).collect()
     }
 }
 
@@ -93,6 +114,26 @@ impl Curve {
                 Err(end) => end.map_or(0.0, |p| p[1]),
             },
         }
+    }
+
+    /// The second derivative between its points.
+    fn curvature(&self, x: f64) -> f64 {
+        match self {
+            Curve::Linear(_) => 0.0,
+            Curve::Level([a, b]) => {
+                let h = b[0] - a[0];
+                6.0 * (b[1] - a[1]) / (h * h) * (1.0 - 2.0 * (x - a[0]) / h)
+            }
+            Curve::Natural(points) => match between(points, x, |p| p[0]) {
+                Ok([a, b]) => a[2] + (b[2] - a[2]) * (x - a[0]) / (b[0] - a[0]),
+                Err(_) => 0.0,
+            },
+        }
+    }
+
+    fn covers(&self, x: f64) -> bool {
+        let knots = self.knots();
+        knots.first().is_some_and(|first| *first < x) && knots.last().is_some_and(|last| x < *last)
     }
 
     fn knots(&self) -> Vec<f64> {
@@ -169,6 +210,26 @@ mod tests {
         };
         let order = (error(40) / error(80)).log2();
         assert!((3.8..4.2).contains(&order), "order {order}");
+    }
+
+    #[test]
+    fn cubics_are_the_curve() {
+        let curves = [
+            Curve::Linear(vec![[0.0, 1.0], [2.0, 5.0], [3.0, 0.0]]),
+            Curve::Level([[0.5, 2.0], [4.0, 6.0]]),
+            Curve::natural(&[[0.0, 0.0], [1.0, 1.0], [2.5, -2.0], [4.0, 0.0]]),
+        ];
+        for curve in curves {
+            let piece = Piece { start: -0.7, end: 3.3, curve };
+            for Cubic { ends: [a, b], values, curvatures } in piece.cubics() {
+                for (s, t) in [(1.0, 0.0), (0.7, 0.3), (0.25, 0.75)] {
+                    let h = b - a;
+                    let bend = (s * s * s - s) * curvatures[0] + (t * t * t - t) * curvatures[1];
+                    let found = s * values[0] + t * values[1] + h * h / 6.0 * bend;
+                    assert!((found - piece.curve.value(s * a + t * b)).abs() < 1e-14, "{piece:?} {found}");
+                }
+            }
+        }
     }
 
     #[test]

@@ -6,3 +6,5 @@ mod ends;
 mod reference;
 mod scenes;
 mod statics;
+mod uneven;
+mod vehicles;
