@@ -53,6 +53,11 @@ impl<'a> StepView<'a> {
         self.passage.counters.steps
     }
 
+    /// Whether the time is a whole number of `every` times the passage's longest step: a grid that all steps keep to.
+    pub fn is_on_grid(&self, every: usize) -> bool {
+        self.passage.tick.is_multiple_of(every as u64 * self.passage.ticks_per_longest)
+    }
+
     /// s, since the start.
     pub fn time(&self) -> f64 {
         self.passage.time()
