@@ -8,6 +8,7 @@ mod complete;
 mod expectation;
 mod fit;
 mod geometry;
+mod law;
 mod library;
 mod loading;
 mod measure;

@@ -84,6 +84,7 @@ codes! {
     L1005 Warning "time step coarse for the contact"
     L1006 Warning "update interval that overshoots"
     L1007 Warning "sleeper passing near a vehicle resonance"
+    L1008 Warning "sleepers below the threshold of their law"
 }
 
 impl Code {
@@ -102,6 +103,7 @@ impl Code {
             Code::L1005 => "coarse_time_step",
             Code::L1006 => "update_overshoot",
             Code::L1007 => "passing_frequency",
+            Code::L1008 => "below_threshold",
             _ => return None,
         })
     }

@@ -5,13 +5,15 @@
 //! settlement and force are positive; every number a person may have written carries its [`Origin`].
 
 mod given;
+mod law;
 pub mod response;
 mod track;
 mod traffic;
 
 pub use given::{Given, Origin};
+pub use law::{SettlementLaw, law_argument};
 pub use track::{Foot, Pad, Rail, RailEnds, Seat, Section, Side, Slab, Support, Track, Transition};
-pub use traffic::{Direction, LawForm, SettlementLaw, StaticLoad, Target, Traffic, Train, Vehicle};
+pub use traffic::{Direction, StaticLoad, Target, Traffic, Train, Vehicle};
 
 use crate::diag::Span;
 use serde::{Deserialize, Serialize};
@@ -41,7 +43,10 @@ pub enum Loading {
 /// How the answer is computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Solve {
+    /// By which the supports settle.
     pub law: SettlementLaw,
+    /// Laws that are shown beside it, under the same forces.
+    pub other_laws: Vec<SettlementLaw>,
     pub update: Update,
     /// The word after `update_every`, for messages.
     pub update_span: Option<Span>,
