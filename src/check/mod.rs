@@ -12,6 +12,7 @@ mod law;
 mod library;
 mod loading;
 mod measure;
+mod measured;
 mod modules;
 mod names;
 mod overrides;
@@ -21,6 +22,7 @@ mod value;
 mod vehicle;
 mod words;
 
+pub use measured::{MeasuredCurve, measured_curve};
 pub use modules::{Folder, Modules, NoModules};
 pub use overrides::Override;
 

@@ -77,6 +77,8 @@ codes! {
     E0802 Error "output folder that cannot be used"
     E0803 Error "checkpoint of another scene"
     E0804 Error "expectation not met"
+    E0805 Error "measured curve that cannot be used"
+    E0806 Error "law that cannot be fitted"
     L1001 Warning "stiffness jump without mitigation"
     L1002 Warning "speed near the critical speed"
     L1003 Warning "track too short for its train"

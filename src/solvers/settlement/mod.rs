@@ -3,6 +3,8 @@
 //! A law sees, of every wheel, the [`Peak`] of what its support felt. How many wheels make one of its cycles is the law's
 //! [`CyclePer`]: publications differ, and some do not say.
 
+mod calibration;
+pub mod fit;
 mod guerin;
 mod hardening;
 mod hettler;
@@ -12,6 +14,7 @@ mod sato;
 mod shenton;
 mod varandas;
 
+pub use calibration::{Measured, Wanted, calibrate, curve};
 pub use guerin::Guerin;
 pub use hardening::HardeningState;
 pub use hettler::{Hettler, Logarithm};
