@@ -9,7 +9,7 @@ use crate::results::{LawRow, Run, unsettled};
 use std::fmt::Write;
 
 /// Laws that a reader can tell apart by colour, and the colours.
-const CLASSES: [&str; 10] = ["s0", "s1", "s2", "s3", "k0", "k1", "k2", "k3", "k4", "k5"];
+const CLASSES: [&str; 10] = ["s0", "s1", "s2", "s3", "k5", "k2", "k0", "k4", "k1", "k3"];
 
 /// The figures of a run with several laws.
 pub fn spread(run: &Run) -> Vec<Figure> {

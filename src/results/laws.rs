@@ -3,6 +3,7 @@
 use super::summarise::{far_field_of, largest};
 use super::{BlockRow, Row, Scalar};
 use crate::scenario::{Loading, Scenario, Seat, SettlementLaw};
+use crate::units::number;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -77,7 +78,7 @@ pub fn summarise_laws(scenario: &Scenario, rows: &[LawRow]) -> BTreeMap<String, 
 }
 
 /// Settlement that nobody measures, m: under a law with a threshold the forces were below it nearly everywhere.
-const NOTHING: f64 = 1e-6;
+const NOTHING: f64 = 1e-5;
 
 /// A sentence for each law under which nothing has settled in a run with traffic, with the force that would have been needed.
 pub fn unsettled(scenario: &Scenario, blocks: &[BlockRow], rows: &[LawRow]) -> Vec<String> {
@@ -86,22 +87,29 @@ pub fn unsettled(scenario: &Scenario, blocks: &[BlockRow], rows: &[LawRow]) -> V
         return Vec::new();
     }
     let force = largest(blocks.iter().map(|block| block.max_contact_force_N)).unwrap_or(0.0);
+    let of_driving = largest(blocks.iter().map(|block| block.max_settlement_m)).unwrap_or(0.0);
     let most = |index: usize, law: &SettlementLaw| {
-        let by_rows = largest(rows.iter().filter(|row| row.law == law.name).map(|row| row.settlement_m));
-        let by_blocks = largest(blocks.iter().map(|block| block.max_settlement_m)).filter(|_| index == 0);
-        by_rows.into_iter().chain(by_blocks).fold(0.0, f64::max)
+        let of_law = rows.iter().filter(|row| row.law == law.name).map(|row| row.settlement_m);
+        of_law.fold(if index == 0 { of_driving } else { 0.0 }, f64::max)
     };
-    let settled = |(index, law): (usize, &SettlementLaw)| {
-        most(index, law) > if law.law.threshold().is_some() { NOTHING } else { 0.0 }
+    laws(scenario).enumerate().filter_map(|(index, law)| sentence(law, most(index, law), force)).collect()
+}
+
+/// Nothing is said of a law under which something has settled; `force` (N) is the largest of the run.
+fn sentence(law: &SettlementLaw, most: f64, force: f64) -> Option<String> {
+    let threshold = law.law.threshold();
+    if most > if threshold.is_some() { NOTHING } else { 0.0 } {
+        return None;
+    }
+    let tenths = |force: f64| number((force / 100.0).round() / 10.0);
+    let threshold = threshold.map_or(String::new(), |t| format!(", its threshold is {} kN", tenths(t)));
+    let (what, at_most) = match most {
+        0.0 => ("nothing", String::new()),
+        most => ("practically nothing", format!(", at most {} mm", number((most * 1e7).round() / 1e4))),
     };
-    let sentence = |law: &SettlementLaw| {
-        let tenths = |force: f64| crate::units::number((force / 100.0).round() / 10.0);
-        let threshold = law.law.threshold().map_or(String::new(), |t| format!(", its threshold is {} kN", tenths(t)));
-        format!(
-            "nothing settled under law `{}`: the largest contact force was {} kN a seat{threshold}",
-            law.name,
-            tenths(force)
-        )
-    };
-    laws(scenario).enumerate().filter(|(i, law)| !settled((*i, law))).map(|(_, law)| sentence(law)).collect()
+    Some(format!(
+        "{what} settled under law `{}`{at_most}: the largest contact force was {} kN a seat{threshold}",
+        law.name,
+        tenths(force)
+    ))
 }
