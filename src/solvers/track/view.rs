@@ -116,6 +116,18 @@ impl<'a> StepView<'a> {
         }
     }
 
+    /// How far the sleeper presses its support below the support's unloaded level, m, 0 where it hangs; none for a seat without
+    /// a sleeper.
+    pub fn support_deflection(&self, seat: usize) -> Option<f64> {
+        match self.track().feet[seat] {
+            FootUnknown::Sleeper(s) => {
+                let foot = self.passage.displacement[self.track().sleepers[s].unknown];
+                Some((foot - self.passage.level.settlements[seat]).max(0.0))
+            }
+            _ => None,
+        }
+    }
+
     /// Displacement of the sleeper or slab under a seat, m, from the track as built; 0 for rigid seats, as for both others.
     pub fn foot_displacement(&self, seat: usize) -> f64 {
         self.track().foot_unknown(seat).map_or(0.0, |unknown| self.passage.displacement[unknown])
