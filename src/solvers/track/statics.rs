@@ -149,8 +149,7 @@ pub(super) fn solve_with_inertia(
         before.clone_from(&closed);
         let mut consistent = true;
         for (s, sleeper) in track.sleepers.iter().enumerate() {
-            let gap = unknowns[sleeper.unknown] - level.settlements[sleeper.seat];
-            let wrong = if closed[s] { gap < -GAP_TOLERANCE } else { gap > GAP_TOLERANCE };
+            let wrong = contradicts(track, level, s, closed[s], &unknowns);
             if wrong && (consistent || !one_by_one) {
                 closed[s] = !closed[s];
                 consistent = false;
@@ -166,8 +165,15 @@ pub(super) fn solve_with_inertia(
     Err(TrackError::NoEquilibrium { x: last_change, iterations: limit })
 }
 
+/// Whether a sleeper's gap contradicts that its support is closed, or open.
+pub(super) fn contradicts(track: &Track, level: &TrackLevel, sleeper: usize, closed: bool, unknowns: &[f64]) -> bool {
+    let sleeper = &track.sleepers[sleeper];
+    let gap = unknowns[sleeper.unknown] - level.settlements[sleeper.seat];
+    if closed { gap < -GAP_TOLERANCE } else { gap > GAP_TOLERANCE }
+}
+
 /// Factors the stiffness with the open supports removed; fails with the row of a mechanism.
-fn factor(track: &Track, closed: &[bool]) -> Result<BandedFactor, usize> {
+pub(super) fn factor(track: &Track, closed: &[bool]) -> Result<BandedFactor, usize> {
     let mut stiffness = track.stiffness.clone();
     for (sleeper, _) in track.sleepers.iter().zip(closed).filter(|(_, closed)| !**closed) {
         stiffness.add(sleeper.unknown, sleeper.unknown, -sleeper.support_stiffness);
@@ -187,7 +193,7 @@ fn subtract_stiffness(track: &Track, closed: &[bool], u: &[f64], y: &mut [f64]) 
 }
 
 /// The wheels of a train at rest, with what the last solve found.
-struct StandingTrain<'a> {
+pub(super) struct StandingTrain<'a> {
     train: Option<&'a Train>,
     leading: f64,
     weights: Vec<VehicleVector>,
@@ -198,7 +204,7 @@ struct StandingTrain<'a> {
 }
 
 impl<'a> StandingTrain<'a> {
-    fn new(track: &Track, train: Option<(&'a Train, f64)>, inertia: &Inertia) -> Result<Self, TrackError> {
+    pub fn new(track: &Track, train: Option<(&'a Train, f64)>, inertia: &Inertia) -> Result<Self, TrackError> {
         let mut standing = Self {
             train: None,
             leading: 0.0,
@@ -230,7 +236,7 @@ impl<'a> StandingTrain<'a> {
     }
 
     /// Solves track and vehicles for one set of closed supports; returns the unknowns of the track.
-    fn solve(
+    pub fn solve(
         &mut self,
         track: &Track,
         level: &TrackLevel,

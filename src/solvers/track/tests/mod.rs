@@ -3,4 +3,5 @@
 mod dynamics;
 mod reference;
 mod scenes;
+mod standing;
 mod statics;
