@@ -203,6 +203,7 @@ impl Checker<'_> {
             seats: seats?,
             after: after?,
             every: record.number("every").map(|n| n.value),
+            near: None,
         })
     }
 

@@ -7,6 +7,8 @@ use crate::scenario::{Loading, Record, Scenario, Track};
 
 /// Seats counted from a transition (paper, 4.1): far field, the dip, its edges, the slab's edge and the slab.
 const SEATS: [i32; 6] = [-13, -5, -3, -1, 1, 7];
+/// Distance of the nearest wheel from which nothing happens at a seat, m: a long track would keep hours of rest.
+const NEAR: f64 = 12.0;
 /// Transitions that get them; of the same form they show the same.
 const TRANSITIONS: usize = 2;
 
@@ -32,7 +34,13 @@ pub(super) fn records(pass: &mut Pass, scenario: &Scenario) -> Vec<Record> {
         format!("histories at seats {} before the first and after the last axle", names.join(", ")),
         "the scene has no `record`, and its report shows them",
     );
-    vec![Record { quantities: QUANTITIES.to_vec(), seats, after: vec![0, *traffic.total], every: None }]
+    vec![Record {
+        quantities: QUANTITIES.to_vec(),
+        seats,
+        after: vec![0, *traffic.total],
+        every: None,
+        near: Some(NEAR),
+    }]
 }
 
 /// Indices of the seats, those that exist; the middle one of a track without transitions.

@@ -236,7 +236,7 @@ impl Chart {
         let frame = plane.frame;
         let (right, bottom) = (frame.x + frame.width, frame.y + frame.height);
         let (low, high) = (plane.y.0 / self.y.size, plane.y.1 / self.y.size);
-        let marks = ticks(low, high, rows(frame.height));
+        let marks = ticks(low, high, rows(frame.height) + 1);
         let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
         for mark in marks {
             let y = plane.at((plane.x.0, mark * self.y.size)).1;
@@ -270,9 +270,11 @@ impl Chart {
         let fits = |step: &i32| f64::from(*step) * gap >= NUMBER;
         let step = [1, 2, 5, 10, 20, 50, 100, 200, 500].into_iter().find(fits).unwrap_or(1000);
         svg.text("small muted", (left - 7.0, top - 8.0), Anchor::End, "Seat");
+        let mut free = left + 0.4 * NUMBER;
         for (place, number) in self.seats.iter().filter(|seat| seat.1 % step == 0) {
             let x = plane.at((*place, 0.0)).0;
-            if (left..=left + width).contains(&x) {
+            if (free..=left + width).contains(&x) {
+                free = x + 0.9 * NUMBER;
                 svg.line("axis", (x, top - 4.0), (x, top));
                 let name = format!("{number:+}").replace('-', "\u{2212}");
                 svg.text("small muted", (x, top - 8.0), Anchor::Middle, &name);
@@ -306,7 +308,9 @@ impl Chart {
         for (level, name) in &self.levels {
             let y = plane.at((plane.x.0, *level)).1;
             svg.line("load", (left, y), (left + width, y));
-            svg.text("small muted halo", (left + 6.0, y - 5.0), Anchor::Start, name);
+            if !name.is_empty() {
+                svg.text("small muted halo", (left + 6.0, y - 5.0), Anchor::Start, name);
+            }
         }
         for band in self.bands.iter().filter(|band| !band.label.is_empty()) {
             let from = plane.at((band.from, 0.0)).0.max(left);

@@ -11,9 +11,9 @@ use crate::scenario::response::Response;
 const HEIGHT: f64 = 235.0;
 
 const SHOWN: [(Response, &str); 3] = [
-    (Response::ContactForce, "Contact force"),
-    (Response::SleeperVelocity, "Velocity"),
-    (Response::SleeperAcceleration, "Acceleration"),
+    (Response::ContactForce, "contact force"),
+    (Response::SleeperVelocity, "velocity"),
+    (Response::SleeperAcceleration, "acceleration"),
 ];
 
 pub fn hanging_sleeper(run: &Run) -> Option<Figure> {
@@ -24,7 +24,7 @@ pub fn hanging_sleeper(run: &Run) -> Option<Figure> {
     }
     let mut charts: Vec<(Chart, f64)> = Vec::new();
     for (quantity, title) in SHOWN {
-        let title = |seat: &str| format!("{title}, sleeper {}", shown(seat));
+        let title = |seat: &str| format!("{}: {title}", shown(seat));
         let mut row: Vec<Chart> = chosen.iter().map(|seat| panel(run, quantity, seat, &title(seat), &counts)).collect();
         if row.iter().all(|chart| !chart.is_empty()) {
             share_scale(row.iter_mut(), HEIGHT - 70.0);
@@ -32,14 +32,17 @@ pub fn hanging_sleeper(run: &Run) -> Option<Figure> {
         }
     }
     let others = seats(run, Response::ContactForce).len() - chosen.len();
-    let mut caption = "Left the recorded sleeper with the largest void, right one of the far field. Shaded while the sleeper \
+    let mut caption = "Left the recorded sleeper with the largest void, right one of the far field, both by number. Shaded while the sleeper \
                        has no contact with its support at the last count: a hanging sleeper is lifted before the wheel \
                        comes, meets the ballast with a blow and leaves it again between the bogies. Contact force of half a \
                        sleeper, never negative; velocity and acceleration positive and drawn downward. Time counts from the \
                        leading wheel over the sleeper."
         .to_owned();
     if chosen.len() == 1 {
-        caption = caption.replace("Left the recorded sleeper with the largest void, right one of the far field. ", "");
+        caption = caption.replace(
+            "Left the recorded sleeper with the largest void, right one of the far field, both by number. ",
+            "",
+        );
     }
     if others > 0 {
         caption += " The other recorded sleepers are in histories.parquet.";

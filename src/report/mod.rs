@@ -180,8 +180,8 @@ mod tests {
         assert!(has("rail_moment", "Foot stress [MPa]") && has("rail_moment", "Rail moment without a vehicle [kN m]"));
         assert!(has("contact_pressure", "500 kPa, concrete sleepers (UIC, unchecked)"));
         assert!(has("wheel_force", "Wheel 4 [kN]"));
-        assert!(has("hanging_sleeper", "Contact force, sleeper \u{2212}3 [kN]"));
-        assert!(has("hanging_sleeper", "Contact force, sleeper \u{2212}13 [kN]"));
+        assert!(has("hanging_sleeper", "\u{2212}3: contact force [kN]"));
+        assert!(has("hanging_sleeper", "\u{2212}13: contact force [kN]"));
         // contact is lost at sleeper -3, and the picture is shaded there
         assert!(of("hanging_sleeper").svg.contains(r#"class="lost""#));
         assert!(of("longitudinal_level").caption.contains("alert from 7.0 to 12 mm"));

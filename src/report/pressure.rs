@@ -20,6 +20,7 @@ pub fn contact_pressure(run: &Run) -> Option<Figure> {
     let highest = chart.series.iter().flat_map(|s| &s.points).map(|point| point.1).fold(0.0, f64::max);
     chart.y.from_zero = true;
     if highest > 0.1 * limit {
+        chart.bands.iter_mut().for_each(|band| band.label.clear()); // the limit's name stands there
         chart.levels = vec![(limit, "500 kPa, concrete sleepers (UIC, unchecked)".to_owned())];
     }
     let caption = "Largest force of each half sleeper on its support during one passage, over half the sleeper's bearing \
