@@ -32,11 +32,13 @@ pub fn headline(html: &mut String, run: &Run) {
         Some(Loading::Static(_)) => "Under the test loads, per rail.".to_owned(),
         _ => format!("After {} axles; forces and moments are the extremes of one passage, of one rail.", whole(after)),
     };
+    let limited = lines.iter().any(|line| !line.limit.is_empty());
+    let against = if limited { "held against" } else { "" };
     let _ = write!(
         html,
         "<section id=\"headline\"><h2>At a glance</h2><p class=\"caption\">{caption}</p><div class=\"scroll\"><table class=\"wide\">\
          <thead><tr><th class=\"text\">quantity</th><th>value</th><th class=\"text\">where</th>\
-         <th class=\"text\">held against</th><th class=\"text\"></th></tr></thead><tbody>"
+         <th class=\"text\">{against}</th><th class=\"text\"></th></tr></thead><tbody>"
     );
     for line in &lines {
         let (class, word) = match line.kept {
@@ -55,7 +57,7 @@ pub fn headline(html: &mut String, run: &Run) {
         );
     }
     *html += "</tbody></table></div>";
-    if lines.iter().any(|line| !line.limit.is_empty()) {
+    if limited {
         *html += "<p class=\"note\">Limits as standards are commonly quoted, unchecked against their texts; what holds on a \
                   line is its owner's to say.</p>";
     }

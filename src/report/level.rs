@@ -35,7 +35,7 @@ pub fn level_d1(run: &Run) -> Option<Figure> {
     let caption = format!(
         "Level of the rail after the filter of EN 13848-1 for wavelengths of 3 to 25 m, downward as in the track: a \
          fourth-order Butterworth band run forward and back, so that nothing is shifted; the profile goes on level for 150 m \
-         beyond both ends of the model. Above without a vehicle, below under the mean wheel load standing at each place, as \
+         beyond where wheels run. Above without a vehicle, below under the mean wheel load standing at each place, as \
          a loaded recording car sees it.{limit}"
     );
     let names = Names { id: "longitudinal_level", title: "Longitudinal level, 3 to 25 m (D1)", caption: &caption };

@@ -38,7 +38,7 @@ pub fn rail_moments(run: &Run) -> Option<Figure> {
     };
     let caption = format!(
         "Largest sagging and hogging moment of one rail at each place, drawn on the tension side: sagging positive, \
-         downward. Wheels start and stop on the track, so the curves fall off towards its ends.{stress} Below, the moment \
+         downward. The curves reach as far as wheels run; towards their ends only some wheels pass.{stress} Below, the moment \
          that stays in the unloaded rail: it is bent where it bridges sleepers that hang."
     );
     let names = Names { id: "rail_moment", title: "Rail bending moment along the track", caption: &caption };

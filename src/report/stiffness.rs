@@ -15,7 +15,8 @@ pub fn rail_stiffness(run: &Run) -> Option<Figure> {
         "Secant stiffness, per rail: a mean wheel load{load} standing still, over the rail deflection that it adds to the \
          unloaded track of that axle count; each place is an equilibrium with its own lost contacts. It is highest over the \
          seats and lowest between them. Where a sleeper hangs the wheel closes its void first, and the stiffness drops; \
-         before the first axle it is that of the linear track, but for sleepers that the wheel lifts beside itself."
+         before the first axle it is that of the assembled matrix of the track, but for sleepers that the wheel lifts beside \
+         itself."
     );
     let names = Names { id: "rail_stiffness", title: "Track stiffness at rail level", caption: &caption };
     panels(&names, &[(chart, 330.0)], 1)

@@ -2,7 +2,7 @@
 //!
 //! The filter is a Butterworth high pass at 25 m and low pass at 3 m, each of fourth order, run over the profile and back, so
 //! that nothing is shifted: its gain is `1 / (1 + (f1/f)^8) / (1 + (f/f2)^8)`, one half at both limits (the order is common
-//! practice and unchecked against the standard's text). Beyond the model the profile goes on level for [`PAD`] on each side:
+//! practice and unchecked against the standard's text). Beyond its ends the profile goes on level for [`PAD`] on each side:
 //! a model is shorter than the filter's memory, and this adds neither slope nor waves.
 
 /// Distance of samples, m.
