@@ -86,8 +86,10 @@ fn outcome(text: &str) -> Result<(), Code> {
     let view = trackbed::results::Tables {
         sleepers: &tables.sleepers,
         blocks: &tables.blocks,
+        rail: &tables.rail,
         histories: &histories,
         scalars: &scalars,
+        track: &scenario.track,
     };
     let held = trackbed::results::verdicts(&scenario, view).iter().all(|v| v.met);
     if held { Ok(()) } else { Err(Code::E0804) }

@@ -148,8 +148,10 @@ fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compil
     let view = results::Tables {
         sleepers: &tables.sleepers,
         blocks: &tables.blocks,
+        rail: &tables.rail,
         histories: &histories,
         scalars: &scalars,
+        track: &scenario.track,
     };
     let expectations = results::verdicts(scenario, view);
     // the name alone: equal scenes give equal files wherever they lie
@@ -170,6 +172,7 @@ fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compil
         sleepers: tables.sleepers.clone(),
         blocks: tables.blocks.clone(),
         laws,
+        rail: tables.rail.clone(),
         histories,
     }
 }

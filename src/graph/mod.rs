@@ -6,6 +6,7 @@
 mod execute;
 mod listing;
 mod model;
+mod profile;
 mod sampler;
 mod substructure;
 mod system;
@@ -13,8 +14,9 @@ mod track;
 
 pub use execute::{Checkpoint, Recorder, RunError, execute, passage_as_built};
 pub use listing::Listing;
+pub use profile::between;
 pub use substructure::SubstructureState;
-pub use track::{PassageOutcome, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
+pub use track::{PassageOutcome, RailPlace, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
 
 use crate::scenario::{Beam, Direction, Integrator, Record, StaticLoad, Track, Train};
 use crate::solvers::settlement::Law;

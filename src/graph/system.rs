@@ -1,6 +1,7 @@
 //! The track node at work: its statics and its passages, spoken to in the scene's terms.
 
 use super::model::{level, model, motion, scheme, train};
+use super::profile;
 use super::sampler::Sampler;
 use super::substructure::initial_settlement;
 use super::track::{PassageOutcome, RailPoint, SeatOutcome, Unloaded, UnloadedSeat};
@@ -61,7 +62,7 @@ impl<'a> TrackSystem<'a> {
             contact_force: state.contact_forces[i],
             seat_load: state.seat_loads[i],
         });
-        Unloaded { rail: rail.collect(), seats: seats.collect() }
+        Unloaded { rail: rail.collect(), seats: seats.collect(), profile: Vec::new() }
     }
 
     /// One train over the settled track, and the track at rest before it. `recorded` asks for histories.
@@ -83,7 +84,11 @@ impl<'a> TrackSystem<'a> {
         let motion = motion(&blocks.train);
         let run = Run { train: &train, start, finish, motion: &motion };
         let mut passage = Passage::new(stepper, &level, run)?;
-        let unloaded = self.at_rest(passage.unloaded(), settlement);
+        let mut unloaded = self.at_rest(passage.unloaded(), settlement);
+        if recorded {
+            let load = blocks.train.mean_wheel_mass() * self.node.gravity;
+            unloaded.profile = profile::profile(&self.track, &level, passage.unloaded(), load, left..=right)?;
+        }
         let mut envelope = Envelope::default();
         let wanted = if recorded { self.records } else { &[] };
         let mut sampler = Sampler::new(wanted, axles, blocks.passage.sample_every, recorded);
@@ -112,6 +117,7 @@ impl<'a> TrackSystem<'a> {
             max_wheel_force: largest(&envelope.wheel_forces),
             min_wheel_force: envelope.wheel_forces.iter().map(|r| r.0).fold(f64::INFINITY, f64::min),
             max_rail_moment: largest(&envelope.rail_moments),
+            rail_moments: envelope.rail_moments,
             time_steps: counters.steps as u64,
             newton_iterations: counters.iterations as u64,
             samples: sampler.samples,

@@ -3,6 +3,7 @@
 mod estimate;
 mod passage;
 mod pending;
+mod records;
 mod schedule;
 
 use crate::diag::{Code, Diagnostic, Severity};
@@ -45,8 +46,8 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
         gravity: *scenario.solve.gravity,
     };
     let estimate = estimate::estimate(&track, &schedule);
-    let graph =
-        Graph { track, substructure, schedule, records: scenario.records.clone(), decisions: pass.decisions, estimate };
+    let records = records::records(&mut pass, scenario);
+    let graph = Graph { track, substructure, schedule, records, decisions: pass.decisions, estimate };
     (Some(graph), pass.diagnostics)
 }
 

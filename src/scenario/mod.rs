@@ -126,4 +126,6 @@ pub struct Record {
     pub after: Vec<u64>,
     /// Sampling interval, s; `None` is chosen by the planner.
     pub every: Option<f64>,
+    /// Kept only while a wheel is nearer to the seat than this, m; `None` keeps the whole passage.
+    pub near: Option<f64>,
 }

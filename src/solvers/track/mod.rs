@@ -44,7 +44,7 @@ pub use motion::Motion;
 pub use multibody::{Multibody, Wheel, WheelContact};
 pub use passage::{Counters, Passage, Run};
 pub use scheme::Scheme;
-pub use statics::{Balance, Loads, StaticState, solve_static};
+pub use statics::{Balance, Loads, StaticState, solve_static, standing_deflections};
 pub use support::{Seating, SupportPhase};
 pub use train::{Direction, Train};
 pub use vehicle::Vehicle;

@@ -6,6 +6,7 @@ mod dynamics;
 mod ends;
 mod reference;
 mod scenes;
+mod standing;
 mod statics;
 mod uneven;
 mod vehicles;
