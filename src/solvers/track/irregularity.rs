@@ -1,22 +1,37 @@
 //! The unevenness of the rail's running surface: a wheel sees the rail at w(x) + r(x).
 
 use super::TrackError;
+use super::model::SAME_PLACE;
 
-/// r over x, m below the even surface: none, straight between points, or a natural cubic spline through them. Beyond the
-/// outer points it stays as there, so a spline that does not end level has a kink there.
+/// r over x, m below the even surface: cubics side by side, none where the surface is even. Beyond the outer ends it stays as
+/// there, so a surface that does not end level has a kink there.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Irregularity {
-    /// Chainage and r, m.
-    points: Vec<(f64, f64)>,
-    /// r'' at each point, 1/m; empty where the profile is straight between points.
-    curvatures: Vec<f64>,
+    cubics: Vec<Cubic>,
+}
+
+/// r between two chainages, by its values and second derivatives at both.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cubic {
+    /// m, growing.
+    pub ends: [f64; 2],
+    /// m.
+    pub values: [f64; 2],
+    /// r'', 1/m.
+    pub curvatures: [f64; 2],
 }
 
 impl Irregularity {
+    /// Cubics side by side, left to right; checked with the track that they belong to.
+    pub fn cubics(cubics: Vec<Cubic>) -> Self {
+        Self { cubics }
+    }
+
     /// Straight between points (chainage and r, m); fails where chainages do not grow.
     pub fn linear(points: Vec<(f64, f64)>) -> Result<Self, TrackError> {
         check(&points)?;
-        Ok(Self { points, curvatures: Vec::new() })
+        let level = vec![0.0; points.len()];
+        Ok(Self::through(&points, &level))
     }
 
     /// The cubic spline through points (chainage and r, m) whose curvature is zero at both ends; fails where chainages do
@@ -24,23 +39,42 @@ impl Irregularity {
     pub fn spline(points: Vec<(f64, f64)>) -> Result<Self, TrackError> {
         check(&points)?;
         let curvatures = natural_curvatures(&points);
-        Ok(Self { points, curvatures })
+        Ok(Self::through(&points, &curvatures))
+    }
+
+    fn through(points: &[(f64, f64)], curvatures: &[f64]) -> Self {
+        let cubic = |(p, m): (&[(f64, f64)], &[f64])| Cubic {
+            ends: [p[0].0, p[1].0],
+            values: [p[0].1, p[1].1],
+            curvatures: [m[0], m[1]],
+        };
+        match points {
+            // one point is a surface that is level everywhere
+            [(x, r)] => Self { cubics: vec![Cubic { ends: [*x, *x + 1.0], values: [*r; 2], curvatures: [0.0; 2] }] },
+            _ => Self { cubics: points.windows(2).zip(curvatures.windows(2)).map(cubic).collect() },
+        }
     }
 
     /// r at a chainage, m.
     pub fn at(&self, x: f64) -> f64 {
-        let right = self.points.partition_point(|point| point.0 <= x);
-        let (Some(&(a, r_a)), Some(&(b, r_b))) = (self.points.get(right.wrapping_sub(1)), self.points.get(right))
-        else {
-            return if right == 0 { self.points.first() } else { self.points.last() }.map_or(0.0, |p| p.1);
+        let right = self.cubics.partition_point(|cubic| cubic.ends[0] <= x);
+        let Some(cubic) = self.cubics.get(right.saturating_sub(1)) else { return 0.0 };
+        let length = cubic.ends[1] - cubic.ends[0];
+        let t = ((x - cubic.ends[0]) / length).clamp(0.0, 1.0);
+        let s = 1.0 - t;
+        let bend = s * (s * s - 1.0) * cubic.curvatures[0] + t * (t * t - 1.0) * cubic.curvatures[1];
+        s * cubic.values[0] + t * cubic.values[1] + length * length / 6.0 * bend
+    }
+
+    /// The first chainage at which the cubics are not numbers or do not stand side by side.
+    pub(super) fn flaw(&self) -> Option<f64> {
+        let broken = |cubic: &&Cubic| {
+            let numbers = cubic.ends.iter().chain(&cubic.values).chain(&cubic.curvatures).all(|v| v.is_finite());
+            !numbers || cubic.ends[1] <= cubic.ends[0]
         };
-        let length = b - a;
-        let (s, t) = ((b - x) / length, (x - a) / length);
-        let straight = s * r_a + t * r_b;
-        match self.curvatures.get(right - 1..=right) {
-            Some(&[m_a, m_b]) => straight + length * length / 6.0 * (s * (s * s - 1.0) * m_a + t * (t * t - 1.0) * m_b),
-            _ => straight,
-        }
+        let apart = |pair: &&[Cubic]| (pair[1].ends[0] - pair[0].ends[1]).abs() > SAME_PLACE;
+        let in_one = self.cubics.iter().find(broken).map(|cubic| cubic.ends[0]);
+        in_one.or_else(|| self.cubics.windows(2).find(apart).map(|pair| pair[0].ends[1]))
     }
 }
 

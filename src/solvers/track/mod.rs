@@ -36,7 +36,7 @@ mod view;
 pub use envelope::Envelope;
 pub use error::TrackError;
 pub use influence::Stepper;
-pub use irregularity::Irregularity;
+pub use irregularity::{Cubic, Irregularity};
 pub use mesh::Track;
 pub use model::{AuxiliaryRail, Foot, RailEnds, RailSection, Seat, Shear, Slab, TrackLevel, TrackModel};
 pub use motion::Motion;

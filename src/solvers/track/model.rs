@@ -174,7 +174,11 @@ impl TrackModel {
         self.check_rail()?;
         self.check_slabs()?;
         self.check_seats()?;
-        self.check_auxiliary_rails()
+        self.check_auxiliary_rails()?;
+        match self.irregularity.flaw() {
+            Some(x) => fail(x, "the irregularity is not a number or has a gap"),
+            None => Ok(()),
+        }
     }
 
     fn check_rail(&self) -> Result<(), TrackError> {
