@@ -46,7 +46,7 @@ fn varies_in_time(quantity: Response) -> bool {
 
 impl Observer for Sampler {
     fn observe(&mut self, view: &StepView<'_>) {
-        if !self.recorded || !view.step().is_multiple_of(self.every) {
+        if !self.recorded || !view.is_on_grid(self.every) {
             return;
         }
         let time = view.time();

@@ -5,10 +5,12 @@ use super::profile;
 use super::sampler::Sampler;
 use super::substructure::initial_settlement;
 use super::track::{PassageOutcome, RailPoint, SeatOutcome, Unloaded, UnloadedSeat};
-use super::{Blocks, Graph, Schedule, TrackNode};
+use super::{AdaptiveSteps, Blocks, Graph, Schedule, TrackNode};
 use crate::scenario::{Direction, Record, StaticLoad, Target};
 use crate::solvers::settlement::Peak;
-use crate::solvers::track::{Envelope, Loads, Passage, Run, StaticState, Stepper, Track, TrackError, solve_static};
+use crate::solvers::track::{
+    Envelope, Ladder, Loads, Passage, Run, Scheme, StaticState, Stepper, Track, TrackError, TrackLevel, solve_static,
+};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -17,7 +19,31 @@ pub(super) struct TrackSystem<'a> {
     node: &'a TrackNode,
     records: &'a [Record],
     track: Arc<Track>,
-    traffic: Option<(&'a Blocks, Stepper)>,
+    traffic: Option<(&'a Blocks, Steps)>,
+}
+
+/// The time steps of all passages, factored once.
+enum Steps {
+    Even(Stepper),
+    Chosen { ladder: Ladder, tolerance: f64 },
+}
+
+impl Steps {
+    fn new(track: &Arc<Track>, scheme: Scheme, adaptive: Option<AdaptiveSteps>) -> Result<Self, TrackError> {
+        Ok(match adaptive {
+            None => Steps::Even(Stepper::new(track.clone(), scheme)?),
+            Some(AdaptiveSteps { tolerance, halvings }) => {
+                Steps::Chosen { ladder: Ladder::new(track, scheme, halvings as usize)?, tolerance }
+            }
+        })
+    }
+
+    fn begin<'a>(&'a self, level: &'a TrackLevel, run: Run<'a>) -> Result<Passage<'a>, TrackError> {
+        match self {
+            Steps::Even(stepper) => Passage::new(stepper, level, run),
+            Steps::Chosen { ladder, tolerance } => Passage::adaptive(ladder, level, run, *tolerance),
+        }
+    }
 }
 
 /// Seats whose mean stands for those near the ends of the model, see [`TrackSystem::complete`].
@@ -30,7 +56,7 @@ impl<'a> TrackSystem<'a> {
             Schedule::Static { .. } => None,
             Schedule::Blocks(blocks) => {
                 let scheme = scheme(blocks.passage.integrator, blocks.passage.time_step)?;
-                Some((blocks, Stepper::new(track.clone(), scheme)?))
+                Some((blocks, Steps::new(&track, scheme, blocks.passage.adaptive)?))
             }
         };
         Ok(TrackSystem { node: &graph.track, records: &graph.records, track, traffic })
@@ -73,7 +99,7 @@ impl<'a> TrackSystem<'a> {
         direction: Direction,
         recorded: bool,
     ) -> Result<(Unloaded, PassageOutcome), TrackError> {
-        let Some((blocks, stepper)) = &self.traffic else {
+        let Some((blocks, steps)) = &self.traffic else {
             return Err(TrackError::Parameter { name: "trains", value: 0.0, expected: "of 1 or more" });
         };
         let train = train(&blocks.train, direction);
@@ -83,7 +109,7 @@ impl<'a> TrackSystem<'a> {
         let level = level(self.node, settlement);
         let motion = motion(&blocks.train);
         let run = Run { train: &train, start, finish, motion: &motion };
-        let mut passage = Passage::new(stepper, &level, run)?;
+        let mut passage = steps.begin(&level, run)?;
         let mut unloaded = self.at_rest(passage.unloaded(), settlement);
         if recorded {
             let load = blocks.train.mean_wheel_mass() * self.node.gravity;

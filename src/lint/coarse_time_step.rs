@@ -23,7 +23,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         .fold(0.0, f64::max);
     let needed = 1.0 / (STEPS_A_PERIOD * frequency);
     let step = blocks.passage.time_step;
-    if step <= needed {
+    if step <= needed || blocks.passage.adaptive.is_some() {
         return Vec::new();
     }
     let diagnostic = Diagnostic::new(

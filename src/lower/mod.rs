@@ -2,7 +2,6 @@
 
 mod estimate;
 mod passage;
-mod pending;
 mod records;
 mod schedule;
 
@@ -35,7 +34,6 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
             (law, schedule::blocks(&mut pass, scenario, traffic).map(Schedule::Blocks))
         }
     };
-    pending::refuse(&mut pass, scenario);
     let Some(schedule) = schedule.filter(|_| !crate::diag::has_errors(&pass.diagnostics)) else {
         return (None, pass.diagnostics);
     };

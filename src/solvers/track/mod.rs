@@ -25,6 +25,7 @@ mod motion;
 mod multibody;
 mod passage;
 mod quasi_static;
+mod reach;
 mod running;
 mod scheme;
 mod statics;

@@ -144,7 +144,7 @@ impl<'a> Passage<'a> {
                 first += vehicle.wheels.len();
             }
         }
-        let mut interface = Interface::new(&contacts, track.sleepers.len());
+        let mut interface = Interface::new(contacts, &wheel_positions, track.sleepers.len());
         interface.forces.copy_from_slice(&start.state.wheel_forces);
         interface.indentations.copy_from_slice(&start.state.indentations);
         for (point, x) in interface.points.iter_mut().zip(&wheel_positions) {
@@ -313,7 +313,7 @@ impl<'a> Passage<'a> {
             step: self.counters.steps,
             time,
             x: match contact {
-                Contact::Wheel(j) => self.wheel_positions[j],
+                Contact::Wheel(rank) => self.wheel_positions[self.interface.wheel_of(rank)],
                 Contact::Support(s) => track.sleepers.get(s).map_or(f64::NAN, |s| track.model.seats[s.seat].x),
             },
         })?;
