@@ -12,7 +12,7 @@ fn main() -> Result<(), TrackError> {
     seats.extend((0..40).map(|i| seat(0.6 * f64::from(i), Foot::Slab)));
     let model = TrackModel {
         ends,
-        rail: vec![RailSection { start: ends[0], end: ends[1], mass: 60.0, bending_stiffness: 6.4e6 }],
+        rail: vec![RailSection { start: ends[0], end: ends[1], mass: 60.0, bending_stiffness: 6.4e6, shear: None }],
         seats,
         slabs: vec![Slab {
             start: 0.0,
@@ -22,6 +22,8 @@ fn main() -> Result<(), TrackError> {
             foundation_stiffness: 160e6,
             foundation_damping: 160e3,
         }],
+        auxiliary_rails: Vec::new(),
+        joints: Vec::new(),
         rail_ends: RailEnds::Clamped,
         elements_per_bay: 4,
         gravity: 9.81,
@@ -56,7 +58,7 @@ fn main() -> Result<(), TrackError> {
     let state = solve_static(&track, &level, &Loads::default())?;
     println!("at rest in {:.2} ms, {} sets", 1e3 * clock.elapsed().as_secs_f64(), state.iterations);
     let clock = Instant::now();
-    let stepper = Stepper::new(track, Scheme::new(1e-4, 0.85)?)?;
+    let stepper = Stepper::new(track, Scheme::generalised_alpha(1e-4, 0.85)?)?;
     println!("step factored in {:.1} ms", 1e3 * clock.elapsed().as_secs_f64());
 
     for (direction, start, finish) in [(Direction::Forward, -27.0, 20.0), (Direction::Backward, 10.0, -30.0)] {

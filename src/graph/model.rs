@@ -12,6 +12,8 @@ pub(super) fn model(node: &TrackNode) -> solver::TrackModel {
         rail: track.sections.iter().map(rail).collect(),
         seats: track.seats.iter().map(seat).collect(),
         slabs: track.sections.iter().filter_map(slab).collect(),
+        auxiliary_rails: Vec::new(),
+        joints: Vec::new(),
         rail_ends: match track.rail_ends {
             RailEnds::Clamped => solver::RailEnds::Clamped,
             RailEnds::Pinned => solver::RailEnds::Pinned,
@@ -28,6 +30,7 @@ fn rail(section: &Section) -> solver::RailSection {
         end: section.end,
         mass: *section.rail.mass,
         bending_stiffness: *section.rail.bending_stiffness,
+        shear: None,
     }
 }
 

@@ -28,7 +28,7 @@ impl<'a> TrackSystem<'a> {
         let traffic = match &graph.schedule {
             Schedule::Static { .. } => None,
             Schedule::Blocks(blocks) => {
-                let scheme = Scheme::new(blocks.passage.time_step, blocks.passage.rho)?;
+                let scheme = Scheme::generalised_alpha(blocks.passage.time_step, blocks.passage.rho)?;
                 Some((blocks, Stepper::new(track.clone(), scheme)?))
             }
         };

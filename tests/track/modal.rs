@@ -3,11 +3,12 @@
 //!
 //! Unknowns are deflection and slope of every rail node and then the sleepers, all supports closed, held unknowns taken out.
 
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use nalgebra::{DMatrix, DVector, Matrix4, RowVector4, SymmetricEigen};
 use trackbed::solvers::track::*;
 
 pub struct Modes {
     pub nodes: Vec<f64>,
+    elements: Vec<Element>,
     /// Of all unknowns, held ones as zero rows.
     pub stiffness: DMatrix<f64>,
     /// rad/s, ascending.
@@ -19,20 +20,49 @@ pub struct Modes {
     free: Vec<usize>,
 }
 
-/// The four cubics at distance a in an element of length h.
-pub fn cubics(a: f64, h: f64) -> [f64; 4] {
-    let s = a / h;
-    [1.0 - 3.0 * s.powi(2) + 2.0 * s.powi(3), a * (1.0 - s).powi(2), 3.0 * s.powi(2) - 2.0 * s.powi(3), a * (s * s - s)]
+/// An element of length h: the polynomials of the unloaded beam for unit displacements of its ends.
+///
+/// `w = a0 + a1 x + a2 x² + a3 x³` and, as the shear force is `κGA (w' - θ) = -EI θ''`, `θ = w' + EI/κGA w'''`.
+pub struct Element {
+    h: f64,
+    /// Column by column the coefficients of w for each unknown.
+    deflection: Matrix4<f64>,
+    rotation: Matrix4<f64>,
 }
 
-/// Integrals over an element of the products of the cubics, or of their curvatures, from their coefficients in s = x/h.
-fn products(h: f64, curvatures: bool) -> DMatrix<f64> {
-    let cubic = [[1.0, 0.0, -3.0, 2.0], [0.0, h, -2.0 * h, h], [0.0, 0.0, 3.0, -2.0], [0.0, 0.0, -h, h]];
-    let of = |c: [f64; 4]| if curvatures { [2.0 * c[2] / (h * h), 6.0 * c[3] / (h * h), 0.0, 0.0] } else { c };
-    DMatrix::from_fn(4, 4, |i, j| {
-        let (a, b) = (of(cubic[i]), of(cubic[j]));
-        (0..16).map(|k| h * a[k / 4] * b[k % 4] / (k / 4 + k % 4 + 1) as f64).sum()
-    })
+impl Element {
+    pub fn of(section: &RailSection, h: f64) -> Self {
+        let g = section.shear.map_or(0.0, |shear| section.bending_stiffness / shear.stiffness);
+        let turn = Matrix4::new(0., 1., 0., 6. * g, 0., 0., 2., 0., 0., 0., 0., 3., 0., 0., 0., 0.);
+        let at = |x: f64| RowVector4::new(1.0, x, x * x, x * x * x);
+        let ends = Matrix4::from_rows(&[at(0.0), at(0.0) * turn, at(h), at(h) * turn]);
+        let deflection = ends.try_inverse().unwrap();
+        Self { h, deflection, rotation: turn * deflection }
+    }
+
+    /// Deflection at distance a per unknown.
+    pub fn shape(&self, a: f64) -> [f64; 4] {
+        let row = RowVector4::new(1.0, a, a * a, a * a * a) * self.deflection;
+        [row[0], row[1], row[2], row[3]]
+    }
+
+    /// Integral of the products of polynomials with these coefficients.
+    fn products(&self, of: Matrix4<f64>) -> Matrix4<f64> {
+        let powers = Matrix4::from_fn(|i, j| self.h.powi((i + j + 1) as i32) / (i + j + 1) as f64);
+        of.transpose() * powers * of
+    }
+
+    fn stiffness(&self, section: &RailSection) -> Matrix4<f64> {
+        let slope = Matrix4::new(0., 1., 0., 0., 0., 0., 2., 0., 0., 0., 0., 3., 0., 0., 0., 0.);
+        let bending = section.bending_stiffness * self.products(slope * self.rotation);
+        let strain = slope * self.deflection - self.rotation;
+        bending + section.shear.map_or(0.0, |shear| shear.stiffness) * self.products(strain)
+    }
+
+    fn mass(&self, section: &RailSection) -> Matrix4<f64> {
+        let rotary = section.shear.map_or(0.0, |shear| shear.rotary_inertia);
+        section.mass * self.products(self.deflection) + rotary * self.products(self.rotation)
+    }
 }
 
 impl Modes {
@@ -42,13 +72,16 @@ impl Modes {
         let order = rail + model.seats.iter().filter(|seat| matches!(seat.foot, Foot::Sleeper { .. })).count();
         let (mut mass, mut stiffness, mut damping) =
             (DMatrix::zeros(order, order), DMatrix::zeros(order, order), DMatrix::zeros(order, order));
+        let mut elements = Vec::new();
         for (e, pair) in nodes.windows(2).enumerate() {
             let (h, middle) = (pair[1] - pair[0], 0.5 * (pair[0] + pair[1]));
             let section = model.rail.iter().find(|section| middle <= section.end).unwrap();
+            let element = Element::of(section, h);
             let mut m = mass.view_mut((2 * e, 2 * e), (4, 4));
-            m += section.mass * products(h, false);
+            m += element.mass(section);
             let mut k = stiffness.view_mut((2 * e, 2 * e), (4, 4));
-            k += section.bending_stiffness * products(h, true);
+            k += element.stiffness(section);
+            elements.push(element);
         }
         let mut foot = rail;
         for seat in &model.seats {
@@ -87,7 +120,7 @@ impl Modes {
             shapes.row_mut(*unknown).copy_from(&vectors.row(row));
         }
         let frequencies = ascending.iter().map(|i| eigen.eigenvalues[*i].max(0.0).sqrt()).collect();
-        Self { nodes, stiffness, frequencies, shapes, mass, damping, free }
+        Self { nodes, elements, stiffness, frequencies, shapes, mass, damping, free }
     }
 
     pub fn order(&self) -> usize {
@@ -98,7 +131,7 @@ impl Modes {
     pub fn force(&self, x: f64, force: f64) -> DVector<f64> {
         let e = self.nodes.partition_point(|node| *node <= x).clamp(1, self.nodes.len() - 1) - 1;
         let mut forces = DVector::zeros(self.order());
-        let shape = cubics(x - self.nodes[e], self.nodes[e + 1] - self.nodes[e]);
+        let shape = self.elements[e].shape(x - self.nodes[e]);
         for (i, n) in shape.into_iter().enumerate() {
             forces[2 * e + i] += force * n;
         }
@@ -156,11 +189,11 @@ impl Modes {
         let mut x = from;
         while x < to {
             let e = self.nodes.partition_point(|node| *node <= x).clamp(1, self.nodes.len() - 1) - 1;
-            let (left, h) = (self.nodes[e], self.nodes[e + 1] - self.nodes[e]);
+            let left = self.nodes[e];
             let end = if e + 2 == self.nodes.len() { to } else { to.min(self.nodes[e + 1]) };
             let duration = (end - x) / speed;
             // Four samples of a cubic in time give its coefficients.
-            let samples = [0.0, 1.0, 2.0, 3.0].map(|k| cubics(x - left + (end - x) * k / 3.0, h));
+            let samples = [0.0, 1.0, 2.0, 3.0].map(|k| self.elements[e].shape(x - left + (end - x) * k / 3.0));
             for i in 0..count {
                 let p = samples.map(|n| (0..4).map(|k| force * n[k] * self.shapes[(2 * e + k, i)]).sum::<f64>());
                 let step = duration / 3.0;

@@ -9,9 +9,11 @@ pub const SPEED: f64 = 200.0 / 3.6;
 pub fn beam(ends: [f64; 2], bending_stiffness: f64, mass: f64, rail_ends: RailEnds, elements: usize) -> TrackModel {
     TrackModel {
         ends,
-        rail: vec![RailSection { start: ends[0], end: ends[1], mass, bending_stiffness }],
+        rail: vec![RailSection { start: ends[0], end: ends[1], mass, bending_stiffness, shear: None }],
         seats: Vec::new(),
         slabs: Vec::new(),
+        auxiliary_rails: Vec::new(),
+        joints: Vec::new(),
         rail_ends,
         elements_per_bay: elements,
         gravity: 0.0,
@@ -63,13 +65,34 @@ pub fn stepper(model: TrackModel, scheme: Scheme) -> Stepper {
 
 /// Generalised-alpha of the program's default.
 pub fn scheme(time_step: f64) -> Scheme {
-    Scheme::new(time_step, 0.85).unwrap()
+    Scheme::generalised_alpha(time_step, 0.85).unwrap()
 }
 
-/// The member of the family that damps nothing.
+/// The member of the family that damps nothing and takes all forces in the middle of a step.
 pub fn undamped(time_step: f64) -> Scheme {
-    Scheme::new(time_step, 1.0).unwrap()
+    Scheme::generalised_alpha(time_step, 1.0).unwrap()
 }
+
+pub fn newmark(time_step: f64) -> Scheme {
+    Scheme::newmark(time_step).unwrap()
+}
+
+pub fn hht(time_step: f64) -> Scheme {
+    Scheme::hht(time_step, 0.1).unwrap()
+}
+
+type Method = (&'static str, fn(f64) -> Scheme);
+
+/// All methods of time integration.
+pub const METHODS: [Method; 4] = [
+    ("generalised-alpha, spectral radius 0.85", scheme),
+    ("generalised-alpha, spectral radius 1", undamped),
+    ("HHT-alpha, alpha 0.1", hht),
+    ("Newmark", newmark),
+];
+
+/// A 60E1 rail as a Timoshenko beam: kappa 0.4.
+pub const SHEAR: Shear = Shear { stiffness: 0.4 * 80.77e9 * 76.70e-4, rotary_inertia: 0.2385 };
 
 /// Runs the wagon at 200 km/h and hands every step to `look`.
 pub fn pass(

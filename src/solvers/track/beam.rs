@@ -1,89 +1,201 @@
-//! The cubic Hermite element of an Euler–Bernoulli beam: matrices, loads between its nodes and what the cubic leaves out.
+//! The beam element of two nodes that is exact for loads at its nodes, after Euler–Bernoulli or Timoshenko.
 //!
-//! Unknowns are deflection w (down) and slope w' of the left and of the right node. The element is exact for loads at its
-//! nodes. Under a point load P at distances a and b from the nodes of an element of length h, the exact deflection exceeds
-//! the cubic by that of a beam clamped at both nodes: `P a³b³/(3 EI h³)` at the load, with the clamping moments
-//! `-P ab²/h²` and `-P a²b/h²` (sagging positive) at the nodes.
+//! Unknowns are deflection w (down) and rotation θ of the cross-section (the slope w' where there is no shear) of the left
+//! and of the right node. Between them lies the exact solution of the unloaded beam: a cubic w whose shape depends on
+//! `φ = 12 EI/(κGA h²)`, and the quadratic θ that belongs to it (Friedman and Kosmatka, Computers & Structures 47, 1993,
+//! doi 10.1016/0045-7949(93)90243-7), so the element does not lock. φ = 0 is the Hermite element of Euler–Bernoulli.
+//!
+//! Under a point load P between the nodes the exact deflection exceeds that of the element by the one of a beam clamped at
+//! both nodes, [`Element::clamped_deflection`], and the moments at the nodes by the clamping moments `-P N₂(a)`, `P N₄(a)`.
 
 /// A symmetric 4 x 4 matrix over the unknowns of an element.
 pub(super) type ElementMatrix = [[f64; 4]; 4];
 
-/// Bending stiffness matrix.
-pub(super) fn stiffness(bending_stiffness: f64, h: f64) -> ElementMatrix {
-    let c = bending_stiffness / (h * h * h);
-    scaled(
-        c,
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Element {
+    /// h, m.
+    pub length: f64,
+    /// EI, N m^2.
+    pub bending_stiffness: f64,
+    /// φ.
+    shear_ratio: f64,
+    /// κGA, N; infinite for Euler–Bernoulli.
+    shear_stiffness: f64,
+}
+
+impl Element {
+    /// Without a shear stiffness (κGA, N) the element is Euler–Bernoulli's.
+    pub fn new(length: f64, bending_stiffness: f64, shear_stiffness: Option<f64>) -> Self {
+        let shear_stiffness = shear_stiffness.unwrap_or(f64::INFINITY);
+        let shear_ratio = 12.0 * bending_stiffness / (shear_stiffness * length * length);
+        Self { length, bending_stiffness, shear_ratio, shear_stiffness }
+    }
+
+    /// Stiffness in bending and shear.
+    pub fn stiffness(&self) -> ElementMatrix {
+        let (h, phi) = (self.length, self.shear_ratio);
+        let c = self.bending_stiffness / (h * h * h * (1.0 + phi));
+        let (near, far) = ((4.0 + phi) * h * h, (2.0 - phi) * h * h);
         [
             [12.0, 6.0 * h, -12.0, 6.0 * h],
-            [6.0 * h, 4.0 * h * h, -6.0 * h, 2.0 * h * h],
+            [6.0 * h, near, -6.0 * h, far],
             [-12.0, -6.0 * h, 12.0, -6.0 * h],
-            [6.0 * h, 2.0 * h * h, -6.0 * h, 4.0 * h * h],
-        ],
-    )
-}
+            [6.0 * h, far, -6.0 * h, near],
+        ]
+        .map(|row| row.map(|entry| c * entry))
+    }
 
-/// Consistent matrix of something spread along the element: mass, foundation stiffness or damping, per metre.
-pub(super) fn spread(per_metre: f64, h: f64) -> ElementMatrix {
-    let c = per_metre * h / 420.0;
-    scaled(
-        c,
+    /// Consistent matrix of something that resists deflection along the element: mass, foundation, damping, per metre.
+    pub fn spread(&self, per_metre: f64) -> ElementMatrix {
+        self.integral(per_metre, |a| self.shape(a))
+    }
+
+    /// Consistent matrix of what resists the rotation of the cross-section: rotary inertia ρI, per metre.
+    pub fn rotary(&self, per_metre: f64) -> ElementMatrix {
+        self.integral(per_metre, |a| self.rotation(a))
+    }
+
+    /// Nodal forces of a load spread evenly, N per metre; their product with displacements also integrates these.
+    pub fn even_load(&self, per_metre: f64) -> [f64; 4] {
+        let h = self.length;
+        [per_metre * h / 2.0, per_metre * h * h / 12.0, per_metre * h / 2.0, -per_metre * h * h / 12.0]
+    }
+
+    /// Deflection at distance `a` from the left node per unknown: N₁ .. N₄.
+    #[inline]
+    pub fn shape(&self, a: f64) -> [f64; 4] {
+        let (h, phi) = (self.length, self.shear_ratio);
+        let (s, t) = (a / h, 1.0 - a / h);
+        let c = 1.0 / (1.0 + phi);
         [
-            [156.0, 22.0 * h, 54.0, -13.0 * h],
-            [22.0 * h, 4.0 * h * h, 13.0 * h, -3.0 * h * h],
-            [54.0, 13.0 * h, 156.0, -22.0 * h],
-            [-13.0 * h, -3.0 * h * h, -22.0 * h, 4.0 * h * h],
-        ],
-    )
-}
+            c * t * (t * (1.0 + 2.0 * s) + phi),
+            c * a * t * (t + 0.5 * phi),
+            c * s * (s * (1.0 + 2.0 * t) + phi),
+            -c * s * (h - a) * (s + 0.5 * phi),
+        ]
+    }
 
-/// Nodal forces of a load spread evenly, N per metre; their product with displacements also integrates these.
-pub(super) fn even_load(per_metre: f64, h: f64) -> [f64; 4] {
-    [per_metre * h / 2.0, per_metre * h * h / 12.0, per_metre * h / 2.0, -per_metre * h * h / 12.0]
-}
+    /// Rotation of the cross-section at distance `a` per unknown.
+    pub fn rotation(&self, a: f64) -> [f64; 4] {
+        let (h, phi) = (self.length, self.shear_ratio);
+        let (s, t) = (a / h, 1.0 - a / h);
+        let c = 1.0 / (1.0 + phi);
+        let turn = 6.0 * c * s * t / h;
+        [-turn, c * t * (t - 2.0 * s + phi), turn, c * s * (s - 2.0 * t + phi)]
+    }
 
-/// The cubics at distance `a` from the left node.
-pub(super) fn shape(a: f64, h: f64) -> [f64; 4] {
-    let (s, t) = (a / h, 1.0 - a / h);
-    [t * t * (1.0 + 2.0 * s), a * t * t, s * s * (1.0 + 2.0 * t), -s * s * (h - a)]
-}
+    /// Deflection at distance `x` under a unit load at `a` of a beam clamped at both nodes, m/N.
+    pub fn clamped_deflection(&self, x: f64, a: f64) -> f64 {
+        // Seen from the node on whose side x lies: its reaction is N₁(a), its clamping moment N₂(a).
+        let (x, a) = if x <= a { (x, a) } else { (self.length - x, self.length - a) };
+        let [reaction, moment, ..] = self.shape(a);
+        x * (0.5 * x * (moment - reaction * x / 3.0) / self.bending_stiffness + reaction / self.shear_stiffness)
+    }
 
-/// Deflection at distance `x` under a unit load at `a` of a beam clamped at both nodes, m/N.
-pub(super) fn clamped_deflection(x: f64, a: f64, bending_stiffness: f64, h: f64) -> f64 {
-    // Seen from the node on whose side x lies.
-    let (x, a) = if x <= a { (x, a) } else { (h - x, h - a) };
-    let b = h - a;
-    b * b * x * x * (3.0 * a * h - 3.0 * a * x - b * x) / (6.0 * bending_stiffness * h * h * h)
-}
+    /// Sagging moments at the left and the right node, N m, without what loads inside the element add.
+    #[inline]
+    pub fn end_moments(&self, [w0, r0, w1, r1]: [f64; 4]) -> [f64; 2] {
+        let (h, phi) = (self.length, self.shear_ratio);
+        let c = self.bending_stiffness / (h * (1.0 + phi));
+        let chord = 6.0 * (w0 - w1) / h;
+        let (near, far) = (4.0 + phi, 2.0 - phi);
+        [c * (chord + near * r0 + far * r1), -c * (chord + far * r0 + near * r1)]
+    }
 
-fn scaled(factor: f64, mut matrix: ElementMatrix) -> ElementMatrix {
-    matrix.iter_mut().flatten().for_each(|entry| *entry *= factor);
-    matrix
+    /// `∫ f fᵀ da` over the element, times a factor: exact for the cubics by four points of Gauss.
+    fn integral(&self, factor: f64, f: impl Fn(f64) -> [f64; 4]) -> ElementMatrix {
+        const POINTS: [(f64, f64); 2] =
+            [(0.339_981_043_584_856_26, 0.652_145_154_862_546_1), (0.861_136_311_594_052_6, 0.347_854_845_137_453_9)];
+        let half = 0.5 * self.length;
+        let mut matrix = [[0.0; 4]; 4];
+        for (place, weight) in POINTS.into_iter().flat_map(|(p, w)| [(1.0 - p, w), (1.0 + p, w)]) {
+            let values = f(half * place);
+            for (row, left) in matrix.iter_mut().zip(values) {
+                for (entry, right) in row.iter_mut().zip(values) {
+                    *entry += factor * half * weight * left * right;
+                }
+            }
+        }
+        matrix
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    const EI: f64 = 6.4e6;
+
+    fn theories(h: f64) -> [Element; 2] {
+        [Element::new(h, EI, None), Element::new(h, EI, Some(240e6))]
+    }
+
     #[test]
     fn clamped_beam_under_its_load() {
-        let (a, b, h, ei) = (0.2f64, 0.4f64, 0.6f64, 6.4e6);
-        let expected = (a * b).powi(3) / (3.0 * ei * h.powi(3));
-        assert!((clamped_deflection(a, a, ei, h) / expected - 1.0).abs() < 1e-14);
-        // Reciprocity.
-        assert!((clamped_deflection(0.1, a, ei, h) / clamped_deflection(a, 0.1, ei, h) - 1.0).abs() < 1e-14);
-        assert_eq!(clamped_deflection(0.0, a, ei, h), 0.0);
+        let (a, b, h) = (0.2f64, 0.4f64, 0.6f64);
+        let [euler, timoshenko] = theories(h);
+        let expected = (a * b).powi(3) / (3.0 * EI * h.powi(3));
+        assert!((euler.clamped_deflection(a, a) / expected - 1.0).abs() < 1e-14);
+        // In the middle of the bay shear and bending add: P h³/192 EI + P h/4 κGA.
+        let middle = timoshenko.clamped_deflection(0.3, 0.3);
+        assert!((middle / (h.powi(3) / (192.0 * EI) + h / (4.0 * 240e6)) - 1.0).abs() < 1e-14, "{middle}");
+        for element in theories(h) {
+            let there = element.clamped_deflection(0.1, a);
+            assert!((there / element.clamped_deflection(a, 0.1) - 1.0).abs() < 1e-14, "reciprocity");
+            assert_eq!(element.clamped_deflection(0.0, a), 0.0);
+        }
     }
 
     #[test]
     fn rigid_motion_costs_nothing() {
-        let h = 0.15;
-        let k = stiffness(1.0, h);
-        for motion in [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, h, 1.0]] {
-            for row in k {
-                let force: f64 = row.iter().zip(motion).map(|(k, u)| k * u).sum();
-                assert!(force.abs() < 1e-9);
+        for element in theories(0.15) {
+            for motion in [[1.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.15, 1.0]] {
+                for row in element.stiffness() {
+                    let force: f64 = row.iter().zip(motion).map(|(k, u)| k * u).sum();
+                    assert!(force.abs() < 1e-14 * row[0].abs(), "{force}");
+                }
+                let at = |shape: [f64; 4]| shape.iter().zip(motion).map(|(n, u)| n * u).sum::<f64>();
+                assert!((at(element.shape(0.05)) - (motion[0] + 0.05 * motion[1])).abs() < 1e-15);
+                assert!((at(element.rotation(0.05)) - motion[1]).abs() < 1e-15);
             }
         }
-        assert!((shape(0.05, h)[0] + shape(0.05, h)[2] - 1.0).abs() < 1e-15);
+    }
+
+    /// Halving an element changes nothing in between, as its functions are exact.
+    #[test]
+    fn two_halves_are_one() {
+        for (whole, half) in theories(0.6).into_iter().zip(theories(0.3)) {
+            let u = [1.3e-3, -2e-3, 0.4e-3, 1e-3];
+            let at = |shape: [f64; 4]| shape.iter().zip(u).map(|(n, u)| n * u).sum::<f64>();
+            let middle = [at(whole.shape(0.3)), at(whole.rotation(0.3))];
+            let left = [u[0], u[1], middle[0], middle[1]];
+            assert!(
+                (at(whole.shape(0.2)) - left.iter().zip(half.shape(0.2)).map(|(u, n)| u * n).sum::<f64>()).abs()
+                    < 1e-17
+            );
+            assert!((whole.end_moments(u)[0] / half.end_moments(left)[0] - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn consistent_mass_of_euler() {
+        let h = 0.6;
+        let [euler, _] = theories(h);
+        let c = 60.0 * h / 420.0;
+        let mass = euler.spread(60.0);
+        for (entry, expected) in [
+            (mass[0][0], 156.0),
+            (mass[0][1], 22.0 * h),
+            (mass[0][2], 54.0),
+            (mass[0][3], -13.0 * h),
+            (mass[1][1], 4.0 * h * h),
+            (mass[1][3], -3.0 * h * h),
+        ] {
+            assert!((entry / (c * expected) - 1.0).abs() < 1e-13);
+        }
+        // ρI/(30 h) · 36 and 4 h²
+        let rotary = euler.rotary(0.24);
+        assert!((rotary[0][0] / (0.24 * 36.0 / (30.0 * h)) - 1.0).abs() < 1e-13);
+        assert!((rotary[1][1] / (0.24 * 4.0 * h / 30.0) - 1.0).abs() < 1e-13);
     }
 }

@@ -16,7 +16,7 @@ pub struct Stepper {
     pub(super) track: Arc<Track>,
     pub(super) scheme: Scheme,
     pub(super) factor: BandedFactor,
-    /// Columns of A for rail deflection and slope, node by node: displacement of all unknowns per force, m/N.
+    /// Columns of A for the unknowns of the rail: displacement of all unknowns per force, m/N.
     pub(super) of_rail: Vec<Window>,
     /// The same columns at the sleepers alone, counted by sleeper.
     pub(super) of_rail_at_sleepers: Vec<Window>,
@@ -50,7 +50,7 @@ impl Stepper {
             column.values.iter_mut().for_each(|a| *a *= of_stiffness);
             column
         };
-        let of_rail: Vec<Window> = track.rail.iter().flat_map(|w| [*w, *w + 1]).map(&mut column).collect();
+        let of_rail: Vec<Window> = track.rail_unknowns.iter().map(|u| column(*u)).collect();
         let of_sleeper: Vec<Window> = track.sleepers.iter().map(|s| column(s.unknown)).collect();
         let at_sleepers = |column: &Window| {
             let start = track.sleepers.partition_point(|s| s.unknown < column.start);
@@ -66,6 +66,18 @@ impl Stepper {
             scheme,
             track,
         })
+    }
+
+    /// Columns of A for the unknowns of a rail element.
+    #[inline]
+    pub(super) fn columns(&self, element: usize) -> [&Window; 4] {
+        self.track.elements[element].columns.map(|column| &self.of_rail[column])
+    }
+
+    /// The same at the sleepers alone, counted by sleeper.
+    #[inline]
+    pub(super) fn columns_at_sleepers(&self, element: usize) -> [&Window; 4] {
+        self.track.elements[element].columns.map(|column| &self.of_rail_at_sleepers[column])
     }
 
     pub fn track(&self) -> &Track {

@@ -14,12 +14,10 @@
 //! quasi-definite. The step has one solution (see `contact`); after [`FLIP_ALL`] iterations only the first contradiction is
 //! moved, once the wheels are settled for the present phases, which ends by Murty's least-index argument.
 
-use super::beam;
 use super::contact::{SupportLine, SupportPhase, hertz_force, hertz_stiffness};
 use super::influence::Stepper;
 use super::mesh::RailPoint;
 use super::vehicle::WHEELS;
-use crate::linalg::banded::Window;
 use crate::linalg::dense::solve_symmetric;
 use nalgebra::Matrix4;
 
@@ -161,23 +159,22 @@ impl Interface {
         let wheels = self.points.len();
         for j in 0..wheels {
             let point = self.points[j];
-            let columns = &stepper.of_rail[2 * point.element..2 * point.element + 4];
+            let columns = stepper.columns(point.element);
             for k in j..wheels {
                 let other = self.points[k];
                 let unknowns = stepper.track.element_unknowns(other.element);
                 let mut sum = 0.0;
-                for (column, shape) in columns.iter().zip(point.shape) {
+                for (column, shape) in columns.into_iter().zip(point.shape) {
                     for (unknown, other_shape) in unknowns.into_iter().zip(other.shape) {
                         sum += shape * other_shape * column.at(unknown);
                     }
                 }
                 if other.element == point.element {
-                    let element = &stepper.track.elements[point.element];
+                    let beam = &stepper.track.elements[point.element].beam;
                     sum += if j == k {
                         point.local_compliance
                     } else {
-                        let (x, a) = (other.offset, point.offset);
-                        beam::clamped_deflection(x, a, element.bending_stiffness, element.length)
+                        beam.clamped_deflection(other.offset, point.offset)
                     };
                 }
                 if j / WHEELS == k / WHEELS {
@@ -186,15 +183,15 @@ impl Interface {
                 self.compliance[j * wheels + k] = sum;
                 self.compliance[k * wheels + j] = sum;
             }
-            let columns = &stepper.of_rail_at_sleepers[2 * point.element..2 * point.element + 4];
+            let columns = stepper.columns_at_sleepers(point.element);
             let reached = columns.iter().filter(|c| !c.values.is_empty());
             let start = reached.clone().map(|c| c.start).min().unwrap_or(0);
-            let end = reached.clone().map(Window::end).max().unwrap_or(start);
+            let end = reached.clone().map(|c| c.end()).max().unwrap_or(start);
             let (first, values) = &mut self.at_sleepers[j];
             *first = start;
             values.clear();
             values.resize(end - start, 0.0);
-            for (column, shape) in columns.iter().zip(point.shape).filter(|(c, _)| !c.values.is_empty()) {
+            for (column, shape) in columns.into_iter().zip(point.shape).filter(|(c, _)| !c.values.is_empty()) {
                 add_scaled(&mut values[column.start - start..], &column.values, shape);
             }
         }

@@ -1,10 +1,12 @@
 //! The meshed track: nodes, the numbering of unknowns, and the matrices with all supports closed.
 //!
-//! Nodes stand at every seat, section boundary, slab end and rail end, with `elements_per_bay` elements between two seats and
-//! proportionally fewer in shorter stretches. Unknowns are numbered node by node - rail deflection and slope, sleeper, slab
-//! deflection and slope - so the half band is 5 with sleepers on one side and a slab on the other, 7 where two slabs meet.
+//! Nodes stand at every seat, joint, section boundary, end of a slab or auxiliary rail and rail end, with `elements_per_bay` elements between two seats and
+//! proportionally fewer in shorter stretches. Unknowns are numbered node by node - rail deflection and rotation (two
+//! rotations at a joint), sleeper, slab, auxiliary rails - so the half band is 5 with sleepers on one side and a slab on the
+//! other, 7 where two slabs meet or beside one auxiliary rail.
 
-use super::beam::{self, ElementMatrix};
+use super::beam::Element;
+use super::ends;
 use super::model::SAME_PLACE;
 use super::{Foot, RailEnds, TrackError, TrackLevel, TrackModel};
 use crate::linalg::banded::SymmetricBanded;
@@ -15,29 +17,36 @@ pub struct Track {
     pub(super) model: TrackModel,
     /// Chainage of the rail nodes, m.
     pub(super) nodes: Vec<f64>,
-    /// Unknown of the rail deflection at each node; the slope is the next one.
+    /// Unknown of the rail deflection at each node; the rotation is the next one, at a joint that of the rail left of it.
     pub(super) rail: Vec<usize>,
+    /// Every unknown of the rail, in order.
+    pub(super) rail_unknowns: Vec<usize>,
     /// Between node i and node i + 1.
     pub(super) elements: Vec<RailElement>,
     /// Node of each seat.
     pub(super) seat_nodes: Vec<usize>,
     pub(super) feet: Vec<FootUnknown>,
     pub(super) sleepers: Vec<Sleeper>,
-    pub(super) slabs: Vec<SlabMesh>,
+    pub(super) slabs: Vec<BeamMesh>,
+    pub(super) auxiliary_rails: Vec<BeamMesh>,
     /// All supports closed, nothing held.
     pub(super) stiffness: SymmetricBanded,
     pub(super) damping: SymmetricBanded,
     pub(super) mass: SymmetricBanded,
     /// Nodal forces of gravity, N and N m.
     pub(super) weight: Vec<f64>,
+    /// Gravity on rails and sleepers in all, N.
+    pub(super) dead_weight: f64,
     /// Unknowns that are prescribed, and the rail end whose level they take; none for a rotation that is zero.
     pub(super) held: Vec<(usize, Option<usize>)>,
 }
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RailElement {
-    pub length: f64,
-    pub bending_stiffness: f64,
+    pub beam: Element,
+    pub unknowns: [usize; 4],
+    /// Where these stand in [`Track::rail_unknowns`].
+    pub columns: [usize; 4],
 }
 
 /// What the foot of a seat moves with.
@@ -59,11 +68,26 @@ pub(super) struct Sleeper {
     pub support_damping: f64,
 }
 
+/// A beam below or beside the rail, over some of its nodes.
 #[derive(Debug, Clone)]
-pub(super) struct SlabMesh {
+pub(super) struct BeamMesh {
     pub first_node: usize,
     /// Unknown of its deflection at each of its nodes; the slope is the next one.
     pub unknowns: Vec<usize>,
+}
+
+impl BeamMesh {
+    /// Its elements, each with its unknowns.
+    pub fn elements<'a>(
+        &'a self,
+        nodes: &'a [f64],
+        bending_stiffness: f64,
+    ) -> impl Iterator<Item = ([usize; 4], Element)> + 'a {
+        self.unknowns
+            .windows(2)
+            .zip(nodes[self.first_node..].windows(2))
+            .map(move |(u, x)| ([u[0], u[0] + 1, u[1], u[1] + 1], Element::new(x[1] - x[0], bending_stiffness, None)))
+    }
 }
 
 /// A place on the rail: its element and how a force there acts on the nodes.
@@ -82,135 +106,39 @@ impl Track {
     pub fn new(model: TrackModel) -> Result<Self, TrackError> {
         model.check()?;
         let nodes = place_nodes(&model);
-        let node_at = |x: f64| nearest(&nodes, x);
-        let seat_nodes: Vec<usize> = model.seats.iter().map(|seat| node_at(seat.x)).collect();
-        let mut slabs: Vec<SlabMesh> = Vec::new();
-        let slab_nodes: Vec<(usize, usize)> = model.slabs.iter().map(|s| (node_at(s.start), node_at(s.end))).collect();
-        slabs.extend(slab_nodes.iter().map(|(first, _)| SlabMesh { first_node: *first, unknowns: Vec::new() }));
-
-        let mut rail = Vec::with_capacity(nodes.len());
-        let mut feet = vec![FootUnknown::Rigid; model.seats.len()];
-        let mut sleepers = Vec::new();
-        let mut seats = seat_nodes.iter().copied().enumerate().peekable();
-        let mut order = 0;
-        for node in 0..nodes.len() {
-            rail.push(order);
-            order += 2;
-            let seat = seats.next_if(|(_, at)| *at == node).map(|(seat, _)| seat);
-            if let Some(seat) = seat
-                && let Foot::Sleeper { support_stiffness, support_damping, .. } = model.seats[seat].foot
-            {
-                feet[seat] = FootUnknown::Sleeper(sleepers.len());
-                sleepers.push(Sleeper { seat, unknown: order, support_stiffness, support_damping });
-                order += 1;
-            }
-            for (slab, (first, last)) in slabs.iter_mut().zip(&slab_nodes) {
-                if (*first..=*last).contains(&node) {
-                    if let Some(seat) = seat
-                        && model.seats[seat].foot == Foot::Slab
-                    {
-                        feet[seat] = FootUnknown::Slab { unknown: order };
-                    }
-                    slab.unknowns.push(order);
-                    order += 2;
-                }
-            }
-        }
-
-        let section_at = |x: f64| model.rail.iter().find(|s| x <= s.end).or(model.rail.last());
-        let mut elements = Vec::with_capacity(nodes.len());
-        for pair in nodes.windows(2) {
-            let length = pair[1] - pair[0];
-            let bending_stiffness = section_at(pair[0] + 0.5 * length).map_or(0.0, |s| s.bending_stiffness);
-            elements.push(RailElement { length, bending_stiffness });
-        }
+        let numbering = Numbering::new(&model, &nodes);
+        let half_band = numbering.half_band();
+        let order = numbering.order;
         let mut held = Vec::new();
         for (end, node) in [(0, 0), (1, nodes.len() - 1)] {
-            if model.rail_ends != RailEnds::Free {
-                held.push((rail[node], Some(end)));
+            if matches!(model.rail_ends, RailEnds::Clamped | RailEnds::Pinned) {
+                held.push((numbering.rail[node], Some(end)));
             }
             if model.rail_ends == RailEnds::Clamped {
-                held.push((rail[node] + 1, None));
-            }
-        }
-
-        let mut half_band = 3;
-        for node in 0..elements.len() {
-            half_band = half_band.max(rail[node + 1] + 1 - rail[node]);
-        }
-        for pair in slabs.iter().flat_map(|s| s.unknowns.windows(2)) {
-            half_band = half_band.max(pair[1] + 1 - pair[0]);
-        }
-        for (node, foot) in seat_nodes.iter().zip(&feet) {
-            if let FootUnknown::Slab { unknown } = foot {
-                half_band = half_band.max(unknown - rail[*node]);
+                held.push((numbering.rail[node] + 1, None));
             }
         }
         let zeros = SymmetricBanded::zeros(order, half_band);
         let mut track = Self {
+            elements: rail_elements(&model, &nodes, &numbering),
             nodes,
-            rail,
-            elements,
-            seat_nodes,
-            feet,
-            sleepers,
-            slabs,
+            rail: numbering.rail,
+            rail_unknowns: numbering.rail_unknowns,
+            seat_nodes: numbering.seat_nodes,
+            feet: numbering.feet,
+            sleepers: numbering.sleepers,
+            slabs: numbering.slabs,
+            auxiliary_rails: numbering.auxiliary_rails,
             stiffness: zeros.clone(),
             damping: zeros.clone(),
             mass: zeros,
             weight: vec![0.0; order],
+            dead_weight: 0.0,
             held,
             model,
         };
         track.assemble();
         Ok(track)
-    }
-
-    fn assemble(&mut self) {
-        let gravity = self.model.gravity;
-        for node in 0..self.elements.len() {
-            let RailElement { length, bending_stiffness } = self.elements[node];
-            let middle = self.nodes[node] + 0.5 * length;
-            let mass =
-                self.model.rail.iter().find(|s| middle <= s.end).or(self.model.rail.last()).map_or(0.0, |s| s.mass);
-            let unknowns = [self.rail[node], self.rail[node + 1]];
-            add_element(&mut self.stiffness, unknowns, beam::stiffness(bending_stiffness, length));
-            add_element(&mut self.mass, unknowns, beam::spread(mass, length));
-            add_load(&mut self.weight, unknowns, beam::even_load(mass * gravity, length));
-        }
-        for (slab, mesh) in self.model.slabs.iter().zip(&self.slabs) {
-            for (i, pair) in mesh.unknowns.windows(2).enumerate() {
-                let node = mesh.first_node + i;
-                let (unknowns, length) = ([pair[0], pair[1]], self.nodes[node + 1] - self.nodes[node]);
-                add_element(&mut self.stiffness, unknowns, beam::stiffness(slab.bending_stiffness, length));
-                add_element(&mut self.stiffness, unknowns, beam::spread(slab.foundation_stiffness, length));
-                add_element(&mut self.damping, unknowns, beam::spread(slab.foundation_damping, length));
-                add_element(&mut self.mass, unknowns, beam::spread(slab.mass, length));
-            }
-        }
-        for (i, seat) in self.model.seats.iter().enumerate() {
-            let rail = self.rail[self.seat_nodes[i]];
-            let mut matrices = [(&mut self.stiffness, seat.pad_stiffness), (&mut self.damping, seat.pad_damping)];
-            for (matrix, value) in &mut matrices {
-                matrix.add(rail, rail, *value);
-                let foot = match self.feet[i] {
-                    FootUnknown::Sleeper(s) => self.sleepers[s].unknown,
-                    FootUnknown::Slab { unknown } => unknown,
-                    FootUnknown::Rigid => continue,
-                };
-                matrix.add(foot, foot, *value);
-                matrix.add(rail, foot, -*value);
-            }
-            if let (Foot::Sleeper { mass, support_stiffness, support_damping }, FootUnknown::Sleeper(s)) =
-                (seat.foot, self.feet[i])
-            {
-                let unknown = self.sleepers[s].unknown;
-                self.stiffness.add(unknown, unknown, support_stiffness);
-                self.damping.add(unknown, unknown, support_damping);
-                self.mass.add(unknown, unknown, mass);
-                self.weight[unknown] += mass * gravity;
-            }
-        }
     }
 
     pub fn model(&self) -> &TrackModel {
@@ -256,21 +184,25 @@ impl Track {
     }
 
     fn point_in(&self, element: usize, x: f64) -> RailPoint {
-        let RailElement { length, bending_stiffness } = self.elements[element];
-        let offset = (x - self.nodes[element]).clamp(0.0, length);
-        RailPoint {
-            element,
-            offset,
-            shape: beam::shape(offset, length),
-            local_compliance: beam::clamped_deflection(offset, offset, bending_stiffness, length),
-        }
+        let beam = &self.elements[element].beam;
+        let offset = (x - self.nodes[element]).clamp(0.0, beam.length);
+        let local_compliance = beam.clamped_deflection(offset, offset);
+        RailPoint { element, offset, shape: beam.shape(offset), local_compliance }
     }
 
     /// The four unknowns of the rail element `element`.
     #[inline]
     pub(super) fn element_unknowns(&self, element: usize) -> [usize; 4] {
-        let (left, right) = (self.rail[element], self.rail[element + 1]);
-        [left, left + 1, right, right + 1]
+        self.elements[element].unknowns
+    }
+
+    /// The unknown of what a seat's pad stands on; none for ground that does not move.
+    pub(super) fn foot_unknown(&self, seat: usize) -> Option<usize> {
+        match self.feet[seat] {
+            FootUnknown::Sleeper(s) => Some(self.sleepers[s].unknown),
+            FootUnknown::Slab { unknown } => Some(unknown),
+            FootUnknown::Rigid => None,
+        }
     }
 
     /// Deflection of the cubic at a point of the rail, m.
@@ -292,41 +224,41 @@ impl Track {
     /// Sagging rail moment at a node, N m: the mean of both elements, without what loads inside them add.
     #[inline]
     pub(super) fn cubic_moment(&self, node: usize, u: &[f64]) -> f64 {
-        let (mut sum, mut count) = (0.0, 0.0);
-        if node > 0 {
-            let RailElement { length: h, bending_stiffness } = self.elements[node - 1];
-            let [w0, t0, w1, t1] = self.element_unknowns(node - 1).map(|i| u[i]);
-            sum -= bending_stiffness * (6.0 * (w0 - w1) / h + 2.0 * t0 + 4.0 * t1) / h;
-            count += 1.0;
+        let moments = |element: &RailElement| element.beam.end_moments(element.unknowns.map(|i| u[i]));
+        let left = node.checked_sub(1).map(|element| moments(&self.elements[element])[1]);
+        let right = self.elements.get(node).map(|element| moments(element)[0]);
+        match (left, right) {
+            (Some(left), Some(right)) => 0.5 * (left + right),
+            (left, right) => left.or(right).unwrap_or(0.0),
         }
-        if node < self.elements.len() {
-            let RailElement { length: h, bending_stiffness } = self.elements[node];
-            let [w0, t0, w1, t1] = self.element_unknowns(node).map(|i| u[i]);
-            sum += bending_stiffness * (6.0 * (w0 - w1) / h + 4.0 * t0 + 2.0 * t1) / h;
-            count += 1.0;
-        }
-        sum / count
     }
 
     /// What a force inside an element adds to the moment at `node`, N m: half the clamping moment, as the mean of both
     /// elements takes half of each; all of it at an end of the rail.
     #[inline]
     pub(super) fn clamping_moment(&self, node: usize, point: &RailPoint, force: f64) -> f64 {
-        let h = self.elements[point.element].length;
-        let (a, b) = (point.offset, h - point.offset);
         let share = if node == 0 || node == self.elements.len() { 1.0 } else { 0.5 };
         if node == point.element {
-            -share * force * a * b * b / (h * h)
+            -share * force * point.shape[1]
         } else if node == point.element + 1 {
-            -share * force * a * a * b / (h * h)
+            share * force * point.shape[3]
         } else {
             0.0
         }
     }
 
-    /// Forces on the nodes that do not change while the track stays at `level`: gravity and the closed supports' levels.
-    pub(super) fn steady_forces(&self, level: &TrackLevel) -> Vec<f64> {
+    /// Gravity on the nodes, and what pulls the rail ends to `level` where the track goes on beyond them.
+    pub(super) fn own_forces(&self, level: &TrackLevel) -> Vec<f64> {
         let mut forces = self.weight.clone();
+        if self.model.rail_ends == RailEnds::Absorbing {
+            ends::add_forces(self, level, &mut forces);
+        }
+        forces
+    }
+
+    /// Forces on the nodes that do not change while the track stays at `level`: its own and the closed supports' levels.
+    pub(super) fn steady_forces(&self, level: &TrackLevel) -> Vec<f64> {
+        let mut forces = self.own_forces(level);
         for sleeper in &self.sleepers {
             forces[sleeper.unknown] += sleeper.support_stiffness * level.settlements[sleeper.seat];
         }
@@ -351,11 +283,139 @@ impl Track {
     }
 }
 
+/// The unknowns of every part, in the order of the nodes.
+struct Numbering {
+    order: usize,
+    rail: Vec<usize>,
+    rail_unknowns: Vec<usize>,
+    /// At each node, the rotation of the rail right of it.
+    right_rotation: Vec<usize>,
+    seat_nodes: Vec<usize>,
+    feet: Vec<FootUnknown>,
+    sleepers: Vec<Sleeper>,
+    slabs: Vec<BeamMesh>,
+    auxiliary_rails: Vec<BeamMesh>,
+}
+
+impl Numbering {
+    fn new(model: &TrackModel, nodes: &[f64]) -> Self {
+        let node_at = |x: f64| nearest(nodes, x);
+        let seat_nodes: Vec<usize> = model.seats.iter().map(|seat| node_at(seat.x)).collect();
+        let joints: Vec<usize> = model.joints.iter().map(|x| node_at(*x)).collect();
+        let spans = |ends: &[(f64, f64)]| -> Vec<(usize, usize)> {
+            ends.iter().map(|(start, end)| (node_at(*start), node_at(*end))).collect()
+        };
+        let slab_spans = spans(&model.slabs.iter().map(|s| (s.start, s.end)).collect::<Vec<_>>());
+        let auxiliary_spans = spans(&model.auxiliary_rails.iter().map(|r| (r.start, r.end)).collect::<Vec<_>>());
+        let empty = |spans: &[(usize, usize)]| -> Vec<BeamMesh> {
+            spans.iter().map(|(first, _)| BeamMesh { first_node: *first, unknowns: Vec::new() }).collect()
+        };
+        let mut this = Self {
+            order: 0,
+            rail: Vec::with_capacity(nodes.len()),
+            rail_unknowns: Vec::with_capacity(2 * nodes.len()),
+            right_rotation: Vec::with_capacity(nodes.len()),
+            feet: vec![FootUnknown::Rigid; model.seats.len()],
+            sleepers: Vec::new(),
+            slabs: empty(&slab_spans),
+            auxiliary_rails: empty(&auxiliary_spans),
+            seat_nodes,
+        };
+        let mut next_seat = 0;
+        for node in 0..nodes.len() {
+            this.number_rail(joints.contains(&node));
+            let seat = Some(next_seat).filter(|seat| this.seat_nodes.get(*seat) == Some(&node));
+            next_seat += usize::from(seat.is_some());
+            this.number_sleeper(model, seat);
+            for (slab, (first, last)) in slab_spans.iter().enumerate() {
+                if (*first..=*last).contains(&node) {
+                    this.number_slab(model, slab, seat);
+                }
+            }
+            for (rail, (first, last)) in auxiliary_spans.iter().enumerate() {
+                if (*first..=*last).contains(&node) {
+                    this.auxiliary_rails[rail].unknowns.push(this.order);
+                    this.order += 2;
+                }
+            }
+        }
+        this
+    }
+
+    fn number_rail(&mut self, joint: bool) {
+        let unknowns = if joint { 3 } else { 2 };
+        self.rail.push(self.order);
+        self.rail_unknowns.extend(self.order..self.order + unknowns);
+        self.order += unknowns;
+        self.right_rotation.push(self.order - 1);
+    }
+
+    fn number_sleeper(&mut self, model: &TrackModel, seat: Option<usize>) {
+        if let Some(seat) = seat
+            && let Foot::Sleeper { support_stiffness, support_damping, .. } = model.seats[seat].foot
+        {
+            self.feet[seat] = FootUnknown::Sleeper(self.sleepers.len());
+            self.sleepers.push(Sleeper { seat, unknown: self.order, support_stiffness, support_damping });
+            self.order += 1;
+        }
+    }
+
+    fn number_slab(&mut self, model: &TrackModel, slab: usize, seat: Option<usize>) {
+        if let Some(seat) = seat
+            && model.seats[seat].foot == Foot::Slab
+        {
+            self.feet[seat] = FootUnknown::Slab { unknown: self.order };
+        }
+        self.slabs[slab].unknowns.push(self.order);
+        self.order += 2;
+    }
+
+    /// The largest distance of two unknowns that act on each other.
+    fn half_band(&self) -> usize {
+        let mut half_band = 3;
+        for (node, pair) in self.rail.windows(2).enumerate() {
+            half_band = half_band.max(pair[1] + 1 - pair[0]).max(pair[1] + 1 - self.right_rotation[node]);
+        }
+        for pair in self.slabs.iter().chain(&self.auxiliary_rails).flat_map(|beam| beam.unknowns.windows(2)) {
+            half_band = half_band.max(pair[1] + 1 - pair[0]);
+        }
+        for (node, foot) in self.seat_nodes.iter().zip(&self.feet) {
+            let foot = match foot {
+                FootUnknown::Sleeper(s) => self.sleepers[*s].unknown,
+                FootUnknown::Slab { unknown } => *unknown,
+                FootUnknown::Rigid => self.rail[*node],
+            };
+            half_band = half_band.max(foot - self.rail[*node]);
+            for beam in &self.auxiliary_rails {
+                let at_node = node.checked_sub(beam.first_node).and_then(|i| beam.unknowns.get(i));
+                half_band = half_band.max(at_node.map_or(0, |unknown| unknown - foot));
+            }
+        }
+        half_band
+    }
+}
+
+fn rail_elements(model: &TrackModel, nodes: &[f64], numbering: &Numbering) -> Vec<RailElement> {
+    let column_of = |unknown: usize| numbering.rail_unknowns.partition_point(|u| *u < unknown);
+    let mut elements = Vec::with_capacity(nodes.len());
+    for (node, pair) in nodes.windows(2).enumerate() {
+        let (length, middle) = (pair[1] - pair[0], 0.5 * (pair[0] + pair[1]));
+        let Some(section) = model.rail.iter().find(|s| middle <= s.end).or(model.rail.last()) else { continue };
+        let [left, right] = [numbering.rail[node], numbering.rail[node + 1]];
+        let unknowns = [left, numbering.right_rotation[node], right, right + 1];
+        let beam = Element::new(length, section.bending_stiffness, section.shear.map(|s| s.stiffness));
+        elements.push(RailElement { beam, unknowns, columns: unknowns.map(column_of) });
+    }
+    elements
+}
+
 fn place_nodes(model: &TrackModel) -> Vec<f64> {
     let mut breaks: Vec<f64> = model.ends.to_vec();
     breaks.extend(model.seats.iter().map(|s| s.x));
     breaks.extend(model.rail.iter().map(|s| s.end));
+    breaks.extend(&model.joints);
     breaks.extend(model.slabs.iter().flat_map(|s| [s.start, s.end]));
+    breaks.extend(model.auxiliary_rails.iter().flat_map(|r| [r.start, r.end]));
     breaks.sort_by(f64::total_cmp);
     breaks.dedup_by(|next, kept| *next - *kept <= SAME_PLACE);
     let bay = usual_bay(model);
@@ -380,19 +440,4 @@ pub(super) fn usual_bay(model: &TrackModel) -> f64 {
 fn nearest(nodes: &[f64], x: f64) -> usize {
     let after = nodes.partition_point(|node| *node < x).min(nodes.len() - 1);
     if after > 0 && x - nodes[after - 1] < nodes[after] - x { after - 1 } else { after }
-}
-
-fn add_element(matrix: &mut SymmetricBanded, nodes: [usize; 2], element: ElementMatrix) {
-    let unknowns = [nodes[0], nodes[0] + 1, nodes[1], nodes[1] + 1];
-    for (r, row) in element.iter().enumerate() {
-        for c in 0..=r {
-            matrix.add(unknowns[r], unknowns[c], row[c]);
-        }
-    }
-}
-
-fn add_load(forces: &mut [f64], nodes: [usize; 2], load: [f64; 4]) {
-    for (unknown, value) in [nodes[0], nodes[0] + 1, nodes[1], nodes[1] + 1].into_iter().zip(load) {
-        forces[unknown] += value;
-    }
 }

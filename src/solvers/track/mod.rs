@@ -1,15 +1,17 @@
 //! One rail on its seats, and the vehicles that run over it: statics with lift-off, and passages in time.
 //!
-//! The rail and the slabs are Euler–Bernoulli beams of cubic Hermite elements, pads are springs and dampers, a sleeper is a
-//! mass on a support that can only push, and a vehicle is ten rigid-body unknowns on Hertz contacts. Displacements and forces
-//! are positive downward, moments positive where the rail sags, x grows to the right.
+//! The rail is a beam after Euler–Bernoulli or Timoshenko, slabs and auxiliary rails are beams after Euler–Bernoulli, pads are
+//! springs and dampers, a sleeper is a mass on a support that can only push, and a vehicle is ten rigid-body unknowns on Hertz
+//! contacts. Displacements and forces are positive downward, moments positive where the rail sags, x grows to the right.
 //!
 //! [`TrackModel`] says what there is; [`Track`] is its mesh and matrices; [`solve_static`] finds the state at rest;
 //! [`Stepper`] factors one time step for all passages over that track; [`Passage`] runs one train over it and shows every
 //! step to an [`Observer`].
 
+mod assembly;
 mod beam;
 mod contact;
+mod ends;
 mod envelope;
 mod error;
 mod influence;
@@ -28,7 +30,7 @@ pub use envelope::Envelope;
 pub use error::TrackError;
 pub use influence::Stepper;
 pub use mesh::Track;
-pub use model::{Foot, RailEnds, RailSection, Seat, Slab, TrackLevel, TrackModel};
+pub use model::{AuxiliaryRail, Foot, RailEnds, RailSection, Seat, Shear, Slab, TrackLevel, TrackModel};
 pub use passage::{Counters, Passage, Run};
 pub use scheme::Scheme;
 pub use statics::{Balance, Loads, StaticState, solve_static};

@@ -13,6 +13,10 @@ pub struct TrackModel {
     pub seats: Vec<Seat>,
     /// Left to right; two may touch but not overlap.
     pub slabs: Vec<Slab>,
+    /// Beside the rail; they may overlap.
+    pub auxiliary_rails: Vec<AuxiliaryRail>,
+    /// Chainages at which the rail is hinged, m.
+    pub joints: Vec<f64>,
     pub rail_ends: RailEnds,
     /// Rail elements between neighbouring seats; more resolve higher frequencies. Statics are exact with one.
     pub elements_per_bay: usize,
@@ -30,6 +34,32 @@ pub struct RailSection {
     pub mass: f64,
     /// EI, N m^2.
     pub bending_stiffness: f64,
+    /// Shear of a Timoshenko beam; none for Euler–Bernoulli.
+    pub shear: Option<Shear>,
+}
+
+/// What Timoshenko's beam has beyond Euler–Bernoulli's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shear {
+    /// κGA, N.
+    pub stiffness: f64,
+    /// ρI, kg m^2 per metre, 0 or more.
+    pub rotary_inertia: f64,
+}
+
+/// Further rails on the same sleepers or slab, together as one beam with free ends, on a pad of its own at every seat.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AuxiliaryRail {
+    /// Chainage of its ends, m; the seats between them carry it.
+    pub start: f64,
+    pub end: f64,
+    /// kg/m.
+    pub mass: f64,
+    /// EI, N m^2.
+    pub bending_stiffness: f64,
+    /// N/m and N s/m, at each seat.
+    pub pad_stiffness: f64,
+    pub pad_damping: f64,
 }
 
 /// A rail seat: a pad between the rail and its foot.
@@ -80,6 +110,9 @@ pub enum RailEnds {
     /// Level given.
     Pinned,
     Free,
+    /// The track goes on beyond the end: its static stiffness is kept, and waves die out in a layer before the end whose
+    /// damping grows towards it.
+    Absorbing,
 }
 
 /// How far the track has settled; zeros are the track as built.
@@ -87,7 +120,7 @@ pub enum RailEnds {
 pub struct TrackLevel {
     /// Downward displacement of the support under each seat, m; read for sleepers only.
     pub settlements: Vec<f64>,
-    /// Level at which clamped or pinned rail ends are held, m below the level as built. The level of the rail at rest, its
+    /// Level at which rail ends that are not free are held, m below the level as built. The level of the rail at rest, its
     /// deflection under gravity included, leaves no bending at a clamped end.
     pub ends: [f64; 2],
 }
@@ -102,14 +135,30 @@ impl TrackLevel {
 /// Places closer than this are one, m.
 pub(super) const SAME_PLACE: f64 = 1e-6;
 
+impl AuxiliaryRail {
+    /// Whether it lies on the seat at x.
+    pub(super) fn carries(&self, x: f64) -> bool {
+        self.start - SAME_PLACE <= x && x <= self.end + SAME_PLACE
+    }
+}
+
+fn fail(x: f64, reason: &str) -> Result<(), TrackError> {
+    Err(TrackError::Model { x, reason: reason.to_owned() })
+}
+
+/// Written so that a value that is not a number fails, as below.
+fn positive(value: f64) -> bool {
+    value > 0.0 && value.is_finite()
+}
+
+fn not_negative(value: f64) -> bool {
+    value >= 0.0 && value.is_finite()
+}
+
 impl TrackModel {
     /// Refuses a model that cannot be meshed.
     pub(super) fn check(&self) -> Result<(), TrackError> {
         let [start, end] = self.ends;
-        let fail = |x: f64, reason: &str| Err(TrackError::Model { x, reason: reason.to_owned() });
-        // Written so that a value that is not a number fails.
-        let positive = |value: f64| value > 0.0 && value.is_finite();
-        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
         if !(start.is_finite() && positive(end - start)) {
             return fail(start, "the right end of the track is not right of its left end");
         }
@@ -119,6 +168,14 @@ impl TrackModel {
         if !not_negative(self.gravity) {
             return Err(TrackError::Parameter { name: "gravity", value: self.gravity, expected: "of 0 or more" });
         }
+        self.check_rail()?;
+        self.check_slabs()?;
+        self.check_seats()?;
+        self.check_auxiliary_rails()
+    }
+
+    fn check_rail(&self) -> Result<(), TrackError> {
+        let [start, end] = self.ends;
         let mut reached = start;
         for section in &self.rail {
             if (section.start - reached).abs() > SAME_PLACE || !positive(section.end - section.start) {
@@ -127,11 +184,22 @@ impl TrackModel {
             if !positive(section.bending_stiffness) || !not_negative(section.mass) {
                 return fail(section.start, "the rail has no bending stiffness or a negative mass");
             }
+            if section.shear.is_some_and(|s| !positive(s.stiffness) || !not_negative(s.rotary_inertia)) {
+                return fail(section.start, "the rail has no shear stiffness or a negative rotary inertia");
+            }
             reached = section.end;
         }
         if (reached - end).abs() > SAME_PLACE {
             return fail(reached, "the rail sections do not reach the end of the track");
         }
+        match self.joints.iter().find(|x| !(**x > start + SAME_PLACE && **x < end - SAME_PLACE)) {
+            Some(x) => fail(*x, "a joint does not lie between the ends of the rail"),
+            None => Ok(()),
+        }
+    }
+
+    fn check_slabs(&self) -> Result<(), TrackError> {
+        let [start, end] = self.ends;
         let mut reached = start - SAME_PLACE;
         for slab in &self.slabs {
             if slab.start < reached || !positive(slab.end - slab.start) || slab.end > end + SAME_PLACE {
@@ -142,13 +210,16 @@ impl TrackModel {
                 || !not_negative(slab.mass)
                 || !not_negative(slab.foundation_damping)
             {
-                return fail(
-                    slab.start,
-                    "a slab lacks bending or foundation stiffness, or has a negative mass or damping",
-                );
+                let reason = "a slab lacks bending or foundation stiffness, or has a negative mass or damping";
+                return fail(slab.start, reason);
             }
             reached = slab.end - SAME_PLACE;
         }
+        Ok(())
+    }
+
+    fn check_seats(&self) -> Result<(), TrackError> {
+        let [start, end] = self.ends;
         let mut reached = f64::NEG_INFINITY;
         for seat in &self.seats {
             if seat.x < start - SAME_PLACE || seat.x > end + SAME_PLACE || seat.x.is_nan() {
@@ -171,6 +242,27 @@ impl TrackModel {
                 Foot::Slab => {}
             }
             reached = seat.x;
+        }
+        Ok(())
+    }
+
+    fn check_auxiliary_rails(&self) -> Result<(), TrackError> {
+        let [start, end] = self.ends;
+        for rail in &self.auxiliary_rails {
+            if !(rail.start >= start - SAME_PLACE && rail.end <= end + SAME_PLACE) {
+                return fail(rail.start, "an auxiliary rail reaches beyond the track");
+            }
+            if self.seats.iter().filter(|seat| rail.carries(seat.x)).count() < 2 {
+                return fail(rail.start, "an auxiliary rail lies on fewer than two seats");
+            }
+            if !positive(rail.bending_stiffness)
+                || !positive(rail.pad_stiffness)
+                || !not_negative(rail.mass)
+                || !not_negative(rail.pad_damping)
+            {
+                let reason = "an auxiliary rail lacks bending or pad stiffness, or has a negative mass or damping";
+                return fail(rail.start, reason);
+            }
         }
         Ok(())
     }

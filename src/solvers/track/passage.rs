@@ -306,8 +306,7 @@ impl<'a> Passage<'a> {
         // What the contact forces add, and the end of the step.
         let per_displacement = 1.0 / displacement_share;
         for (point, force) in self.interface.points.iter().zip(&self.interface.forces) {
-            let columns = &self.stepper.of_rail[2 * point.element..2 * point.element + 4];
-            for (column, shape) in columns.iter().zip(point.shape) {
+            for (column, shape) in self.stepper.columns(point.element).into_iter().zip(point.shape) {
                 add_scaled(&mut a[column.start..], &column.values, per_displacement * shape * force);
             }
         }

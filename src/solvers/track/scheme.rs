@@ -1,11 +1,15 @@
-//! The generalised-α method of Chung and Hulbert (1993), doi 10.1115/1.2900803: second order, with damping of high frequencies
-//! set by one number.
+//! Time integration by one family of methods, second order all: generalised-α with damping of high frequencies set by one
+//! number, HHT-α and Newmark as its special cases.
 //!
 //! ```text
 //! M a_{n+1-αm} + C v_{n+1-αf} + K u_{n+1-αf} = f_{n+1-αf},    x_{n+1-α} = (1-α) x_{n+1} + α x_n
 //! u_{n+1} = u* + β Δt² a_{n+1},   u* = u_n + Δt v_n + (½-β) Δt² a_n
 //! v_{n+1} = v* + γ Δt a_{n+1},    v* = v_n + (1-γ) Δt a_n
-//! αm = (2ρ-1)/(ρ+1),   αf = ρ/(ρ+1),   γ = ½ - αm + αf,   β = ¼ (1 - αm + αf)²
+//! γ = ½ - αm + αf,   β = ¼ (1 - αm + αf)²
+//!
+//! generalised-α:  αm = (2ρ-1)/(ρ+1),  αf = ρ/(ρ+1)     Chung and Hulbert (1993), doi 10.1115/1.2900803
+//! HHT-α:          αm = 0,             αf = α            Hilber, Hughes and Taylor (1977), doi 10.1002/eqe.4290050306
+//! Newmark:        αm = 0,             αf = 0            the average acceleration, without damping of its own
 //! ```
 //!
 //! Forces that are not linear take the same mean of both ends of the step as the linear ones.
@@ -24,23 +28,34 @@ pub struct Scheme {
 }
 
 impl Scheme {
-    /// A step of `time_step` (s); `spectral_radius` (0 to 1) is what is left after one step of a motion much faster than it:
-    /// smaller damps more.
-    pub fn new(time_step: f64, spectral_radius: f64) -> Result<Self, TrackError> {
+    /// Generalised-α in steps of `time_step` (s); `spectral_radius` (0 to 1) is what is left after one step of a motion much
+    /// faster than it: smaller damps more.
+    pub fn generalised_alpha(time_step: f64, spectral_radius: f64) -> Result<Self, TrackError> {
+        let rho = within("spectral radius", spectral_radius, 1.0, "from 0 to 1")?;
+        Self::with_means(time_step, (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0))
+    }
+
+    /// HHT-α in steps of `time_step` (s); `alpha` from 0 (Newmark) to 1/3 (damps most).
+    pub fn hht(time_step: f64, alpha: f64) -> Result<Self, TrackError> {
+        Self::with_means(time_step, 0.0, within("alpha of HHT", alpha, 1.0 / 3.0, "from 0 to 1/3")?)
+    }
+
+    /// Newmark's average acceleration in steps of `time_step` (s).
+    pub fn newmark(time_step: f64) -> Result<Self, TrackError> {
+        Self::with_means(time_step, 0.0, 0.0)
+    }
+
+    fn with_means(time_step: f64, alpha_m: f64, alpha_f: f64) -> Result<Self, TrackError> {
         if !(time_step > 0.0 && time_step.is_finite()) {
             return Err(TrackError::Parameter { name: "time step", value: time_step, expected: "above 0" });
         }
-        if !(0.0..=1.0).contains(&spectral_radius) {
-            return Err(TrackError::Parameter {
-                name: "spectral radius",
-                value: spectral_radius,
-                expected: "from 0 to 1",
-            });
-        }
-        let rho = spectral_radius;
-        let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
         let excess = 1.0 - alpha_m + alpha_f;
         Ok(Self { time_step, alpha_m, alpha_f, beta: 0.25 * excess * excess, gamma: excess - 0.5 })
+    }
+
+    /// The same method in steps of another length, s.
+    pub fn with_time_step(self, time_step: f64) -> Result<Self, TrackError> {
+        Self::with_means(time_step, self.alpha_m, self.alpha_f)
     }
 
     /// β Δt²: displacement per acceleration at the end of the step, s^2.
@@ -66,4 +81,8 @@ impl Scheme {
         let new = 1.0 - self.alpha_f;
         (1.0 - self.alpha_m, new * self.velocity_share(), new * self.displacement_share())
     }
+}
+
+fn within(name: &'static str, value: f64, most: f64, expected: &'static str) -> Result<f64, TrackError> {
+    if (0.0..=most).contains(&value) { Ok(value) } else { Err(TrackError::Parameter { name, value, expected }) }
 }

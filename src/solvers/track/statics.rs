@@ -5,11 +5,11 @@
 //! [`FLIP_ALL`] of these only the first contradiction is moved, which cannot cycle. Wheels enter by the compliance of that
 //! track at their places and share one Newton iteration with the unknowns of their vehicles.
 
-use super::beam;
 use super::contact::{hertz_force, hertz_indentation, hertz_stiffness};
+use super::ends;
 use super::mesh::{FootUnknown, RailPoint, Track};
 use super::vehicle::{UNKNOWNS, VehicleVector, WHEEL, WHEELS};
-use super::{TrackError, TrackLevel, Train};
+use super::{RailEnds, TrackError, TrackLevel, Train};
 use crate::linalg::banded::BandedFactor;
 use nalgebra::{DMatrix, DVector};
 
@@ -57,7 +57,7 @@ pub struct StaticState {
 /// The sums of forces in an equilibrium, N, loads downward and supports upward.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Balance {
-    /// Gravity on rail, sleepers and vehicles, and the point loads; a slab lies at rest under its own weight already.
+    /// Gravity on rails, sleepers and vehicles, and the point loads; a slab lies at rest under its own weight already.
     pub loads: f64,
     /// Of the sleepers' supports.
     pub sleeper_supports: f64,
@@ -104,7 +104,7 @@ pub(super) fn solve_with_inertia(
     inertia: &Inertia,
 ) -> Result<StaticState, TrackError> {
     track.check_level(level)?;
-    let mut forces = track.weight.clone();
+    let mut forces = track.own_forces(level);
     for (force, extra) in forces.iter_mut().zip(&inertia.track) {
         *force += extra;
     }
@@ -395,22 +395,6 @@ fn describe(
         contact_forces[sleeper.seat] = (sleeper.support_stiffness * gap).max(0.0);
     }
 
-    let lengths = track.nodes.windows(2).map(|pair| pair[1] - pair[0]);
-    let rail_weight: f64 = lengths
-        .zip(track.nodes.windows(2))
-        .map(|(length, pair)| {
-            let middle = 0.5 * (pair[0] + pair[1]);
-            length * model.rail.iter().find(|s| middle <= s.end).or(model.rail.last()).map_or(0.0, |s| s.mass)
-        })
-        .sum();
-    let sleeper_weight: f64 = track
-        .sleepers
-        .iter()
-        .map(|s| match model.seats[s.seat].foot {
-            super::Foot::Sleeper { mass, .. } => mass,
-            _ => 0.0,
-        })
-        .sum();
     let vehicle_weight: f64 = wheels.weights.iter().map(|w| w[0] + w[2] + w[4] + w.rows(WHEEL, WHEELS).sum()).sum();
     let mut reactions = track.weight.clone();
     for (point, force) in &on_rail {
@@ -418,14 +402,20 @@ fn describe(
     }
     track.stiffness.subtract_product(u, &mut reactions);
     let balance = Balance {
-        loads: model.gravity * (rail_weight + sleeper_weight) + vehicle_weight + point_loads,
+        loads: track.dead_weight + vehicle_weight + point_loads,
         sleeper_supports: contact_forces.iter().sum(),
         rigid_seats: (0..model.seats.len())
             .filter(|i| track.feet[*i] == FootUnknown::Rigid)
             .map(|i| seat_loads[i])
             .sum(),
         slab_foundations: slab_reactions(track, u),
-        rail_ends: track.held.iter().filter(|(_, end)| end.is_some()).map(|(unknown, _)| reactions[*unknown]).sum(),
+        rail_ends: track
+            .held
+            .iter()
+            .filter(|(_, end)| end.is_some())
+            .map(|(unknown, _)| reactions[*unknown])
+            .sum::<f64>()
+            + if model.rail_ends == RailEnds::Absorbing { ends::carried(track, level, u) } else { 0.0 },
     };
     StaticState {
         rail_slope: track.rail.iter().map(|w| u[*w + 1]).collect(),
@@ -448,10 +438,8 @@ fn describe(
 fn slab_reactions(track: &Track, u: &[f64]) -> f64 {
     let mut sum = 0.0;
     for (slab, mesh) in track.model.slabs.iter().zip(&track.slabs) {
-        for (i, pair) in mesh.unknowns.windows(2).enumerate() {
-            let node = mesh.first_node + i;
-            let load = beam::even_load(slab.foundation_stiffness, track.nodes[node + 1] - track.nodes[node]);
-            let unknowns = [pair[0], pair[0] + 1, pair[1], pair[1] + 1];
+        for (unknowns, beam) in mesh.elements(&track.nodes, slab.bending_stiffness) {
+            let load = beam.even_load(slab.foundation_stiffness);
             sum += unknowns.into_iter().zip(load).map(|(unknown, load)| load * u[unknown]).sum::<f64>();
         }
     }
@@ -462,14 +450,12 @@ impl StaticState {
     /// Deflection of the rail at x, m, from the track as built; exact between nodes under point loads. Fails off the track.
     pub fn rail_deflection_at(&self, track: &Track, x: f64) -> Result<f64, TrackError> {
         let point = track.rail_point(x)?;
-        let element = track.elements[point.element];
+        let beam = &track.elements[point.element].beam;
         let local: f64 = self
             .on_rail
             .iter()
             .filter(|(load, _)| load.element == point.element)
-            .map(|(load, force)| {
-                force * beam::clamped_deflection(point.offset, load.offset, element.bending_stiffness, element.length)
-            })
+            .map(|(load, force)| force * beam.clamped_deflection(point.offset, load.offset))
             .sum();
         Ok(track.deflection_at(&point, &self.unknowns) + local)
     }

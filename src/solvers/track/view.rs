@@ -78,7 +78,7 @@ impl<'a> StepView<'a> {
         let track = self.track();
         let (model, rail) = (&track.model.seats[seat], track.rail[track.seat_nodes[seat]]);
         let (u, v) = (&self.passage.displacement, &self.passage.velocity);
-        let (foot, foot_velocity) = match self.foot_unknown(seat) {
+        let (foot, foot_velocity) = match self.track().foot_unknown(seat) {
             Some(unknown) => (u[unknown], v[unknown]),
             None => (0.0, 0.0),
         };
@@ -103,17 +103,17 @@ impl<'a> StepView<'a> {
 
     /// Displacement of the sleeper or slab under a seat, m, from the track as built; 0 for rigid seats, as for both others.
     pub fn foot_displacement(&self, seat: usize) -> f64 {
-        self.foot_unknown(seat).map_or(0.0, |unknown| self.passage.displacement[unknown])
+        self.track().foot_unknown(seat).map_or(0.0, |unknown| self.passage.displacement[unknown])
     }
 
     /// m/s.
     pub fn foot_velocity(&self, seat: usize) -> f64 {
-        self.foot_unknown(seat).map_or(0.0, |unknown| self.passage.velocity[unknown])
+        self.track().foot_unknown(seat).map_or(0.0, |unknown| self.passage.velocity[unknown])
     }
 
     /// m/s^2.
     pub fn foot_acceleration(&self, seat: usize) -> f64 {
-        self.foot_unknown(seat).map_or(0.0, |unknown| self.passage.acceleration[unknown])
+        self.track().foot_unknown(seat).map_or(0.0, |unknown| self.passage.acceleration[unknown])
     }
 
     /// Deflection of the rail at a node, m, from the track as built.
@@ -140,14 +140,6 @@ impl<'a> StepView<'a> {
                     *moment += track.clamping_moment(node, point, *force);
                 }
             }
-        }
-    }
-
-    fn foot_unknown(&self, seat: usize) -> Option<usize> {
-        match self.track().feet[seat] {
-            FootUnknown::Sleeper(s) => Some(self.track().sleepers[s].unknown),
-            FootUnknown::Slab { unknown } => Some(unknown),
-            FootUnknown::Rigid => None,
         }
     }
 }

@@ -1,6 +1,8 @@
 //! Cases with known answers, by what they exercise.
 
+mod beams;
 mod dynamics;
+mod ends;
 mod oracle;
 mod reference;
 mod runge_kutta;

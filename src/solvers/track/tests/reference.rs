@@ -249,7 +249,8 @@ fn agrees_with_a_plain_implementation() {
             *settlement = if every == 1 && (3..11).contains(&i) || i % every != 0 { void } else { 0.0 };
         }
         let stepper =
-            Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::new(time_step, 0.85).unwrap()).unwrap();
+            Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::generalised_alpha(time_step, 0.85).unwrap())
+                .unwrap();
         let run = Run { train: &train, start: 1.9, finish: 7.7, speed };
         let mut passage = Passage::new(&stepper, &level, run).unwrap();
         let steps = passage.planned_steps();

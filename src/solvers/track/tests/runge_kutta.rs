@@ -100,7 +100,7 @@ fn study(level_of: impl Fn(&TrackModel) -> TrackLevel, wagon: Vehicle, outputs: 
     model.elements_per_bay = 2;
     let level = level_of(&model);
     let still = wagon.mass() * 9.81 / 4.0;
-    let scheme = |dt| Scheme::new(dt, 0.85).unwrap();
+    let scheme = |dt| Scheme::generalised_alpha(dt, 0.85).unwrap();
     let runs: Vec<(Forces, Vec<f64>)> =
         TIME_STEPS.iter().map(|dt| solved(&model, &level, wagon, scheme(*dt), outputs)).collect();
     let oracle = |tolerance| {

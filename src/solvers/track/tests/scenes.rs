@@ -10,7 +10,7 @@ pub fn seat(x: f64, foot: Foot) -> Seat {
 
 /// One kind of rail from end to end.
 pub fn rail(ends: [f64; 2], mass: f64, bending_stiffness: f64) -> Vec<RailSection> {
-    vec![RailSection { start: ends[0], end: ends[1], mass, bending_stiffness }]
+    vec![RailSection { start: ends[0], end: ends[1], mass, bending_stiffness, shear: None }]
 }
 
 /// A beam without seats, of `elements` elements.
@@ -20,6 +20,8 @@ pub fn beam(length: f64, bending_stiffness: f64, mass: f64, rail_ends: RailEnds,
         rail: rail([0.0, length], mass, bending_stiffness),
         seats: Vec::new(),
         slabs: Vec::new(),
+        auxiliary_rails: Vec::new(),
+        joints: Vec::new(),
         rail_ends,
         elements_per_bay: elements,
         gravity: 0.0,
@@ -34,6 +36,8 @@ pub fn ballast(seats: usize) -> TrackModel {
         rail: rail(ends, 60.0, 6.4e6),
         seats: (0..seats).map(|i| seat(0.3 + 0.6 * i as f64, SLEEPER)).collect(),
         slabs: Vec::new(),
+        auxiliary_rails: Vec::new(),
+        joints: Vec::new(),
         rail_ends: RailEnds::Clamped,
         elements_per_bay: 4,
         gravity: 9.81,
@@ -57,6 +61,8 @@ pub fn transition(sleepers: usize, slab_seats: usize) -> TrackModel {
             foundation_stiffness: 160e6,
             foundation_damping: 160e3,
         }],
+        auxiliary_rails: Vec::new(),
+        joints: Vec::new(),
         rail_ends: RailEnds::Clamped,
         elements_per_bay: 4,
         gravity: 9.81,
