@@ -62,21 +62,41 @@ fn growth(energy: &[f64]) -> f64 {
     growth
 }
 
+/// Over 230 bounces without a damper the energy does not drift, and it rises by no more than the scheme resolves of a contact,
+/// which lasts 5.4 ms; with a damper it falls. No method stands out: this contact gives way, and it is solved within the step.
 #[test]
 fn energy_over_hundreds_of_bounces() {
-    for (name, make) in [("0.85", scheme as fn(f64) -> Scheme), ("1", undamped)] {
-        for damping in [0.0, 50e3] {
-            for dt in [1e-4, 5e-5] {
-                let found = bounce(damping, make(dt), (8.0 / dt) as usize);
-                let left = found.energy[found.energy.len() - 1] / found.energy[0];
-                println!(
-                    "spectral radius {name}, damper {damping}, dt {dt:e}: {} bounces, energy left {left:.4}, growth {:.1e}, smallest force {}",
-                    found.count,
-                    growth(&found.energy),
-                    found.lowest_force
-                );
-                assert!(found.lowest_force >= 0.0);
-            }
+    for (name, make) in METHODS {
+        for (dt, most, most_damped) in [(1e-4, 4e-3, 3e-4), (5e-5, 8e-4, 3e-5)] {
+            let free = bounce(0.0, make(dt), (8.0 / dt) as usize);
+            let damped = bounce(2e3, make(dt), (2.0 / dt) as usize);
+            let left = free.energy[free.energy.len() - 1] / free.energy[0];
+            let (grown, damped_grown) = (growth(&free.energy), growth(&damped.energy));
+            println!(
+                "{name}, dt {dt:e}: {} bounces, energy left {left:.4}, growth {grown:.1e}, damped {damped_grown:.1e}",
+                free.count
+            );
+            assert!(free.lowest_force == 0.0 && damped.lowest_force == 0.0, "no support pulls");
+            assert!(free.count == 232 && damped.count == 40, "found {} and {} bounces", free.count, damped.count);
+            assert!((left - 1.0).abs() < 2e-3, "found 0.9991 to 1.0002: {left}");
+            assert!(grown < most && damped_grown < most_damped, "found 2.5e-3 and 1.3e-4, then 4.1e-4 and 9.5e-6");
         }
+    }
+}
+
+/// A step of 2 ms makes less than three steps of a contact: then energy jumps at every bounce. It comes back to where it was
+/// with Newmark, HHT loses it, and generalised-alpha may end with twice of it: smaller steps are the remedy.
+#[test]
+fn too_few_steps_in_a_contact() {
+    for (name, make) in METHODS {
+        let found = bounce(0.0, make(2e-3), 4000);
+        let left = found.energy[found.energy.len() - 1] / found.energy[0];
+        println!(
+            "{name}, dt 2 ms: {} bounces, energy left {left:.3}, growth {:.2}",
+            found.count,
+            growth(&found.energy)
+        );
+        assert_eq!(found.lowest_force, 0.0);
+        assert!(left < 4.0, "found 2.3, 1.0, 0.0 and 1.0");
     }
 }

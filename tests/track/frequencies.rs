@@ -48,23 +48,33 @@ fn beam_under_a_step_load() {
         (peak, series_peak) = (peak.max((still - value) / still), series_peak.max(series / still));
     }
     println!("largest difference {worst:.1e} of the static deflection; peak {peak:.5}, series {series_peak:.5}");
-    assert!(worst < 2e-3, "found");
-    assert!((peak - series_peak).abs() < 5e-4 && peak < 2.0, "found");
+    assert!(worst < 1e-3, "found 4.9e-4");
+    assert!((peak - series_peak).abs() < 5e-4 && peak < 2.0, "found 1.9999 of 2");
 }
 
-/// A rail between two seats 0.6 m apart vibrates at 1425 Hz, whatever the pads: alone and as the pinned-pinned mode of a track.
+/// Frequency of mode n of a simply supported beam of length l, Hz: the lower root of the two unknowns w and θ of its shape,
+/// `ρA ρI ω⁴ - (κGA ρA + (κGA ρI + EI ρA) q²) ω² + EI κGA q⁴ = 0`, q = nπ/l.
+fn timoshenko(section: &RailSection, shear: Shear, l: f64, n: f64) -> f64 {
+    let (q2, ei, ga) = ((n * PI / l).powi(2), section.bending_stiffness, shear.stiffness);
+    let (m, rotary) = (section.mass, shear.rotary_inertia);
+    let (a, b, c) = (m * rotary, ga * m + (ga * rotary + ei * m) * q2, ei * ga * q2 * q2);
+    (2.0 * c / (b + (b * b - 4.0 * a * c).sqrt())).sqrt() / (2.0 * PI)
+}
+
+/// The rail between seats 0.6 m apart vibrates as if pinned there, whatever the pads: 1425 Hz, and 1069 Hz with shear.
 #[test]
 fn pinned_pinned() {
-    let expected = PI / (2.0 * 0.6 * 0.6) * (6.4e6f64 / 60.0).sqrt();
-    assert!((expected - 1425.0).abs() < 0.5);
     let shape = |x: f64| 1e3 * (PI * x / 0.6).sin();
-    let bay = beam([0.0, 0.6], 6.4e6, 60.0, RailEnds::Pinned, 8);
-    let mut track = beam([0.0, 12.0], 6.4e6, 60.0, RailEnds::Pinned, 8);
-    track.seats = (0..=20).map(|i| spring(0.6 * i as f64, 40e6, 5e3)).collect();
-    for (name, model) in [("one bay", bay), ("twenty bays", track)] {
+    for (shear, published, elements) in [(None, 1425.0, 8), (Some(SHEAR), 1069.0, 24)] {
+        let mut model = beam([0.0, 6.0], 6.4e6, 60.0, RailEnds::Pinned, elements);
+        model.seats = (0..=10).map(|i| spring(0.6 * i as f64, 40e6, 5e3)).collect();
+        model.rail[0].shear = shear;
+        let euler = PI / (2.0 * 0.6 * 0.6) * (6.4e6f64 / 60.0).sqrt();
+        let expected = shear.map_or(euler, |shear| timoshenko(&model.rail[0], shear, 0.6, 1.0));
+        assert!((expected / published - 1.0).abs() < 2e-3, "closed form {expected}");
         let found = frequency(&let_go(model, shape, 0.3, undamped(2e-6), 10_000), 2e-6);
-        println!("{name}: {found:.3} Hz, closed form {expected:.3} Hz");
-        assert!((found / expected - 1.0).abs() < 1e-4, "found {found}");
+        println!("ten bays: {found:.2} Hz, closed form {expected:.2} Hz");
+        assert!((found / expected - 1.0).abs() < 1e-3, "found {found}");
     }
 }
 
@@ -88,7 +98,27 @@ fn order_in_element_length() {
     }
     let found = order(&errors);
     println!("order {found:.3}");
-    assert!((found - 4.0).abs() < 0.15, "observed order {found}");
+    assert!((found - 4.0).abs() < 0.15, "observed order {found}, found 3.95");
+}
+
+/// Shear strain is constant in an element, so frequencies of a Timoshenko beam converge with the square of its length; the
+/// error is the share of shear in the flexibility, small in a rail.
+#[test]
+fn order_in_element_length_with_shear() {
+    let shape = |x: f64| 1e3 * (PI * x / 0.6).sin();
+    let error = |elements: usize| {
+        let mut model = beam([0.0, 0.6], 6.4e6, 60.0, RailEnds::Pinned, elements);
+        model.rail[0].shear = Some(SHEAR);
+        let expected = timoshenko(&model.rail[0], SHEAR, 0.6, 1.0);
+        let time_step = 2e-6;
+        let found = frequency(&let_go(model, shape, 0.3, undamped(time_step), 20_000), time_step);
+        let w = 2.0 * (PI * found * time_step).tan() / time_step;
+        (0.6 / elements as f64, w / (2.0 * PI) / expected - 1.0)
+    };
+    let errors = [4, 8, 16].map(error);
+    let found = order(&errors);
+    println!("{errors:?}, order {found:.3}");
+    assert!((found - 2.0).abs() < 0.15, "observed order {found}");
 }
 
 /// Part of a signal at one frequency, by a Hann window.
@@ -121,5 +151,5 @@ fn passing_of_sleepers() {
         at(2.0 * passing),
         at(1.5 * passing)
     );
-    assert!(at(passing) > 10.0 * at(1.5 * passing), "found");
+    assert!(at(passing) > 100.0 * at(1.5 * passing), "found 2.4e-3 and 1.2e-9");
 }

@@ -11,5 +11,6 @@ mod equilibrium;
 mod frequencies;
 mod mesh;
 mod released;
+mod shear_beams;
 mod stiffness_jump;
 mod support_stiffness;

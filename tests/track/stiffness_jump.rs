@@ -4,14 +4,15 @@ use crate::modal::Modes;
 use crate::scenes::*;
 use trackbed::solvers::track::*;
 
-const EI: f64 = 1.28e7;
-const SOFT: f64 = 8e5;
-const STIFF: f64 = 8e6;
-const LOAD: f64 = 18e3;
+pub const EI: f64 = 1.28e7;
+pub const SOFT: f64 = 8e5;
+pub const STIFF: f64 = 8e6;
+pub const MASS: f64 = 120.0;
+pub const LOAD: f64 = 18e3;
 
 /// Springs in place of a foundation; the one on the jump takes half of each side.
 pub fn jump(half: f64, spacing: f64) -> TrackModel {
-    let mut model = beam([-half, half], EI, 120.0, RailEnds::Free, 1);
+    let mut model = beam([-half, half], EI, MASS, RailEnds::Free, 1);
     let count = (half / spacing).round() as i64;
     model.seats = (-count..=count)
         .map(|i| {

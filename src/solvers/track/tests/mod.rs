@@ -3,6 +3,7 @@
 mod beams;
 mod dynamics;
 mod ends;
+mod momentum;
 mod oracle;
 mod reference;
 mod runge_kutta;
