@@ -64,7 +64,7 @@ fn slab(section: &Section) -> Option<solver::Slab> {
 
 /// The solver's train.
 pub(super) fn train(train: &scenario::Train, direction: scenario::Direction) -> solver::Train {
-    let vehicles = train.vehicles.iter().map(vehicle).zip(train.vehicle_offsets()).collect();
+    let vehicles = train.vehicles.iter().map(|v| vehicle(v).into()).zip(train.vehicle_offsets()).collect();
     let direction = match direction {
         scenario::Direction::Backward => solver::Direction::Backward,
         _ => solver::Direction::Forward,

@@ -2,3 +2,4 @@
 
 pub mod banded;
 pub mod dense;
+pub mod skyline;

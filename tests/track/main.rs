@@ -10,6 +10,7 @@ mod equal_models;
 mod equilibrium;
 mod frequencies;
 mod mesh;
+mod moving_force;
 mod released;
 mod shear_beams;
 mod stiffness_jump;

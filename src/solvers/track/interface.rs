@@ -4,7 +4,7 @@
 //! closed line. With the compliances A (track), B (vehicle) and L (rail within its element):
 //!
 //! ```text
-//! wheel:      δ = δ_free - (A + B + L) F - A q,   F = C_H max(0, δ)^1.5
+//! wheel:      δ = δ_free - (A + B + L) F - A q,   F = F(δ)
 //! open:       q = k_e g + c d                      (R = 0)
 //! touching:   g = 0,  R = c d - q in [0, c d]
 //! every gap:  g = g_free + A F + A q
@@ -14,12 +14,12 @@
 //! quasi-definite. The step has one solution (see `contact`); after [`FLIP_ALL`] iterations only the first contradiction is
 //! moved, once the wheels are settled for the present phases, which ends by Murty's least-index argument.
 
-use super::contact::{SupportLine, SupportPhase, hertz_force, hertz_stiffness};
+use super::WheelContact;
+use super::contact::{SupportLine, SupportPhase, WheelLaw};
 use super::influence::Stepper;
 use super::mesh::RailPoint;
-use super::vehicle::WHEELS;
 use crate::linalg::dense::solve_symmetric;
-use nalgebra::Matrix4;
+use nalgebra::DMatrix;
 
 /// The contacts of a passage: their state after the last step and scratch for the next.
 #[derive(Debug, Clone, Default)]
@@ -32,11 +32,15 @@ pub(super) struct Interface {
     pub indentations: Vec<f64>,
     /// Change of the indentation over the last step, m: the first guess of the next.
     trends: Vec<f64>,
-    pub hertz: Vec<f64>,
+    contacts: Vec<WheelContact>,
+    /// Of this step.
+    laws: Vec<WheelLaw>,
+    /// Index of its vehicle, and of its vehicle's first wheel.
+    vehicle_of: Vec<(usize, usize)>,
     /// Indentation if this step's wheel forces were zero, m.
     pub free_indentations: Vec<f64>,
     /// Per vehicle: drop of its wheels per wheel force, m/N.
-    pub vehicle_compliance: Vec<Matrix4<f64>>,
+    vehicle_compliance: Vec<DMatrix<f64>>,
     compliance: Vec<f64>,
     /// Per wheel: first sleeper, and displacement of the sleepers from there per wheel force.
     at_sleepers: Vec<(usize, Vec<f64>)>,
@@ -72,13 +76,18 @@ pub(super) struct Effort {
 const FLIP_ALL: usize = 12;
 /// Wheel forces are converged to this part of their size.
 const FORCE_TOLERANCE: f64 = 1e-11;
-/// Part of a wheel force that the indentation's rounding may make, m.
+/// Indentations below this are none, m.
 const INDENTATION_ROUNDING: f64 = 1e-16;
 
 impl Interface {
-    /// Contacts of `wheels` wheels, given by their Hertz constants, and `sleepers` supports.
-    pub fn new(hertz: Vec<f64>, vehicle_compliance: Vec<Matrix4<f64>>, sleepers: usize) -> Self {
-        let wheels = hertz.len();
+    /// Contacts of wheels, vehicle by vehicle with the drop of its wheels per wheel force, and of `sleepers` supports.
+    pub fn new(vehicles: &[(Vec<WheelContact>, DMatrix<f64>)], sleepers: usize) -> Self {
+        let contacts: Vec<WheelContact> = vehicles.iter().flat_map(|(wheels, _)| wheels).copied().collect();
+        let wheels = contacts.len();
+        let mut vehicle_of = Vec::with_capacity(wheels);
+        for (v, (contacts, _)) in vehicles.iter().enumerate() {
+            vehicle_of.extend(vec![(v, vehicle_of.len()); contacts.len()]);
+        }
         Self {
             points: vec![RailPoint::default(); wheels],
             forces: vec![0.0; wheels],
@@ -92,8 +101,10 @@ impl Interface {
             lines: vec![SupportLine::default(); sleepers],
             free_gaps: vec![0.0; sleepers],
             gaps: vec![0.0; sleepers],
-            hertz,
-            vehicle_compliance,
+            laws: contacts.iter().map(|contact| WheelLaw::at_rest(*contact)).collect(),
+            contacts,
+            vehicle_of,
+            vehicle_compliance: vehicles.iter().map(|(_, compliance)| compliance.clone()).collect(),
             ..Self::default()
         }
     }
@@ -103,10 +114,13 @@ impl Interface {
     pub fn solve(&mut self, stepper: &Stepper) -> Result<Effort, Contact> {
         self.gather(stepper);
         for j in 0..self.points.len() {
-            let guess = self.indentations[j] + self.trends[j];
-            self.trends[j] = -self.indentations[j];
-            if self.indentations[j] > 0.0 && guess > 0.0 {
-                self.indentations[j] = guess;
+            let (indentation, trend) = (self.indentations[j], self.trends[j]);
+            let law = WheelLaw::in_step(self.contacts[j], indentation, trend, stepper.time_step());
+            self.laws[j] = law;
+            self.forces[j] = law.given().unwrap_or(self.forces[j]);
+            self.trends[j] = -indentation;
+            if law.touches(indentation) && law.touches(indentation + trend) {
+                self.indentations[j] += trend;
             }
         }
         let limit = 100 + 4 * self.phases.len();
@@ -170,15 +184,12 @@ impl Interface {
                     }
                 }
                 if other.element == point.element {
-                    let beam = &stepper.track.elements[point.element].beam;
-                    sum += if j == k {
-                        point.local_compliance
-                    } else {
-                        beam.clamped_deflection(other.offset, point.offset)
-                    };
+                    let same = j == k;
+                    sum += if same { point.local_compliance } else { stepper.track.local_deflection(&other, &point) };
                 }
-                if j / WHEELS == k / WHEELS {
-                    sum += self.vehicle_compliance[j / WHEELS][(j % WHEELS, k % WHEELS)];
+                let ((vehicle, first), (other_vehicle, _)) = (self.vehicle_of[j], self.vehicle_of[k]);
+                if vehicle == other_vehicle {
+                    sum += self.vehicle_compliance[vehicle][(j - first, k - first)];
                 }
                 self.compliance[j * wheels + k] = sum;
                 self.compliance[k * wheels + j] = sum;
@@ -201,10 +212,10 @@ impl Interface {
         let wheels = self.points.len();
         self.unknowns.clear();
         for j in 0..wheels {
-            if self.indentations[j] > 0.0 {
+            if self.laws[j].touches(self.indentations[j]) {
                 self.unknowns.push(Contact::Wheel(j));
             } else {
-                self.forces[j] = 0.0;
+                self.forces[j] = self.laws[j].given().unwrap_or(0.0);
             }
         }
         let closed = SupportPhase::Closed;
@@ -227,11 +238,9 @@ impl Interface {
             let diagonal = &mut self.matrix[r * order + r];
             self.rhs[r] = match *row {
                 Contact::Wheel(j) => {
-                    let indentation = self.indentations[j];
-                    let tangent = hertz_stiffness(self.hertz[j], indentation);
-                    *diagonal += 1.0 / tangent;
-                    // F/F' = 2/3 δ for the power 3/2.
-                    self.free_indentations[j] - indentation + indentation / 1.5
+                    let (flexibility, rest) = self.laws[j].line(self.indentations[j]);
+                    *diagonal += flexibility;
+                    self.free_indentations[j] - rest
                 }
                 Contact::Support(s) if self.phases[s] == SupportPhase::Open => {
                     *diagonal -= 1.0 / self.lines[s].stiffness;
@@ -239,6 +248,17 @@ impl Interface {
                 }
                 Contact::Support(s) => -self.free_gaps[s],
             };
+        }
+        for (k, law) in self.laws.iter().enumerate() {
+            let Some(force) = law.given() else { continue };
+            let (first, values) = &self.at_sleepers[k];
+            for (r, row) in self.unknowns.iter().enumerate() {
+                self.rhs[r] -= force
+                    * match *row {
+                        Contact::Wheel(j) => self.compliance[j * wheels + k],
+                        Contact::Support(s) => values.get(s.wrapping_sub(*first)).copied().unwrap_or(0.0),
+                    };
+            }
         }
     }
 
@@ -257,15 +277,16 @@ impl Interface {
                     next -= values.get(s.wrapping_sub(*first)).copied().unwrap_or(0.0) * self.corrections[s];
                 }
             }
-            let law = hertz_force(self.hertz[j], next);
-            let tolerance =
-                FORCE_TOLERANCE * law.max(1.0) + hertz_stiffness(self.hertz[j], next) * INDENTATION_ROUNDING;
-            let error = (law - self.forces[j]).abs() - tolerance;
+            let law = self.laws[j];
+            let force = law.force(next);
+            let rounding = INDENTATION_ROUNDING + f64::EPSILON * self.free_indentations[j].abs();
+            let tolerance = FORCE_TOLERANCE * force.abs().max(1.0) + law.stiffness(next) * rounding;
+            let error = (force - self.forces[j]).abs() - tolerance;
             if error > worst.0 {
                 worst = (error, Some(j));
             }
             let now = self.indentations[j];
-            let full = now <= 0.0 || next <= 0.0;
+            let full = !matches!(law, WheelLaw::Hertz { .. }) || now <= 0.0 || next <= 0.0;
             self.indentations[j] = if full { next } else { now + damping * (next - now) };
         }
         worst.1

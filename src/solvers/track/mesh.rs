@@ -190,6 +190,12 @@ impl Track {
         RailPoint { element, offset, shape: beam.shape(offset), local_compliance }
     }
 
+    /// Deflection at one point under a unit force at another of the same element, beyond that of the cubic, m/N.
+    #[inline]
+    pub(super) fn local_deflection(&self, at: &RailPoint, load: &RailPoint) -> f64 {
+        self.elements[at.element].beam.clamped_deflection(at.offset, load.offset)
+    }
+
     /// The four unknowns of the rail element `element`.
     #[inline]
     pub(super) fn element_unknowns(&self, element: usize) -> [usize; 4] {

@@ -1,8 +1,9 @@
 //! One rail on its seats, and the vehicles that run over it: statics with lift-off, and passages in time.
 //!
 //! The rail is a beam after Euler–Bernoulli or Timoshenko, slabs and auxiliary rails are beams after Euler–Bernoulli, pads are
-//! springs and dampers, a sleeper is a mass on a support that can only push, and a vehicle is ten rigid-body unknowns on Hertz
-//! contacts. Displacements and forces are positive downward, moments positive where the rail sags, x grows to the right.
+//! springs and dampers, a sleeper is a mass on a support that can only push, and a vehicle is a linear multibody system on
+//! wheels that press on the rail by the law of Hertz, a spring or a given force. Displacements and forces are positive
+//! downward, moments positive where the rail sags, x grows to the right.
 //!
 //! [`TrackModel`] says what there is; [`Track`] is its mesh and matrices; [`solve_static`] finds the state at rest;
 //! [`Stepper`] factors one time step for all passages over that track; [`Passage`] runs one train over it and shows every
@@ -18,10 +19,13 @@ mod influence;
 mod interface;
 mod mesh;
 mod model;
+mod multibody;
 mod passage;
 mod quasi_static;
+mod running;
 mod scheme;
 mod statics;
+mod train;
 mod vehicle;
 mod view;
 
@@ -31,10 +35,12 @@ pub use error::TrackError;
 pub use influence::Stepper;
 pub use mesh::Track;
 pub use model::{AuxiliaryRail, Foot, RailEnds, RailSection, Seat, Shear, Slab, TrackLevel, TrackModel};
+pub use multibody::{Multibody, Wheel, WheelContact};
 pub use passage::{Counters, Passage, Run};
 pub use scheme::Scheme;
 pub use statics::{Balance, Loads, StaticState, solve_static};
-pub use vehicle::{Direction, Train, Vehicle};
+pub use train::{Direction, Train};
+pub use vehicle::Vehicle;
 pub use view::{Observer, StepView};
 
 #[cfg(test)]

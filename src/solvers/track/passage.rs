@@ -7,10 +7,11 @@ use super::contact::{SupportLine, SupportPhase};
 use super::influence::Stepper;
 use super::interface::{Contact, Interface, add_scaled};
 use super::quasi_static::{self, Start};
-use super::vehicle::{UNKNOWNS, VehicleMatrix, VehicleVector, WHEEL, WHEELS};
+use super::running::RunningVehicle;
+
 use super::view::{Observer, StepView};
-use super::{Loads, StaticState, TrackError, TrackLevel, Train, solve_static};
-use nalgebra::Matrix4;
+use super::{Loads, StaticState, TrackError, TrackLevel, Train, WheelContact, solve_static};
+use std::ops::Range;
 
 /// Which train runs from where to where.
 #[derive(Debug, Clone, Copy)]
@@ -52,26 +53,12 @@ pub struct Passage<'a> {
     pub(super) wheel_positions: Vec<f64>,
     /// Per sleeper, N.
     pub(super) support_forces: Vec<f64>,
-    pub(super) vehicles: Vec<RunningVehicle>,
+    /// Each with its wheels among all.
+    pub(super) vehicles: Vec<(RunningVehicle, Range<usize>)>,
     steady: Vec<f64>,
     predicted: Vec<f64>,
     predicted_velocity: Vec<f64>,
     mean: [Vec<f64>; 3],
-}
-
-/// A vehicle's motion and the matrices of its step.
-#[derive(Debug, Clone)]
-pub(super) struct RunningVehicle {
-    stiffness: VehicleMatrix,
-    damping: VehicleMatrix,
-    masses: VehicleVector,
-    weight: VehicleVector,
-    inverse: VehicleMatrix,
-    pub displacement: VehicleVector,
-    pub velocity: VehicleVector,
-    pub acceleration: VehicleVector,
-    predicted: VehicleVector,
-    predicted_velocity: VehicleVector,
 }
 
 impl<'a> Passage<'a> {
@@ -136,24 +123,22 @@ impl<'a> Passage<'a> {
     ) -> Result<Self, TrackError> {
         let track = &stepper.track;
         let unloaded = solve_static(track, level, &Loads::default())?;
-        let mut vehicles = Vec::new();
-        let (mut hertz, mut compliance, mut wheel_positions) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut vehicles, mut contacts) = (Vec::new(), Vec::new());
+        let mut wheel_positions: Vec<f64> = Vec::new();
         if let Some(run) = &train {
             wheel_positions.extend(run.train.wheel_positions(run.start));
+            let mut first = 0;
             for (v, (vehicle, _)) in run.train.vehicles.iter().enumerate() {
-                let running = RunningVehicle::new(stepper, vehicle, &start, v).ok_or(TrackError::Parameter {
-                    name: "vehicle",
-                    value: v as f64,
-                    expected: "with masses that a step can move",
-                })?;
-                hertz.extend([vehicle.hertz; WHEELS]);
-                let (_, _, share) = stepper.scheme.effective();
-                let wheels: Matrix4<f64> = running.inverse.fixed_view::<WHEELS, WHEELS>(WHEEL, WHEEL).into_owned();
-                compliance.push(share * wheels);
-                vehicles.push(running);
+                let (displacement, velocity) = (start.state.vehicles[v].clone(), start.vehicle_velocity[v].clone());
+                let (gravity, scheme) = (track.model.gravity, &stepper.scheme);
+                let running = RunningVehicle::new(vehicle, gravity, scheme, displacement, velocity)?;
+                let of_wheels: Vec<WheelContact> = vehicle.wheels.iter().map(|w| w.contact).collect();
+                contacts.push((of_wheels, running.wheel_compliance(scheme)));
+                vehicles.push((running, first..first + vehicle.wheels.len()));
+                first += vehicle.wheels.len();
             }
         }
-        let mut interface = Interface::new(hertz, compliance, track.sleepers.len());
+        let mut interface = Interface::new(&contacts, track.sleepers.len());
         interface.forces.copy_from_slice(&start.state.wheel_forces);
         interface.indentations.copy_from_slice(&start.state.indentations);
         for (point, x) in interface.points.iter_mut().zip(&wheel_positions) {
@@ -268,17 +253,16 @@ impl<'a> Passage<'a> {
                 *position = x;
             }
         }
-        for (i, vehicle) in self.vehicles.iter_mut().enumerate() {
-            let wheels = i * WHEELS..(i + 1) * WHEELS;
+        for (vehicle, wheels) in &mut self.vehicles {
             vehicle.predict(scheme, &self.interface.forces[wheels.clone()]);
-            for j in wheels {
+            for j in wheels.clone() {
                 let point = track.moved_point(self.interface.points[j].element, self.wheel_positions[j]);
                 let unknowns = track.element_unknowns(point.element);
                 let rail: f64 = (0..4)
                     .map(|k| point.shape[k] * (predicted[unknowns[k]] + displacement_share * a[unknowns[k]]))
                     .sum();
                 self.interface.points[j] = point;
-                self.interface.free_indentations[j] = vehicle.free_wheel(scheme, j % WHEELS) - rail;
+                self.interface.free_indentations[j] = vehicle.free_wheel(scheme, j - wheels.start) - rail;
             }
         }
         for (s, sleeper) in track.sleepers.iter().enumerate() {
@@ -321,9 +305,9 @@ impl<'a> Passage<'a> {
             v[i] = predicted_velocity[i] + scheme.velocity_share() * a[i];
             sum += u[i];
         }
-        for (i, vehicle) in self.vehicles.iter_mut().enumerate() {
-            vehicle.finish(scheme, &self.interface.forces[i * WHEELS..(i + 1) * WHEELS]);
-            sum += vehicle.displacement.sum();
+        for (vehicle, wheels) in &mut self.vehicles {
+            vehicle.finish(scheme, &self.interface.forces[wheels.clone()]);
+            sum += vehicle.displacement.iter().sum::<f64>();
         }
         for s in 0..self.support_forces.len() {
             self.support_forces[s] = self.interface.support_force(s);
@@ -353,61 +337,5 @@ impl<'a> Passage<'a> {
             energy += 0.5 * k * (gap * gap - u * u);
         }
         energy
-    }
-}
-
-impl RunningVehicle {
-    fn new(stepper: &Stepper, vehicle: &super::Vehicle, start: &Start, index: usize) -> Option<Self> {
-        let (stiffness, damping) = vehicle.suspension();
-        let masses = vehicle.masses();
-        let (of_mass, of_damping, of_stiffness) = stepper.scheme.effective();
-        let matrix =
-            VehicleMatrix::from_diagonal(&(of_mass * masses)) + of_damping * damping + of_stiffness * stiffness;
-        Some(Self {
-            stiffness,
-            damping,
-            masses,
-            weight: vehicle.weight(stepper.track.model.gravity),
-            inverse: matrix.cholesky()?.inverse(),
-            displacement: start.state.vehicles[index],
-            velocity: start.vehicle_velocity[index],
-            acceleration: VehicleVector::zeros(),
-            predicted: VehicleVector::zeros(),
-            predicted_velocity: VehicleVector::zeros(),
-        })
-    }
-
-    /// Begins a step: the acceleration that it would end with if the wheel forces at its end were zero.
-    fn predict(&mut self, scheme: &super::Scheme, old_forces: &[f64]) {
-        let (dt, alpha_f) = (scheme.time_step, scheme.alpha_f);
-        let acceleration = self.acceleration;
-        self.predicted = self.displacement + dt * self.velocity + (0.5 - scheme.beta) * dt * dt * acceleration;
-        self.predicted_velocity = self.velocity + (1.0 - scheme.gamma) * dt * acceleration;
-        let mean = (1.0 - alpha_f) * self.predicted + alpha_f * self.displacement;
-        let mean_velocity = (1.0 - alpha_f) * self.predicted_velocity + alpha_f * self.velocity;
-        let mut forces = self.weight
-            - self.stiffness * mean
-            - self.damping * mean_velocity
-            - scheme.alpha_m * self.masses.component_mul(&acceleration);
-        for (w, force) in old_forces.iter().enumerate() {
-            forces[WHEEL + w] -= alpha_f * force;
-        }
-        self.acceleration = self.inverse * forces;
-    }
-
-    /// Displacement of a wheel at the end of the step if the wheel forces there were zero, m.
-    fn free_wheel(&self, scheme: &super::Scheme, wheel: usize) -> f64 {
-        self.predicted[WHEEL + wheel] + scheme.displacement_share() * self.acceleration[WHEEL + wheel]
-    }
-
-    /// Ends a step with its wheel forces.
-    fn finish(&mut self, scheme: &super::Scheme, forces: &[f64]) {
-        for (w, force) in forces.iter().enumerate() {
-            for i in 0..UNKNOWNS {
-                self.acceleration[i] -= (1.0 - scheme.alpha_f) * force * self.inverse[(i, WHEEL + w)];
-            }
-        }
-        self.displacement = self.predicted + scheme.displacement_share() * self.acceleration;
-        self.velocity = self.predicted_velocity + scheme.velocity_share() * self.acceleration;
     }
 }

@@ -68,9 +68,19 @@ impl<'a> StepView<'a> {
         &self.passage.wheel_positions
     }
 
-    /// Force of each wheel on the rail, N, never negative.
+    /// Force of each wheel on the rail, N; never negative on a contact of Hertz.
     pub fn wheel_forces(&self) -> &'a [f64] {
         &self.passage.interface.forces
+    }
+
+    /// The unknowns of a vehicle of the train, m and rad.
+    pub fn vehicle_displacements(&self, vehicle: usize) -> &'a [f64] {
+        &self.passage.vehicles[vehicle].0.displacement
+    }
+
+    /// Their second derivatives, m/s^2 and rad/s^2.
+    pub fn vehicle_accelerations(&self, vehicle: usize) -> &'a [f64] {
+        &self.passage.vehicles[vehicle].0.acceleration
     }
 
     /// Force of the rail on the pad, N.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 const RHO: f64 = 0.85;
 
 fn stepper(model: TrackModel, time_step: f64) -> Stepper {
-    Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::generalised_alpha(time_step, RHO).unwrap()).unwrap()
+    super::scenes::stepper(model, time_step, RHO)
 }
 
 /// Runs one wagon and hands every step to `look`.
@@ -123,7 +123,7 @@ fn rigid_track() {
         }
     });
     println!("rigid track: wheel forces within {worst:.1e}");
-    assert!(worst < 1e-8, "{worst:.3e}");
+    assert!(worst < 1e-9, "{worst:.3e}");
 }
 
 /// On an even track only the passing of sleepers moves the wheels, from the first step on.
@@ -256,7 +256,7 @@ fn wagons_of_a_train() {
     let level = hollow(&model, 1e-3, 1e-3, 40.0, 2.0);
     let level = TrackLevel { ends: [1e-3; 2], ..level };
     let stepper = stepper(model, 1e-4);
-    let train = Train { vehicles: vec![(wagon(), 0.0), (wagon(), 12.0)], direction: Direction::Forward };
+    let train = Train { vehicles: vec![(wagon().into(), 0.0), (wagon().into(), 12.0)], direction: Direction::Forward };
     let mut both = Envelope::default();
     let run_ = Run { train: &train, start: 26.0, finish: 50.0, speed: 55.56 };
     Passage::new(&stepper, &level, run_).unwrap().run(&mut both).unwrap();

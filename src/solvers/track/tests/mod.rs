@@ -9,3 +9,4 @@ mod reference;
 mod runge_kutta;
 mod scenes;
 mod statics;
+mod vehicles;

@@ -39,13 +39,13 @@ fn of_vehicles(vehicle: &Vehicle, v: &[f64]) -> f64 {
 }
 
 fn sums(passage: &Passage<'_>, vehicle: &Vehicle) -> Sums {
-    let (track, view, running) = (&*passage.stepper.track, passage.view(), &passage.vehicles[0]);
+    let (track, view, running) = (&*passage.stepper.track, passage.view(), &passage.vehicles[0].0);
     Sums {
         wheels: view.wheel_forces().iter().sum(),
         supports: (0..track.model.seats.len()).filter_map(|seat| view.contact_force(seat)).sum(),
-        vehicles_inertia: of_vehicles(vehicle, running.acceleration.as_slice()),
+        vehicles_inertia: of_vehicles(vehicle, &running.acceleration),
         track_inertia: of_track(track, &passage.acceleration),
-        vehicles_momentum: of_vehicles(vehicle, running.velocity.as_slice()),
+        vehicles_momentum: of_vehicles(vehicle, &running.velocity),
         track_momentum: of_track(track, &passage.velocity),
     }
 }

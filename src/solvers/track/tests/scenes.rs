@@ -1,6 +1,7 @@
 //! The tracks and vehicles that the tests share.
 
 use crate::solvers::track::*;
+use std::sync::Arc;
 
 pub const SLEEPER: Foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 50e3 };
 
@@ -97,4 +98,10 @@ pub fn hollow(model: &TrackModel, even: f64, depth: f64, middle: f64, half_width
         _ => 0.0,
     };
     TrackLevel { settlements: model.seats.iter().map(settlement).collect(), ends: [even, 0.0] }
+}
+
+/// A meshed track with a step of `time_step` (s).
+pub fn stepper(model: TrackModel, time_step: f64, spectral_radius: f64) -> Stepper {
+    Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::generalised_alpha(time_step, spectral_radius).unwrap())
+        .unwrap()
 }
