@@ -6,7 +6,8 @@ use super::track::given;
 use super::value::{Number, Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{
-    Given, Integrator, LawForm, Record as Kept, SettlementLaw, Solve, StaticLoad, Target, Traffic, Train, Update,
+    Beam, Given, Integrator, LawForm, Record as Kept, SettlementLaw, Solve, StaticLoad, Target, TimeStep, Traffic,
+    Train, Update,
 };
 use crate::units::{Dimension, number};
 
@@ -160,21 +161,20 @@ impl Checker<'_> {
             }
         };
         let (start, finish) = (place("start"), place("finish"));
-        let rho = match &record.get("integrator")?.value {
-            Val::Word { arguments, .. } => match arguments.get("rho")?.value {
-                Val::Number(n) => n.value,
-                _ => return None,
-            },
-            _ => return None,
+        let beam = Given {
+            value: if record.word("beam")? == "timoshenko" { Beam::Timoshenko } else { Beam::Euler },
+            origin: record.get("beam")?.origin,
         };
+        let (integrator, time_step) = (integrator(record), time_step(record));
         let elements = record.number("elements_per_bay")?;
         Some(Solve {
             law: law?,
             update: exchange?,
             update_span: update.origin.span(),
-            integrator: Integrator::GeneralisedAlpha { rho },
+            integrator: integrator?,
+            beam,
             elements_per_bay: Given { value: elements.value as u32, origin: record.get("elements_per_bay")?.origin },
-            time_step: given(record, "time_step"),
+            time_step: time_step?,
             start: start?,
             finish: finish?,
             gravity: given(record, "gravity")?,
@@ -276,4 +276,31 @@ impl Checker<'_> {
         let x = self.chainage(places, at, from, span)?;
         places.nearest_seat(x)
     }
+}
+
+/// A number among the arguments of a word.
+fn argument(record: &Record, field: &str, name: &str) -> Option<Given> {
+    let Val::Word { arguments, .. } = &record.get(field)?.value else { return None };
+    match arguments.get(name)? {
+        Slot { value: Val::Number(n), origin, .. } => Some(Given { value: n.value, origin: *origin }),
+        _ => None,
+    }
+}
+
+fn integrator(record: &Record) -> Option<Integrator> {
+    Some(match record.word("integrator")? {
+        "hht" => Integrator::Hht { alpha: *argument(record, "integrator", "alpha")? },
+        "newmark" => Integrator::Newmark,
+        _ => Integrator::GeneralisedAlpha { rho: *argument(record, "integrator", "rho")? },
+    })
+}
+
+fn time_step(record: &Record) -> Option<TimeStep> {
+    if let Some(step) = given(record, "time_step") {
+        return Some(TimeStep::Fixed(step));
+    }
+    Some(match record.word("time_step")? {
+        "adaptive" => TimeStep::Adaptive { tolerance: argument(record, "time_step", "tolerance")? },
+        _ => TimeStep::Auto,
+    })
 }

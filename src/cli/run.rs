@@ -114,7 +114,9 @@ fn explain(error: &RunError, compiled: &Compiled) -> Diagnostic {
         RunError::Track { cause, .. } => {
             let diagnostic = Diagnostic::new(Code::E0801, error.to_string()).help(way_out(cause));
             let span = compiled.scenario.as_ref().and_then(|s| match cause {
-                TrackError::StepNotConverged { .. } | TrackError::NotFinite { .. } => s.solve.time_step?.origin.span(),
+                TrackError::StepNotConverged { .. } | TrackError::NotFinite { .. } => {
+                    s.solve.time_step.fixed()?.origin.span()
+                }
                 TrackError::NoEquilibrium { .. } => s.solve.update_span,
                 _ => None,
             });

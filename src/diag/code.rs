@@ -70,6 +70,11 @@ codes! {
     E0503 Error "train longer than its track"
     E0504 Error "transitions that do not match the sections"
     E0505 Error "span that does not ascend"
+    E0506 Error "profile with a gap"
+    E0507 Error "profile whose places do not follow each other"
+    E0508 Error "data file that cannot be read"
+    E0509 Error "data file with other columns"
+    E0510 Error "row of a data file that is not data"
     E0601 Error "scene without something to run"
     E0602 Error "axle counts that do not divide"
     E0603 Error "step too coarse to be stable"
@@ -84,6 +89,7 @@ codes! {
     L1005 Warning "time step coarse for the contact"
     L1006 Warning "update interval that overshoots"
     L1007 Warning "sleeper passing near a vehicle resonance"
+    L1011 Warning "irregularity too sharp for a wheel"
 }
 
 impl Code {
@@ -102,6 +108,7 @@ impl Code {
             Code::L1005 => "coarse_time_step",
             Code::L1006 => "update_overshoot",
             Code::L1007 => "passing_frequency",
+            Code::L1011 => "irregularity_too_sharp",
             _ => return None,
         })
     }

@@ -1,6 +1,7 @@
 //! The graph as a person reads it: text, JSON and DOT.
 
 use super::{Decision, Estimate, Graph, Schedule, SubstructureNode};
+use crate::scenario::Integrator;
 use crate::solvers::settlement::Law;
 use crate::units::number;
 use serde::Serialize;
@@ -84,10 +85,10 @@ impl Graph {
                 number(*blocks.train.speed * 3.6)
             ));
             details.push(format!(
-                "passage: wheels from {} m to {} m, generalised-alpha (rho {}), step {} ms",
+                "passage: wheels from {} m to {} m, {}, step {} ms",
                 number(plan.left),
                 number(plan.right),
-                number(plan.rho),
+                integrator(plan.integrator),
                 number(plan.time_step * 1e3)
             ));
         }
@@ -136,6 +137,14 @@ impl Graph {
                 ]
             }
         }
+    }
+}
+
+fn integrator(integrator: Integrator) -> String {
+    match integrator {
+        Integrator::GeneralisedAlpha { rho } => format!("generalised-alpha (rho {})", number(rho)),
+        Integrator::Hht { alpha } => format!("Hilber-Hughes-Taylor (alpha {})", number(alpha)),
+        Integrator::Newmark => "Newmark, average acceleration".into(),
     }
 }
 

@@ -16,7 +16,7 @@ pub use listing::Listing;
 pub use substructure::SubstructureState;
 pub use track::{PassageOutcome, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
 
-use crate::scenario::{Direction, Record, StaticLoad, Track, Train};
+use crate::scenario::{Beam, Direction, Integrator, Record, StaticLoad, Track, Train};
 use crate::solvers::settlement::Law;
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +36,7 @@ pub struct Graph {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrackNode {
     pub track: Track,
+    pub beam: Beam,
     pub elements_per_bay: u32,
     /// m/s^2.
     pub gravity: f64,
@@ -79,8 +80,7 @@ pub struct PassagePlan {
     pub right: f64,
     /// s.
     pub time_step: f64,
-    /// Spectral radius of generalised-alpha at infinite frequency.
-    pub rho: f64,
+    pub integrator: Integrator,
     /// Interval of histories, in time steps.
     pub sample_every: u64,
 }

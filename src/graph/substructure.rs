@@ -1,6 +1,7 @@
 //! The substructure node: forces in, settlement out. One port for every tier.
 
 use super::{SubstructureNode, TrackNode};
+use crate::scenario::Track;
 use crate::solvers::settlement::{Law, SupportState};
 use serde::{Deserialize, Serialize};
 
@@ -12,13 +13,19 @@ pub enum SubstructureState {
     Fixed,
 }
 
+/// Settlement of every seat before any traffic, m.
+pub(super) fn initial_settlement(track: &Track) -> Vec<f64> {
+    track.seats.iter().map(|seat| seat.initial_settlement).collect()
+}
+
 /// A tier under the sleepers.
 pub(super) struct Substructure<'a> {
     law: Option<&'a Law>,
     pub state: SubstructureState,
     /// Seats that have a support, as indices into the track's.
     seats: Vec<usize>,
-    all_seats: usize,
+    /// Settlement of every seat at the start, m.
+    initial: Vec<f64>,
 }
 
 impl<'a> Substructure<'a> {
@@ -30,15 +37,15 @@ impl<'a> Substructure<'a> {
             }
             SubstructureNode::Fixed => (None, SubstructureState::Fixed),
         };
-        Substructure { law, state, seats, all_seats: track.track.seats.len() }
+        Substructure { law, state, seats, initial: initial_settlement(&track.track) }
     }
 
-    /// Settlement of every seat, m; zero where nothing settles.
+    /// Settlement of every seat, m: what the scene starts with and what traffic has added.
     pub fn settlement(&self) -> Vec<f64> {
-        let mut settlement = vec![0.0; self.all_seats];
+        let mut settlement = self.initial.clone();
         if let (Some(law), SubstructureState::Law(supports)) = (self.law, &self.state) {
             for (seat, support) in self.seats.iter().zip(supports) {
-                settlement[*seat] = law.settlement(support);
+                settlement[*seat] += law.settlement(support);
             }
         }
         settlement

@@ -1,13 +1,12 @@
 //! The track node at work: its statics and its passages, spoken to in the scene's terms.
 
-use super::model::{level, model, train};
+use super::model::{level, model, motion, scheme, train};
 use super::sampler::Sampler;
+use super::substructure::initial_settlement;
 use super::track::{PassageOutcome, RailPoint, SeatOutcome, Unloaded, UnloadedSeat};
 use super::{Blocks, Graph, Schedule, TrackNode};
 use crate::scenario::{Direction, Record, StaticLoad, Target};
-use crate::solvers::track::{
-    Envelope, Loads, Passage, Run, Scheme, StaticState, Stepper, Track, TrackError, solve_static,
-};
+use crate::solvers::track::{Envelope, Loads, Passage, Run, StaticState, Stepper, Track, TrackError, solve_static};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -28,7 +27,7 @@ impl<'a> TrackSystem<'a> {
         let traffic = match &graph.schedule {
             Schedule::Static { .. } => None,
             Schedule::Blocks(blocks) => {
-                let scheme = Scheme::generalised_alpha(blocks.passage.time_step, blocks.passage.rho)?;
+                let scheme = scheme(blocks.passage.integrator, blocks.passage.time_step)?;
                 Some((blocks, Stepper::new(track.clone(), scheme)?))
             }
         };
@@ -44,7 +43,7 @@ impl<'a> TrackSystem<'a> {
             (0..seats.len()).min_by(|&a, &b| (seats[a].x - x).abs().total_cmp(&(seats[b].x - x).abs())).unwrap_or(0)
         };
         let sleepers: Vec<(usize, f64)> = on(Target::Sleepers).map(|l| (nearest(l.x), *l.force)).collect();
-        let settlement = vec![0.0; seats.len()];
+        let settlement = initial_settlement(&self.node.track);
         let loads = Loads { rail: &rail, sleepers: &sleepers, train: None };
         let state = solve_static(&self.track, &level(self.node, &settlement), &loads)?;
         Ok(self.at_rest(&state, &settlement))
@@ -80,7 +79,8 @@ impl<'a> TrackSystem<'a> {
         let (start, finish) =
             if direction == Direction::Backward { (right - base, left) } else { (left + base, right) };
         let level = level(self.node, settlement);
-        let run = Run { train: &train, start, finish, speed: *blocks.train.speed };
+        let motion = motion(&blocks.train);
+        let run = Run { train: &train, start, finish, motion: &motion };
         let mut passage = Passage::new(stepper, &level, run)?;
         let unloaded = self.at_rest(passage.unloaded(), settlement);
         let mut envelope = Envelope::default();

@@ -36,7 +36,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         ),
     )
     .help(format!("write `time_step = {} s`", number((needed * 1e5).floor() / 1e5)));
-    vec![match scenario.solve.time_step.and_then(|t| t.origin.span()) {
+    vec![match scenario.solve.time_step.fixed().and_then(|t| t.origin.span()) {
         Some(span) => diagnostic.at(span, "coarse"),
         None => diagnostic,
     }]

@@ -4,6 +4,7 @@
 
 mod coarse_time_step;
 mod critical_speed;
+mod irregularity_too_sharp;
 mod law_outside_calibration;
 mod passing_frequency;
 mod stiffness_jump;
@@ -17,7 +18,7 @@ use crate::scenario::Scenario;
 
 type Rule = fn(&Scenario, &Graph) -> Vec<Diagnostic>;
 
-const RULES: [Rule; 7] = [
+const RULES: [Rule; 8] = [
     stiffness_jump::check,
     critical_speed::check,
     track_too_short::check,
@@ -25,6 +26,7 @@ const RULES: [Rule; 7] = [
     coarse_time_step::check,
     update_overshoot::check,
     passing_frequency::check,
+    irregularity_too_sharp::check,
 ];
 
 /// Applies every rule, at the level that the scene gives it.

@@ -13,12 +13,19 @@ pub(super) struct Winkler {
 }
 
 impl Winkler {
-    /// A seat is pad and support in series; a slab adds its foundation over one spacing.
+    /// A seat is pad and support in series; a slab adds its foundation over one spacing. Where they vary, those of the
+    /// section's left end.
     pub fn of(track: &Track, section: usize) -> Option<Winkler> {
+        Winkler::beside(track, section, track.sections[section].start)
+    }
+
+    /// As at the seat of a section that is nearest to a chainage.
+    pub fn beside(track: &Track, section: usize, x: f64) -> Option<Winkler> {
         let Section { rail, spacing, slab, .. } = &track.sections[section];
-        let seat = track.seats.iter().find(|s| s.section == section)?;
+        let seats = track.seats.iter().filter(|s| s.section == section);
+        let seat = seats.min_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()))?;
         let (below, mass) = match (&seat.foot, slab) {
-            (Foot::Sleeper { mass, support }, _) => (1.0 / *support.stiffness, **mass / **spacing),
+            (Foot::Sleeper { mass, support }, _) => (1.0 / support.spring().stiffness, **mass / **spacing),
             (Foot::Slab, Some(slab)) => (1.0 / (*slab.foundation_stiffness * **spacing), 0.0),
             _ => (0.0, 0.0),
         };

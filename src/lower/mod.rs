@@ -2,6 +2,7 @@
 
 mod estimate;
 mod passage;
+mod pending;
 mod schedule;
 
 use crate::diag::{Code, Diagnostic, Severity};
@@ -31,9 +32,13 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
             (law, schedule::blocks(&mut pass, scenario, traffic).map(Schedule::Blocks))
         }
     };
-    let Some(schedule) = schedule else { return (None, pass.diagnostics) };
+    pending::refuse(&mut pass, scenario);
+    let Some(schedule) = schedule.filter(|_| !crate::diag::has_errors(&pass.diagnostics)) else {
+        return (None, pass.diagnostics);
+    };
     let track = TrackNode {
         track: scenario.track.clone(),
+        beam: *scenario.solve.beam,
         elements_per_bay: *scenario.solve.elements_per_bay,
         gravity: *scenario.solve.gravity,
     };

@@ -3,7 +3,7 @@
 use super::Pass;
 use crate::diag::{Code, Diagnostic};
 use crate::graph::PassagePlan;
-use crate::scenario::{Direction, Given, Integrator, Scenario, Train};
+use crate::scenario::{Direction, Given, Scenario, Train};
 use crate::units::number;
 
 /// Distance that wheels keep from the ends of the model where there is room, m: about three decay lengths of the
@@ -19,12 +19,9 @@ const SAMPLE: f64 = 5e-4;
 pub(super) fn plan(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<PassagePlan> {
     let (left, right) = ends(pass, scenario, train)?;
     let time_step = time_step(pass, scenario, train)?;
-    let rho = match scenario.solve.integrator {
-        Integrator::GeneralisedAlpha { rho } => rho,
-    };
     let every = scenario.records.iter().filter_map(|r| r.every).fold(SAMPLE, f64::min);
     let sample_every = (every / time_step).round().max(1.0) as u64;
-    Some(PassagePlan { left, right, time_step, rho, sample_every })
+    Some(PassagePlan { left, right, time_step, integrator: scenario.solve.integrator, sample_every })
 }
 
 /// Chainage of the hindmost wheel at the left and of the foremost one at the right.
@@ -115,7 +112,7 @@ fn time_step(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<f64>
     let element = spacing / f64::from(*scenario.solve.elements_per_bay);
     let speed = *train.speed;
     let transit = element / speed;
-    if let Some(given) = scenario.solve.time_step {
+    if let Some(given) = scenario.solve.time_step.fixed() {
         if *given > transit {
             let mut mistake = Diagnostic::new(
                 Code::E0603,

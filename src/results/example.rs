@@ -11,7 +11,13 @@ fn given<T>(value: T) -> Given<T> {
 }
 
 fn rail() -> Rail {
-    Rail { mass: given(60.0), bending_stiffness: given(6.4e6), height: 0.172 }
+    Rail {
+        mass: given(60.0),
+        bending_stiffness: given(6.4e6),
+        shear_stiffness: None,
+        rotary_inertia: 0.24,
+        height: 0.172,
+    }
 }
 
 fn pad() -> Pad {
@@ -26,8 +32,9 @@ fn solve() -> Solve {
         update: Update::Fixed { axles: 20 },
         update_span: None,
         integrator: Integrator::GeneralisedAlpha { rho: 0.9 },
+        beam: given(Beam::Euler),
         elements_per_bay: given(4),
-        time_step: Some(given(5e-5)),
+        time_step: TimeStep::Fixed(given(5e-5)),
         start: Some(given(-25.0)),
         finish: None,
         gravity: given(9.81),
@@ -65,6 +72,9 @@ pub(crate) fn transition() -> Run {
         spacing: given(0.6),
         slab,
         sleeper_size,
+        sleeper_base_area: None,
+        seat_distance: None,
+        auxiliary_rails: None,
         length_origin: Origin::Default,
     };
     let slab = Slab {
@@ -73,8 +83,8 @@ pub(crate) fn transition() -> Run {
         foundation_stiffness: given(1e8),
         foundation_damping: given(1e5),
     };
-    let ballast =
-        Foot::Sleeper { mass: given(150.0), support: Support { stiffness: given(40e6), damping: given(4e4) } };
+    let support = Support { stiffness: given(40e6), damping: given(4e4), seating: None, usp: None };
+    let ballast = Foot::Sleeper { mass: given(150.0), support };
     let seat = |number: i32| Seat {
         number,
         transition: 0,
@@ -82,6 +92,7 @@ pub(crate) fn transition() -> Run {
         section: usize::from(number > 0),
         pad: pad(),
         foot: if number < 0 { ballast.clone() } else { Foot::Slab },
+        initial_settlement: 0.0,
     };
     let expectation = |text: &str, low: f64, high: f64, reduction, response, unit: (&str, f64)| Expectation {
         text: text.to_owned(),
@@ -105,12 +116,14 @@ pub(crate) fn transition() -> Run {
             transitions: vec![Transition { name: String::new(), x: 0.0, side: Side::SoftToStiff }],
             seats: (-69..=40).filter(|n| *n != 0).map(seat).collect(),
             rail_ends: RailEnds::Clamped,
+            irregularity: None,
         },
         loading: Some(Loading::Traffic(Traffic {
             train: Train {
                 name: "wagon".to_owned(),
                 vehicles: vec![vehicle()],
                 speed: given(200.0 / 3.6),
+                speed_profile: None,
                 direction: Direction::Forward,
             },
             total: given(500),
@@ -250,6 +263,7 @@ pub(crate) fn bench() -> Run {
             section: 0,
             pad: pad(),
             foot: Foot::Rigid,
+            initial_settlement: 0.0,
         })
         .collect();
     let load = seats[9].x;
@@ -265,11 +279,15 @@ pub(crate) fn bench() -> Run {
                 spacing: given(0.6),
                 slab: None,
                 sleeper_size: Some([2.6, 0.3, 0.2]),
+                sleeper_base_area: None,
+                seat_distance: None,
+                auxiliary_rails: None,
                 length_origin: Origin::Default,
             }],
             transitions: vec![],
             seats,
             rail_ends: RailEnds::Free,
+            irregularity: None,
         },
         loading: Some(Loading::Static(vec![StaticLoad {
             name: "jack".to_owned(),

@@ -132,7 +132,7 @@ impl Recorder for RunRecorder<'_> {
         let Some(unloaded) = self.unloaded.take() else { return };
         for ((seat, outcome), rest) in track.seats.iter().zip(&passage.seats).zip(&unloaded.seats) {
             let stiffness = match &seat.foot {
-                Foot::Sleeper { support, .. } => *support.stiffness,
+                Foot::Sleeper { support, .. } => support.spring().stiffness,
                 Foot::Rigid | Foot::Slab => 0.0,
             };
             self.tables.sleepers.push(SleeperRow {
@@ -201,7 +201,7 @@ impl Recorder for RunRecorder<'_> {
         self.keep_rail(0, Response::RailMoment, state.rail.iter().map(|p| (p.x, p.moment)));
         for (seat, rest) in track.seats.iter().zip(&state.seats) {
             let stiffness = match &seat.foot {
-                Foot::Sleeper { support, .. } => *support.stiffness,
+                Foot::Sleeper { support, .. } => support.spring().stiffness,
                 Foot::Rigid | Foot::Slab => 0.0,
             };
             self.tables.sleepers.push(SleeperRow {

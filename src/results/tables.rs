@@ -18,12 +18,14 @@ pub struct SleeperRow {
     pub axles: u64,
     pub sleeper: String,
     pub x_m: f64,
+    /// What the scene starts with and what traffic has added.
     pub settlement_m: f64,
     pub void_m: f64,
     pub gravity_contact_force_N: f64,
     pub max_contact_force_N: f64,
     pub max_rail_seat_load_N: f64,
     pub max_sleeper_displacement_m: f64,
+    /// Of support and under sleeper pad in series.
     pub support_stiffness_N_per_m: f64,
     pub contact_loss_s: f64,
 }

@@ -5,12 +5,17 @@
 //! settlement and force are positive; every number a person may have written carries its [`Origin`].
 
 mod given;
+mod profile;
 pub mod response;
 mod track;
 mod traffic;
 
 pub use given::{Given, Origin};
-pub use track::{Foot, Pad, Rail, RailEnds, Seat, Section, Side, Slab, Support, Track, Transition};
+pub use profile::{Cubic, Curve, Piece, Profile};
+pub use track::{
+    AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, Spring, Support, Track, Transition,
+    Usp,
+};
 pub use traffic::{Direction, LawForm, SettlementLaw, StaticLoad, Target, Traffic, Train, Vehicle};
 
 use crate::diag::Span;
@@ -46,10 +51,11 @@ pub struct Solve {
     /// The word after `update_every`, for messages.
     pub update_span: Option<Span>,
     pub integrator: Integrator,
+    /// Beam theory of the rail.
+    pub beam: Given<Beam>,
     /// Beam elements between two neighbouring rail seats.
     pub elements_per_bay: Given<u32>,
-    /// s; `None` is chosen by the planner.
-    pub time_step: Option<Given>,
+    pub time_step: TimeStep,
     /// Chainage of the leading wheel at the start and at the end of a passage, m; `None` is chosen by the planner.
     pub start: Option<Given>,
     pub finish: Option<Given>,
@@ -72,6 +78,37 @@ pub enum Update {
 pub enum Integrator {
     /// Spectral radius at infinite frequency, 0 .. 1.
     GeneralisedAlpha { rho: f64 },
+    /// Hilber, Hughes and Taylor: alpha from 0 to 1/3; a greater one damps high frequencies more.
+    Hht { alpha: f64 },
+    /// Average acceleration (beta 1/4, gamma 1/2): damps nothing.
+    Newmark,
+}
+
+/// Beam theory of the rail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Beam {
+    /// Euler and Bernoulli: bends.
+    Euler,
+    /// Timoshenko: bends and shears, and its cross-section has a rotary inertia.
+    Timoshenko,
+}
+
+/// The time step of track and vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum TimeStep {
+    /// Chosen by the planner.
+    Auto,
+    /// s.
+    Fixed(Given),
+    /// As small as the wanted error of a step, relative to the answer, asks for.
+    Adaptive { tolerance: Given },
+}
+
+impl TimeStep {
+    /// The step that the scene states, s.
+    pub fn fixed(self) -> Option<Given> {
+        if let TimeStep::Fixed(step) = self { Some(step) } else { None }
+    }
 }
 
 /// A history that a person asked for.

@@ -22,7 +22,7 @@ pub enum Response {
     RailLevel,
     /// Sagging rail moment, N m.
     RailMoment,
-    /// Permanent downward move of a support, m.
+    /// Permanent downward move of a support, that of the start included, m.
     Settlement,
     /// Gap under a sleeper of the unloaded track, m.
     Void,
@@ -32,7 +32,7 @@ pub enum Response {
     SleeperVelocity,
     /// m/s^2, downward.
     SleeperAcceleration,
-    /// N/m per seat.
+    /// Of support and under sleeper pad in series, N/m per seat.
     SupportStiffness,
     /// Time without contact of sleeper and support during a passage, s.
     ContactLoss,

@@ -1,6 +1,6 @@
 //! What acts on the track: vehicles, trains and test loads, and the law by which the supports settle.
 
-use super::Given;
+use super::{Given, Profile};
 use serde::{Deserialize, Serialize};
 
 /// A vehicle on two bogies of two axles each, as carried by **one rail**: half of every mass, inertia and stiffness.
@@ -57,8 +57,10 @@ pub struct Train {
     pub name: String,
     /// In the order of the train, the leading one first.
     pub vehicles: Vec<Vehicle>,
-    /// m/s.
+    /// m/s; the largest where it varies.
     pub speed: Given,
+    /// m/s by the chainage of the leading wheel, over the whole track; `None` is `speed` everywhere.
+    pub speed_profile: Option<Profile>,
     pub direction: Direction,
 }
 

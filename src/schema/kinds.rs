@@ -1,6 +1,6 @@
 //! The table of kinds and fields. Ranges are in the unit of their field; `per` names the basis of the range first.
 
-use super::{Alternative, Basis, Field, Form, Kind, Measure, Need, Role, Word};
+use super::{Alternative, Basis, Field, Form, Kind, Measure, Need, Role, Varies, Word};
 
 const fn field(name: &'static str, form: Form, need: Need, doc: &'static str) -> Field {
     Field { name, form, need, doc }
@@ -19,7 +19,7 @@ const fn way(name: &'static str, form: Form, doc: &'static str) -> Field {
 }
 
 const fn measure(unit: &'static str, min: f64, max: f64) -> Measure {
-    Measure { unit, min, max, basis: None, varies: false }
+    Measure { unit, min, max, basis: None, varies: Varies::No }
 }
 const fn number(unit: &'static str, min: f64, max: f64) -> Form {
     Form::Number(measure(unit, min, max))
@@ -29,8 +29,15 @@ const fn per(unit: &'static str, min: f64, max: f64, basis: &'static Basis) -> F
 }
 /// A number that may vary along the track.
 const fn along(form: Form) -> Form {
+    varying(form, Varies::Yes)
+}
+/// A number that will vary along the track in a later version.
+const fn along_later(form: Form) -> Form {
+    varying(form, Varies::Planned)
+}
+const fn varying(form: Form, varies: Varies) -> Form {
     match form {
-        Form::Number(m) => Form::Number(Measure { varies: true, ..m }),
+        Form::Number(m) => Form::Number(Measure { varies, ..m }),
         other => other,
     }
 }
@@ -57,6 +64,9 @@ const SEAT: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: 
 
 const NONE: &[Word] = &[word("none", "absent")];
 const AUTO: &[Word] = &[word("auto", "chosen by the planner")];
+const USP: Form = Form::OneOf(&[Form::Object("usp"), Form::Words(NONE)]);
+const SEATING: Form = Form::OneOf(&[Form::Object("seating"), Form::Words(NONE)]);
+const AUXILIARY_RAILS: Form = Form::OneOf(&[Form::Object("auxiliary_rails"), Form::Words(NONE)]);
 const RAIL: Form = Form::OneOf(&[Form::Object("rail"), Form::Words(NONE)]);
 const PAD: Form = Form::OneOf(&[Form::Object("pad"), Form::Words(NONE)]);
 const SLEEPER: Form = Form::OneOf(&[Form::Object("sleeper"), Form::Words(NONE)]);
@@ -101,13 +111,18 @@ pub const KINDS: &[Kind] = &[
             ),
             way("youngs_modulus", number("GPa", 190.0, 220.0), "of the steel"),
             way("second_moment", number("cm^4", 500.0, 5000.0), "about the horizontal axis"),
+            optional(
+                "shear_stiffness",
+                number("MN", 50.0, 500.0),
+                "kappa G A, vertical; needed for `solve.beam = timoshenko`",
+            ),
             default("height", number("mm", 100.0, 200.0), "172 mm", "for the drawing"),
         ],
         alternatives: &[
             either(&[&["mass"], &["density", "area"]]),
             either(&[&["bending_stiffness"], &["youngs_modulus", "second_moment"]]),
         ],
-        planned: &["shear_stiffness"],
+        planned: &[],
     },
     Kind {
         name: "pad",
@@ -125,6 +140,22 @@ pub const KINDS: &[Kind] = &[
         planned: &[],
     },
     Kind {
+        name: "usp",
+        doc: "An under sleeper pad, in series with the support. It makes the track softer and spreads the load over more sleepers.",
+        role: Role::Part,
+        fields: &[
+            required(
+                "bedding_modulus",
+                along(number("N/mm^3", 0.01, 1.0)),
+                "static, of pad on ballast; times the sleeper's base area it is a stiffness",
+            ),
+            default("damping_time", number("ms", 0.0, 2.0), "0.2 ms", "damping / stiffness"),
+            default("thickness", number("mm", 3.0, 30.0), "10 mm", "for the drawing"),
+        ],
+        alternatives: &[],
+        planned: &[],
+    },
+    Kind {
         name: "sleeper",
         doc: "A sleeper, rigid.",
         role: Role::Part,
@@ -139,9 +170,15 @@ pub const KINDS: &[Kind] = &[
             default("length", number("m", 2.0, 3.0), "2.6 m", "across the track"),
             default("base_width", number("m", 0.2, 0.7), "0.3 m", "along the track"),
             default("height", number("m", 0.1, 0.3), "0.21 m", ""),
+            optional(
+                "base_area",
+                number("m^2", 0.3, 1.5),
+                "that bears on the ballast; length x base_width where absent",
+            ),
+            default("seat_distance", number("m", 1.0, 1.8), "1.5 m", "between the rails"),
         ],
         alternatives: &[],
-        planned: &["base_area", "seat_distance"],
+        planned: &[],
     },
     Kind {
         name: "slab",
@@ -168,11 +205,28 @@ pub const KINDS: &[Kind] = &[
             ),
             way("damping", along(per("kN s/m", 0.0, 5000.0, &SEAT_OR_SLEEPER)), ""),
             way("damping_time", number("ms", 0.0, 5.0), "damping / stiffness"),
+            default(
+                "seating",
+                SEATING,
+                "none",
+                "a softer first part of its compression: ballast without load is far softer",
+            ),
         ],
         alternatives: &[Alternative {
             ways: &[&["damping"], &["damping_time"]],
             default: Some(("damping_time", "1 ms")),
         }],
+        planned: &[],
+    },
+    Kind {
+        name: "seating",
+        doc: "The first compression of a support: up to `closure` its force grows with this stiffness, beyond it with that of the support.",
+        role: Role::Nested,
+        fields: &[
+            required("stiffness", per("MN/m", 0.1, 1000.0, &SEAT_OR_SLEEPER), "not above the support's"),
+            required("closure", number("mm", 0.01, 20.0), "compression at which ballast and sleeper have closed up"),
+        ],
+        alternatives: &[],
         planned: &[],
     },
     Kind {
@@ -183,12 +237,37 @@ pub const KINDS: &[Kind] = &[
             optional("rail", RAIL, ""),
             optional("pad", PAD, ""),
             optional("sleeper", SLEEPER, "a slab has none"),
-            required("spacing", along(number("m", 0.3, 1.2)), "of sleepers or seats"),
+            optional("usp", USP, "under the sleepers, in series with the support"),
+            required("spacing", along_later(number("m", 0.3, 1.2)), "of sleepers or seats"),
             optional("slab", SLAB, "carries the seats instead of sleepers and support"),
             optional("support", SUPPORT, "carries the sleepers"),
+            default(
+                "settlement",
+                along(number("mm", -100.0, 100.0)),
+                "0 mm",
+                "permanent settlement of the supports at the start; where the rail does not follow it, a void opens",
+            ),
+            default(
+                "auxiliary_rails",
+                AUXILIARY_RAILS,
+                "none",
+                "rails beside the running rails, from one end of the section to the other: they spread the load",
+            ),
         ],
         alternatives: &[],
-        planned: &["usp", "layers", "auxiliary_rails", "settlement"],
+        planned: &["layers"],
+    },
+    Kind {
+        name: "auxiliary_rails",
+        doc: "Rails beside the running rails on pads of their own. They carry no wheel.",
+        role: Role::Nested,
+        fields: &[
+            required("rail", Form::Object("rail"), "each of them"),
+            default("count", Form::Integer { min: 1, max: 4 }, "2", "of the whole track; one rail has half of them"),
+            required("pad", Form::Object("pad"), "under each of them at each sleeper; the same along the section"),
+        ],
+        alternatives: &[],
+        planned: &[],
     },
     Kind {
         name: "track",
@@ -222,14 +301,20 @@ pub const KINDS: &[Kind] = &[
                     word("clamped", "held level, at the level of the settled track there"),
                     word("pinned", "held at that level, free to turn"),
                     word("free", "not held"),
-                    planned("absorbing"),
+                    word("absorbing", "let waves out, as if the track went on"),
                 ]),
                 "clamped",
                 "what holds the rail at the ends of the model",
             ),
+            default(
+                "irregularity",
+                along(number("mm", -50.0, 50.0)),
+                "0 mm",
+                "level of the rail as built, positive down; a file of it is read as a smooth curve",
+            ),
         ],
         alternatives: &[],
-        planned: &["stretches", "bed_width", "bed_ends", "base", "irregularity"],
+        planned: &["stretches", "bed_width", "bed_ends", "base"],
     },
     Kind {
         name: "vehicle",
@@ -339,7 +424,7 @@ pub const KINDS: &[Kind] = &[
                 },
                 "in order, the leading one first",
             ),
-            required("speed", along(number("km/h", 1.0, 600.0)), ""),
+            required("speed", along(number("km/h", 1.0, 600.0)), "by the place of the leading wheel where it varies"),
             default(
                 "direction",
                 Form::Words(&[
@@ -472,7 +557,10 @@ pub const KINDS: &[Kind] = &[
             ),
             default(
                 "beam",
-                Form::Words(&[word("euler", "Euler-Bernoulli"), planned("timoshenko")]),
+                Form::Words(&[
+                    word("euler", "Euler-Bernoulli: bends"),
+                    word("timoshenko", "bends and shears; needs the rail's `shear_stiffness`"),
+                ]),
                 "euler",
                 "beam theory of the rail",
             ),
@@ -491,15 +579,41 @@ pub const KINDS: &[Kind] = &[
                         )],
                         planned: false,
                     },
-                    planned("hht"),
-                    planned("newmark"),
+                    Word {
+                        name: "hht",
+                        doc: "Hilber, Hughes and Taylor (1977)",
+                        arguments: &[default(
+                            "alpha",
+                            number("", 0.0, 1.0 / 3.0),
+                            "0.1",
+                            "damping of high frequencies",
+                        )],
+                        planned: false,
+                    },
+                    word("newmark", "average acceleration, without damping of its own"),
                 ]),
                 "generalised_alpha(0.85)",
                 "time integration of track and vehicle",
             ),
             default(
                 "time_step",
-                Form::OneOf(&[number("s", 1e-7, 0.01), Form::Words(AUTO)]),
+                Form::OneOf(&[
+                    number("s", 1e-7, 0.01),
+                    Form::Words(&[
+                        word("auto", "chosen by the planner"),
+                        Word {
+                            name: "adaptive",
+                            doc: "steps as large as the wanted error allows",
+                            arguments: &[default(
+                                "tolerance",
+                                number("", 1e-6, 0.1),
+                                "0.001",
+                                "error of a step, relative to the answer",
+                            )],
+                            planned: false,
+                        },
+                    ]),
+                ]),
                 "auto",
                 "of track and vehicle",
             ),

@@ -1,23 +1,25 @@
 //! The contacts of one time step: wheel forces and the supports that are not closed, all else being linear.
 //!
-//! Unknowns are the wheel forces F and, for each support that is open or touching, the force q by which it falls short of its
+//! Unknowns are the wheel forces F and, for each support that is not closed, the force q by which it falls short of its
 //! closed line. With the compliances A (track), B (vehicle) and L (rail within its element):
 //!
 //! ```text
 //! wheel:      δ = δ_free - (A + B + L) F - A q,   F = F(δ)
-//! open:       q = k_e g + c d                      (R = 0)
-//! touching:   g = 0,  R = c d - q in [0, c d]
+//! open:       q = closed line at g                (R = 0)
+//! touching:   g = 0,  R = closed line at 0 - q in [0, c d]
+//! seating:    q = (k - k_s) (g - a)
 //! every gap:  g = g_free + A F + A q
 //! ```
 //!
 //! One Newton iteration linearises the wheels and moves the supports that contradict their phase. The matrix is symmetric and
-//! quasi-definite. The step has one solution (see `contact`); after [`FLIP_ALL`] iterations only the first contradiction is
+//! quasi-definite. The step has one solution (see `support`); after [`FLIP_ALL`] iterations only the first contradiction is
 //! moved, once the wheels are settled for the present phases, which ends by Murty's least-index argument.
 
 use super::WheelContact;
-use super::contact::{SupportLine, SupportPhase, WheelLaw};
+use super::contact::WheelLaw;
 use super::influence::Stepper;
 use super::mesh::RailPoint;
+use super::support::{SupportLines, SupportPhase};
 use crate::linalg::dense::solve_symmetric;
 use nalgebra::DMatrix;
 
@@ -48,7 +50,7 @@ pub(super) struct Interface {
     pub phases: Vec<SupportPhase>,
     /// q, N; 0 for closed supports.
     pub corrections: Vec<f64>,
-    pub lines: Vec<SupportLine>,
+    pub lines: Vec<SupportLines>,
     /// Gap if wheel forces and corrections were zero, m.
     pub free_gaps: Vec<f64>,
     pub gaps: Vec<f64>,
@@ -98,7 +100,7 @@ impl Interface {
             at_sleepers: vec![(0, Vec::new()); wheels],
             phases: vec![SupportPhase::Closed; sleepers],
             corrections: vec![0.0; sleepers],
-            lines: vec![SupportLine::default(); sleepers],
+            lines: vec![SupportLines::default(); sleepers],
             free_gaps: vec![0.0; sleepers],
             gaps: vec![0.0; sleepers],
             laws: contacts.iter().map(|contact| WheelLaw::at_rest(*contact)).collect(),
@@ -160,12 +162,8 @@ impl Interface {
     /// Force of a support at the end of the step, N.
     #[inline]
     pub fn support_force(&self, sleeper: usize) -> f64 {
-        let line = &self.lines[sleeper];
-        match self.phases[sleeper] {
-            SupportPhase::Closed => (line.stiffness * self.gaps[sleeper] + line.offset).max(0.0),
-            SupportPhase::Touching => (line.offset - self.corrections[sleeper]).max(0.0),
-            SupportPhase::Open => 0.0,
-        }
+        let phase = self.phases[sleeper];
+        self.lines[sleeper].force(phase, self.gaps[sleeper], self.corrections[sleeper]).max(0.0)
     }
 
     /// Compliances between the wheels at their present points, and from the wheels to the sleepers.
@@ -243,8 +241,14 @@ impl Interface {
                     self.free_indentations[j] - rest
                 }
                 Contact::Support(s) if self.phases[s] == SupportPhase::Open => {
-                    *diagonal -= 1.0 / self.lines[s].stiffness;
-                    -(self.free_gaps[s] + self.lines[s].offset / self.lines[s].stiffness)
+                    let line = &self.lines[s];
+                    *diagonal -= 1.0 / line.stiffness;
+                    -(self.free_gaps[s] + line.closed(0.0) / line.stiffness)
+                }
+                Contact::Support(s) if self.phases[s] == SupportPhase::Seating => {
+                    let line = &self.lines[s];
+                    *diagonal -= 1.0 / line.lack;
+                    line.closure - self.free_gaps[s]
                 }
                 Contact::Support(s) => -self.free_gaps[s],
             };
@@ -312,11 +316,7 @@ impl Interface {
         let mut moved = None;
         for s in 0..self.phases.len() {
             let (line, gap, now) = (self.lines[s], self.gaps[s], self.phases[s]);
-            let force = match now {
-                SupportPhase::Closed => line.stiffness * gap + line.offset,
-                SupportPhase::Touching => line.offset - self.corrections[s],
-                SupportPhase::Open => 0.0,
-            };
+            let force = line.force(now, gap, self.corrections[s]);
             let next = line.phase_after(now, gap, force);
             if next != now {
                 self.phases[s] = next;

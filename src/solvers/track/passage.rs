@@ -3,14 +3,14 @@
 //! A step solves the linear track with all supports closed, then the contacts ([`super::interface`]), and adds what the
 //! contact forces displace. Nothing is factored and nothing allocated while it runs.
 
-use super::contact::{SupportLine, SupportPhase};
 use super::influence::Stepper;
 use super::interface::{Contact, Interface, add_scaled};
+use super::motion::Timetable;
 use super::quasi_static::{self, Start};
 use super::running::RunningVehicle;
 
 use super::view::{Observer, StepView};
-use super::{Loads, StaticState, TrackError, TrackLevel, Train, WheelContact, solve_static};
+use super::{Loads, Motion, StaticState, SupportPhase, TrackError, TrackLevel, Train, WheelContact, solve_static};
 use std::ops::Range;
 
 /// Which train runs from where to where.
@@ -20,8 +20,7 @@ pub struct Run<'a> {
     /// Chainage of the leading wheel at the start and at the finish, m; all wheels stand on the track at both.
     pub start: f64,
     pub finish: f64,
-    /// m/s, above 0.
-    pub speed: f64,
+    pub motion: &'a Motion,
 }
 
 /// What a passage has cost so far.
@@ -41,7 +40,7 @@ pub struct Counters {
 pub struct Passage<'a> {
     pub(super) stepper: &'a Stepper,
     pub(super) level: &'a TrackLevel,
-    train: Option<Run<'a>>,
+    train: Option<(Run<'a>, Timetable)>,
     pub(super) unloaded: StaticState,
     pub(super) counters: Counters,
     planned_steps: usize,
@@ -64,23 +63,18 @@ pub struct Passage<'a> {
 impl<'a> Passage<'a> {
     /// Places the train at its start, on a track at `level`, in quasi-static motion.
     ///
-    /// Fails where a wheel stands off the track at the start or finish, where the speed is not above 0, where the finish does
+    /// Fails where a wheel stands off the track at the start or finish, where a speed is not above 0, where the finish does
     /// not lie ahead, or where there is no static equilibrium.
     pub fn new(stepper: &'a Stepper, level: &'a TrackLevel, run: Run<'a>) -> Result<Self, TrackError> {
         let (track, sign) = (&stepper.track, run.train.direction.sign());
-        if !(run.speed > 0.0 && run.speed.is_finite()) {
-            return Err(TrackError::Parameter { name: "speed", value: run.speed, expected: "above 0" });
-        }
-        let distance = sign * (run.finish - run.start);
-        if !(distance > 0.0 && distance.is_finite()) {
-            return Err(TrackError::Parameter { name: "distance", value: distance, expected: "above 0" });
-        }
+        let timetable = run.motion.timetable(run.start, run.finish, sign)?;
         for x in run.train.wheel_positions(run.start).chain(run.train.wheel_positions(run.finish)) {
             track.rail_point(x)?;
         }
-        let start = quasi_static::start(track, level, run.train, run.start, run.speed)?;
-        let mut passage = Self::begin(stepper, level, Some(run), start)?;
-        passage.planned_steps = (distance / (run.speed * stepper.time_step()) + 1e-9).floor() as usize;
+        let start = quasi_static::start(track, level, run.train, run.start, run.motion.speed_at(run.start))?;
+        let planned_steps = (timetable.duration / stepper.time_step() + 1e-9).floor() as usize;
+        let mut passage = Self::begin(stepper, level, Some((run, timetable)), start)?;
+        passage.planned_steps = planned_steps;
         Ok(passage)
     }
 
@@ -118,14 +112,14 @@ impl<'a> Passage<'a> {
     fn begin(
         stepper: &'a Stepper,
         level: &'a TrackLevel,
-        train: Option<Run<'a>>,
+        train: Option<(Run<'a>, Timetable)>,
         start: Start,
     ) -> Result<Self, TrackError> {
         let track = &stepper.track;
         let unloaded = solve_static(track, level, &Loads::default())?;
         let (mut vehicles, mut contacts) = (Vec::new(), Vec::new());
         let mut wheel_positions: Vec<f64> = Vec::new();
-        if let Some(run) = &train {
+        if let Some((run, _)) = &train {
             wheel_positions.extend(run.train.wheel_positions(run.start));
             let mut first = 0;
             for (v, (vehicle, _)) in run.train.vehicles.iter().enumerate() {
@@ -147,12 +141,15 @@ impl<'a> Passage<'a> {
         let mut support_forces = vec![0.0; track.sleepers.len()];
         for (s, sleeper) in track.sleepers.iter().enumerate() {
             let gap = start.state.unknowns[sleeper.unknown] - level.settlements[sleeper.seat];
-            let linear = sleeper.support_stiffness * gap + sleeper.support_damping * start.velocity[sleeper.unknown];
-            let carries = start.state.closed[s] && linear >= 0.0;
+            let damper = sleeper.support_damping * start.velocity[sleeper.unknown];
+            let phase = start.state.phases[s];
+            let force = sleeper.spring_force(phase, gap) + damper;
+            let carries = phase != SupportPhase::Open && force >= 0.0;
+            support_forces[s] = if carries { force } else { 0.0 };
             interface.gaps[s] = gap;
-            interface.phases[s] = if carries { SupportPhase::Closed } else { SupportPhase::Open };
-            interface.corrections[s] = if carries { 0.0 } else { linear };
-            support_forces[s] = if carries { linear } else { 0.0 };
+            interface.phases[s] = if carries { phase } else { SupportPhase::Open };
+            let closed = sleeper.spring_force(SupportPhase::Closed, gap) + damper;
+            interface.corrections[s] = closed - support_forces[s];
         }
         let order = track.order();
         Ok(Self {
@@ -247,8 +244,8 @@ impl<'a> Passage<'a> {
         // Contacts.
         self.counters.steps += 1;
         let travelled = self.counters.steps as f64 * dt;
-        if let Some(run) = &self.train {
-            let leading = run.start + run.train.direction.sign() * run.speed * travelled;
+        if let Some((run, timetable)) = &self.train {
+            let leading = timetable.position(travelled);
             for (position, x) in self.wheel_positions.iter_mut().zip(run.train.wheel_positions(leading)) {
                 *position = x;
             }
@@ -262,17 +259,16 @@ impl<'a> Passage<'a> {
                     .map(|k| point.shape[k] * (predicted[unknowns[k]] + displacement_share * a[unknowns[k]]))
                     .sum();
                 self.interface.points[j] = point;
-                self.interface.free_indentations[j] = vehicle.free_wheel(scheme, j - wheels.start) - rail;
+                self.interface.free_indentations[j] = vehicle.free_wheel(scheme, j - wheels.start)
+                    - rail
+                    - track.model.irregularity.at(self.wheel_positions[j]);
             }
         }
         for (s, sleeper) in track.sleepers.iter().enumerate() {
             let (i, settlement) = (sleeper.unknown, self.level.settlements[sleeper.seat]);
             self.interface.free_gaps[s] = predicted[i] + displacement_share * a[i] - settlement;
             let passing_speed = predicted_velocity[i] + rate * (settlement - predicted[i]);
-            self.interface.lines[s] = SupportLine {
-                stiffness: sleeper.support_stiffness + rate * sleeper.support_damping,
-                offset: sleeper.support_damping * passing_speed,
-            };
+            self.interface.lines[s] = sleeper.lines(rate, passing_speed);
         }
         let time = travelled;
         let effort = self.interface.solve(self.stepper).map_err(|contact| TrackError::StepNotConverged {
@@ -334,7 +330,9 @@ impl<'a> Passage<'a> {
         for sleeper in &track.sleepers {
             let (u, k) = (u[sleeper.unknown], sleeper.support_stiffness);
             let gap = (u - self.level.settlements[sleeper.seat]).max(0.0);
-            energy += 0.5 * k * (gap * gap - u * u);
+            let (soft, closure) = sleeper.seating.map_or((k, 0.0), |s| (s.stiffness, s.closure));
+            let (first, then) = (gap.min(closure), (gap - closure).max(0.0));
+            energy += 0.5 * (soft * first * first + k * then * then - k * u * u) + soft * closure * then;
         }
         energy
     }

@@ -9,7 +9,7 @@
 
 use super::mesh::{Track, usual_bay};
 use super::statics::{Inertia, solve_with_inertia};
-use super::{Loads, StaticState, TrackError, TrackLevel, Train, solve_static};
+use super::{Loads, StaticState, SupportPhase, TrackError, TrackLevel, Train, solve_static};
 
 /// A state in motion.
 pub(super) struct Start {
@@ -55,7 +55,7 @@ pub(super) fn start(
     let mut inertia = Inertia { track: vec![0.0; track.order()], vehicles: Vec::new() };
     track.mass.subtract_product(&acceleration, &mut inertia.track);
     track.damping.subtract_product(&velocity, &mut inertia.track);
-    for (sleeper, _) in track.sleepers.iter().zip(&here.closed).filter(|(_, closed)| !**closed) {
+    for (sleeper, _) in track.sleepers.iter().zip(&here.phases).filter(|(_, phase)| **phase == SupportPhase::Open) {
         inertia.track[sleeper.unknown] += sleeper.support_damping * velocity[sleeper.unknown];
     }
     for (v, (vehicle, _)) in train.vehicles.iter().enumerate() {

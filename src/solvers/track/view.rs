@@ -1,6 +1,6 @@
 //! What an observer may ask a passage at each step; every answer is a few operations on the present state.
 
-use super::contact::SupportPhase;
+use super::SupportPhase;
 use super::mesh::FootUnknown;
 use super::passage::{Counters, Passage};
 use super::{StaticState, Track};

@@ -1,7 +1,7 @@
 //! The track at rest: gravity, point loads and standing vehicles, on supports that may have lost contact.
 //!
-//! The energy of the track is convex and quadratic in pieces, one for each set of closed supports. Starting from all closed,
-//! each iteration factors the banded stiffness of its set, solves, and moves the supports that contradict it; after
+//! The energy of the track is convex and quadratic in pieces, one for each choice of the supports' phases. Starting from all
+//! closed, each iteration factors the banded stiffness of its choice, solves, and moves the supports that contradict it; after
 //! [`FLIP_ALL`] of these only the first contradiction is moved, which cannot cycle. Wheels enter by the compliance of that
 //! track at their places and share one Newton iteration with the unknowns of their vehicles.
 
@@ -11,7 +11,7 @@ mod state;
 use self::standing::StandingTrain;
 use self::state::describe;
 use super::mesh::{FootUnknown, Track};
-use super::{TrackError, TrackLevel, Train};
+use super::{SupportPhase, TrackError, TrackLevel, Train};
 use crate::linalg::banded::BandedFactor;
 pub use state::{Balance, StaticState};
 
@@ -35,12 +35,10 @@ pub(super) struct Inertia {
 
 /// Iterations that move every contradicting support at once.
 const FLIP_ALL: usize = 20;
-/// Gaps below this are none, m.
-const GAP_TOLERANCE: f64 = 1e-14;
 
 /// Finds the equilibrium of the track at `level` under gravity and `loads`.
 ///
-/// Fails where a load stands off the track, where something moves without resistance, or where no set of closed supports is
+/// Fails where a load stands off the track, where something moves without resistance, or where no choice of phases is
 /// in equilibrium after ten times as many iterations as there are sleepers.
 pub fn solve_static(track: &Track, level: &TrackLevel, loads: &Loads) -> Result<StaticState, TrackError> {
     solve_with_inertia(track, level, loads, &Inertia::default())
@@ -77,31 +75,31 @@ pub(super) fn solve_with_inertia(
     }
     let mut wheels = StandingTrain::new(track, loads.train, inertia)?;
 
-    let mut closed = vec![true; track.sleepers.len()];
-    let mut before = closed.clone();
-    let (limit, mut one_by_one, mut last_change) = (FLIP_ALL + 10 * closed.len().max(5), false, 0.0);
+    let mut phases = vec![SupportPhase::Closed; track.sleepers.len()];
+    let mut before = phases.clone();
+    let (limit, mut one_by_one, mut last_change) = (FLIP_ALL + 10 * phases.len().max(5), false, 0.0);
     for iteration in 1..=limit {
         one_by_one |= iteration > FLIP_ALL;
-        let factor = match factor(track, &closed) {
+        let factor = match factor(track, &phases) {
             Ok(factor) => factor,
             Err(row) => {
-                if one_by_one || closed == before {
+                if one_by_one || phases == before {
                     return Err(TrackError::Mechanism { x: track.place_of(row) });
                 }
                 // Too many supports opened at once.
                 one_by_one = true;
-                closed.clone_from(&before);
+                phases.clone_from(&before);
                 continue;
             }
         };
-        let unknowns = wheels.solve(track, level, &closed, &factor, &forces)?;
-        before.clone_from(&closed);
+        let unknowns = wheels.solve(track, level, &phases, &factor, &forces)?;
+        before.clone_from(&phases);
         let mut consistent = true;
         for (s, sleeper) in track.sleepers.iter().enumerate() {
             let gap = unknowns[sleeper.unknown] - level.settlements[sleeper.seat];
-            let wrong = if closed[s] { gap < -GAP_TOLERANCE } else { gap > GAP_TOLERANCE };
-            if wrong && (consistent || !one_by_one) {
-                closed[s] = !closed[s];
+            let next = sleeper.phase_at_rest(phases[s], gap);
+            if next != phases[s] && (consistent || !one_by_one) {
+                phases[s] = next;
                 consistent = false;
                 last_change = track.model.seats[sleeper.seat].x;
             }
@@ -109,17 +107,17 @@ pub(super) fn solve_with_inertia(
         if consistent {
             on_rail.extend(wheels.points.iter().copied().zip(wheels.forces.iter().copied()));
             let applied: f64 = loads.rail.iter().map(|l| l.1).chain(loads.sleepers.iter().map(|l| l.1)).sum();
-            return Ok(describe(track, level, unknowns, closed, on_rail, wheels, applied, iteration));
+            return Ok(describe(track, level, unknowns, phases, on_rail, wheels, applied, iteration));
         }
     }
     Err(TrackError::NoEquilibrium { x: last_change, iterations: limit })
 }
 
-/// Factors the stiffness with the open supports removed; fails with the row of a mechanism.
-fn factor(track: &Track, closed: &[bool]) -> Result<BandedFactor, usize> {
+/// Factors the stiffness that the supports have in their phases; fails with the row of a mechanism.
+fn factor(track: &Track, phases: &[SupportPhase]) -> Result<BandedFactor, usize> {
     let mut stiffness = track.stiffness.clone();
-    for (sleeper, _) in track.sleepers.iter().zip(closed).filter(|(_, closed)| !**closed) {
-        stiffness.add(sleeper.unknown, sleeper.unknown, -sleeper.support_stiffness);
+    for (sleeper, phase) in track.sleepers.iter().zip(phases) {
+        stiffness.add(sleeper.unknown, sleeper.unknown, -sleeper.lacking_stiffness(*phase));
     }
     for (unknown, _) in &track.held {
         stiffness.pin(*unknown);
@@ -127,10 +125,10 @@ fn factor(track: &Track, closed: &[bool]) -> Result<BandedFactor, usize> {
     stiffness.factor().map_err(|e| e.row)
 }
 
-/// `K u` for a set of closed supports, without the held unknowns' reactions.
-fn subtract_stiffness(track: &Track, closed: &[bool], u: &[f64], y: &mut [f64]) {
+/// Computes `y -= K u` with the supports in their phases, without the held unknowns' reactions.
+fn subtract_stiffness(track: &Track, phases: &[SupportPhase], u: &[f64], y: &mut [f64]) {
     track.stiffness.subtract_product(u, y);
-    for (sleeper, _) in track.sleepers.iter().zip(closed).filter(|(_, closed)| !**closed) {
-        y[sleeper.unknown] += sleeper.support_stiffness * u[sleeper.unknown];
+    for (sleeper, phase) in track.sleepers.iter().zip(phases) {
+        y[sleeper.unknown] += sleeper.lacking_stiffness(*phase) * u[sleeper.unknown];
     }
 }

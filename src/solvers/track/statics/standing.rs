@@ -8,16 +8,18 @@
 //! w is the rail under the wheel without the train and C its compliance there. Linearised, `δ = rest + F/F'`, the system is
 //! symmetric and quasi-definite; vehicle by vehicle it is a skyline as wide as the wheels that feel each other.
 
-use super::{GAP_TOLERANCE, Inertia, subtract_stiffness};
+use super::{Inertia, subtract_stiffness};
 use crate::linalg::banded::BandedFactor;
 use crate::linalg::skyline::Skyline;
 use crate::solvers::track::contact::WheelLaw;
 use crate::solvers::track::mesh::{RailPoint, Track};
-use crate::solvers::track::{Multibody, TrackError, TrackLevel, Train};
+use crate::solvers::track::{Multibody, SupportPhase, TrackError, TrackLevel, Train};
 
 const NEWTON_LIMIT: usize = 60;
 /// Wheel forces are converged to this part of the mean one.
 const FORCE_TOLERANCE: f64 = 1e-13;
+/// Indentations below this are none, m.
+const INDENTATION_ROUNDING: f64 = 1e-14;
 /// A compliance below this part of a wheel's own is none.
 const NEGLIGIBLE: f64 = 1e-18;
 
@@ -26,6 +28,8 @@ pub(super) struct StandingTrain {
     leading: f64,
     bodies: Vec<Body>,
     pub points: Vec<RailPoint>,
+    /// Of the running surface under the wheel, m.
+    unevenness: Vec<f64>,
     laws: Vec<WheelLaw>,
     pub forces: Vec<f64>,
     pub indentations: Vec<f64>,
@@ -57,6 +61,7 @@ impl StandingTrain {
             leading: 0.0,
             bodies: Vec::new(),
             points: Vec::new(),
+            unevenness: Vec::new(),
             laws: Vec::new(),
             forces: Vec::new(),
             indentations: Vec::new(),
@@ -89,6 +94,7 @@ impl StandingTrain {
         }
         for x in train.wheel_positions(leading) {
             standing.points.push(track.rail_point(x)?);
+            standing.unevenness.push(track.model.irregularity.at(x));
         }
         Ok(standing)
     }
@@ -99,12 +105,12 @@ impl StandingTrain {
         given + self.bodies.iter().flat_map(|body| &body.weight).sum::<f64>()
     }
 
-    /// Solves track and vehicles for one set of closed supports; returns the unknowns of the track.
+    /// Solves track and vehicles with the supports in their phases; returns the unknowns of the track.
     pub fn solve(
         &mut self,
         track: &Track,
         level: &TrackLevel,
-        closed: &[bool],
+        phases: &[SupportPhase],
         factor: &BandedFactor,
         forces: &[f64],
     ) -> Result<Vec<f64>, TrackError> {
@@ -113,8 +119,8 @@ impl StandingTrain {
             held[*unknown] = end.map_or(0.0, |end| level.ends[end]);
         }
         let mut steady = forces.to_vec();
-        for (sleeper, _) in track.sleepers.iter().zip(closed).filter(|(_, closed)| **closed) {
-            steady[sleeper.unknown] += sleeper.support_stiffness * level.settlements[sleeper.seat];
+        for (sleeper, phase) in track.sleepers.iter().zip(phases) {
+            steady[sleeper.unknown] -= sleeper.spring_force(*phase, -level.settlements[sleeper.seat]);
         }
         let solve = |forces: &mut Vec<f64>| {
             for (unknown, _) in &track.held {
@@ -123,7 +129,7 @@ impl StandingTrain {
             factor.solve_in_place(forces);
         };
         let mut free = steady.clone();
-        subtract_stiffness(track, closed, &held, &mut free);
+        subtract_stiffness(track, phases, &held, &mut free);
         solve(&mut free);
         for (u, held) in free.iter_mut().zip(&held) {
             *u += held;
@@ -148,7 +154,7 @@ impl StandingTrain {
             }
         }
         // One refinement: equilibrium to rounding, whatever the condition of the beam.
-        subtract_stiffness(track, closed, &free, &mut steady);
+        subtract_stiffness(track, phases, &free, &mut steady);
         solve(&mut steady);
         for (u, correction) in free.iter_mut().zip(&steady) {
             *u += correction;
@@ -160,7 +166,8 @@ impl StandingTrain {
     /// displacements under a unit force at each wheel are `columns`.
     fn stand(&mut self, track: &Track, free: &[f64], columns: &[Vec<f64>]) -> Result<(), TrackError> {
         let wheels = self.points.len();
-        let level: Vec<f64> = self.points.iter().map(|p| track.deflection_at(p, free)).collect();
+        let surface = |(point, unevenness): (&RailPoint, &f64)| track.deflection_at(point, free) + unevenness;
+        let level: Vec<f64> = self.points.iter().zip(&self.unevenness).map(surface).collect();
         let compliance: Vec<Vec<f64>> = (0..wheels)
             .map(|j| {
                 let of = |k: usize| track.deflection_at(&self.points[j], &columns[k]) + self.local(track, j, k);
@@ -254,7 +261,7 @@ impl StandingTrain {
             for (j, unknown) in body.carrying() {
                 let rail: f64 = compliance[j].iter().zip(&self.forces).map(|(c, f)| c * f).sum::<f64>() + level[j];
                 let indentation = unknowns[unknown] - rail;
-                let rounding = GAP_TOLERANCE + f64::EPSILON * (unknowns[unknown].abs() + rail.abs());
+                let rounding = INDENTATION_ROUNDING + f64::EPSILON * (unknowns[unknown].abs() + rail.abs());
                 let law = self.laws[j];
                 let tolerance = FORCE_TOLERANCE * body.wheel_load + law.stiffness(indentation) * rounding;
                 converged &= (law.force(indentation) - self.forces[j]).abs() <= tolerance;

@@ -3,7 +3,7 @@
 use super::standing::StandingTrain;
 use crate::solvers::track::ends;
 use crate::solvers::track::mesh::{FootUnknown, RailPoint, Track};
-use crate::solvers::track::{RailEnds, TrackError, TrackLevel};
+use crate::solvers::track::{RailEnds, SupportPhase, TrackError, TrackLevel};
 
 /// An equilibrium of the track. Lists run over nodes, seats or wheels as the fields say; all positive down.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,12 +23,12 @@ pub struct StaticState {
     /// Per wheel, vehicle by vehicle, N.
     pub wheel_forces: Vec<f64>,
     pub balance: Balance,
-    /// Sets of closed supports that were tried.
+    /// Choices of the supports' phases that were tried.
     pub iterations: usize,
     /// All unknowns of the track.
     pub(in super::super) unknowns: Vec<f64>,
     /// Per sleeper.
-    pub(in super::super) closed: Vec<bool>,
+    pub(in super::super) phases: Vec<SupportPhase>,
     pub(in super::super) vehicles: Vec<Vec<f64>>,
     /// Per wheel, m; 0 under a given force.
     pub(in super::super) indentations: Vec<f64>,
@@ -60,7 +60,7 @@ pub(super) fn describe(
     track: &Track,
     level: &TrackLevel,
     unknowns: Vec<f64>,
-    closed: Vec<bool>,
+    phases: Vec<SupportPhase>,
     on_rail: Vec<(RailPoint, f64)>,
     wheels: StandingTrain,
     point_loads: f64,
@@ -86,9 +86,9 @@ pub(super) fn describe(
         .map(|i| model.seats[i].pad_stiffness * (rail_deflection[track.seat_nodes[i]] - foot_displacements[i]))
         .collect();
     let mut contact_forces = vec![0.0; model.seats.len()];
-    for (sleeper, _) in track.sleepers.iter().zip(&closed).filter(|(_, closed)| **closed) {
+    for (sleeper, phase) in track.sleepers.iter().zip(&phases) {
         let gap = u[sleeper.unknown] - level.settlements[sleeper.seat];
-        contact_forces[sleeper.seat] = (sleeper.support_stiffness * gap).max(0.0);
+        contact_forces[sleeper.seat] = sleeper.spring_force(*phase, gap).max(0.0);
     }
 
     let vehicle_weight = wheels.weight();
@@ -124,7 +124,7 @@ pub(super) fn describe(
         balance,
         iterations,
         unknowns,
-        closed,
+        phases,
         vehicles: wheels.vehicles,
         indentations: wheels.indentations,
         on_rail,

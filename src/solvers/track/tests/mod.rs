@@ -9,4 +9,5 @@ mod reference;
 mod runge_kutta;
 mod scenes;
 mod statics;
+mod uneven;
 mod vehicles;

@@ -3,7 +3,7 @@
 use crate::solvers::track::*;
 use std::sync::Arc;
 
-pub const SLEEPER: Foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 50e3 };
+pub const SLEEPER: Foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 50e3, seating: None };
 
 pub fn seat(x: f64, foot: Foot) -> Seat {
     Seat { x, pad_stiffness: 40e6, pad_damping: 5e3, foot }
@@ -25,6 +25,7 @@ pub fn beam(length: f64, bending_stiffness: f64, mass: f64, rail_ends: RailEnds,
         joints: Vec::new(),
         rail_ends,
         elements_per_bay: elements,
+        irregularity: Irregularity::default(),
         gravity: 0.0,
     }
 }
@@ -41,6 +42,7 @@ pub fn ballast(seats: usize) -> TrackModel {
         joints: Vec::new(),
         rail_ends: RailEnds::Clamped,
         elements_per_bay: 4,
+        irregularity: Irregularity::default(),
         gravity: 9.81,
     }
 }
@@ -66,6 +68,7 @@ pub fn transition(sleepers: usize, slab_seats: usize) -> TrackModel {
         joints: Vec::new(),
         rail_ends: RailEnds::Clamped,
         elements_per_bay: 4,
+        irregularity: Irregularity::default(),
         gravity: 9.81,
     }
 }

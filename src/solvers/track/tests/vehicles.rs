@@ -76,7 +76,7 @@ fn cross(span: f64, vehicle: Multibody, time_step: f64) -> Vec<(f64, f64, f64)> 
     let level = TrackLevel::as_built(&model);
     let stepper = stepper(model, time_step, 0.95);
     let train = Train::single(vehicle, Direction::Forward);
-    let run = Run { train: &train, start: 0.0, finish: span, speed: SPEED };
+    let run = Run { train: &train, start: 0.0, finish: span, motion: &Motion::Constant(SPEED) };
     let mut seen = Vec::new();
     let mut look = |view: &StepView<'_>| {
         let body = view.vehicle_displacements(0).first().copied().unwrap_or(0.0);
@@ -181,7 +181,7 @@ fn moving_force_on_springs() {
     let level = TrackLevel::as_built(&model);
     let stepper = stepper(model, 1e-3, 0.85);
     let train = Train::single(Multibody::moving_force(load), Direction::Forward);
-    let run = Run { train: &train, start: 30.0, finish: 70.0, speed: 10.0 };
+    let run = Run { train: &train, start: 30.0, finish: 70.0, motion: &Motion::Constant(10.0) };
     let mut range = (f64::INFINITY, 0.0f64);
     let mut look = |view: &StepView<'_>| {
         let x = view.wheel_positions()[0];
