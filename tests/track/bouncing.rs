@@ -11,7 +11,7 @@ const HEIGHT: f64 = 1e-3;
 
 /// A sleeper under a thread of a rail, held `HEIGHT` above its support; the force of the thread is a millionth of its weight.
 fn sleeper(damping: f64) -> TrackModel {
-    let foot = Foot::Sleeper { mass: MASS, support_stiffness: STIFFNESS, support_damping: damping };
+    let foot = Foot::Sleeper { mass: MASS, support_stiffness: STIFFNESS, support_damping: damping, seating: None };
     let mut model = beam([-1.0, 1.0], 0.1, 1e-12, RailEnds::Pinned, 1);
     model.seats = vec![Seat { x: 0.0, pad_stiffness: 1.0, pad_damping: 0.0, foot }];
     model.gravity = GRAVITY;

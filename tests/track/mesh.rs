@@ -13,7 +13,7 @@ fn elements_between_seats() {
         model.elements_per_bay = elements;
         for (i, seat) in model.seats.iter_mut().enumerate() {
             let support_stiffness = if i < 25 { 132e6 } else { 1320e6 };
-            seat.foot = Foot::Sleeper { mass: 140.0, support_stiffness, support_damping: 30e3 };
+            seat.foot = Foot::Sleeper { mass: 140.0, support_stiffness, support_damping: 30e3, seating: None };
         }
         let level = TrackLevel::as_built(&model);
         let stepper = stepper(model, scheme(1e-4));

@@ -88,7 +88,7 @@ impl Modes {
             let node = 2 * nodes.iter().position(|x| (x - seat.x).abs() < 1e-6).unwrap();
             stiffness[(node, node)] += seat.pad_stiffness;
             damping[(node, node)] += seat.pad_damping;
-            if let Foot::Sleeper { mass: sleeper, support_stiffness, support_damping } = seat.foot {
+            if let Foot::Sleeper { mass: sleeper, support_stiffness, support_damping, .. } = seat.foot {
                 for (matrix, pad, support) in [
                     (&mut stiffness, seat.pad_stiffness, support_stiffness),
                     (&mut damping, seat.pad_damping, support_damping),

@@ -19,7 +19,7 @@ fn roll(
     let level = TrackLevel::as_built(model);
     let stepper = stepper(model.clone(), scheme);
     let train = Train::single(Multibody::moving_force(force), Direction::Forward);
-    let run = Run { train: &train, start: model.ends[0], finish: to, speed };
+    let run = Run { train: &train, start: model.ends[0], finish: to, motion: &Motion::Constant(speed) };
     let mut passage = Passage::new(&stepper, &level, run).unwrap();
     passage.run(&mut look).unwrap();
     let view = passage.view();

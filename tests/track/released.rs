@@ -58,7 +58,7 @@ fn undamped_track() -> TrackModel {
     let mut model = ballast(12);
     for seat in &mut model.seats {
         seat.pad_damping = 0.0;
-        seat.foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 0.0 };
+        seat.foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 0.0, seating: None };
     }
     model
 }

@@ -15,6 +15,7 @@ pub fn beam(ends: [f64; 2], bending_stiffness: f64, mass: f64, rail_ends: RailEn
         auxiliary_rails: Vec::new(),
         joints: Vec::new(),
         rail_ends,
+        irregularity: Irregularity::default(),
         elements_per_bay: elements,
         gravity: 0.0,
     }
@@ -27,7 +28,7 @@ pub fn spring(x: f64, stiffness: f64, damping: f64) -> Seat {
 
 /// `seats` sleepers 0.6 m apart in ballast, half a bay of rail beyond the outer ones.
 pub fn ballast(seats: usize) -> TrackModel {
-    let foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 50e3 };
+    let foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 50e3, seating: None };
     let seat = |i: usize| Seat { x: 0.3 + 0.6 * i as f64, pad_stiffness: 40e6, pad_damping: 5e3, foot };
     TrackModel {
         seats: (0..seats).map(seat).collect(),
@@ -103,7 +104,7 @@ pub fn pass(
     mut look: impl FnMut(&StepView<'_>),
 ) -> Counters {
     let train = Train::single(wagon(), Direction::Forward);
-    let run = Run { train: &train, start: from, finish: to, speed: SPEED };
+    let run = Run { train: &train, start: from, finish: to, motion: &Motion::Constant(SPEED) };
     Passage::new(stepper, level, run).unwrap().run(&mut look).unwrap()
 }
 

@@ -21,6 +21,7 @@ fn stiffness_at_the_rail() {
                 mass: 150.0,
                 support_stiffness: k,
                 support_damping: 0.0,
+                seating: None,
             });
         }
         let middle = model.seats[30].x;

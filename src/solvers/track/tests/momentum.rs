@@ -65,7 +65,7 @@ fn momentum_is_balanced() {
     for scheme in [Scheme::generalised_alpha(dt, 0.85), Scheme::hht(dt, 0.1), Scheme::newmark(dt)] {
         let scheme = scheme.unwrap();
         let stepper = Stepper::new(Arc::new(Track::new(model.clone()).unwrap()), scheme).unwrap();
-        let run = Run { train: &train, start: 11.0, finish: 19.0, speed: 200.0 / 3.6 };
+        let run = Run { train: &train, start: 11.0, finish: 19.0, motion: &Motion::Constant(200.0 / 3.6) };
         let mut passage = Passage::new(&stepper, &level, run).unwrap();
         let start = sums(&passage, &vehicle);
         let (mut before, mut worst, mut impulses) = (start, 0.0f64, [0.0; 2]);

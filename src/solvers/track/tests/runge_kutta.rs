@@ -43,7 +43,7 @@ fn solved(
     let stepper = Stepper::new(Arc::new(Track::new(model.clone()).unwrap()), scheme).unwrap();
     let train = Train::single(wagon, Direction::Forward);
     let finish = START + SPEED * OUTPUT * outputs as f64 + 1e-6;
-    let run = Run { train: &train, start: START, finish, speed: SPEED };
+    let run = Run { train: &train, start: START, finish, motion: &Motion::Constant(SPEED) };
     let mut passage = Passage::new(&stepper, level, run).unwrap();
     let start = state_of(&passage);
     let every = (OUTPUT / scheme.time_step).round() as usize;

@@ -65,7 +65,7 @@ impl Oracle {
             rows[held][0] = 1.0;
         }
         let supports = model.seats.iter().zip(&level.settlements).map(|(seat, settlement)| {
-            let Foot::Sleeper { mass, support_stiffness, support_damping } = seat.foot else { panic!("a sleeper") };
+            let Foot::Sleeper { mass, support_stiffness, support_damping, .. } = seat.foot else { panic!("a sleeper") };
             Support {
                 node: ((seat.x - model.ends[0]) / h).round() as usize,
                 pad: (seat.pad_stiffness, seat.pad_damping),
