@@ -7,10 +7,12 @@ use trackbed::diag::{Code, Severity};
 use trackbed::{Compiled, compile};
 
 /// Codes that no text alone can show, and what shows them instead.
-const RUN_TIME: [(Code, &str); 3] = [
+const RUN_TIME: [(Code, &str); 5] = [
     (Code::E0802, "a run into a directory that is taken: `tests/cli.rs`"),
     (Code::E0803, "a checkpoint of another scene: `a_checkpoint_of_another_scene_is_refused` below"),
     (Code::E0804, "a finished run that misses an expectation: `tests/cli.rs`"),
+    (Code::E0805, "a measured curve beside the scene: `tests/calibrate.rs`"),
+    (Code::E0806, "a measured curve beside the scene: `tests/calibrate.rs`"),
 ];
 
 /// Pages whose failing example is no scene: the bytes of the file are the mistake.

@@ -254,7 +254,13 @@ impl Checker<'_> {
                     return self.hold(chosen, raw).map(Val::Number);
                 }
             }
-            Shape::Other => {}
+            Shape::Other => {
+                if let (Some(list), ValueKind::List { .. }) =
+                    (forms.iter().find(|f| matches!(f, Form::List(_))), &value.kind)
+                {
+                    return self.fit_form(list, value, scope);
+                }
+            }
         }
         if let ValueKind::Call { word, .. } = &value.kind {
             self.unknown_word(word, &form.words());

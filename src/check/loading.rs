@@ -6,8 +6,7 @@ use super::track::given;
 use super::value::{Number, Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{
-    Beam, Given, Integrator, LawForm, Record as Kept, SettlementLaw, Solve, StaticLoad, Target, TimeStep, Traffic,
-    Train, Update,
+    Beam, Given, Integrator, Record as Kept, Solve, StaticLoad, Target, TimeStep, Traffic, Train, Update,
 };
 use crate::units::{Dimension, number};
 
@@ -106,33 +105,8 @@ impl Checker<'_> {
         loads.into_iter().collect()
     }
 
-    fn law(&mut self, record: &Record) -> Option<SettlementLaw> {
-        let slot = record.get("form")?;
-        let Val::Word { arguments, .. } = &slot.value else { return None };
-        let argument = |name: &str| match arguments.get(name).map(|s| &s.value) {
-            Some(Val::Number(n)) => Some(n.of_rail()),
-            _ => None,
-        };
-        let range = |name: &str| match record.get(name).map(|s| &s.value) {
-            Some(Val::Range(a, b)) => Some((a.of_rail(), b.of_rail())),
-            _ => None,
-        };
-        Some(SettlementLaw {
-            name: record.name.clone(),
-            form: LawForm::Varandas {
-                alpha: argument("alpha")?,
-                beta: argument("beta")?,
-                gamma: argument("gamma")?,
-                reference_cycles: argument("reference_cycles")?,
-                reference_force: argument("reference_force")?,
-            },
-            loads: range("loads"),
-            cycles: range("cycles"),
-        })
-    }
-
     pub(super) fn solve(&mut self, record: &Record, places: &Option<Places>) -> Option<Solve> {
-        let law = record.record("law").cloned().and_then(|law| self.law(&law));
+        let laws = record.get("law").and_then(|slot| self.laws(slot));
         let update = record.get("update_every")?;
         let exchange = match &update.value {
             Val::Number(n) => self.whole_axles(n.value, update.span).map(|axles| Update::Fixed { axles }),
@@ -167,8 +141,10 @@ impl Checker<'_> {
         };
         let (integrator, time_step) = (integrator(record), time_step(record));
         let elements = record.number("elements_per_bay")?;
+        let (law, other_laws) = laws?;
         Some(Solve {
-            law: law?,
+            law,
+            other_laws,
             update: exchange?,
             update_span: update.origin.span(),
             integrator: integrator?,

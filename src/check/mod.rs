@@ -9,9 +9,11 @@ mod complete;
 mod expectation;
 mod fit;
 mod geometry;
+mod law;
 mod library;
 mod loading;
 mod measure;
+mod measured;
 mod modules;
 mod names;
 mod overrides;
@@ -26,6 +28,7 @@ mod value;
 mod vehicle;
 mod words;
 
+pub use measured::{MeasuredCurve, measured_curve};
 pub use modules::{DataError, Folder, LARGEST_DATA_FILE, Modules, NoModules};
 pub use overrides::Override;
 

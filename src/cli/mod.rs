@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 all is well, 1 the scene or its run has errors, 2 the command was used wrongly.
 
+mod calibrate;
 mod check;
 mod docs;
 mod explain;
@@ -30,6 +31,7 @@ enum Command {
     Check(check::Arguments),
     Plan(plan::Arguments),
     Run(run::Arguments),
+    Calibrate(calibrate::Arguments),
     Report(report::Arguments),
     Fmt(fmt::Arguments),
     Explain(explain::Arguments),
@@ -68,6 +70,7 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),

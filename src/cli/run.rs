@@ -91,7 +91,7 @@ fn prepare(arguments: &Arguments) -> Result<(), String> {
     std::fs::create_dir_all(out).map_err(|e| format!("cannot make the directory `{shown}`: {e}"))?;
     let holds = |name: &str| out.join(name).exists();
     if arguments.force {
-        for name in ["summary.json", "checkpoint.json", "histories.parquet"] {
+        for name in ["summary.json", "checkpoint.json", "histories.parquet", "laws.csv"] {
             if holds(name) {
                 std::fs::remove_file(out.join(name)).map_err(|e| format!("cannot replace `{shown}/{name}`: {e}"))?;
             }
@@ -142,7 +142,9 @@ fn way_out(cause: &TrackError) -> &'static str {
 fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compiled: &Compiled, hash: String) -> Run {
     let tables = &recorder.tables;
     let histories = recorder.all_histories();
-    let scalars = results::summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+    let laws = results::law_rows(scenario, &tables.laws);
+    let mut scalars = results::summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+    scalars.extend(results::summarise_laws(scenario, &laws));
     let view = results::Tables {
         sleepers: &tables.sleepers,
         blocks: &tables.blocks,
@@ -167,6 +169,7 @@ fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compil
         summary: Summary { scalars, expectations, provenance },
         sleepers: tables.sleepers.clone(),
         blocks: tables.blocks.clone(),
+        laws,
         histories,
     }
 }
@@ -200,6 +203,12 @@ fn summary(run: &Run, page: &Path, seconds: f64) {
             let value = (scalar.value / size * 1e4).round() / 1e4;
             out.push_str(&format!("  {label:<26}{} {unit}\n", number(value)));
         }
+    }
+    if let Some(spread) = run.summary.scalars.get("law_spread") {
+        out.push_str(&format!("  {:<26}{}\n", "spread between laws", number((spread.value * 1e2).round() / 1e2)));
+    }
+    for sentence in results::unsettled(&run.scenario, &run.blocks, &run.laws) {
+        out.push_str(&format!("  {sentence}\n"));
     }
     out.push_str(&format!("{} ({} s)\n", page.display(), number((seconds * 10.0).round() / 10.0)));
     terminal::out(&out);

@@ -82,6 +82,8 @@ codes! {
     E0802 Error "output folder that cannot be used"
     E0803 Error "checkpoint of another scene"
     E0804 Error "expectation not met"
+    E0805 Error "measured curve that cannot be used"
+    E0806 Error "law that cannot be fitted"
     L1001 Warning "stiffness jump without mitigation"
     L1002 Warning "speed near the critical speed"
     L1003 Warning "track too short for its train"
@@ -89,6 +91,7 @@ codes! {
     L1005 Warning "time step coarse for the contact"
     L1006 Warning "update interval that overshoots"
     L1007 Warning "sleeper passing near a vehicle resonance"
+    L1008 Warning "sleepers below the threshold of their law"
     L1011 Warning "irregularity too sharp for a wheel"
 }
 
@@ -108,6 +111,7 @@ impl Code {
             Code::L1005 => "coarse_time_step",
             Code::L1006 => "update_overshoot",
             Code::L1007 => "passing_frequency",
+            Code::L1008 => "below_threshold",
             Code::L1011 => "irregularity_too_sharp",
             _ => return None,
         })

@@ -26,6 +26,8 @@ pub trait Recorder {
     /// A block is done: its passages, and the settlement of every seat after it, m. `block` is `None` for the passage
     /// after the last block.
     fn block(&mut self, axles: u64, block: Option<&Block>, passages: &[PassageOutcome], before: &[f64], after: &[f64]);
+    /// Settlement of every seat by each law, the driving one first, m: as built and after each block.
+    fn laws(&mut self, _axles: u64, _settlement: &[Vec<f64>]) {}
     /// Called after each block; a failure stops the run.
     fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<(), String>;
     /// Passages done and to be done in all.
@@ -72,8 +74,12 @@ pub fn execute(graph: &Graph, recorder: &mut dyn Recorder, from: Option<Checkpoi
                 substructure.state = checkpoint.substructure;
                 done = checkpoint.blocks;
             }
+            if done == 0 {
+                run.recorder.laws(0, &substructure.settlement_by_law());
+            }
             for (i, block) in blocks.blocks.iter().enumerate().skip(done) {
                 run.block(block, &mut substructure)?;
+                run.recorder.laws(block.before + block.axles, &substructure.settlement_by_law());
                 let checkpoint = Checkpoint { blocks: i + 1, substructure: substructure.state.clone() };
                 run.recorder.checkpoint(&checkpoint).map_err(RunError::Recorder)?;
                 run.recorder.progress(i as u64 + 1, blocks.blocks.len() as u64 + 1);
@@ -83,6 +89,16 @@ pub fn execute(graph: &Graph, recorder: &mut dyn Recorder, from: Option<Checkpoi
             Ok(())
         }
     }
+}
+
+/// The first passage of a graph, over a track as built; `None` where no train runs.
+pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunError> {
+    let Schedule::Blocks(blocks) = &graph.schedule else { return Ok(None) };
+    let at = |cause: TrackError| RunError::Track { axles: 0, cause };
+    let level = vec![0.0; graph.track.track.seats.len()];
+    let system = TrackSystem::new(graph).map_err(at)?;
+    let (_, passage) = system.passage(0, &level, blocks.leading_direction(), false).map_err(at)?;
+    Ok(Some(passage))
 }
 
 struct Run<'a> {

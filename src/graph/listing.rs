@@ -1,8 +1,8 @@
 //! The graph as a person reads it: text, JSON and DOT.
 
-use super::{Decision, Estimate, Graph, Schedule, SubstructureNode};
-use crate::scenario::Integrator;
-use crate::solvers::settlement::Law;
+use super::{Decision, Estimate, Graph, NamedLaw, Schedule, SubstructureNode};
+use crate::scenario::{Integrator, law_argument};
+use crate::solvers::settlement::{Form, Logarithm};
 use crate::units::number;
 use serde::Serialize;
 
@@ -102,17 +102,12 @@ impl Graph {
                 model: "supports as given, without settlement".into(),
                 details: Vec::new(),
             },
-            SubstructureNode::Law { name, law: Law::Varandas(law) } => Node {
+            SubstructureNode::Law { law, followers } => Node {
                 name: "substructure",
-                model: format!("tier law: {name} under each sleeper"),
-                details: vec![format!(
-                    "Varandas: alpha {}, beta {}, gamma {} mm after {} axles of {} kN a seat",
-                    number(law.alpha),
-                    number(law.beta),
-                    number(law.gamma * 1e3),
-                    law.reference_cycles,
-                    number(law.reference_force / 1e3)
-                )],
+                model: format!("tier law: {} under each sleeper", law.name),
+                details: std::iter::once(describe(law))
+                    .chain(followers.iter().map(|f| format!("beside it {}, {}", f.name, describe(f))))
+                    .collect(),
             },
         }
     }
@@ -146,6 +141,23 @@ fn integrator(integrator: Integrator) -> String {
         Integrator::Hht { alpha } => format!("Hilber-Hughes-Taylor (alpha {})", number(alpha)),
         Integrator::Newmark => "Newmark, average acceleration".into(),
     }
+}
+
+/// The form of a law with its parameters, SI, of one half sleeper.
+fn describe(named: &NamedLaw) -> String {
+    let mut law = named.law;
+    let name = law.form.name();
+    let parameters = law.form.parameters().into_iter();
+    let parameters: Vec<String> =
+        parameters.map(|(argument, value)| format!("{argument} {}", law_argument(name, argument, *value))).collect();
+    let logarithm = match law.form {
+        Form::Hettler(law) => match law.logarithm {
+            Logarithm::Natural => ", natural logarithm",
+            Logarithm::Decimal => ", decimal logarithm",
+        },
+        _ => "",
+    };
+    format!("{name}: {}{logarithm}; one cycle per {}", parameters.join(", "), law.cycle_per.name())
 }
 
 impl Listing {

@@ -11,7 +11,7 @@ mod substructure;
 mod system;
 mod track;
 
-pub use execute::{Checkpoint, Recorder, RunError, execute};
+pub use execute::{Checkpoint, Recorder, RunError, execute, passage_as_built};
 pub use listing::Listing;
 pub use substructure::SubstructureState;
 pub use track::{PassageOutcome, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
@@ -45,10 +45,18 @@ pub struct TrackNode {
 /// What carries the sleepers: forces in, stiffness and settlement out.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum SubstructureNode {
-    /// A settlement law under each sleeper; stiffness as the scene gives it.
-    Law { name: String, law: Law },
+    /// A settlement law under each sleeper; stiffness as the scene gives it. `followers` are evaluated under the forces
+    /// that the driving law leads to.
+    Law { law: NamedLaw, followers: Vec<NamedLaw> },
     /// Nothing settles: a track at rest under test loads.
     Fixed,
+}
+
+/// A settlement law under the name that the scene gives it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NamedLaw {
+    pub name: String,
+    pub law: Law,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

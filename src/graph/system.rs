@@ -6,6 +6,7 @@ use super::substructure::initial_settlement;
 use super::track::{PassageOutcome, RailPoint, SeatOutcome, Unloaded, UnloadedSeat};
 use super::{Blocks, Graph, Schedule, TrackNode};
 use crate::scenario::{Direction, Record, StaticLoad, Target};
+use crate::solvers::settlement::Peak;
 use crate::solvers::track::{Envelope, Loads, Passage, Run, StaticState, Stepper, Track, TrackError, solve_static};
 use std::ops::Range;
 use std::sync::Arc;
@@ -97,7 +98,12 @@ impl<'a> TrackSystem<'a> {
                 contact_loss: envelope.contact_losses[i],
             })
             .collect();
-        let mut peaks: Vec<Vec<f64>> = (0..seats).map(|i| envelope.axle_peaks_of(i).to_vec()).collect();
+        let peaks_of = |seat: usize| {
+            let deflections = envelope.axle_deflections_of(seat);
+            let wheels = envelope.axle_peaks_of(seat).iter().zip(deflections);
+            wheels.map(|(force, deflection)| Peak { force: *force, deflection: *deflection }).collect()
+        };
+        let mut peaks: Vec<Vec<Peak>> = (0..seats).map(peaks_of).collect();
         self.complete(blocks.passed(), &mut outcomes, &mut peaks);
         let largest = |range: &[(f64, f64)]| range.iter().map(|r| r.1).fold(f64::NEG_INFINITY, f64::max);
         let outcome = PassageOutcome {
@@ -116,7 +122,7 @@ impl<'a> TrackSystem<'a> {
     /// Trains start and stop on the track, so seats near its ends see only some of their wheels. Such a seat takes the mean of
     /// the nearest ten of its section that every wheel passes, as if trains came from afar: otherwise a false step in the
     /// settlement would grow where they start. A section of which no seat is passed keeps what it saw.
-    fn complete(&self, passed: Range<f64>, outcomes: &mut [SeatOutcome], peaks: &mut [Vec<f64>]) {
+    fn complete(&self, passed: Range<f64>, outcomes: &mut [SeatOutcome], peaks: &mut [Vec<Peak>]) {
         let seats = &self.node.track.seats;
         for (i, seat) in seats.iter().enumerate().filter(|(_, s)| !passed.contains(&s.x)) {
             let whole = |n: &usize| seats[*n].section == seat.section && passed.contains(&seats[*n].x);
@@ -129,7 +135,11 @@ impl<'a> TrackSystem<'a> {
                 continue;
             }
             let mean = |of: &dyn Fn(usize) -> f64| from.iter().map(|n| of(*n)).sum::<f64>() / from.len() as f64;
-            peaks[i] = (0..peaks[i].len()).map(|wheel| mean(&|n| peaks[n][wheel])).collect();
+            let mean_peak = |wheel: usize| Peak {
+                force: mean(&|n| peaks[n][wheel].force),
+                deflection: mean(&|n| peaks[n][wheel].deflection),
+            };
+            peaks[i] = (0..peaks[i].len()).map(mean_peak).collect();
             outcomes[i] = SeatOutcome {
                 max_rail_seat_load: mean(&|n| outcomes[n].max_rail_seat_load),
                 max_contact_force: mean(&|n| outcomes[n].max_contact_force),

@@ -2,6 +2,7 @@
 
 use crate::scenario::Track;
 use crate::scenario::response::Response;
+use crate::solvers::settlement::Peak;
 
 /// The track without a train.
 #[derive(Debug, Clone, PartialEq)]
@@ -39,8 +40,8 @@ pub struct UnloadedSeat {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PassageOutcome {
     pub seats: Vec<SeatOutcome>,
-    /// For every seat the peak contact force of each wheel of the train, N.
-    pub peaks: Vec<Vec<f64>>,
+    /// For every seat what each wheel of the train does to its support at most.
+    pub peaks: Vec<Vec<Peak>>,
     /// N.
     pub max_wheel_force: f64,
     pub min_wheel_force: f64,

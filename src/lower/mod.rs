@@ -6,9 +6,8 @@ mod pending;
 mod schedule;
 
 use crate::diag::{Code, Diagnostic, Severity};
-use crate::graph::{Decision, Graph, Schedule, SubstructureNode, TrackNode};
-use crate::scenario::{LawForm, Loading, Scenario, SettlementLaw};
-use crate::solvers::settlement::{Law, Varandas};
+use crate::graph::{Decision, Graph, NamedLaw, Schedule, SubstructureNode, TrackNode};
+use crate::scenario::{Loading, Scenario, SettlementLaw};
 
 /// Lowers a scene. Without a graph there is at least one diagnostic.
 pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
@@ -28,7 +27,10 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
         }
         Some(Loading::Traffic(traffic)) => {
             pass.decide("tier", "a settlement law under each sleeper", "the scene gives the stiffness of its supports");
-            let law = SubstructureNode::Law { name: scenario.solve.law.name.clone(), law: law(&scenario.solve.law) };
+            let law = SubstructureNode::Law {
+                law: named(&scenario.solve.law),
+                followers: scenario.solve.other_laws.iter().map(named).collect(),
+            };
             (law, schedule::blocks(&mut pass, scenario, traffic).map(Schedule::Blocks))
         }
     };
@@ -48,9 +50,8 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
     (Some(graph), pass.diagnostics)
 }
 
-fn law(law: &SettlementLaw) -> Law {
-    let LawForm::Varandas { alpha, beta, gamma, reference_cycles, reference_force } = law.form;
-    Law::Varandas(Varandas { alpha, beta, gamma, reference_cycles: reference_cycles as u64, reference_force })
+fn named(law: &SettlementLaw) -> NamedLaw {
+    NamedLaw { name: law.name.clone(), law: law.law }
 }
 
 /// What the passes collect on their way.

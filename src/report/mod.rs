@@ -7,6 +7,7 @@
 mod along;
 mod chart;
 mod counts;
+mod laws;
 mod number;
 mod page;
 mod passage;
@@ -60,6 +61,7 @@ pub fn figures(run: &Run) -> Vec<Figure> {
             along::settlement_with_axles(run),
         ];
         figures.extend(along.into_iter().flatten());
+        figures.extend(laws::spread(run));
     }
     figures.extend(passage::histories(run));
     figures

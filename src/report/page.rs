@@ -2,7 +2,7 @@
 
 use super::number::{plain, shown_unit, significant, whole};
 use super::svg::{STYLE, escape};
-use super::{Figure, figures};
+use super::{Figure, figures, laws};
 use crate::results::{Run, Verdict};
 use crate::scenario::{Loading, Scenario};
 use std::fmt::Write;
@@ -24,6 +24,7 @@ pub fn page(run: &Run) -> String {
         subtitle = escape(&subtitle(&run.scenario))
     );
     tiles(&mut html, run);
+    laws::remarks(&mut html, run);
     expectations(&mut html, &run.summary.expectations);
     figures(run).iter().for_each(|figure| picture(&mut html, figure));
     blocks(&mut html, run);

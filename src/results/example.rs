@@ -4,6 +4,7 @@ use super::*;
 use crate::diag::{FileId, Span};
 use crate::scenario::response::{Expectation, Expression, Measure, Reduction, Response};
 use crate::scenario::*;
+use crate::solvers::settlement::{CyclePer, Form, Law, Varandas};
 use crate::syntax::tree::Comparison;
 
 fn given<T>(value: T) -> Given<T> {
@@ -25,10 +26,11 @@ fn pad() -> Pad {
 }
 
 fn solve() -> Solve {
-    let form =
-        LawForm::Varandas { alpha: 0.6, beta: 0.82, gamma: 4.9e-9, reference_cycles: 1.0, reference_force: 50e3 };
+    let form = Form::Varandas(Varandas { gamma: 4.9e-9, reference_cycles: 1.0, ..Varandas::default() });
+    let law = Law { form, cycle_per: CyclePer::Axle };
     Solve {
-        law: SettlementLaw { name: "varandas".to_owned(), form, loads: None, cycles: None },
+        law: SettlementLaw { name: "varandas".to_owned(), law, loads: None, cycles: None, origin: Origin::Default },
+        other_laws: vec![],
         update: Update::Fixed { axles: 20 },
         update_span: None,
         integrator: Integrator::GeneralisedAlpha { rho: 0.9 },
@@ -353,5 +355,6 @@ fn finished(
         seed: 1,
         plan: "track        2D finite elements, 440 elements\nsubstructure law varandas, 69 seats\n".to_owned(),
     };
-    Run { scenario, summary: Summary { scalars, expectations, provenance }, sleepers, blocks, histories }
+    let summary = Summary { scalars, expectations, provenance };
+    Run { scenario, summary, sleepers, blocks, laws: vec![], histories }
 }

@@ -22,11 +22,15 @@ pub fn write(run: &Run, directory: &Path) -> Result<(), ResultsError> {
         (SCENARIO, scenario_json(run, directory)?),
         (super::SleeperRow::FILE, table(&run.sleepers, directory)?),
         (super::BlockRow::FILE, table(&run.blocks, directory)?),
+        (super::LawRow::FILE, table(&run.laws, directory)?),
         (HISTORIES, histories::encode(&run.histories, directory)?),
         (SUMMARY, summary_json(run, directory)?), // last: a directory with a summary is complete
     ];
     fs::create_dir_all(directory).map_err(|cause| ResultsError::io(directory, "create", cause))?;
-    files.iter().try_for_each(|(name, bytes)| atomic::write(&directory.join(name), bytes))
+    // a table of laws is there only where several are compared
+    let skipped = |name: &str| name == super::LawRow::FILE && run.laws.is_empty();
+    let written = files.iter().filter(|(name, _)| !skipped(name));
+    written.into_iter().try_for_each(|(name, bytes)| atomic::write(&directory.join(name), bytes))
 }
 
 /// Reads a run back from its directory.
@@ -36,6 +40,7 @@ pub fn read(directory: &Path) -> Result<Run, ResultsError> {
         scenario: read_json(&directory.join(SCENARIO))?,
         sleepers: read_table(directory)?,
         blocks: read_table(directory)?,
+        laws: if directory.join(super::LawRow::FILE).exists() { read_table(directory)? } else { Vec::new() },
         histories: histories::decode(&directory.join(HISTORIES))?,
     })
 }

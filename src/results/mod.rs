@@ -9,6 +9,7 @@ mod error;
 mod evaluate;
 mod files;
 mod histories;
+mod laws;
 mod recorder;
 mod summarise;
 mod summary;
@@ -21,6 +22,7 @@ pub use atomic::write as write_atomically;
 pub use error::ResultsError;
 pub use evaluate::{Tables, evaluate, verdicts};
 pub use files::{read, read_timings, write, write_timings};
+pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};
 pub use recorder::{RunRecorder, RunTables, Store};
 pub use summarise::{RailMaxima, VOID_THRESHOLD, static_wheel_load, summarise};
 pub use summary::{Provenance, Scalar, Summary, Verdict};
@@ -36,5 +38,7 @@ pub struct Run {
     pub summary: Summary,
     pub sleepers: Vec<SleeperRow>,
     pub blocks: Vec<BlockRow>,
+    /// Settlement by each law; empty where there is only one.
+    pub laws: Vec<LawRow>,
     pub histories: Vec<HistoryRow>,
 }

@@ -2,7 +2,7 @@
 //! histories go into their own file as soon as they exist.
 
 use super::histories::HISTORIES;
-use super::{BlockRow, HistoryRow, RailMaxima, ResultsError, SleeperRow, atomic, checkpoint, histories};
+use super::{BlockRow, HistoryRow, LawCount, RailMaxima, ResultsError, SleeperRow, atomic, checkpoint, histories};
 use crate::graph::{self, Block, PassageOutcome, Recorder, Unloaded};
 use crate::scenario::response::Response;
 use crate::scenario::{Direction, Foot, Scenario, Track};
@@ -23,6 +23,8 @@ pub struct RunTables {
     pub blocks: Vec<BlockRow>,
     /// Settlement of every ballasted seat after every block.
     pub settlements: Vec<HistoryRow>,
+    /// Settlement by each law after every block; empty where there is only one law.
+    pub laws: Vec<LawCount>,
     /// Largest sagging moment of the last passage, N m, and displacement of a static check, m.
     pub max_rail_moment: Option<f64>,
     pub max_rail_displacement: Option<f64>,
@@ -174,6 +176,14 @@ impl Recorder for RunRecorder<'_> {
             self.keep_settlements(axles + block.axles, after);
         }
         self.tables.max_rail_moment = Some(largest(|p| p.max_rail_moment));
+    }
+
+    fn laws(&mut self, axles: u64, settlement: &[Vec<f64>]) {
+        if settlement.len() > 1 {
+            let ballasted: Vec<bool> = self.track().seats.iter().map(|seat| seat.is_ballasted()).collect();
+            let of_law = |law: &Vec<f64>| law.iter().zip(&ballasted).filter(|(_, b)| **b).map(|(s, _)| *s).collect();
+            self.tables.laws.push(LawCount { axles, settlement: settlement.iter().map(of_law).collect() });
+        }
     }
 
     fn checkpoint(&mut self, checkpoint: &graph::Checkpoint) -> Result<(), String> {

@@ -87,12 +87,16 @@ fn ballasted<'a>(scenario: &'a Scenario, rows: &[&'a SleeperRow]) -> Vec<(&'a Se
 
 /// Median settlement of the seats far from every transition; of the far half where none is far enough.
 fn far_field(scenario: &Scenario, ballasted: &[(&Seat, &SleeperRow)]) -> Option<f64> {
-    let distance = |seat: &Seat| {
-        let distances = scenario.track.transitions.iter().map(|transition| (seat.x - transition.x).abs());
+    far_field_of(scenario, ballasted.iter().map(|(seat, row)| (seat.x, row.settlement_m)).collect())
+}
+
+/// The same of settlements (m) by chainage (m).
+pub(super) fn far_field_of(scenario: &Scenario, settlements: Vec<(f64, f64)>) -> Option<f64> {
+    let distance = |x: f64| {
+        let distances = scenario.track.transitions.iter().map(|transition| (x - transition.x).abs());
         distances.fold(f64::INFINITY, f64::min)
     };
-    let mut by_distance: Vec<(f64, f64)> =
-        ballasted.iter().map(|(seat, row)| (distance(seat), row.settlement_m)).collect();
+    let mut by_distance: Vec<(f64, f64)> = settlements.into_iter().map(|(x, s)| (distance(x), s)).collect();
     by_distance.sort_by(|a, b| b.0.total_cmp(&a.0));
     let far = by_distance.iter().take_while(|(distance, _)| *distance > FAR_FIELD_DISTANCE).count();
     let far = if far == 0 { by_distance.len().div_ceil(2) } else { far };
@@ -109,7 +113,7 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     }
 }
 
-fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
+pub(super) fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
     values.max_by(f64::total_cmp)
 }
 

@@ -5,18 +5,20 @@
 //! settlement and force are positive; every number a person may have written carries its [`Origin`].
 
 mod given;
+mod law;
 mod profile;
 pub mod response;
 mod track;
 mod traffic;
 
 pub use given::{Given, Origin};
+pub use law::{SettlementLaw, law_argument};
 pub use profile::{Cubic, Curve, Piece, Profile};
 pub use track::{
     AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, Spring, Support, Track, Transition,
     Usp,
 };
-pub use traffic::{Direction, LawForm, SettlementLaw, StaticLoad, Target, Traffic, Train, Vehicle};
+pub use traffic::{Direction, StaticLoad, Target, Traffic, Train, Vehicle};
 
 use crate::diag::Span;
 use serde::{Deserialize, Serialize};
@@ -46,7 +48,10 @@ pub enum Loading {
 /// How the answer is computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Solve {
+    /// By which the supports settle.
     pub law: SettlementLaw,
+    /// Laws that are shown beside it, under the same forces.
+    pub other_laws: Vec<SettlementLaw>,
     pub update: Update,
     /// The word after `update_every`, for messages.
     pub update_span: Option<Span>,

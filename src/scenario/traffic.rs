@@ -1,4 +1,4 @@
-//! What acts on the track: vehicles, trains and test loads, and the law by which the supports settle.
+//! What acts on the track: vehicles, trains and test loads.
 
 use super::{Given, Profile};
 use serde::{Deserialize, Serialize};
@@ -124,21 +124,4 @@ pub struct StaticLoad {
 pub enum Target {
     Rail,
     Sleepers,
-}
-
-/// By what rule a support settles under the peaks of its contact force.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SettlementLaw {
-    pub name: String,
-    pub form: LawForm,
-    /// Range of peak forces per seat that the law was calibrated for, N.
-    pub loads: Option<(f64, f64)>,
-    /// Range of axle counts that it was calibrated for.
-    pub cycles: Option<(f64, f64)>,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum LawForm {
-    /// Varandas, Hölscher and Silva (2014): `reference_force` F0 in N for `reference_cycles` N0 gives `gamma` in m.
-    Varandas { alpha: f64, beta: f64, gamma: f64, reference_cycles: f64, reference_force: f64 },
 }

@@ -5,26 +5,26 @@ use super::{Alternative, Basis, Field, Form, Kind, Measure, Need, Role, Varies, 
 const fn field(name: &'static str, form: Form, need: Need, doc: &'static str) -> Field {
     Field { name, form, need, doc }
 }
-const fn required(name: &'static str, form: Form, doc: &'static str) -> Field {
+pub(super) const fn required(name: &'static str, form: Form, doc: &'static str) -> Field {
     field(name, form, Need::Required, doc)
 }
 const fn optional(name: &'static str, form: Form, doc: &'static str) -> Field {
     field(name, form, Need::Optional, doc)
 }
-const fn default(name: &'static str, form: Form, text: &'static str, doc: &'static str) -> Field {
+pub(super) const fn default(name: &'static str, form: Form, text: &'static str, doc: &'static str) -> Field {
     field(name, form, Need::Default(text), doc)
 }
 const fn way(name: &'static str, form: Form, doc: &'static str) -> Field {
     field(name, form, Need::Alternative, doc)
 }
 
-const fn measure(unit: &'static str, min: f64, max: f64) -> Measure {
+pub(super) const fn measure(unit: &'static str, min: f64, max: f64) -> Measure {
     Measure { unit, min, max, basis: None, varies: Varies::No }
 }
-const fn number(unit: &'static str, min: f64, max: f64) -> Form {
+pub(super) const fn number(unit: &'static str, min: f64, max: f64) -> Form {
     Form::Number(measure(unit, min, max))
 }
-const fn per(unit: &'static str, min: f64, max: f64, basis: &'static Basis) -> Form {
+pub(super) const fn per(unit: &'static str, min: f64, max: f64, basis: &'static Basis) -> Form {
     Form::Number(Measure { basis: Some(basis), ..measure(unit, min, max) })
 }
 /// A number that may vary along the track.
@@ -41,7 +41,7 @@ const fn varying(form: Form, varies: Varies) -> Form {
         other => other,
     }
 }
-const fn word(name: &'static str, doc: &'static str) -> Word {
+pub(super) const fn word(name: &'static str, doc: &'static str) -> Word {
     Word { name, doc, arguments: &[], planned: false }
 }
 const fn planned(name: &'static str) -> Word {
@@ -60,7 +60,7 @@ const BOGIE_OR_RAIL: Basis = Basis { names: &[("bogie", 0.5), ("rail", 1.0)], as
 const WHEELSET_OR_WHEEL: Basis = Basis { names: &[("wheelset", 0.5), ("wheel", 1.0)], assumed: None };
 const PRIMARY: Basis =
     Basis { names: &[("wheel", 1.0), ("wheelset", 0.5), ("bogie", 0.25), ("rail", 1.0)], assumed: None };
-const SEAT: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: Some("seat") };
+pub(super) const SEAT: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: Some("seat") };
 
 const NONE: &[Word] = &[word("none", "absent")];
 const AUTO: &[Word] = &[word("auto", "chosen by the planner")];
@@ -472,41 +472,23 @@ pub const KINDS: &[Kind] = &[
         doc: "The settlement of a support under the peaks of its contact force.",
         role: Role::Part,
         fields: &[
-            required(
-                "form",
-                Form::Words(&[
-                    Word {
-                        name: "varandas",
-                        doc: "Varandas, Hölscher and Silva (2014): the integral over force of what each exceedance of that force adds",
-                        arguments: &[
-                            default("alpha", number("", 0.0, 5.0), "0.6", "exponent of the force"),
-                            default("beta", number("", 0.0, 5.0), "0.82", "how fast repeated load loses its effect"),
-                            default(
-                                "gamma",
-                                number("mm", 0.01, 1000.0),
-                                "10 mm",
-                                "settlement after `reference_cycles` of `reference_force`",
-                            ),
-                            default("reference_cycles", number("axles", 1.0, 1e12), "1_000_000 axles", "N0"),
-                            default("reference_force", per("kN", 0.1, 1000.0, &SEAT), "50 kN per seat", "F0"),
-                        ],
-                        planned: false,
-                    },
-                    planned("nasrollahi"),
-                    planned("sato"),
-                    planned("shenton"),
-                    planned("hettler"),
-                    planned("guerin"),
-                    planned("power"),
-                ]),
-                "",
-            ),
+            required("form", Form::Words(super::laws::FORMS), ""),
             optional(
                 "loads",
                 Form::Interval(Measure { basis: Some(&SEAT), ..measure("kN", 0.0, 10_000.0) }),
                 "peak forces for which it was calibrated",
             ),
             optional("cycles", Form::Interval(measure("axles", 0.0, 1e12)), "axle counts for which it was calibrated"),
+            default(
+                "cycle_per",
+                Form::Words(&[
+                    word("axle", "every axle is a cycle"),
+                    word("bogie", "the larger peak of its two axles is one cycle"),
+                    word("vehicle", "the largest peak of its four axles is one cycle"),
+                ]),
+                "axle",
+                "what one cycle of the law is: publications differ, by a factor of four",
+            ),
         ],
         alternatives: &[],
         planned: &[],
@@ -528,7 +510,12 @@ pub const KINDS: &[Kind] = &[
                 "auto",
                 "the tier of the model under the sleepers",
             ),
-            default("law", Form::Object("law"), "laws.varandas_2014", "by which the supports settle"),
+            default(
+                "law",
+                Form::OneOf(&[Form::Object("law"), Form::List(&Form::Object("law"))]),
+                "laws.varandas_2014",
+                "by which the supports settle; of several the first drives, all are shown as a spread",
+            ),
             default(
                 "update_every",
                 Form::OneOf(&[

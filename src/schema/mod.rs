@@ -4,6 +4,7 @@
 
 mod docs;
 mod kinds;
+mod laws;
 
 pub use docs::{index, page};
 pub use kinds::{COMMON, KINDS};
@@ -208,6 +209,15 @@ impl Form {
             Form::Words(words) => words.iter().find(|w| w.name == name),
             Form::OneOf(forms) => forms.iter().find_map(|f| f.word(name)),
             Form::List(item) => item.word(name),
+            _ => None,
+        }
+    }
+
+    /// The measure of its number, of the first where several units may stand.
+    pub fn measure(&self) -> Option<&Measure> {
+        match self {
+            Form::Number(measure) => Some(measure),
+            Form::OneOf(forms) => forms.iter().find_map(Form::measure),
             _ => None,
         }
     }

@@ -16,6 +16,8 @@ pub struct Envelope {
     /// Row by row for each seat: the largest contact force while each wheel was the nearest to the seat, N. A wheel that
     /// never was the nearest, or a seat without a sleeper, has 0.
     pub axle_peaks: Vec<f64>,
+    /// As `axle_peaks`: how far the sleeper presses its support below its unloaded level at most, m.
+    pub axle_deflections: Vec<f64>,
     /// Smallest and largest force of each wheel, N.
     pub wheel_forces: Vec<(f64, f64)>,
     /// Sagging rail moment at each node, smallest and largest, N m.
@@ -37,6 +39,12 @@ impl Envelope {
         &self.axle_peaks[seat * wheels..(seat + 1) * wheels]
     }
 
+    /// The largest deflection of a seat's support for each wheel in turn, m.
+    pub fn axle_deflections_of(&self, seat: usize) -> &[f64] {
+        let wheels = self.wheel_forces.len();
+        &self.axle_deflections[seat * wheels..(seat + 1) * wheels]
+    }
+
     fn begin(&mut self, view: &StepView<'_>) {
         let (seats, wheels) = (view.track().model().seats.len(), view.wheel_forces().len());
         let nodes = view.track().nodes().len();
@@ -46,6 +54,7 @@ impl Envelope {
             foot_displacements: vec![f64::NEG_INFINITY; seats],
             contact_losses: vec![0.0; seats],
             axle_peaks: vec![0.0; seats * wheels],
+            axle_deflections: vec![0.0; seats * wheels],
             wheel_forces: vec![NOTHING; wheels],
             rail_moments: vec![NOTHING; nodes],
             moments: vec![0.0; nodes],
@@ -75,8 +84,14 @@ impl Observer for Envelope {
                     nearest = (distance, wheel);
                 }
             }
-            if let Some(peak) = self.axle_peaks.get_mut(seat * wheels.len() + nearest.1) {
+            let place = seat * wheels.len() + nearest.1;
+            if let Some(peak) = self.axle_peaks.get_mut(place) {
                 *peak = peak.max(force);
+            }
+            if let (Some(most), Some(deflection)) =
+                (self.axle_deflections.get_mut(place), view.support_deflection(seat))
+            {
+                *most = most.max(deflection);
             }
         }
         for (range, force) in self.wheel_forces.iter_mut().zip(view.wheel_forces()) {

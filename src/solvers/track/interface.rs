@@ -60,6 +60,15 @@ pub(super) struct Interface {
     rhs: Vec<f64>,
 }
 
+/// What of an [`Interface`] the next step depends on.
+#[derive(Debug, Clone, Default)]
+pub(super) struct InterfaceState {
+    points: Vec<RailPoint>,
+    wheels: [Vec<f64>; 3],
+    phases: Vec<SupportPhase>,
+    supports: [Vec<f64>; 2],
+}
+
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Contact {
     Wheel(usize),
@@ -109,6 +118,39 @@ impl Interface {
             vehicle_compliance: vehicles.iter().map(|(_, compliance)| compliance.clone()).collect(),
             ..Self::default()
         }
+    }
+
+    pub fn save(&self, state: &mut InterfaceState) {
+        state.points.clone_from(&self.points);
+        for (kept, now) in state.wheels.iter_mut().zip([&self.forces, &self.indentations, &self.trends]) {
+            kept.clone_from(now);
+        }
+        state.phases.clone_from(&self.phases);
+        for (kept, now) in state.supports.iter_mut().zip([&self.corrections, &self.gaps]) {
+            kept.clone_from(now);
+        }
+    }
+
+    pub fn restore(&mut self, state: &InterfaceState) {
+        self.points.clone_from(&state.points);
+        let [forces, indentations, trends] = &state.wheels;
+        self.forces.clone_from(forces);
+        self.indentations.clone_from(indentations);
+        self.trends.clone_from(trends);
+        self.phases.clone_from(&state.phases);
+        let [corrections, gaps] = &state.supports;
+        self.corrections.clone_from(corrections);
+        self.gaps.clone_from(gaps);
+    }
+
+    /// Goes on in steps `ratio` times as long.
+    pub fn scale_trends(&mut self, ratio: f64) {
+        self.trends.iter_mut().for_each(|trend| *trend *= ratio);
+    }
+
+    /// Sets the drop of a vehicle's wheels per wheel force, m/N.
+    pub fn set_compliance(&mut self, vehicle: usize, compliance: DMatrix<f64>) {
+        self.vehicle_compliance[vehicle] = compliance;
     }
 
     /// Solves the contacts of a step whose points, free indentations, lines and free gaps are set; fails with the contact

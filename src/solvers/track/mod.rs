@@ -9,6 +9,7 @@
 //! [`Stepper`] factors one time step for all passages over that track; [`Passage`] runs one train over it and shows every
 //! step to an [`Observer`].
 
+mod adaptive;
 mod assembly;
 mod beam;
 mod contact;
@@ -32,6 +33,7 @@ mod train;
 mod vehicle;
 mod view;
 
+pub use adaptive::Ladder;
 pub use envelope::Envelope;
 pub use error::TrackError;
 pub use influence::Stepper;

@@ -3,6 +3,7 @@
 //! A step solves the linear track with all supports closed, then the contacts ([`super::interface`]), and adds what the
 //! contact forces displace. Nothing is factored and nothing allocated while it runs.
 
+use super::adaptive::Choice;
 use super::influence::Stepper;
 use super::interface::{Contact, Interface, add_scaled};
 use super::motion::Timetable;
@@ -33,6 +34,10 @@ pub struct Counters {
     pub most_iterations: usize,
     /// The most supports of one step that were not closed.
     pub most_open_supports: usize,
+    /// Steps that were taken back for shorter ones.
+    pub rejected: usize,
+    /// Steps kept although their error was above the tolerance, as no shorter one was at hand.
+    pub beyond_tolerance: usize,
 }
 
 /// A passage under way. All vectors run over the unknowns of the track unless said otherwise.
@@ -40,10 +45,17 @@ pub struct Counters {
 pub struct Passage<'a> {
     pub(super) stepper: &'a Stepper,
     pub(super) level: &'a TrackLevel,
-    train: Option<(Run<'a>, Timetable)>,
+    pub(super) train: Option<(Run<'a>, Timetable)>,
     pub(super) unloaded: StaticState,
     pub(super) counters: Counters,
-    planned_steps: usize,
+    /// Time in ticks: the step itself, or the shortest one of a ladder.
+    pub(super) tick: u64,
+    pub(super) tick_length: f64,
+    pub(super) ticks_per_step: u64,
+    pub(super) ticks_per_longest: u64,
+    planned_ticks: u64,
+    /// How the length of a step is chosen; none where it is fixed.
+    pub(super) choice: Option<Box<Choice<'a>>>,
     pub(super) displacement: Vec<f64>,
     pub(super) velocity: Vec<f64>,
     pub(super) acceleration: Vec<f64>,
@@ -72,9 +84,9 @@ impl<'a> Passage<'a> {
             track.rail_point(x)?;
         }
         let start = quasi_static::start(track, level, run.train, run.start, run.motion.speed_at(run.start))?;
-        let planned_steps = (timetable.duration / stepper.time_step() + 1e-9).floor() as usize;
+        let planned_steps = (timetable.duration / stepper.time_step() + 1e-9).floor() as u64;
         let mut passage = Self::begin(stepper, level, Some((run, timetable)), start)?;
-        passage.planned_steps = planned_steps;
+        passage.planned_ticks = planned_steps;
         Ok(passage)
     }
 
@@ -105,7 +117,7 @@ impl<'a> Passage<'a> {
             track.held.iter().for_each(|(unknown, _)| forces[*unknown] = 0.0);
             mass.solve_in_place(forces);
         }
-        passage.planned_steps = steps;
+        passage.planned_ticks = steps as u64;
         Ok(passage)
     }
 
@@ -158,7 +170,12 @@ impl<'a> Passage<'a> {
             train,
             unloaded,
             counters: Counters::default(),
-            planned_steps: 0,
+            tick: 0,
+            tick_length: stepper.time_step(),
+            ticks_per_step: 1,
+            ticks_per_longest: 1,
+            planned_ticks: 0,
+            choice: None,
             displacement: start.state.unknowns,
             velocity: start.velocity,
             acceleration: start.acceleration,
@@ -182,9 +199,17 @@ impl<'a> Passage<'a> {
         self.counters
     }
 
-    /// Steps from the start to the finish.
+    /// Steps from the start to the finish, were all as long as the first.
     pub fn planned_steps(&self) -> usize {
-        self.planned_steps
+        (self.planned_ticks / self.ticks_per_longest) as usize
+    }
+
+    /// Counts time in ticks that are the step `halvings` times halved.
+    pub(super) fn divide_ticks(&mut self, halvings: u32) {
+        self.ticks_per_step <<= halvings;
+        self.ticks_per_longest = self.ticks_per_step;
+        self.planned_ticks <<= halvings;
+        self.tick_length = self.stepper.time_step() / self.ticks_per_step as f64;
     }
 
     /// The present state.
@@ -195,7 +220,7 @@ impl<'a> Passage<'a> {
     /// Runs to the finish; `observer` sees the start and every step.
     pub fn run(&mut self, observer: &mut impl Observer) -> Result<Counters, TrackError> {
         observer.observe(&self.view());
-        while self.counters.steps < self.planned_steps {
+        while self.tick < self.planned_ticks {
             self.step()?;
             observer.observe(&self.view());
         }
@@ -204,11 +229,23 @@ impl<'a> Passage<'a> {
 
     /// s, since the start.
     pub fn time(&self) -> f64 {
-        self.counters.steps as f64 * self.stepper.time_step()
+        self.tick as f64 * self.tick_length
     }
 
     /// One time step; after an error the state is not to be used.
     pub fn step(&mut self) -> Result<(), TrackError> {
+        match self.choice.take() {
+            Some(mut choice) => {
+                let outcome = self.chosen_step(&mut choice);
+                self.choice = Some(choice);
+                outcome
+            }
+            None => self.step_once(),
+        }
+    }
+
+    /// A step of the present length.
+    pub(super) fn step_once(&mut self) -> Result<(), TrackError> {
         let (track, scheme) = (&*self.stepper.track, &self.stepper.scheme);
         let (dt, alpha_f) = (scheme.time_step, scheme.alpha_f);
         let (displacement_share, rate) = (scheme.displacement_share(), scheme.rate());
@@ -243,7 +280,8 @@ impl<'a> Passage<'a> {
 
         // Contacts.
         self.counters.steps += 1;
-        let travelled = self.counters.steps as f64 * dt;
+        self.tick += self.ticks_per_step;
+        let travelled = self.tick as f64 * self.tick_length;
         if let Some((run, timetable)) = &self.train {
             let leading = timetable.position(travelled);
             for (position, x) in self.wheel_positions.iter_mut().zip(run.train.wheel_positions(leading)) {

@@ -34,16 +34,7 @@ impl RunningVehicle {
         velocity: Vec<f64>,
     ) -> Result<Self, TrackError> {
         let order = vehicle.order();
-        let (of_mass, of_damping, of_stiffness) = scheme.effective();
-        let mut matrix = of_damping * &vehicle.damping + of_stiffness * &vehicle.stiffness;
-        for (i, mass) in vehicle.masses.iter().enumerate() {
-            matrix[(i, i)] += of_mass * mass;
-        }
-        let inverse = matrix.cholesky().map(|factor| factor.inverse()).ok_or(TrackError::Parameter {
-            name: "unknowns of a vehicle",
-            value: order as f64,
-            expected: "that have a mass or springs to all sides",
-        })?;
+        let inverse = inverse(vehicle, scheme)?;
         let columns = |matrix: &DMatrix<f64>| matrix.as_slice().to_vec();
         Ok(Self {
             order,
@@ -60,6 +51,12 @@ impl RunningVehicle {
             predicted_velocity: vec![0.0; order],
             mean: [vec![0.0; order], vec![0.0; order]],
         })
+    }
+
+    /// Goes on in steps of another length.
+    pub fn change_step(&mut self, vehicle: &Multibody, scheme: &Scheme) -> Result<(), TrackError> {
+        self.inverse.copy_from_slice(inverse(vehicle, scheme)?.as_slice());
+        Ok(())
     }
 
     /// Drop of each wheel at the end of a step per force at each wheel there, m/N.
@@ -129,4 +126,18 @@ impl RunningVehicle {
             self.velocity[i] = self.predicted_velocity[i] + velocity_share * self.acceleration[i];
         }
     }
+}
+
+/// Acceleration at the end of a step per force there; fails where a step could not move the vehicle: no mass and no spring.
+fn inverse(vehicle: &Multibody, scheme: &Scheme) -> Result<DMatrix<f64>, TrackError> {
+    let (of_mass, of_damping, of_stiffness) = scheme.effective();
+    let mut matrix = of_damping * &vehicle.damping + of_stiffness * &vehicle.stiffness;
+    for (i, mass) in vehicle.masses.iter().enumerate() {
+        matrix[(i, i)] += of_mass * mass;
+    }
+    matrix.cholesky().map(|factor| factor.inverse()).ok_or(TrackError::Parameter {
+        name: "unknowns of a vehicle",
+        value: vehicle.order() as f64,
+        expected: "that have a mass or springs to all sides",
+    })
 }

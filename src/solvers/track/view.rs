@@ -53,6 +53,11 @@ impl<'a> StepView<'a> {
         self.passage.counters.steps
     }
 
+    /// Whether the time is a whole number of `every` times the passage's longest step: a grid that all steps keep to.
+    pub fn is_on_grid(&self, every: usize) -> bool {
+        self.passage.tick.is_multiple_of(every as u64 * self.passage.ticks_per_longest)
+    }
+
     /// s, since the start.
     pub fn time(&self) -> f64 {
         self.passage.time()
@@ -107,6 +112,18 @@ impl<'a> StepView<'a> {
     pub fn support_phase(&self, seat: usize) -> Option<SupportPhase> {
         match self.track().feet[seat] {
             FootUnknown::Sleeper(s) => Some(self.passage.interface.phases[s]),
+            _ => None,
+        }
+    }
+
+    /// How far the sleeper presses its support below the support's unloaded level, m, 0 where it hangs; none for a seat without
+    /// a sleeper.
+    pub fn support_deflection(&self, seat: usize) -> Option<f64> {
+        match self.track().feet[seat] {
+            FootUnknown::Sleeper(s) => {
+                let foot = self.passage.displacement[self.track().sleepers[s].unknown];
+                Some((foot - self.passage.level.settlements[seat]).max(0.0))
+            }
             _ => None,
         }
     }

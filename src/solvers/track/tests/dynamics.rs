@@ -242,6 +242,11 @@ fn peaks_do_not_hang_on_the_step() {
         assert_eq!(axles.len(), 4);
         let most = axles.iter().fold(0.0f64, |m, f| m.max(*f));
         assert_eq!(most, fine.contact_forces[seat]);
+        // The spring carries nearly all of it, the damper the rest.
+        let deflection = fine.axle_deflections_of(seat).iter().fold(0.0f64, |m, d| m.max(*d));
+        let Foot::Sleeper { support_stiffness, .. } = transition(45, 20).seats[seat].foot else { continue };
+        let share = support_stiffness * deflection / most;
+        assert!((0.75..1.25).contains(&share), "seat {seat}: {share}");
     }
 }
 

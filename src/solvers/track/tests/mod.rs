@@ -1,5 +1,6 @@
 //! Cases with known answers, by what they exercise.
 
+mod adaptive;
 mod beams;
 mod dynamics;
 mod ends;
