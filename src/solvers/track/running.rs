@@ -96,9 +96,9 @@ impl RunningVehicle {
             }
         }
         rest.fill(0.0);
-        for j in 0..n {
+        for (j, force) in forces.iter().enumerate() {
             for (a, inverse) in rest.iter_mut().zip(&self.inverse[j * n..(j + 1) * n]) {
-                *a += inverse * forces[j];
+                *a += inverse * force;
             }
         }
         a.copy_from_slice(rest);
