@@ -5,7 +5,7 @@
 
 mod execute;
 mod listing;
-mod model;
+pub mod model;
 mod profile;
 mod sampler;
 mod substructure;
@@ -16,6 +16,7 @@ pub use execute::{Checkpoint, Recorder, RunError, execute, passage_as_built};
 pub use listing::Listing;
 pub use profile::between;
 pub use substructure::SubstructureState;
+pub use system::RUNAWAY;
 pub use track::{PassageOutcome, RailPlace, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
 
 use crate::scenario::{Beam, Direction, Integrator, Record, StaticLoad, Track, Train};

@@ -49,6 +49,9 @@ impl Steps {
 /// Seats whose mean stands for those near the ends of the model, see [`TrackSystem::complete`].
 const NEIGHBOURS: usize = 10;
 
+/// Wheel forces beyond so many static ones are no answer: rails break long before.
+pub const RUNAWAY: f64 = 10.0;
+
 impl<'a> TrackSystem<'a> {
     pub fn new(graph: &'a Graph) -> Result<Self, TrackError> {
         let track = Arc::new(Track::new(model(&graph.track))?);
@@ -148,7 +151,21 @@ impl<'a> TrackSystem<'a> {
             newton_iterations: counters.iterations as u64,
             samples: sampler.samples,
         };
+        self.bounded(blocks, &outcome)?;
         Ok((unloaded, outcome))
+    }
+
+    /// Refuses an outcome that has run away: it would settle the track by forces that no track bears.
+    fn bounded(&self, blocks: &Blocks, outcome: &PassageOutcome) -> Result<(), TrackError> {
+        let mass: f64 = blocks.train.vehicles.iter().map(|v| v.mass()).sum();
+        let times = outcome.max_wheel_force / (mass * self.node.gravity / blocks.train.axles() as f64);
+        if times <= RUNAWAY {
+            return Ok(());
+        }
+        let load = |i: &usize| outcome.seats[*i].max_rail_seat_load;
+        let worst = (0..outcome.seats.len()).max_by(|a, b| load(a).total_cmp(&load(b))).unwrap_or(0);
+        let x = self.node.track.seats.get(worst).map_or(0.0, |seat| seat.x);
+        Err(TrackError::RanAway { x, force: outcome.max_wheel_force, times })
     }
 
     /// Trains start and stop on the track, so seats near its ends see only some of their wheels. Such a seat takes the mean of

@@ -21,15 +21,19 @@ mod panels;
 mod pressure;
 mod scene;
 mod seat_clock;
+mod stability;
 mod stiffness;
 mod svg;
 mod symbols;
 mod thin;
 mod vehicle;
 mod wheels;
+mod work_precision;
 
 pub use page::page;
 pub use scene::scene_svg;
+pub use stability::stability_svg;
+pub use work_precision::chart_svg;
 
 use crate::results::Run;
 use crate::scenario::Loading;

@@ -16,6 +16,8 @@ pub enum TrackError {
     NoEquilibrium { x: f64, iterations: usize },
     /// The contacts of a time step did not settle; `x` (m) is where they last changed.
     StepNotConverged { step: usize, time: f64, x: f64 },
+    /// A wheel force (N) is so many times its static value that the answer means nothing; `x` (m) is the seat that bears most.
+    RanAway { x: f64, force: f64, times: f64 },
     /// A displacement is not a number; `x` (m) is the position of the leading wheel.
     NotFinite { step: usize, time: f64, x: f64 },
 }
@@ -34,6 +36,9 @@ impl fmt::Display for TrackError {
             }
             TrackError::StepNotConverged { step, time, x } => {
                 write!(f, "contacts near x = {x} m did not settle in step {step} at {time} s")
+            }
+            TrackError::RanAway { x, force, times } => {
+                write!(f, "a wheel force of {:.0} kN near x = {x} m, {times:.0} times the static one", force / 1e3)
             }
             TrackError::NotFinite { step, time, x } => {
                 write!(f, "displacements are not finite in step {step} at {time} s, leading wheel at x = {x} m")

@@ -354,8 +354,7 @@ impl<'a> Passage<'a> {
     }
 
     /// Kinetic and potential energy of the track, J, from the track as built without weight.
-    #[cfg(test)]
-    pub(super) fn energy(&self) -> f64 {
+    pub fn energy(&self) -> f64 {
         let track = &self.stepper.track;
         let quadratic = |matrix: &crate::linalg::banded::SymmetricBanded, x: &[f64]| {
             let mut product = vec![0.0; x.len()];
