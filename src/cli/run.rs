@@ -114,7 +114,7 @@ fn explain(error: &RunError, compiled: &Compiled) -> Diagnostic {
         RunError::Track { cause, .. } => {
             let diagnostic = Diagnostic::new(Code::E0801, error.to_string()).help(way_out(cause));
             let span = compiled.scenario.as_ref().and_then(|s| match cause {
-                TrackError::StepNotConverged { .. } | TrackError::NotFinite { .. } => {
+                TrackError::StepNotConverged { .. } | TrackError::Unstable { .. } => {
                     s.solve.time_step.fixed()?.origin.span()
                 }
                 TrackError::NoEquilibrium { .. } => s.solve.update_span,
@@ -132,7 +132,7 @@ fn explain(error: &RunError, compiled: &Compiled) -> Diagnostic {
 fn way_out(cause: &TrackError) -> &'static str {
     match cause {
         TrackError::Mechanism { .. } => "let something hold it: `rail_ends = clamped`, or more seats in `sections`",
-        TrackError::StepNotConverged { .. } | TrackError::NotFinite { .. } => "halve `solve.time_step`",
+        TrackError::StepNotConverged { .. } | TrackError::Unstable { .. } => "halve `solve.time_step`",
         TrackError::NoEquilibrium { .. } => "exchange more often: shorten `solve.update_every`",
         TrackError::OffTrack { .. } => "move `solve.start` or `solve.finish`, or lengthen the track",
         TrackError::Model { .. } | TrackError::Parameter { .. } => "change the value that the message names",

@@ -99,9 +99,9 @@ impl RunningVehicle {
             }
         }
         rest.fill(0.0);
-        for j in 0..n {
-            for (a, inverse) in rest.iter_mut().zip(&self.inverse[j * n..(j + 1) * n]) {
-                *a += inverse * forces[j];
+        for (column, force) in self.inverse.chunks_exact(n.max(1)).zip(forces.iter()) {
+            for (a, inverse) in rest.iter_mut().zip(column) {
+                *a += inverse * force;
             }
         }
         a.copy_from_slice(rest);

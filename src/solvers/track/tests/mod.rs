@@ -3,6 +3,7 @@
 mod beams;
 mod dynamics;
 mod ends;
+mod harsh;
 mod reference;
 mod scenes;
 mod statics;
