@@ -31,7 +31,7 @@ type Labels = Vec<(Option<Span>, String)>;
 impl Scene<'_> {
     fn blame(&self, axles: u64, cause: &TrackError) -> (Labels, String) {
         match cause {
-            TrackError::StepNotConverged { x, .. } | TrackError::NotFinite { x, .. } => {
+            TrackError::StepNotConverged { x, .. } | TrackError::Unstable { x, .. } => {
                 (vec![self.time_step(), self.contact(), self.place(*x)], self.half_a_step())
             }
             TrackError::NoEquilibrium { x, .. } if axles > 0 => {

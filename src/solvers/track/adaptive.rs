@@ -93,7 +93,7 @@ impl<'a> Passage<'a> {
             let outcome = self.step_once();
             let error = match outcome {
                 Ok(()) => self.error_of_step(&choice.before),
-                Err(TrackError::StepNotConverged { .. } | TrackError::NotFinite { .. }) if !shortest => f64::INFINITY,
+                Err(TrackError::StepNotConverged { .. } | TrackError::Unstable { .. }) if !shortest => f64::INFINITY,
                 Err(error) => return Err(error),
             };
             if error <= choice.tolerance || shortest {

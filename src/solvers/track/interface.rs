@@ -213,6 +213,23 @@ impl Interface {
         self.lines[sleeper].force(phase, self.gaps[sleeper], self.corrections[sleeper]).max(0.0)
     }
 
+    /// A contact and the state it is in, for people.
+    pub fn describe(&self, contact: Contact) -> String {
+        match contact {
+            Contact::Wheel(rank) => {
+                let wheel = self.wheel_of(rank);
+                let (force, indentation) = (self.forces[wheel], self.indentations[wheel]);
+                format!("wheel {} with {force:.0} N at an indentation of {indentation:.3e} m", wheel + 1)
+            }
+            Contact::Support(sleeper) => match (self.phases.get(sleeper), self.gaps.get(sleeper)) {
+                (Some(phase), Some(gap)) => {
+                    format!("the support of sleeper {}, {} at a gap of {gap:.3e} m", sleeper + 1, phase.word())
+                }
+                _ => "no support".to_owned(),
+            },
+        }
+    }
+
     /// The wheel of a rank, in the order of the train.
     pub fn wheel_of(&self, rank: usize) -> usize {
         self.reach.wheels[rank].wheel

@@ -4,6 +4,7 @@ mod adaptive;
 mod beams;
 mod dynamics;
 mod ends;
+mod harsh;
 mod momentum;
 mod oracle;
 mod reference;
