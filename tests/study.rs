@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// 18 m of track under one wagon: half a metre of run more than its wheel base.
+/// 21 m of track under one wagon.
 const SMALL: &str = r#"
 use std
 scenario { title = "small", allow = [stiffness_jump: "small", track_too_short: "small"] }
@@ -66,25 +66,13 @@ fn a_chart_sets_error_against_time() {
     let own: Vec<_> = rows.iter().filter(|r| r["default"] == "yes" && r["level"] == "settled").collect();
     assert_eq!(own.len(), 1);
     assert_eq!((own[0]["integrator"].as_str(), own[0]["elements_per_bay"].as_str()), ("generalised_alpha(0.85)", "2"));
-    // coarser steps are worse: half the step is less than a third of the error
-    let error = |step: f64| {
-        let of = |r: &&std::collections::HashMap<String, String>| {
-            r["level"] == "light"
-                && r["sweep"] == "time_step"
-                && r["integrator"] == "generalised_alpha(0.85)"
-                && (number(r, "time_step_s") / step - 1.0).abs() < 1e-9
-        };
-        rows.iter().find(of).map(|r| number(r, "wheel_force_error_rms")).unwrap()
-    };
-    assert!(error(2e-4) > 3.0 * error(1e-4));
-
     let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(answer["axles"], 16);
     let orders = answer["orders"].as_array().unwrap();
     assert_eq!(orders.len(), 5);
     for order in orders {
-        let smooth = order["light"].as_f64().unwrap();
-        assert!((1.6..2.4).contains(&smooth), "{order}");
+        let smooth = order["released"].as_f64().unwrap();
+        assert!((1.7..2.3).contains(&smooth), "{order}");
     }
     let picture = check_picture(&out.join("chart.svg"));
     assert!(picture.contains("the scene&#39;s own numerics") && picture.contains("newmark"));
@@ -131,13 +119,14 @@ fn a_run_that_fails_names_the_block_of_the_scene() {
     // a soft track, and a train that outruns its waves
     let text = SMALL
         .replace("50 MN/m per seat", "1 MN/m per seat")
-        .replace("200 km/h", "500 km/h")
-        .replace("track_too_short: \"small\"", "track_too_short: \"small\", critical_speed: \"small\"");
+        .replace("200 km/h", "450 km/h")
+        .replace("open: 12 m, stiff: 9 m", "open: 36 m, stiff: 24 m")
+        .replace("track_too_short: \"small\"", "critical_speed: \"small\"");
     let file = scene(dir.path(), &text);
     let out = dir.path().join("out");
     let output = trackbed(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(1));
     let text = said(&output);
-    assert!(text.contains("E0703") && text.contains("at this speed") && text.contains("250 km/h"), "{text}");
+    assert!(text.contains("E0703") && text.contains("at this speed") && text.contains("225 km/h"), "{text}");
     assert!(!out.join("summary.json").exists());
 }

@@ -110,18 +110,18 @@ fn text(chart: &Chart) -> String {
         out.push('\n');
     }
     out += "  * the scene's own, + nothing cheaper has a smaller error of the wheel force, = reference\n\n";
-    out += "order in the time step, of the wheel forces      light   as built   settled\n";
+    out += "order in the time step                    springs back   as built   settled\n";
     for order in &chart.orders {
         let shown = |order: Option<f64>| order.map_or("-".to_owned(), |o| format!("{o:.2}"));
         out += &format!(
             "  {:<42}{:>12}{:>11}{:>10}\n",
             order.method.to_string(),
-            shown(order.light),
+            shown(order.released),
             shown(order.as_built),
             shown(order.settled)
         );
     }
-    out += "  light: as built, under a train so light that no sleeper lifts\n";
+    out += "  springs back: the rail let go from a small force; as built, settled: wheel forces of the finest three steps\n";
     if let Some(model) = &chart.model_error {
         out += &format!(
             "\nEuler against Timoshenko: wheel force {}, seat load {}, rail moment {}\n",

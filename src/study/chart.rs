@@ -4,8 +4,8 @@
 //! reference of a beam theory has the finest step halved once more and twice the elements of the scene, at least eight. The
 //! difference of the two references is the error of the model, which no step mends.
 //!
-//! Orders of convergence come from the wheel forces under a train so light that no sleeper lifts, where all is smooth, and
-//! under the train itself, where sleepers lift and strike: the differences d of neighbouring steps give log2(d(2 dt) / d(dt)).
+//! Orders of convergence come from a track that springs back, where all is smooth, and from the wheel forces of passages: the
+//! wheel crosses nodes of the mesh, where the curvature of cubic elements jumps, and sleepers lift and strike. The differences d of neighbouring steps give log2(d(2 dt) / d(dt)).
 
 use super::settled::Settled;
 use super::variant::{Case, Errors, METHODS, Measured, Prepared, Variant};
@@ -27,8 +27,6 @@ pub struct Request {
 pub enum Level {
     AsBuilt,
     Settled,
-    /// As built, under a train so light that no sleeper lifts.
-    Light,
 }
 
 impl Level {
@@ -36,7 +34,6 @@ impl Level {
         match self {
             Level::AsBuilt => "as_built",
             Level::Settled => "settled",
-            Level::Light => "light",
         }
     }
 }
@@ -113,7 +110,9 @@ impl Outcome {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Order {
     pub method: Integrator,
-    pub light: Option<f64>,
+    /// Of the rail that springs back from a small force, without a train.
+    pub released: Option<f64>,
+    /// Of the wheel forces.
     pub as_built: Option<f64>,
     pub settled: Option<f64>,
 }
@@ -164,18 +163,15 @@ pub fn chart(
     let own = Variant::of(graph, blocks);
     let case = Case::of(graph, blocks, settled.settlement.clone());
     let fresh = Case::of(graph, blocks, vec![0.0; settled.settlement.len()]);
-    let light = fresh.clone().light();
     let plan = plan(own, &case, request);
+    let coarsest = plan.iter().map(|(_, _, v)| v.time_step).fold(0.0, f64::max);
+    let (case, fresh) = (case.aligned(coarsest), fresh.aligned(coarsest));
     let all: f64 = plan.iter().map(|(_, _, v)| cost(v)).sum();
     let mut done = 0.0;
     let mut bench = Bench { own, references: Vec::new(), traces: Vec::new(), points: Vec::new() };
     let mut model_error = None;
     for (level, sweep, variant) in plan {
-        let case = match level {
-            Level::Settled => &case,
-            Level::AsBuilt => &fresh,
-            Level::Light => &light,
-        };
+        let case = if level == Level::Settled { &case } else { &fresh };
         bench.point(case, level, sweep, variant)?;
         done += cost(&variant);
         progress(done as u64, all as u64);
@@ -194,7 +190,7 @@ pub fn chart(
         .into_iter()
         .map(|method| Order {
             method,
-            light: bench.order(method, Level::Light),
+            released: released(&fresh, Variant { method, ..own }),
             as_built: bench.order(method, Level::AsBuilt),
             settled: bench.order(method, Level::Settled),
         })
@@ -227,7 +223,6 @@ fn plan(own: Variant, case: &Case, request: Request) -> Vec<(Level, Sweep, Varia
         (Level::Settled, Sweep::Reference, Variant { beam: other, ..fine }),
         // of the time step alone: on the mesh of the scene
         (Level::AsBuilt, Sweep::Reference, Variant { time_step: step(finest), ..own }),
-        (Level::Light, Sweep::Reference, Variant { time_step: step(finest), ..own }),
     ];
     let mut methods = METHODS.to_vec();
     if !methods.contains(&own.method) {
@@ -240,9 +235,6 @@ fn plan(own: Variant, case: &Case, request: Request) -> Vec<(Level, Sweep, Varia
             if halvings < finest - 1 {
                 plan.push((Level::AsBuilt, Sweep::TimeStep, variant));
             }
-        }
-        for halvings in 0..3 {
-            plan.push((Level::Light, Sweep::TimeStep, Variant { method, time_step: step(halvings), ..own }));
         }
     }
     for halvings in coarsest(own.elements_per_bay)..finest {
@@ -344,6 +336,25 @@ impl Bench {
         let (small, large) = (fine.errors(middle, 1.0).wheel_force_rms, middle.errors(coarse, 1.0).wheel_force_rms);
         (small > 0.0).then(|| (large / small).log2())
     }
+}
+
+/// Share of a wheel's static force that lifts no sleeper when it is let go.
+const SMALL: f64 = 0.02;
+/// Instants of free vibration that are compared, at intervals of the scene's step.
+const INSTANTS: usize = 400;
+
+/// Order of a method on the track that springs back from a small force.
+fn released(case: &Case, variant: Variant) -> Option<f64> {
+    let ring = |halvings: u32| {
+        let steps = 2usize.pow(halvings);
+        let variant = Variant { time_step: variant.time_step / steps as f64, ..variant };
+        let prepared = Prepared::new(&case.node, variant, variant.time_step).ok()?;
+        prepared.ring(case, SMALL * case.static_wheel_force(), steps, INSTANTS).ok()
+    };
+    let (coarse, middle, fine) = (ring(1)?, ring(2)?, ring(3)?);
+    let far = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+    let (large, small) = (far(&coarse, &middle), far(&middle, &fine));
+    (small > 0.0).then(|| (large / small).log2())
 }
 
 /// Marks the points of the settled track and the scene's beam theory that nothing cheaper beats.

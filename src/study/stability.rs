@@ -207,7 +207,7 @@ fn map(scenario: &Scenario, graph: &Graph, blocks: &Blocks, tick: &mut dyn FnMut
     for contact in CONTACTS {
         let warnings: Vec<Foreseen> = time_steps.iter().map(|step| foreseen(scenario, *step, contact)).collect();
         for void in &voids {
-            let case = bogie(graph, blocks, contact, void.settlement(&scenario.track));
+            let case = bogie(graph, blocks, contact, void.settlement(&scenario.track)).aligned(time_steps[0]);
             let reference = reference.run(&case);
             tick();
             for (i, (method, time_step, prepared)) in prepared.iter().enumerate() {
@@ -254,7 +254,6 @@ fn bogie(graph: &Graph, blocks: &Blocks, contact: f64, settlement: Vec<f64>) -> 
 /// What `check` says of a time step before anything runs.
 pub(super) enum Foreseen {
     Fine,
-    /// Of the contact of wheel and rail.
     Warned(&'static str),
     Refused(&'static str, String),
 }
@@ -284,8 +283,10 @@ pub(super) fn check(scenario: &Scenario) -> (Option<Graph>, Foreseen, Vec<&'stat
         return (None, Foreseen::Refused(Code::E0601.as_str(), "nothing runs over the track".into()), Vec::new());
     };
     let aloud = Scenario { allow: Vec::new(), deny: Vec::new(), ..scenario.clone() };
-    let warnings = lint(&aloud, &graph);
-    let foreseen = match warnings.iter().find(|d| d.code == Code::L1005) {
+    let mut warnings = lint(&aloud, &graph);
+    warnings.dedup_by_key(|d| d.code);
+    // of the step, and of a speed at which the track answers no longer as at rest
+    let foreseen = match warnings.iter().find(|d| [Code::L1005, Code::L1002].contains(&d.code)) {
         Some(warning) => Foreseen::Warned(warning.code.as_str()),
         None => Foreseen::Fine,
     };

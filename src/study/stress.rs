@@ -201,6 +201,7 @@ fn passage(hard: &Hard) -> Stress {
     if let Some(margin) = hard.margin {
         (case.left, case.right) = (case.node.track.start() + margin, case.node.track.end() - margin);
     }
+    let case = case.aligned(blocks.passage.time_step);
     let own = Variant::of(graph, blocks);
     let own = Variant { method: hard.method.unwrap_or(own.method), ..own };
     let run = |time_step: f64| {
@@ -231,6 +232,8 @@ fn free_vibration(scenario: &Scenario, method: Integrator, coarser: f64) -> Opti
     let case = Case::of(&graph, blocks, Void { depth: 1e-3, sleepers: Some(3) }.settlement(&scenario.track));
     let own = Variant::of(&graph, blocks);
     let time_step = coarser * own.time_step;
+    scenario.solve.time_step = TimeStep::Fixed(Given::derived(time_step));
+    let (_, foreseen, warnings) = check(&scenario);
     let wheels = wheels_at(&scenario.track, &case.train);
     let pressed: Vec<(f64, f64)> = wheels.into_iter().map(|x| (x, case.static_wheel_force())).collect();
     let verdict = match Prepared::new(&graph.track, Variant { method, time_step, ..own }, time_step)
@@ -238,10 +241,13 @@ fn free_vibration(scenario: &Scenario, method: Integrator, coarser: f64) -> Opti
     {
         Err(cause) => refused(&cause, &scenario, &graph),
         Ok(ratio) if ratio <= 1.0 + ENERGY => Verdict::Stable { error: (ratio - 1.0).max(0.0) },
-        Ok(ratio) => Verdict::Wrong { why: format!("the energy grows to {ratio:.2} times that of the start") },
+        Ok(ratio) => match foreseen.warning() {
+            Some(code) => Verdict::Coarse { error: ratio - 1.0, code },
+            None => Verdict::Wrong { why: format!("the energy grows to {ratio:.2} times that of the start") },
+        },
     };
     let name = format!("let go without damping: {method}, {} ms", number(time_step * 1e3));
-    Some(Stress { name, verdict, wheel_force: None, losing_contact: None, warnings: Vec::new(), energy: true })
+    Some(Stress { name, verdict, wheel_force: None, losing_contact: None, warnings, energy: true })
 }
 
 /// Wheels of a train that stands over the transition, those that fit on the track.

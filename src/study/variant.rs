@@ -77,11 +77,13 @@ impl Case {
         }
     }
 
-    /// The same train, light enough that no sleeper of an even track lifts: its passage is smooth.
-    pub fn light(mut self) -> Case {
-        for vehicle in &mut self.train.vehicles {
-            vehicle.car_body_mass.value *= LIGHT;
-            vehicle.car_body_pitch_inertia.value *= LIGHT;
+    /// The same, ended where a whole number of steps of `time` (s) has passed, so that all steps that divide it end there.
+    pub fn aligned(mut self, time: f64) -> Case {
+        let run = self.right - self.left - self.train.wheel_base();
+        let step = *self.train.speed * time;
+        let lost = run - (run / step + 1e-9).floor() * step;
+        if lost > 0.0 && run > step {
+            if self.direction == Direction::Backward { self.left += lost } else { self.right -= lost }
         }
         self
     }
@@ -99,8 +101,8 @@ impl Case {
     }
 }
 
-/// Share of the car body that a light train keeps.
-const LIGHT: f64 = 0.05;
+/// Half the length over which a force is spread so that nothing moves faster than a step when it is let go, m.
+const BELL: f64 = 5.0;
 
 /// What a passage showed.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -188,6 +190,28 @@ impl Prepared {
 
     pub fn track(&self) -> &Track {
         self.stepper.track()
+    }
+
+    /// Deflection of the middle of the rail (m) after every interval of `steps` steps while the track springs back from a
+    /// force spread there (N), `count` times.
+    pub fn ring(&self, case: &Case, force: f64, steps: usize, count: usize) -> Result<Vec<f64>, TrackError> {
+        let level: TrackLevel = level(&case.node, &case.settlement);
+        let node = self.track().seat_node(case.node.track.seats.len() / 2);
+        let nodes = self.track().nodes();
+        let bell = |x: f64| (0.5 * std::f64::consts::PI * ((x - nodes[node]) / BELL).clamp(-1.0, 1.0)).cos().powi(2);
+        let whole: f64 = nodes.iter().map(|x| bell(*x)).sum();
+        let pressed: Vec<(f64, f64)> = nodes.iter().map(|x| (*x, force * bell(*x) / whole)).collect();
+        let held = crate::solvers::track::Loads { rail: &pressed, ..Default::default() };
+        let state = crate::solvers::track::solve_static(self.track(), &level, &held)?;
+        let mut passage = Passage::released(&self.stepper, &level, state, steps * count)?;
+        let mut deflections = Vec::with_capacity(count);
+        for _ in 0..count {
+            for _ in 0..steps {
+                passage.step()?;
+            }
+            deflections.push(passage.view().rail_deflection(node));
+        }
+        Ok(deflections)
     }
 
     /// The largest energy of the track in free vibration over its energy at the start, above that of the track at rest;
