@@ -77,6 +77,7 @@ codes! {
     E0802 Error "output folder that cannot be used"
     E0803 Error "checkpoint of another scene"
     E0804 Error "expectation not met"
+    E0807 Warning "exchange that overshoots"
     L1001 Warning "stiffness jump without mitigation"
     L1002 Warning "speed near the critical speed"
     L1003 Warning "track too short for its train"

@@ -1,6 +1,7 @@
 //! The graph as a person reads it: text, JSON and DOT.
 
-use super::{Decision, Estimate, Graph, Schedule, SubstructureNode};
+use super::{Blocks, Decision, Estimate, Graph, Schedule, SubstructureNode};
+use crate::scenario::Update;
 use crate::solvers::settlement::Law;
 use crate::units::number;
 use serde::Serialize;
@@ -120,14 +121,8 @@ impl Graph {
         match &self.schedule {
             Schedule::Static { .. } => vec!["one static equilibrium under the test loads".to_string()],
             Schedule::Blocks(b) => {
-                let sizes: Vec<u64> = b.blocks.iter().map(|block| block.axles).collect();
-                let range = match (sizes.iter().min(), sizes.iter().max()) {
-                    (Some(min), Some(max)) if min == max => format!("{min} axles each"),
-                    (Some(min), Some(max)) => format!("{min} to {max} axles"),
-                    _ => "no axles".into(),
-                };
                 vec![
-                    format!("{} axles in {} blocks, {range}", b.total, sizes.len()),
+                    block_line(b),
                     "each block: static state -> passage -> settlement of the block".into(),
                     format!(
                         "recorded after {} axles",
@@ -135,6 +130,26 @@ impl Graph {
                     ),
                 ]
             }
+        }
+    }
+}
+
+/// `500 axles in 25 blocks, 20 axles each`
+fn block_line(blocks: &Blocks) -> String {
+    let total = blocks.total;
+    match (blocks.planned(), blocks.update) {
+        (None, Update::Adaptive { tolerance, cap }) => {
+            let cap = cap.map_or(String::new(), |cap| format!(" and {} mm of settlement", number(cap * 1e3)));
+            format!("{total} axles in blocks that err by at most {} mm{cap}", number(tolerance * 1e3))
+        }
+        (planned, _) => {
+            let sizes: Vec<u64> = planned.into_iter().flatten().map(|block| block.axles).collect();
+            let range = match (sizes.iter().min(), sizes.iter().max()) {
+                (Some(min), Some(max)) if min == max => format!("{min} axles each"),
+                (Some(min), Some(max)) => format!("{min} to {max} axles"),
+                _ => "no axles".into(),
+            };
+            format!("{total} axles in {} blocks, {range}", sizes.len())
         }
     }
 }

@@ -3,20 +3,25 @@
 //!
 //! The graph is data: it is printed by `trackbed plan`, costed before a run, and executed by [`execute`].
 
+mod blocks;
+mod control;
+mod exchange;
 mod execute;
 mod listing;
 mod model;
+mod oscillation;
 mod sampler;
 mod substructure;
 mod system;
 mod track;
 
-pub use execute::{Checkpoint, Recorder, RunError, execute};
+pub use control::Control;
+pub use execute::{Checkpoint, Measured, Recorder, RunError, execute, execute_all};
 pub use listing::Listing;
 pub use substructure::SubstructureState;
 pub use track::{PassageOutcome, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
 
-use crate::scenario::{Direction, Record, StaticLoad, Track, Train};
+use crate::scenario::{Direction, Record, StaticLoad, Track, Train, Update};
 use crate::solvers::settlement::Law;
 use serde::{Deserialize, Serialize};
 
@@ -63,7 +68,10 @@ pub enum Schedule {
 pub struct Blocks {
     pub train: Train,
     pub passage: PassagePlan,
-    pub blocks: Vec<Block>,
+    /// How long the blocks are.
+    pub update: Update,
+    /// Whether a fixed or geometric block that overshoots is done again in halves. Off, the oscillation shows.
+    pub cure: bool,
     /// Axle counts at which the state of the track is recorded, ascending.
     pub recorded: Vec<u64>,
     /// Axles of the whole run.
@@ -119,14 +127,6 @@ pub struct Estimate {
 const APPROACH: f64 = 1.0;
 
 impl Blocks {
-    /// Directions of the passages that a block needs, with the number of trains of each.
-    pub fn passages(&self, block: &Block) -> Vec<(Direction, u64)> {
-        [(Direction::Forward, block.forward), (Direction::Backward, block.backward)]
-            .into_iter()
-            .filter(|(_, trains)| *trains > 0)
-            .collect()
-    }
-
     /// Chainages between which every wheel of a train comes and goes: seats there see the whole train.
     pub fn passed(&self) -> std::ops::Range<f64> {
         let base = self.train.wheel_base();

@@ -13,6 +13,7 @@ pub enum SubstructureState {
 }
 
 /// A tier under the sleepers.
+#[derive(Clone)]
 pub(super) struct Substructure<'a> {
     law: Option<&'a Law>,
     pub state: SubstructureState,

@@ -13,7 +13,8 @@ use crate::units::number;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
-    let Some(first) = blocks.blocks.first() else { return Vec::new() };
+    let Some(wanted) = blocks.wanted(0) else { return Vec::new() };
+    let first = blocks.block(0, wanted);
     let SubstructureNode::Law { law, .. } = &graph.substructure else { return Vec::new() };
     let Law::Varandas(varandas) = law;
     let track = &scenario.track;
@@ -40,7 +41,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             number(((amplification - 1.0).abs() * 10.0).round() / 10.0)
         ),
     )
-    .help(format!("write `update_every = geometric({} axles, 0.2)`", blocks.train.axles()));
+    .help("write `update_every = adaptive`");
     vec![match scenario.solve.update_span {
         Some(span) => diagnostic.at(span, "too long a block"),
         None => diagnostic,

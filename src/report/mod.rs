@@ -5,6 +5,7 @@
 //! numbers are those of the run's tables.
 
 mod along;
+mod blocks;
 mod chart;
 mod counts;
 mod number;
@@ -58,6 +59,7 @@ pub fn figures(run: &Run) -> Vec<Figure> {
             along::seat_loads(run),
             along::gravity_contact(run),
             along::settlement_with_axles(run),
+            blocks::lengths(run),
         ];
         figures.extend(along.into_iter().flatten());
     }
@@ -93,6 +95,7 @@ mod tests {
             "rail_seat_load",
             "gravity_contact_force",
             "settlement_with_axles",
+            "block_lengths",
             "history_rail_seat_load",
             "history_contact_force",
             "history_rail_displacement",
