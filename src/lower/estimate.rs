@@ -28,7 +28,7 @@ pub(super) fn passages(blocks: &Blocks) -> u64 {
         None => {
             let trains = blocks.total as f64 / blocks.train.axles() as f64;
             let directions = if blocks.train.direction == Direction::Both { 2 } else { 1 };
-            (directions * (4.0 + 4.0 * trains.ln()).ceil() as u64).min(directions * trains as u64) + 1
+            (directions * (1.0 + 3.0 * trains.ln()).ceil() as u64).min(directions * trains as u64) + 1
         }
     }
 }

@@ -117,6 +117,7 @@ mod tests {
         let mut run = example::transition();
         run.sleepers.clear();
         run.histories.clear();
+        run.blocks.clear();
         assert_eq!(figures(&run).len(), 1);
         let empty = page(&run);
         assert!(empty.contains("</html>"));
