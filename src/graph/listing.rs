@@ -123,7 +123,13 @@ impl Graph {
             Schedule::Blocks(b) => {
                 vec![
                     block_line(b),
-                    "each block: static state -> passage -> settlement of the block".into(),
+                    match b.update {
+                        Update::Adaptive { .. } => {
+                            "each block: static state -> passage -> settlement of half of it -> passage -> settlement of the block"
+                        }
+                        _ => "each block: static state -> passage -> settlement of the block",
+                    }
+                    .into(),
                     format!(
                         "recorded after {} axles",
                         b.recorded.iter().map(u64::to_string).collect::<Vec<_>>().join(", ")

@@ -11,13 +11,15 @@ mod listing;
 mod model;
 mod oscillation;
 mod sampler;
+mod step;
 mod substructure;
 mod system;
 mod track;
 
 pub use control::Control;
-pub use execute::{Checkpoint, Measured, Recorder, RunError, execute, execute_all};
+pub use execute::{Checkpoint, Recorder, RunError, execute, execute_all};
 pub use listing::Listing;
+pub use step::Measured;
 pub use substructure::SubstructureState;
 pub use track::{PassageOutcome, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
 
