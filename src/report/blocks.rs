@@ -39,8 +39,10 @@ pub fn lengths(run: &Run) -> Option<Figure> {
 /// What the exchanges of the run were worth, in a sentence or two.
 pub fn said(run: &Run) -> String {
     let errors = run.blocks.iter().map(|b| b.error_m).filter(|error| error.is_finite());
-    let sum =
-        format!("Their errors of settlement add up to {} \u{b5}m at most.", significant(errors.sum::<f64>() * 1e6, 2));
+    let sum = format!(
+        "Their estimated errors of settlement add up to {} \u{b5}m.",
+        significant(errors.sum::<f64>() * 1e6, 2)
+    );
     match BlockRow::overshoot(&run.blocks) {
         Some(found) => format!("{sum} Mind: {found}."),
         None => sum,
