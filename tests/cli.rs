@@ -110,6 +110,37 @@ fn equal_runs_give_equal_bytes() {
     assert_eq!(scalar(&a, "axles"), 40.0);
 }
 
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = SMALL.replace("speed = 200 km/h", "speed = 200 km/h, direction = both");
+    let scene = write(dir.path(), "both.track", &text.replace("update_every = 4 axles", "update_every = adaptive"));
+    let run = |threads: &str| {
+        let out = dir.path().join(threads);
+        let (scene, folder) = (scene.to_str().unwrap(), out.to_str().unwrap());
+        let output = trackbed(&["run", scene, "--out", folder, "--threads", threads]);
+        assert_eq!(code(&output), 0, "{}", said(&output));
+        let timings: Value = serde_json::from_slice(&fs::read(out.join("timings.json")).unwrap()).unwrap();
+        assert_eq!(timings["threads"], threads.parse::<f64>().unwrap());
+        out
+    };
+    same_results(&run("1"), &run("2"));
+    assert_eq!(code(&trackbed(&["run", scene.to_str().unwrap(), "--out", "nowhere", "--threads", "0"])), 2);
+}
+
+#[test]
+fn an_overshooting_run_says_so() {
+    let dir = tempfile::tempdir().unwrap();
+    let law = "law fresh : laws.varandas_2014 { form.gamma = 100 mm }\nsolve { law = fresh, update_every = 40 axles";
+    let scene = write(dir.path(), "fresh.track", &SMALL.replace("solve { update_every = 4 axles", law));
+    let out = dir.path().join("run");
+    let output = trackbed(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert!(said(&output).contains("E0807") && said(&output).contains("done again in halves"), "{}", said(&output));
+    assert!(scalar(&out, "overshot_blocks") > 0.0 && scalar(&out, "max_overshoot") > 0.0);
+    assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("done again in halves"));
+}
+
 /// Everything but `timings.json` is equal to the last bit.
 fn same_results(a: &Path, b: &Path) {
     for name in

@@ -94,6 +94,9 @@ fn outcome(text: &str) -> Result<(), Code> {
         scalars: &scalars,
         track: &scenario.track,
     };
+    if trackbed::results::BlockRow::overshoot(&tables.blocks).is_some() {
+        return Err(Code::E0807);
+    }
     let held = trackbed::results::verdicts(&scenario, view).iter().all(|v| v.met);
     if held { Ok(()) } else { Err(Code::E0804) }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::process::Command;
 use trackbed::check::NoModules;
 use trackbed::diag::Code;
-use trackbed::graph::{self, Block, Checkpoint, PassageOutcome, Recorder, Unloaded};
+use trackbed::graph::{self, Block, Checkpoint, Measured, PassageOutcome, Recorder, Unloaded};
 use trackbed::results::{RunRecorder, law_rows, summarise_laws, unsettled};
 use trackbed::scenario::{Direction, SettlementLaw};
 use trackbed::solvers::settlement::*;
@@ -129,7 +129,7 @@ struct Laws {
 impl Recorder for Laws {
     fn unloaded(&mut self, _: u64, _: &Unloaded) {}
     fn passage(&mut self, _: u64, _: Direction, _: &PassageOutcome) {}
-    fn block(&mut self, _: u64, _: Option<&Block>, _: &[PassageOutcome], _: &[f64], _: &[f64]) {}
+    fn block(&mut self, _: u64, _: Option<(&Block, &Measured)>, _: &[&PassageOutcome], _: &[f64], _: &[f64]) {}
     fn laws(&mut self, axles: u64, settlement: &[Vec<f64>]) {
         self.counts.push((axles, settlement.to_vec()));
     }

@@ -110,13 +110,17 @@ impl Checker<'_> {
         let update = record.get("update_every")?;
         let exchange = match &update.value {
             Val::Number(n) => self.whole_axles(n.value, update.span).map(|axles| Update::Fixed { axles }),
-            Val::Word { arguments, .. } => {
+            Val::Word { word, arguments } => {
                 let of = |name: &str| match arguments.get(name).map(|s| (&s.value, s.span)) {
                     Some((Val::Number(n), span)) => Some((n.value, span)),
                     _ => None,
                 };
-                let first = of("first").and_then(|(axles, span)| self.whole_axles(axles, span));
-                first.zip(of("ratio")).map(|(first, (ratio, _))| Update::Geometric { first, ratio })
+                if word.name == "adaptive" {
+                    self.adaptive(of("tolerance"), of("cap"))
+                } else {
+                    let first = of("first").and_then(|(axles, span)| self.whole_axles(axles, span));
+                    first.zip(of("ratio")).map(|(first, (ratio, _))| Update::Geometric { first, ratio })
+                }
             }
             _ => None,
         };
@@ -156,6 +160,20 @@ impl Checker<'_> {
             gravity: given(record, "gravity")?,
             seed: record.number("seed")?.value as u64,
         })
+    }
+
+    fn adaptive(&mut self, tolerance: Option<(f64, Span)>, cap: Option<(f64, Span)>) -> Option<Update> {
+        let (tolerance, of_error) = tolerance?;
+        if let Some((_, of_block)) = cap.filter(|(cap, _)| *cap < tolerance) {
+            self.report(
+                Diagnostic::new(Code::E0407, "a block may settle less than it may err")
+                    .at(of_error, "error of a block")
+                    .at(of_block, "settlement of a block")
+                    .help("make `cap` larger than `tolerance`, or leave it out"),
+            );
+            return None;
+        }
+        Some(Update::Adaptive { tolerance, cap: cap.map(|(cap, _)| cap) })
     }
 
     pub(super) fn kept(&mut self, record: &Record, places: &Option<Places>, traffic: Option<&Traffic>) -> Option<Kept> {

@@ -4,7 +4,7 @@ use super::scene::{SceneArguments, failed, not_yet, show};
 use super::{Outcome, progress, report, terminal};
 use crate::diag::{Code, Diagnostic, render};
 use crate::graph::{self, Graph};
-use crate::results::{self, Provenance, Run, RunRecorder, Store, Summary, checkpoint};
+use crate::results::{self, BlockRow, Provenance, Run, RunRecorder, Store, Summary, checkpoint};
 use crate::scenario::Scenario;
 use crate::units::number;
 use crate::{Compiled, fingerprint};
@@ -23,6 +23,9 @@ pub(super) struct Arguments {
     /// Go on where an interrupted run of the same scene stopped.
     #[arg(long)]
     resume: bool,
+    /// Threads that the run may use; all cores where it is not given. The results do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
     /// Replace the results of another run in that directory.
     #[arg(long)]
     force: bool,
@@ -44,6 +47,13 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             &compiled,
             Diagnostic::new(Code::E0802, message).help("give another `--out`, or `--resume` or `--force`"),
         );
+    }
+    if let Some(threads) = arguments.threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
+        if let Err(error) = pool {
+            terminal::error(&format!("cannot start {threads} threads: {error}"));
+            return Outcome::Failed;
+        }
     }
     let bar = progress::bar();
     let store = Store { directory: arguments.out.clone(), scene_sha256: hash.clone() };
@@ -72,7 +82,19 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Ok(page) => summary(&run, &page, computed),
         Err(message) => return stop(&compiled, Diagnostic::new(Code::E0802, message)),
     }
+    warn(&run, &compiled);
     verdicts(&run, &compiled)
+}
+
+/// Says where exchanges of forces and settlement overshot.
+fn warn(run: &Run, compiled: &Compiled) {
+    let Some(found) = BlockRow::overshoot(&run.blocks) else { return };
+    let diagnostic = Diagnostic::new(Code::E0807, found).help("write `update_every = adaptive`");
+    let diagnostic = match run.scenario.solve.update_span {
+        Some(span) => diagnostic.at(span, "too long between two exchanges"),
+        None => diagnostic,
+    };
+    terminal::note(&render::human(&[diagnostic], &compiled.sources, terminal::colour(), terminal::width()));
 }
 
 fn stop(compiled: &Compiled, diagnostic: Diagnostic) -> Outcome {
@@ -146,8 +168,11 @@ fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compil
 fn write(run: &Run, out: &Path, computed: f64, started: &Instant) -> Result<PathBuf, String> {
     results::write(run, out).map_err(|e| e.to_string())?;
     let page = report::write(run, out, false)?;
-    let timings =
-        BTreeMap::from([("solve_s".to_string(), computed), ("total_s".to_string(), started.elapsed().as_secs_f64())]);
+    let timings = BTreeMap::from([
+        ("solve_s".to_string(), computed),
+        ("total_s".to_string(), started.elapsed().as_secs_f64()),
+        ("threads".to_string(), rayon::current_num_threads() as f64),
+    ]);
     results::write_timings(&timings, out).map_err(|e| e.to_string())?;
     checkpoint::remove(out).map_err(|e| e.to_string())?;
     Ok(page)

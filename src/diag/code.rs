@@ -87,6 +87,7 @@ codes! {
     E0804 Error "expectation not met"
     E0805 Error "measured curve that cannot be used"
     E0806 Error "law that cannot be fitted"
+    E0807 Warning "exchange that overshoots"
     L1001 Warning "stiffness jump without mitigation"
     L1002 Warning "speed near the critical speed"
     L1003 Warning "track too short for its train"

@@ -1,7 +1,7 @@
 //! The graph as a person reads it: text, JSON and DOT.
 
-use super::{Decision, Estimate, Graph, NamedLaw, Schedule, SubstructureNode};
-use crate::scenario::{Beam, Integrator, law_argument};
+use super::{Blocks, Decision, Estimate, Graph, NamedLaw, Schedule, SubstructureNode};
+use crate::scenario::{Beam, Integrator, Update, law_argument};
 use crate::solvers::settlement::{Form, Logarithm};
 use crate::units::number;
 use serde::Serialize;
@@ -121,15 +121,15 @@ impl Graph {
         match &self.schedule {
             Schedule::Static { .. } => vec!["one static equilibrium under the test loads".to_string()],
             Schedule::Blocks(b) => {
-                let sizes: Vec<u64> = b.blocks.iter().map(|block| block.axles).collect();
-                let range = match (sizes.iter().min(), sizes.iter().max()) {
-                    (Some(min), Some(max)) if min == max => format!("{min} axles each"),
-                    (Some(min), Some(max)) => format!("{min} to {max} axles"),
-                    _ => "no axles".into(),
-                };
                 vec![
-                    format!("{} axles in {} blocks, {range}", b.total, sizes.len()),
-                    "each block: static state -> passage -> settlement of the block".into(),
+                    block_line(b),
+                    match b.update {
+                        Update::Adaptive { .. } => {
+                            "each block: static state -> passage -> settlement of half of it -> passage -> settlement of the block"
+                        }
+                        _ => "each block: static state -> passage -> settlement of the block",
+                    }
+                    .into(),
                     format!(
                         "recorded after {} axles",
                         b.recorded.iter().map(u64::to_string).collect::<Vec<_>>().join(", ")
@@ -163,6 +163,26 @@ fn describe(named: &NamedLaw) -> String {
         _ => "",
     };
     format!("{name}: {}{logarithm}; one cycle per {}", parameters.join(", "), law.cycle_per.name())
+}
+
+/// `500 axles in 25 blocks, 20 axles each`
+fn block_line(blocks: &Blocks) -> String {
+    let total = blocks.total;
+    match (blocks.planned(), blocks.update) {
+        (None, Update::Adaptive { tolerance, cap }) => {
+            let cap = cap.map_or(String::new(), |cap| format!(" and {} mm of settlement", number(cap * 1e3)));
+            format!("{total} axles in blocks that err by at most {} mm{cap}", number(tolerance * 1e3))
+        }
+        (planned, _) => {
+            let sizes: Vec<u64> = planned.into_iter().flatten().map(|block| block.axles).collect();
+            let range = match (sizes.iter().min(), sizes.iter().max()) {
+                (Some(min), Some(max)) if min == max => format!("{min} axles each"),
+                (Some(min), Some(max)) => format!("{min} to {max} axles"),
+                _ => "no axles".into(),
+            };
+            format!("{total} axles in {} blocks, {range}", sizes.len())
+        }
+    }
 }
 
 impl Listing {

@@ -3,23 +3,30 @@
 //!
 //! The graph is data: it is printed by `trackbed plan`, costed before a run, and executed by [`execute`].
 
+mod blocks;
+mod control;
+mod exchange;
 mod execute;
 mod listing;
 pub mod model;
+mod oscillation;
 mod profile;
 mod sampler;
+mod step;
 mod substructure;
 mod system;
 mod track;
 
-pub use execute::{Checkpoint, Recorder, RunError, execute, passage_as_built};
+pub use control::Control;
+pub use execute::{Checkpoint, Recorder, RunError, execute, execute_all, passage_as_built};
 pub use listing::Listing;
 pub use profile::between;
+pub use step::Measured;
 pub use substructure::SubstructureState;
 pub use system::RUNAWAY;
 pub use track::{PassageOutcome, RailPlace, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
 
-use crate::scenario::{Beam, Direction, Integrator, Record, StaticLoad, Track, Train};
+use crate::scenario::{Beam, Direction, Integrator, Record, StaticLoad, Track, Train, Update};
 use crate::solvers::settlement::Law;
 use serde::{Deserialize, Serialize};
 
@@ -75,7 +82,10 @@ pub enum Schedule {
 pub struct Blocks {
     pub train: Train,
     pub passage: PassagePlan,
-    pub blocks: Vec<Block>,
+    /// How long the blocks are.
+    pub update: Update,
+    /// Whether a fixed or geometric block that overshoots is done again in halves. Off, the oscillation shows.
+    pub cure: bool,
     /// Axle counts at which the state of the track is recorded, ascending.
     pub recorded: Vec<u64>,
     /// Axles of the whole run.
@@ -140,14 +150,6 @@ pub struct Estimate {
 const APPROACH: f64 = 1.0;
 
 impl Blocks {
-    /// Directions of the passages that a block needs, with the number of trains of each.
-    pub fn passages(&self, block: &Block) -> Vec<(Direction, u64)> {
-        [(Direction::Forward, block.forward), (Direction::Backward, block.backward)]
-            .into_iter()
-            .filter(|(_, trains)| *trains > 0)
-            .collect()
-    }
-
     /// Chainages between which every wheel of a train comes and goes: seats there see the whole train.
     pub fn passed(&self) -> std::ops::Range<f64> {
         let base = self.train.wheel_base();

@@ -19,6 +19,7 @@ pub(super) fn initial_settlement(track: &Track) -> Vec<f64> {
 }
 
 /// A tier under the sleepers.
+#[derive(Clone)]
 pub(super) struct Substructure<'a> {
     /// The driving law first; empty where nothing settles.
     laws: Vec<&'a Law>,

@@ -13,11 +13,12 @@ use crate::units::number;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
-    let Some(first) = blocks.blocks.first() else { return Vec::new() };
+    let Some(wanted) = blocks.wanted(0) else { return Vec::new() };
+    let first = blocks.block(0, wanted);
     let SubstructureNode::Law { law, .. } = &graph.substructure else { return Vec::new() };
     let mut worst: Option<(f64, f64)> = None;
     for seat in seat_loads(scenario, blocks) {
-        let settled = |share: f64| first_block(&law.law, seat.peak.scaled(share), first);
+        let settled = |share: f64| first_block(&law.law, seat.peak.scaled(share), &first);
         // 1 % to either side
         let slope = (settled(1.01) - settled(0.99)) / (0.02 * seat.peak.force);
         let amplification = slope * seat.winkler.modulus * seat.spacing;
@@ -35,7 +36,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             number(((amplification - 1.0).abs() * 10.0).round() / 10.0)
         ),
     )
-    .help(format!("write `update_every = geometric({} axles, 0.2)`", blocks.train.axles()));
+    .help("write `update_every = adaptive`");
     vec![match scenario.solve.update_span {
         Some(span) => diagnostic.at(span, "too long a block"),
         None => diagnostic,

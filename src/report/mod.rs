@@ -5,6 +5,7 @@
 //! numbers are those of the run's tables.
 
 mod along;
+mod blocks;
 mod chart;
 mod counts;
 mod exchanges;
@@ -78,6 +79,7 @@ pub fn figures(run: &Run) -> Vec<Figure> {
             along::seat_loads(run),
             moments::rail_moments(run),
             wheels::wheel_force(run),
+            blocks::lengths(run),
         ];
         figures.extend(along.into_iter().flatten());
         figures.extend(laws::spread(run));
@@ -119,6 +121,7 @@ mod tests {
             "rail_seat_load",
             "rail_moment",
             "wheel_force",
+            "block_lengths",
             "history_rail_seat_load",
             "history_rail_displacement",
             "hanging_sleeper",
@@ -141,6 +144,7 @@ mod tests {
         run.sleepers.clear();
         run.rail.clear();
         run.histories.clear();
+        run.blocks.clear();
         assert_eq!(figures(&run).len(), 1);
         let empty = page(&run);
         assert!(empty.contains("</html>"));

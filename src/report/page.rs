@@ -162,7 +162,8 @@ fn blocks(html: &mut String, run: &Run) {
     let _ = writeln!(
         html,
         "<section class=\"long\" id=\"blocks\"><h2>Blocks</h2><p class=\"caption\">Extremes of the passage computed for \
-         each block of axles.</p>{table}</section>"
+         each block of axles. {}</p>{table}</section>",
+        escape(&super::blocks::said(run))
     );
 }
 

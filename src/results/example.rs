@@ -214,6 +214,11 @@ fn filled(scenario: Scenario) -> Run {
             max_contact_force_N: 0.4 * worst,
             max_settlement_m: settlement(-3.0, axles + block_axles),
             max_settlement_step_m: if block_axles > 0 { step } else { 0.0 },
+            error_m: step / 50.0,
+            overshoot: 0.2,
+            sawtooth: 0.0,
+            rejected: 0,
+            overshot: 0,
             time_steps: 15_000,
             newton_iterations: 32_100 + axles,
         });

@@ -135,6 +135,10 @@ impl Scene<'_> {
         let present = match self.scenario.solve.update {
             crate::scenario::Update::Fixed { axles } => axles,
             crate::scenario::Update::Geometric { first, .. } => first,
+            // the shortest is one train already
+            crate::scenario::Update::Adaptive { .. } => {
+                return "let the supports settle less at once: check the settlement law".into();
+            }
         };
         let half = (present / 2 / trains).max(1) * trains;
         format!("exchange more often: write `update_every = {half} axles` in `solve`, or check the settlement law")

@@ -5,7 +5,7 @@ use super::histories::HISTORIES;
 use super::{
     BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, SleeperRow, atomic, checkpoint, histories,
 };
-use crate::graph::{self, Block, PassageOutcome, Recorder, Unloaded};
+use crate::graph::{self, Block, Measured, PassageOutcome, Recorder, Unloaded};
 use crate::scenario::response::Response;
 use crate::scenario::{Direction, Foot, Scenario, Track};
 use serde::{Deserialize, Serialize};
@@ -46,7 +46,7 @@ struct Saved {
 pub struct RunRecorder<'a> {
     scenario: &'a Scenario,
     store: Option<Store>,
-    progress: Box<dyn FnMut(u64, u64) + 'a>,
+    progress: Box<dyn FnMut(u64, u64) + Send + 'a>,
     pub tables: RunTables,
     pub histories: Vec<HistoryRow>,
     /// Rows of `histories` that are in their file already.
@@ -56,7 +56,7 @@ pub struct RunRecorder<'a> {
 
 impl<'a> RunRecorder<'a> {
     /// Without a store nothing is written while the run goes on.
-    pub fn new(scenario: &'a Scenario, store: Option<Store>, progress: impl FnMut(u64, u64) + 'a) -> Self {
+    pub fn new(scenario: &'a Scenario, store: Option<Store>, progress: impl FnMut(u64, u64) + Send + 'a) -> Self {
         RunRecorder {
             scenario,
             store,
@@ -186,8 +186,17 @@ impl Recorder for RunRecorder<'_> {
         }
     }
 
-    fn block(&mut self, axles: u64, block: Option<&Block>, passages: &[PassageOutcome], before: &[f64], after: &[f64]) {
-        let largest = |of: fn(&PassageOutcome) -> f64| passages.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+    fn block(
+        &mut self,
+        axles: u64,
+        block: Option<(&Block, &Measured)>,
+        passages: &[&PassageOutcome],
+        before: &[f64],
+        after: &[f64],
+    ) {
+        let measured = block.map_or(Measured::default(), |(_, measured)| *measured);
+        let block = block.map(|(block, _)| block);
+        let largest = |of: fn(&PassageOutcome) -> f64| passages.iter().map(|p| of(p)).fold(f64::NEG_INFINITY, f64::max);
         let seats = |p: &PassageOutcome, of: fn(&graph::SeatOutcome) -> f64| p.seats.iter().map(of).fold(0.0, f64::max);
         let steps = before.iter().zip(after).map(|(b, a)| a - b).fold(0.0, f64::max);
         self.tables.blocks.push(BlockRow {
@@ -199,8 +208,13 @@ impl Recorder for RunRecorder<'_> {
             max_contact_force_N: passages.iter().map(|p| seats(p, |s| s.max_contact_force)).fold(0.0, f64::max),
             max_settlement_m: after.iter().copied().fold(0.0, f64::max),
             max_settlement_step_m: steps,
-            time_steps: passages.iter().map(|p| p.time_steps).sum(),
-            newton_iterations: passages.iter().map(|p| p.newton_iterations).sum(),
+            error_m: measured.error,
+            overshoot: measured.overshoot.unwrap_or(0.0),
+            sawtooth: measured.sawtooth,
+            rejected: measured.rejected,
+            overshot: measured.overshot,
+            time_steps: passages.iter().map(|p| p.time_steps).sum::<u64>() + measured.time_steps,
+            newton_iterations: passages.iter().map(|p| p.newton_iterations).sum::<u64>() + measured.newton_iterations,
         });
         if axles == 0 {
             self.keep_settlements(0, before);

@@ -86,6 +86,10 @@ pub fn summarise(
         put("max_contact_pressure", largest(ballasted.iter().filter_map(pressure)), "Pa");
     }
     if let Some(block) = blocks.last() {
+        put("update_error", Some(blocks.iter().map(|b| b.error_m).sum()), "m");
+        put("max_overshoot", largest(blocks.iter().map(|b| b.overshoot)), "1");
+        put("max_sawtooth", largest(blocks.iter().map(|b| b.sawtooth)), "1");
+        put("overshot_blocks", Some(blocks.iter().map(|b| b.overshot).sum::<u64>() as f64), "1");
         put("max_wheel_force", Some(block.max_wheel_force_N), "N");
         put("min_wheel_force", Some(block.min_wheel_force_N), "N");
         let amplification = static_wheel_load(scenario).map(|load| block.max_wheel_force_N / load);

@@ -87,8 +87,43 @@ pub struct BlockRow {
     pub max_settlement_m: f64,
     /// Largest settlement of the block at any sleeper.
     pub max_settlement_step_m: f64,
+    /// Estimated error of settlement that the block adds at the worst seat; 0 for a block of one train, which has none.
+    pub error_m: f64,
+    /// By how much a disturbance comes back with the other sign: the exchange overshoots above 1 and grows above 2. 0 where
+    /// the track moved too evenly to tell.
+    pub overshoot: f64,
+    /// Amplitude of a sawtooth along the track in what the block settled, as a share of `max_settlement_step_m`.
+    pub sawtooth: f64,
+    /// Longer blocks that were tried and thrown away, and those of them that overshot.
+    pub rejected: u64,
+    pub overshot: u64,
     pub time_steps: u64,
     pub newton_iterations: u64,
+}
+
+/// From here on a sawtooth is more than sleepers of unlike loads make.
+const SAWTOOTH: f64 = 0.1;
+
+impl BlockRow {
+    /// What the exchanges of a run show of overshooting, in a sentence; `None` where all is well.
+    pub fn overshoot(blocks: &[BlockRow]) -> Option<String> {
+        let cured: Vec<&BlockRow> = blocks.iter().filter(|b| b.overshot > 0).collect();
+        let worst = blocks.iter().max_by(|a, b| a.sawtooth.total_cmp(&b.sawtooth)).filter(|b| b.sawtooth > SAWTOOTH);
+        let sawtooth = worst.map(|b| {
+            format!(
+                "settlement alternates from sleeper to sleeper by {} % of its largest step after {} axles",
+                (b.sawtooth * 100.0).round(),
+                b.axles
+            )
+        });
+        let shortest = cured.iter().map(|b| b.block_axles).min();
+        let cured = shortest.map(|shortest| {
+            let tried: u64 = cured.iter().map(|b| b.overshot).sum();
+            format!("{tried} blocks overshot and were done again in halves, down to {shortest} axles")
+        });
+        let said: Vec<String> = cured.into_iter().chain(sawtooth).collect();
+        (!said.is_empty()).then(|| said.join("; "))
+    }
 }
 
 impl Row for BlockRow {
@@ -102,6 +137,11 @@ impl Row for BlockRow {
         "max_contact_force_N",
         "max_settlement_m",
         "max_settlement_step_m",
+        "error_m",
+        "overshoot",
+        "sawtooth",
+        "rejected",
+        "overshot",
         "time_steps",
         "newton_iterations",
     ];

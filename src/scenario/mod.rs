@@ -78,6 +78,9 @@ pub enum Update {
     Fixed { axles: u64 },
     /// `first` axles, then blocks of `ratio` times the axles so far, never smaller than `first`.
     Geometric { first: u64, ratio: f64 },
+    /// Blocks as long as their estimated error of settlement allows: at most `tolerance` at any seat, m. `cap` bounds the
+    /// settlement of a block as well, m.
+    Adaptive { tolerance: f64, cap: Option<f64> },
 }
 
 /// Time integration of the track and vehicle.

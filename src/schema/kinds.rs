@@ -530,10 +530,27 @@ pub const KINDS: &[Kind] = &[
                             ],
                             planned: false,
                         },
-                        planned("adaptive"),
+                        Word {
+                            name: "adaptive",
+                            doc: "blocks as long as their estimated error allows",
+                            arguments: &[
+                                default(
+                                    "tolerance",
+                                    number("mm", 1e-6, 10.0),
+                                    "0.003 mm",
+                                    "error of settlement that a block may add at any seat",
+                                ),
+                                optional(
+                                    "cap",
+                                    number("mm", 1e-4, 100.0),
+                                    "settlement of a block at any seat, at most",
+                                ),
+                            ],
+                            planned: false,
+                        },
                     ]),
                 ]),
-                "geometric(4 axles, 0.2)",
+                "adaptive(0.003 mm)",
                 "axles between two exchanges of forces and settlement",
             ),
             default(
