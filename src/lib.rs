@@ -40,8 +40,11 @@ pub mod graph;
 pub mod lint;
 pub mod lower;
 
-pub mod report;
 pub mod results;
+
+pub mod study;
+
+pub mod report;
 
 pub mod cli;
 

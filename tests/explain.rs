@@ -7,7 +7,9 @@ use trackbed::diag::{Code, Severity};
 use trackbed::{Compiled, compile};
 
 /// Codes that no text alone can show, and what shows them instead.
-const RUN_TIME: [(Code, &str); 5] = [
+const RUN_TIME: [(Code, &str); 7] = [
+    (Code::E0701, "a chart of a scene without trains: `tests/study.rs`"),
+    (Code::E0702, "a chart after a count that is not known: `tests/study.rs`"),
     (Code::E0802, "a run into a directory that is taken: `tests/cli.rs`"),
     (Code::E0803, "a checkpoint of another scene: `a_checkpoint_of_another_scene_is_refused` below"),
     (Code::E0804, "a finished run that misses an expectation: `tests/cli.rs`"),
@@ -80,14 +82,17 @@ fn outcome(text: &str) -> Result<(), Code> {
     assert!(codes(&compiled).is_empty(), "{}", told(&compiled));
     let (scenario, graph) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
     let mut recorder = trackbed::results::RunRecorder::new(&scenario, None, |_, _| {});
-    trackbed::graph::execute(&graph, &mut recorder, None).map_err(|_| Code::E0801)?;
+    trackbed::graph::execute(&graph, &mut recorder, None)
+        .map_err(|error| trackbed::results::diagnose(&error, &scenario, &graph).code)?;
     let (tables, histories) = (&recorder.tables, recorder.all_histories());
     let scalars = trackbed::results::summarise(&scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
     let view = trackbed::results::Tables {
         sleepers: &tables.sleepers,
         blocks: &tables.blocks,
+        rail: &tables.rail,
         histories: &histories,
         scalars: &scalars,
+        track: &scenario.track,
     };
     let held = trackbed::results::verdicts(&scenario, view).iter().all(|v| v.met);
     if held { Ok(()) } else { Err(Code::E0804) }

@@ -334,7 +334,7 @@ fn a_speed_that_varies_has_its_largest_value_beside_it() {
 }
 
 #[test]
-fn what_the_solver_does_not_take_yet_is_said_and_stays_in_the_scene() {
+fn the_whole_physics_of_the_track_reaches_the_scene() {
     let text = scene(
         "auxiliary_rails = { rail = rails.S49, count = 2, pad = pads.soft }",
         "rail_ends = absorbing, irregularity = smooth(0 .. 1 mm)",
@@ -345,8 +345,8 @@ fn what_the_solver_does_not_take_yet_is_said_and_stays_in_the_scene() {
         "damping_time = 1 ms, seating = { stiffness = 10 MN/m per sleeper, closure = 0.4 mm } }",
     );
     let compiled = with(&text, Files::default());
-    assert_eq!(codes(&compiled), [Code::E0411; 7], "{}", told(&compiled));
-    assert!(compiled.graph.is_none());
+    assert!(!compiled.diagnostics.iter().any(|d| d.is_error()), "{}", told(&compiled));
+    assert!(compiled.graph.is_some());
     let scenario = compiled.scenario.unwrap();
     let solve = &scenario.solve;
     assert_eq!((*solve.beam, solve.integrator), (Beam::Timoshenko, Integrator::Hht { alpha: 0.1 }));

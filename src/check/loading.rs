@@ -179,6 +179,7 @@ impl Checker<'_> {
             seats: seats?,
             after: after?,
             every: record.number("every").map(|n| n.value),
+            near: None,
         })
     }
 

@@ -3,6 +3,7 @@
 //! Exit codes: 0 all is well, 1 the scene or its run has errors, 2 the command was used wrongly.
 
 mod calibrate;
+mod chart;
 mod check;
 mod docs;
 mod explain;
@@ -13,6 +14,8 @@ mod progress;
 mod report;
 mod run;
 mod scene;
+mod stability;
+mod study;
 mod terminal;
 
 use clap::{Parser, Subcommand, ValueEnum};
@@ -33,6 +36,8 @@ enum Command {
     Run(run::Arguments),
     Calibrate(calibrate::Arguments),
     Report(report::Arguments),
+    Chart(chart::Arguments),
+    Stability(stability::Arguments),
     Fmt(fmt::Arguments),
     Explain(explain::Arguments),
     Docs(docs::Arguments),
@@ -72,6 +77,8 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
+        Command::Chart(arguments) => chart::run(&arguments),
+        Command::Stability(arguments) => stability::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Docs(arguments) => docs::run(&arguments),

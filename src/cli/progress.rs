@@ -17,3 +17,18 @@ pub(super) fn bar() -> ProgressBar {
     bar.enable_steady_tick(Duration::from_millis(200));
     bar
 }
+
+/// A bar of work whose steps differ in cost.
+pub(super) fn share() -> ProgressBar {
+    let bar = bar();
+    bar.set_style(
+        ProgressStyle::with_template("{spinner} {bar:32} {percent} % of {msg}, {eta} left")
+            .unwrap_or_else(|_| ProgressStyle::default_bar()),
+    );
+    bar
+}
+
+pub(super) fn at(bar: &ProgressBar, done: u64, all: u64) {
+    bar.set_length(all);
+    bar.set_position(done);
+}

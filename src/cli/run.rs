@@ -3,10 +3,9 @@
 use super::scene::{SceneArguments, failed, not_yet, show};
 use super::{Outcome, progress, report, terminal};
 use crate::diag::{Code, Diagnostic, render};
-use crate::graph::{self, Graph, RunError};
+use crate::graph::{self, Graph};
 use crate::results::{self, Provenance, Run, RunRecorder, Store, Summary, checkpoint};
 use crate::scenario::Scenario;
-use crate::solvers::track::TrackError;
 use crate::units::number;
 use crate::{Compiled, fingerprint};
 use std::collections::BTreeMap;
@@ -64,7 +63,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     let outcome = graph::execute(graph, &mut recorder, from);
     bar.finish_and_clear();
     if let Err(error) = outcome {
-        return stop(&compiled, explain(&error, &compiled));
+        return stop(&compiled, results::diagnose(&error, scenario, graph));
     }
     let computed = started.elapsed().as_secs_f64();
     let run = gather(&recorder, scenario, graph, &compiled, hash);
@@ -106,39 +105,6 @@ fn prepare(arguments: &Arguments) -> Result<(), String> {
     Ok(())
 }
 
-fn explain(error: &RunError, compiled: &Compiled) -> Diagnostic {
-    match error {
-        RunError::Recorder(message) => {
-            Diagnostic::new(Code::E0802, message.clone()).help("the run can be resumed with `--resume`")
-        }
-        RunError::Track { cause, .. } => {
-            let diagnostic = Diagnostic::new(Code::E0801, error.to_string()).help(way_out(cause));
-            let span = compiled.scenario.as_ref().and_then(|s| match cause {
-                TrackError::StepNotConverged { .. } | TrackError::NotFinite { .. } => {
-                    s.solve.time_step.fixed()?.origin.span()
-                }
-                TrackError::NoEquilibrium { .. } => s.solve.update_span,
-                _ => None,
-            });
-            match span {
-                Some(span) => diagnostic.at(span, "given here"),
-                None => diagnostic,
-            }
-        }
-    }
-}
-
-/// What to change in the scene.
-fn way_out(cause: &TrackError) -> &'static str {
-    match cause {
-        TrackError::Mechanism { .. } => "let something hold it: `rail_ends = clamped`, or more seats in `sections`",
-        TrackError::StepNotConverged { .. } | TrackError::NotFinite { .. } => "halve `solve.time_step`",
-        TrackError::NoEquilibrium { .. } => "exchange more often: shorten `solve.update_every`",
-        TrackError::OffTrack { .. } => "move `solve.start` or `solve.finish`, or lengthen the track",
-        TrackError::Model { .. } | TrackError::Parameter { .. } => "change the value that the message names",
-    }
-}
-
 fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compiled: &Compiled, hash: String) -> Run {
     let tables = &recorder.tables;
     let histories = recorder.all_histories();
@@ -148,8 +114,10 @@ fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compil
     let view = results::Tables {
         sleepers: &tables.sleepers,
         blocks: &tables.blocks,
+        rail: &tables.rail,
         histories: &histories,
         scalars: &scalars,
+        track: &scenario.track,
     };
     let expectations = results::verdicts(scenario, view);
     // the name alone: equal scenes give equal files wherever they lie
@@ -170,6 +138,7 @@ fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compil
         sleepers: tables.sleepers.clone(),
         blocks: tables.blocks.clone(),
         laws,
+        rail: tables.rail.clone(),
         histories,
     }
 }

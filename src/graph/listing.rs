@@ -1,7 +1,7 @@
 //! The graph as a person reads it: text, JSON and DOT.
 
 use super::{Decision, Estimate, Graph, NamedLaw, Schedule, SubstructureNode};
-use crate::scenario::{Integrator, law_argument};
+use crate::scenario::{Beam, Integrator, law_argument};
 use crate::solvers::settlement::{Form, Logarithm};
 use crate::units::number;
 use serde::Serialize;
@@ -63,7 +63,11 @@ impl Graph {
         let track = &self.track.track;
         let mut details = vec![
             format!(
-                "rail: Euler-Bernoulli, {} elements a bay, {} m .. {} m",
+                "rail: {}, {} elements a bay, {} m .. {} m",
+                match self.track.beam {
+                    Beam::Euler => "Euler-Bernoulli",
+                    Beam::Timoshenko => "Timoshenko",
+                },
                 self.track.elements_per_bay,
                 number(track.start()),
                 number(track.end())
@@ -85,11 +89,12 @@ impl Graph {
                 number(*blocks.train.speed * 3.6)
             ));
             details.push(format!(
-                "passage: wheels from {} m to {} m, {}, step {} ms",
+                "passage: wheels from {} m to {} m, {}, step {} ms{}",
                 number(plan.left),
                 number(plan.right),
                 integrator(plan.integrator),
-                number(plan.time_step * 1e3)
+                number(plan.time_step * 1e3),
+                if plan.adaptive.is_some() { " or shorter" } else { "" }
             ));
         }
         Node { name: "track", model: "2D finite element track with multibody vehicles, one Newton".into(), details }

@@ -5,7 +5,8 @@
 
 mod execute;
 mod listing;
-mod model;
+pub mod model;
+mod profile;
 mod sampler;
 mod substructure;
 mod system;
@@ -13,8 +14,10 @@ mod track;
 
 pub use execute::{Checkpoint, Recorder, RunError, execute, passage_as_built};
 pub use listing::Listing;
+pub use profile::between;
 pub use substructure::SubstructureState;
-pub use track::{PassageOutcome, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
+pub use system::RUNAWAY;
+pub use track::{PassageOutcome, RailPlace, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
 
 use crate::scenario::{Beam, Direction, Integrator, Record, StaticLoad, Track, Train};
 use crate::solvers::settlement::Law;
@@ -86,11 +89,21 @@ pub struct PassagePlan {
     /// to the right end while it stands at the right.
     pub left: f64,
     pub right: f64,
-    /// s.
+    /// s; the longest one where steps vary.
     pub time_step: f64,
+    /// Steps are halved down to `time_step / 2^halvings` where their error asks for it.
+    pub adaptive: Option<AdaptiveSteps>,
     pub integrator: Integrator,
-    /// Interval of histories, in time steps.
+    /// Interval of histories, in time steps, the longest ones where they vary.
     pub sample_every: u64,
+}
+
+/// How the length of a time step is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AdaptiveSteps {
+    /// Error that a step may make, as part of the largest deflection of the rail under the standing train.
+    pub tolerance: f64,
+    pub halvings: u32,
 }
 
 /// Trains that run between two exchanges.

@@ -5,7 +5,7 @@ use crate::scenario::{self, Beam, Foot, Integrator, Piece, Profile, RailEnds, Se
 use crate::solvers::track as solver;
 
 /// The solver's model of a track.
-pub(super) fn model(node: &TrackNode) -> solver::TrackModel {
+pub fn model(node: &TrackNode) -> solver::TrackModel {
     let track = &node.track;
     solver::TrackModel {
         ends: [track.start(), track.end()],
@@ -91,7 +91,7 @@ fn auxiliary_rail(section: &Section) -> Option<solver::AuxiliaryRail> {
 }
 
 /// The solver's train.
-pub(super) fn train(train: &scenario::Train, direction: scenario::Direction) -> solver::Train {
+pub fn train(train: &scenario::Train, direction: scenario::Direction) -> solver::Train {
     let vehicles = train.vehicles.iter().map(|v| vehicle(v).into()).zip(train.vehicle_offsets()).collect();
     let direction = match direction {
         scenario::Direction::Backward => solver::Direction::Backward,
@@ -101,7 +101,7 @@ pub(super) fn train(train: &scenario::Train, direction: scenario::Direction) -> 
 }
 
 /// How fast it runs.
-pub(super) fn motion(train: &scenario::Train) -> solver::Motion {
+pub fn motion(train: &scenario::Train) -> solver::Motion {
     let Some(profile) = &train.speed_profile else { return solver::Motion::Constant(*train.speed) };
     let points = profile.pieces.iter().flat_map(|piece| piece.knots().into_iter().map(|x| (x, profile.value(x))));
     let mut knots: Vec<(f64, f64)> = points.collect();
@@ -127,7 +127,7 @@ fn vehicle(v: &scenario::Vehicle) -> solver::Vehicle {
 }
 
 /// The solver's time integration.
-pub(super) fn scheme(integrator: Integrator, time_step: f64) -> Result<solver::Scheme, solver::TrackError> {
+pub fn scheme(integrator: Integrator, time_step: f64) -> Result<solver::Scheme, solver::TrackError> {
     match integrator {
         Integrator::GeneralisedAlpha { rho } => solver::Scheme::generalised_alpha(time_step, rho),
         Integrator::Hht { alpha } => solver::Scheme::hht(time_step, alpha),
@@ -137,7 +137,7 @@ pub(super) fn scheme(integrator: Integrator, time_step: f64) -> Result<solver::S
 
 /// The settled track: supports where they lie, and the rail ends held at the level of the track there. A clamp that
 /// stayed at the level as built would grow a second transition at the end of the model.
-pub(super) fn level(node: &TrackNode, settlement: &[f64]) -> solver::TrackLevel {
+pub fn level(node: &TrackNode, settlement: &[f64]) -> solver::TrackLevel {
     let track = &node.track;
     let end =
         |section: usize, seat: Option<usize>| seat.map_or(0.0, |i| settlement[i]) + sag(track, section, node.gravity);

@@ -1,13 +1,16 @@
 //! The track node at work: its statics and its passages, spoken to in the scene's terms.
 
 use super::model::{level, model, motion, scheme, train};
+use super::profile;
 use super::sampler::Sampler;
 use super::substructure::initial_settlement;
 use super::track::{PassageOutcome, RailPoint, SeatOutcome, Unloaded, UnloadedSeat};
-use super::{Blocks, Graph, Schedule, TrackNode};
+use super::{AdaptiveSteps, Blocks, Graph, Schedule, TrackNode};
 use crate::scenario::{Direction, Record, StaticLoad, Target};
 use crate::solvers::settlement::Peak;
-use crate::solvers::track::{Envelope, Loads, Passage, Run, StaticState, Stepper, Track, TrackError, solve_static};
+use crate::solvers::track::{
+    Envelope, Ladder, Loads, Passage, Run, Scheme, StaticState, Stepper, Track, TrackError, TrackLevel, solve_static,
+};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -16,11 +19,38 @@ pub(super) struct TrackSystem<'a> {
     node: &'a TrackNode,
     records: &'a [Record],
     track: Arc<Track>,
-    traffic: Option<(&'a Blocks, Stepper)>,
+    traffic: Option<(&'a Blocks, Steps)>,
+}
+
+/// The time steps of all passages, factored once.
+enum Steps {
+    Even(Stepper),
+    Chosen { ladder: Ladder, tolerance: f64 },
+}
+
+impl Steps {
+    fn new(track: &Arc<Track>, scheme: Scheme, adaptive: Option<AdaptiveSteps>) -> Result<Self, TrackError> {
+        Ok(match adaptive {
+            None => Steps::Even(Stepper::new(track.clone(), scheme)?),
+            Some(AdaptiveSteps { tolerance, halvings }) => {
+                Steps::Chosen { ladder: Ladder::new(track, scheme, halvings as usize)?, tolerance }
+            }
+        })
+    }
+
+    fn begin<'a>(&'a self, level: &'a TrackLevel, run: Run<'a>) -> Result<Passage<'a>, TrackError> {
+        match self {
+            Steps::Even(stepper) => Passage::new(stepper, level, run),
+            Steps::Chosen { ladder, tolerance } => Passage::adaptive(ladder, level, run, *tolerance),
+        }
+    }
 }
 
 /// Seats whose mean stands for those near the ends of the model, see [`TrackSystem::complete`].
 const NEIGHBOURS: usize = 10;
+
+/// Wheel forces beyond so many static ones are no answer: rails break long before.
+pub const RUNAWAY: f64 = 10.0;
 
 impl<'a> TrackSystem<'a> {
     pub fn new(graph: &'a Graph) -> Result<Self, TrackError> {
@@ -29,7 +59,7 @@ impl<'a> TrackSystem<'a> {
             Schedule::Static { .. } => None,
             Schedule::Blocks(blocks) => {
                 let scheme = scheme(blocks.passage.integrator, blocks.passage.time_step)?;
-                Some((blocks, Stepper::new(track.clone(), scheme)?))
+                Some((blocks, Steps::new(&track, scheme, blocks.passage.adaptive)?))
             }
         };
         Ok(TrackSystem { node: &graph.track, records: &graph.records, track, traffic })
@@ -61,7 +91,7 @@ impl<'a> TrackSystem<'a> {
             contact_force: state.contact_forces[i],
             seat_load: state.seat_loads[i],
         });
-        Unloaded { rail: rail.collect(), seats: seats.collect() }
+        Unloaded { rail: rail.collect(), seats: seats.collect(), profile: Vec::new() }
     }
 
     /// One train over the settled track, and the track at rest before it. `recorded` asks for histories.
@@ -72,7 +102,7 @@ impl<'a> TrackSystem<'a> {
         direction: Direction,
         recorded: bool,
     ) -> Result<(Unloaded, PassageOutcome), TrackError> {
-        let Some((blocks, stepper)) = &self.traffic else {
+        let Some((blocks, steps)) = &self.traffic else {
             return Err(TrackError::Parameter { name: "trains", value: 0.0, expected: "of 1 or more" });
         };
         let train = train(&blocks.train, direction);
@@ -82,8 +112,12 @@ impl<'a> TrackSystem<'a> {
         let level = level(self.node, settlement);
         let motion = motion(&blocks.train);
         let run = Run { train: &train, start, finish, motion: &motion };
-        let mut passage = Passage::new(stepper, &level, run)?;
-        let unloaded = self.at_rest(passage.unloaded(), settlement);
+        let mut passage = steps.begin(&level, run)?;
+        let mut unloaded = self.at_rest(passage.unloaded(), settlement);
+        if recorded {
+            let load = blocks.train.mean_wheel_mass() * self.node.gravity;
+            unloaded.profile = profile::profile(&self.track, &level, passage.unloaded(), load, left..=right)?;
+        }
         let mut envelope = Envelope::default();
         let wanted = if recorded { self.records } else { &[] };
         let mut sampler = Sampler::new(wanted, axles, blocks.passage.sample_every, recorded);
@@ -112,11 +146,26 @@ impl<'a> TrackSystem<'a> {
             max_wheel_force: largest(&envelope.wheel_forces),
             min_wheel_force: envelope.wheel_forces.iter().map(|r| r.0).fold(f64::INFINITY, f64::min),
             max_rail_moment: largest(&envelope.rail_moments),
+            rail_moments: envelope.rail_moments,
             time_steps: counters.steps as u64,
             newton_iterations: counters.iterations as u64,
             samples: sampler.samples,
         };
+        self.bounded(blocks, &outcome)?;
         Ok((unloaded, outcome))
+    }
+
+    /// Refuses an outcome that has run away: it would settle the track by forces that no track bears.
+    fn bounded(&self, blocks: &Blocks, outcome: &PassageOutcome) -> Result<(), TrackError> {
+        let mass: f64 = blocks.train.vehicles.iter().map(|v| v.mass()).sum();
+        let times = outcome.max_wheel_force / (mass * self.node.gravity / blocks.train.axles() as f64);
+        if times <= RUNAWAY {
+            return Ok(());
+        }
+        let load = |i: &usize| outcome.seats[*i].max_rail_seat_load;
+        let worst = (0..outcome.seats.len()).max_by(|a, b| load(a).total_cmp(&load(b))).unwrap_or(0);
+        let x = self.node.track.seats.get(worst).map_or(0.0, |seat| seat.x);
+        Err(TrackError::RanAway { x, force: outcome.max_wheel_force, times })
     }
 
     /// Trains start and stop on the track, so seats near its ends see only some of their wheels. Such a seat takes the mean of

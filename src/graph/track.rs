@@ -10,6 +10,8 @@ pub struct Unloaded {
     /// Every rail node, left to right.
     pub rail: Vec<RailPoint>,
     pub seats: Vec<UnloadedSeat>,
+    /// The rail as a measuring wheel finds it, left to right; empty where nobody records it.
+    pub profile: Vec<RailPlace>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,6 +22,19 @@ pub struct RailPoint {
     pub deflection: f64,
     /// Sagging, N m.
     pub moment: f64,
+}
+
+/// A place on the rail where wheels run, four to a bay and one over each seat.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RailPlace {
+    /// Chainage, m.
+    pub x: f64,
+    /// Unloaded, below the level as built, m.
+    pub level: f64,
+    /// Unloaded, sagging, N m.
+    pub moment: f64,
+    /// The mean wheel load of the train over the deflection that it adds standing here, N/m.
+    pub stiffness: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -47,6 +62,8 @@ pub struct PassageOutcome {
     pub min_wheel_force: f64,
     /// Sagging, at rail nodes, N m.
     pub max_rail_moment: f64,
+    /// Smallest and largest sagging moment of every rail node, N m.
+    pub rail_moments: Vec<(f64, f64)>,
     pub time_steps: u64,
     pub newton_iterations: u64,
     /// Histories; empty where the passage is not recorded.

@@ -1,43 +1,70 @@
-//! L1005: the time step does not resolve the wheel on its contact spring.
+//! L1005: the time step does not resolve what is fast: the wheel on its contact spring, a sleeper between pad and support, the
+//! passage from sleeper to sleeper.
 //!
-//! f = sqrt(k_H / m_w) / 2 pi with the tangent k_H = 1.5 C^(2/3) F^(1/3) at the static wheel load; twenty steps a period.
+//! f = sqrt(k / m) / 2 pi, twenty steps a period. Of the contact k = 1.5 C^(2/3) F^(1/3) at the static wheel load, of a
+//! sleeper the sum of pad and support; sleepers pass at f = v / spacing.
 
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule};
-use crate::scenario::Scenario;
+use crate::graph::{Blocks, Graph, Schedule};
+use crate::scenario::{Foot, Scenario};
 use crate::units::number;
+use std::f64::consts::PI;
 
 const STEPS_A_PERIOD: f64 = 20.0;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
-    let frequency = blocks
-        .train
-        .vehicles
-        .iter()
-        .map(|v| {
-            let load = v.mass() / 4.0 * *scenario.solve.gravity;
-            let tangent = 1.5 * v.hertz.powf(2.0 / 3.0) * load.powf(1.0 / 3.0);
-            (tangent / *v.wheel_mass).sqrt() / (2.0 * std::f64::consts::PI)
-        })
-        .fold(0.0, f64::max);
+    let fast = [
+        ("the wheel on its contact spring", contact(scenario, blocks)),
+        ("a sleeper between pad and support", sleeper(scenario)),
+        ("the passage from sleeper to sleeper", passing(scenario, blocks)),
+    ];
+    let Some((what, frequency)) = fast.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { return Vec::new() };
     let needed = 1.0 / (STEPS_A_PERIOD * frequency);
     let step = blocks.passage.time_step;
-    if step <= needed {
+    if step <= needed || blocks.passage.adaptive.is_some() {
         return Vec::new();
     }
     let diagnostic = Diagnostic::new(
         Code::L1005,
         format!(
-            "a step of {} ms leaves {} steps to a period of the wheel on its contact spring, {} Hz",
+            "a step of {} ms leaves {} steps to a period of {what}, {} Hz",
             number(step * 1e3),
             number((1.0 / (step * frequency)).round()),
             number(frequency.round())
         ),
     )
-    .help(format!("write `time_step = {} s`", number((needed * 1e5).floor() / 1e5)));
-    vec![match scenario.solve.time_step.fixed().and_then(|t| t.origin.span()) {
+    .help(format!("write `time_step = {} s`", number(rounded_down(needed))));
+    vec![match scenario.solve.time_step.span() {
         Some(span) => diagnostic.at(span, "coarse"),
         None => diagnostic,
     }]
+}
+
+/// Two digits, never more than the value.
+fn rounded_down(value: f64) -> f64 {
+    let size = 10f64.powf(1.0 - value.log10().floor());
+    (value * size).floor() / size
+}
+
+fn contact(scenario: &Scenario, blocks: &Blocks) -> f64 {
+    let of_vehicle = |v: &crate::scenario::Vehicle| {
+        let load = v.mass() / 4.0 * *scenario.solve.gravity;
+        let tangent = 1.5 * v.hertz.powf(2.0 / 3.0) * load.powf(1.0 / 3.0);
+        (tangent / *v.wheel_mass).sqrt() / (2.0 * PI)
+    };
+    blocks.train.vehicles.iter().map(of_vehicle).fold(0.0, f64::max)
+}
+
+fn sleeper(scenario: &Scenario) -> f64 {
+    let of_seat = |seat: &crate::scenario::Seat| match &seat.foot {
+        Foot::Sleeper { mass, support } => ((*seat.pad.stiffness + *support.stiffness) / **mass).sqrt() / (2.0 * PI),
+        _ => 0.0,
+    };
+    scenario.track.seats.iter().map(of_seat).fold(0.0, f64::max)
+}
+
+fn passing(scenario: &Scenario, blocks: &Blocks) -> f64 {
+    let shortest = scenario.track.sections.iter().map(|s| *s.spacing).fold(f64::INFINITY, f64::min);
+    *blocks.train.speed / shortest
 }

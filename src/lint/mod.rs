@@ -13,6 +13,8 @@ mod track_too_short;
 mod update_overshoot;
 mod winkler;
 
+pub use winkler::Winkler;
+
 use crate::diag::{Diagnostic, Severity};
 use crate::graph::Graph;
 use crate::scenario::{Loading, Scenario, SettlementLaw};

@@ -5,7 +5,7 @@ use crate::scenario::{Foot, Scenario, Section, Track, Vehicle};
 use crate::solvers::settlement::Peak;
 
 /// A section smeared along the rail.
-pub(super) struct Winkler {
+pub struct Winkler {
     /// Foundation modulus: seat stiffness over spacing, N/m per metre.
     pub modulus: f64,
     /// EI of the rail, N m^2.

@@ -2,7 +2,7 @@
 
 mod estimate;
 mod passage;
-mod pending;
+mod records;
 mod schedule;
 
 use crate::diag::{Code, Diagnostic, Severity};
@@ -34,7 +34,6 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
             (law, schedule::blocks(&mut pass, scenario, traffic).map(Schedule::Blocks))
         }
     };
-    pending::refuse(&mut pass, scenario);
     let Some(schedule) = schedule.filter(|_| !crate::diag::has_errors(&pass.diagnostics)) else {
         return (None, pass.diagnostics);
     };
@@ -45,8 +44,8 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
         gravity: *scenario.solve.gravity,
     };
     let estimate = estimate::estimate(&track, &schedule);
-    let graph =
-        Graph { track, substructure, schedule, records: scenario.records.clone(), decisions: pass.decisions, estimate };
+    let records = records::records(&mut pass, scenario);
+    let graph = Graph { track, substructure, schedule, records, decisions: pass.decisions, estimate };
     (Some(graph), pass.diagnostics)
 }
 

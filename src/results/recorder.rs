@@ -2,7 +2,9 @@
 //! histories go into their own file as soon as they exist.
 
 use super::histories::HISTORIES;
-use super::{BlockRow, HistoryRow, LawCount, RailMaxima, ResultsError, SleeperRow, atomic, checkpoint, histories};
+use super::{
+    BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, SleeperRow, atomic, checkpoint, histories,
+};
 use crate::graph::{self, Block, PassageOutcome, Recorder, Unloaded};
 use crate::scenario::response::Response;
 use crate::scenario::{Direction, Foot, Scenario, Track};
@@ -21,6 +23,7 @@ pub struct Store {
 pub struct RunTables {
     pub sleepers: Vec<SleeperRow>,
     pub blocks: Vec<BlockRow>,
+    pub rail: Vec<RailRow>,
     /// Settlement of every ballasted seat after every block.
     pub settlements: Vec<HistoryRow>,
     /// Settlement by each law after every block; empty where there is only one law.
@@ -28,6 +31,8 @@ pub struct RunTables {
     /// Largest sagging moment of the last passage, N m, and displacement of a static check, m.
     pub max_rail_moment: Option<f64>,
     pub max_rail_displacement: Option<f64>,
+    /// Largest tension in the rail's foot of the last recorded passage, Pa.
+    pub max_foot_stress: Option<f64>,
 }
 
 /// What a checkpoint holds.
@@ -82,7 +87,12 @@ impl<'a> RunRecorder<'a> {
     }
 
     pub fn rail_maxima(&self) -> RailMaxima {
-        RailMaxima { moment: self.tables.max_rail_moment, displacement: self.tables.max_rail_displacement }
+        RailMaxima {
+            moment: self.tables.max_rail_moment,
+            displacement: self.tables.max_rail_displacement,
+            foot_stress: self.tables.max_foot_stress,
+            ..RailMaxima::of_profile(self.scenario, &self.tables.rail)
+        }
     }
 
     fn track(&self) -> &'a Track {
@@ -100,6 +110,28 @@ impl<'a> RunRecorder<'a> {
             x_m: seat.x,
             value: *value,
         }));
+    }
+
+    /// The rail at a recorded count, and the extremes of its moment between the same places.
+    fn keep_profile(&mut self, axles: u64, unloaded: &Unloaded, passage: &PassageOutcome) {
+        let nodes: Vec<f64> = unloaded.rail.iter().map(|p| p.x).collect();
+        let between = |x: f64, of: fn(&(f64, f64)) -> f64| {
+            let (left, share) = graph::between(&nodes, x);
+            let (a, b) = (of(&passage.rail_moments[left]), of(&passage.rail_moments[left + 1]));
+            a + share * (b - a)
+        };
+        self.tables.rail.extend(unloaded.profile.iter().map(|p| RailRow {
+            axles,
+            x_m: p.x,
+            level_m: p.level,
+            moment_N_m: p.moment,
+            stiffness_N_per_m: p.stiffness,
+            max_moment_N_m: between(p.x, |m| m.1),
+            min_moment_N_m: between(p.x, |m| m.0),
+        }));
+        let track = self.track();
+        let stress = |(node, moment): (&f64, &(f64, f64))| Some(moment.1 / track.rail_at(*node)?.foot_modulus());
+        self.tables.max_foot_stress = nodes.iter().zip(&passage.rail_moments).filter_map(stress).reduce(f64::max);
     }
 
     fn keep_rail(&mut self, axles: u64, quantity: Response, points: impl Iterator<Item = (f64, f64)>) {
@@ -132,6 +164,7 @@ impl Recorder for RunRecorder<'_> {
         });
         self.histories.extend(rows);
         let Some(unloaded) = self.unloaded.take() else { return };
+        self.keep_profile(axles, &unloaded, passage);
         for ((seat, outcome), rest) in track.seats.iter().zip(&passage.seats).zip(&unloaded.seats) {
             let stiffness = match &seat.foot {
                 Foot::Sleeper { support, .. } => support.spring().stiffness,

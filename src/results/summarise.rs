@@ -1,6 +1,6 @@
 //! The scalars of `summary.json`, from the tables: every extreme is that after the last axle count.
 
-use super::{BlockRow, Scalar, SleeperRow};
+use super::{BlockRow, LongitudinalLevel, RailRow, Scalar, SleeperRow, longitudinal_level};
 use crate::scenario::{Loading, Scenario, Seat, Vehicle};
 use std::collections::{BTreeMap, HashMap};
 
@@ -17,6 +17,27 @@ pub struct RailMaxima {
     pub moment: Option<f64>,
     /// Downward displacement, m; of a static check.
     pub displacement: Option<f64>,
+    /// Tension in the foot, Pa.
+    pub foot_stress: Option<f64>,
+    /// Longitudinal level D1, largest from its mean and standard deviation, m: of the rail without a vehicle, and under a
+    /// standing wheel.
+    pub level: Option<(f64, f64)>,
+    pub loaded_level: Option<(f64, f64)>,
+}
+
+impl RailMaxima {
+    /// What the rail's profile after the last axle count says.
+    pub fn of_profile(scenario: &Scenario, rail: &[RailRow]) -> Self {
+        let last = rail.iter().map(|row| row.axles).max();
+        let rows: Vec<&RailRow> = rail.iter().filter(|row| Some(row.axles) == last).collect();
+        let level =
+            |points: Vec<(f64, f64)>| longitudinal_level(&points).map(|l: LongitudinalLevel| (l.peak, l.deviation));
+        RailMaxima {
+            level: level(rows.iter().map(|row| (row.x_m, row.level_m)).collect()),
+            loaded_level: level(loaded_level(scenario, rows.iter().copied())),
+            ..RailMaxima::default()
+        }
+    }
 }
 
 /// Computes the scalars that the tables allow; what does not exist on the scene is left out.
@@ -41,6 +62,11 @@ pub fn summarise(
     if matches!(scenario.loading, Some(Loading::Static(_))) {
         put("max_rail_displacement", rail.displacement, "m");
     }
+    put("max_rail_foot_stress", rail.foot_stress, "Pa");
+    put("longitudinal_level_d1", rail.level.map(|l| l.0), "m");
+    put("longitudinal_level_d1_deviation", rail.level.map(|l| l.1), "m");
+    put("loaded_longitudinal_level_d1", rail.loaded_level.map(|l| l.0), "m");
+    put("loaded_longitudinal_level_d1_deviation", rail.loaded_level.map(|l| l.1), "m");
 
     let ballasted = ballasted(scenario, &last);
     if !ballasted.is_empty() {
@@ -55,6 +81,9 @@ pub fn summarise(
         let voided = ballasted.iter().filter(|(_, row)| row.void_m > VOID_THRESHOLD).count();
         put("voided_sleepers", Some(voided as f64), "1");
         put("max_contact_force", largest(ballasted.iter().map(|(_, row)| row.max_contact_force_N)), "N");
+        let pressure =
+            |(seat, row): &(&Seat, &SleeperRow)| Some(row.max_contact_force_N / scenario.track.bearing_area(seat)?);
+        put("max_contact_pressure", largest(ballasted.iter().filter_map(pressure)), "Pa");
     }
     if let Some(block) = blocks.last() {
         put("max_wheel_force", Some(block.max_wheel_force_N), "N");
@@ -70,6 +99,18 @@ pub fn static_wheel_load(scenario: &Scenario) -> Option<f64> {
     let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
     let loads = traffic.train.vehicles.iter().map(|v| v.mass() * *scenario.solve.gravity / Vehicle::AXLES as f64);
     largest(loads).filter(|load| *load > 0.0)
+}
+
+/// The load under which the stiffness at rail level is taken, N; `None` without traffic or without gravity.
+pub fn mean_wheel_load(scenario: &Scenario) -> Option<f64> {
+    let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
+    Some(traffic.train.mean_wheel_mass() * *scenario.solve.gravity).filter(|load| *load > 0.0)
+}
+
+/// Chainage and level of the rail under a standing mean wheel, m below the level as built; empty without traffic.
+pub fn loaded_level<'a>(scenario: &Scenario, rows: impl Iterator<Item = &'a RailRow>) -> Vec<(f64, f64)> {
+    let Some(load) = mean_wheel_load(scenario) else { return vec![] };
+    rows.map(|row| (row.x_m, row.level_m + load / row.stiffness_N_per_m)).collect()
 }
 
 fn last_count(sleepers: &[SleeperRow], blocks: &[BlockRow]) -> u64 {

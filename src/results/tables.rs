@@ -47,6 +47,30 @@ impl Row for SleeperRow {
     ];
 }
 
+/// One place on the rail at one recorded axle count (`rail.csv`): where wheels run, four in each bay and
+/// one of them over a seat.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub struct RailRow {
+    pub axles: u64,
+    pub x_m: f64,
+    /// Unloaded, below the level as built.
+    pub level_m: f64,
+    /// Unloaded, sagging.
+    pub moment_N_m: f64,
+    /// The train's mean wheel load over the deflection that it adds standing here.
+    pub stiffness_N_per_m: f64,
+    /// During the passage, sagging; linear between the nodes of the mesh.
+    pub max_moment_N_m: f64,
+    pub min_moment_N_m: f64,
+}
+
+impl Row for RailRow {
+    const FILE: &'static str = "rail.csv";
+    const COLUMNS: &'static [&'static str] =
+        &["axles", "x_m", "level_m", "moment_N_m", "stiffness_N_per_m", "max_moment_N_m", "min_moment_N_m"];
+}
+
 /// One block of the iteration (`blocks.csv`): a passage computed at `axles`, and the axles that it stands for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case)]

@@ -21,7 +21,9 @@ pub use track::{
 pub use traffic::{Direction, StaticLoad, Target, Traffic, Train, Vehicle};
 
 use crate::diag::Span;
+use crate::units::number;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// A whole scene, ready to be lowered.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -98,6 +100,26 @@ pub enum Beam {
     Timoshenko,
 }
 
+/// As a scene spells it.
+impl fmt::Display for Integrator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Integrator::GeneralisedAlpha { rho } => write!(f, "generalised_alpha({})", number(*rho)),
+            Integrator::Hht { alpha } => write!(f, "hht({})", number(*alpha)),
+            Integrator::Newmark => f.write_str("newmark"),
+        }
+    }
+}
+
+impl fmt::Display for Beam {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Beam::Euler => "euler",
+            Beam::Timoshenko => "timoshenko",
+        })
+    }
+}
+
 /// The time step of track and vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum TimeStep {
@@ -110,6 +132,15 @@ pub enum TimeStep {
 }
 
 impl TimeStep {
+    /// Where the scene says something about it.
+    pub fn span(self) -> Option<Span> {
+        match self {
+            TimeStep::Auto => None,
+            TimeStep::Fixed(step) => step.origin.span(),
+            TimeStep::Adaptive { tolerance } => tolerance.origin.span(),
+        }
+    }
+
     /// The step that the scene states, s.
     pub fn fixed(self) -> Option<Given> {
         if let TimeStep::Fixed(step) = self { Some(step) } else { None }
@@ -126,4 +157,6 @@ pub struct Record {
     pub after: Vec<u64>,
     /// Sampling interval, s; `None` is chosen by the planner.
     pub every: Option<f64>,
+    /// Kept only while a wheel is nearer to the seat than this, m; `None` keeps the whole passage.
+    pub near: Option<f64>,
 }

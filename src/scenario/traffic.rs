@@ -69,6 +69,11 @@ impl Train {
         Vehicle::AXLES * self.vehicles.len() as u64
     }
 
+    /// Mass that a wheel carries on average, kg.
+    pub fn mean_wheel_mass(&self) -> f64 {
+        self.vehicles.iter().map(Vehicle::mass).sum::<f64>() / self.axles() as f64
+    }
+
     /// Distance of each vehicle's leading wheel behind the train's leading wheel, m. Vehicles of a train are centred
     /// between their couplers.
     pub fn vehicle_offsets(&self) -> Vec<f64> {

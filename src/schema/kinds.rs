@@ -593,9 +593,9 @@ pub const KINDS: &[Kind] = &[
                             doc: "steps as large as the wanted error allows",
                             arguments: &[default(
                                 "tolerance",
-                                number("", 1e-6, 0.1),
-                                "0.001",
-                                "error of a step, relative to the answer",
+                                number("", 1e-8, 0.001),
+                                "1e-5",
+                                "error of a step as part of the rail's largest deflection",
                             )],
                             planned: false,
                         },

@@ -64,8 +64,9 @@ impl Ladder {
 }
 
 impl<'a> Passage<'a> {
-    /// Places the train at its start as [`Passage::new`] does, to run in steps of the ladder whose error (m) stays below
-    /// `tolerance` where the ladder is long enough; [`super::Counters`] tells. Fails where the tolerance is not above 0, too.
+    /// Places the train at its start as [`Passage::new`] does, to run in steps of the ladder whose error stays below
+    /// `tolerance` times the largest deflection of the rail under the train at its start, where the ladder is long enough;
+    /// [`super::Counters`] tells. Fails where the tolerance is not above 0, too.
     pub fn adaptive(
         ladder: &'a Ladder,
         level: &'a TrackLevel,
@@ -77,6 +78,9 @@ impl<'a> Passage<'a> {
         }
         let mut passage = Self::new(ladder.longest(), level, run)?;
         passage.divide_ticks(ladder.rungs.len() as u32 - 1);
+        let rail = passage.stepper.track.rail.iter().zip(&passage.unloaded.rail_deflection);
+        let largest = rail.map(|(w, unloaded)| (passage.displacement[*w] - unloaded).abs()).fold(0.0, f64::max);
+        let tolerance = tolerance * largest;
         passage.choice = Some(Box::new(Choice { ladder, rung: 0, tolerance, before: Before::default() }));
         Ok(passage)
     }
@@ -89,7 +93,7 @@ impl<'a> Passage<'a> {
             let outcome = self.step_once();
             let error = match outcome {
                 Ok(()) => self.error_of_step(&choice.before),
-                Err(TrackError::StepNotConverged { .. } | TrackError::NotFinite { .. }) if !shortest => f64::INFINITY,
+                Err(TrackError::StepNotConverged { .. } | TrackError::Unstable { .. }) if !shortest => f64::INFINITY,
                 Err(error) => return Err(error),
             };
             if error <= choice.tolerance || shortest {

@@ -23,6 +23,9 @@ pub struct Envelope {
     /// Sagging rail moment at each node, smallest and largest, N m.
     pub rail_moments: Vec<(f64, f64)>,
     moments: Vec<f64>,
+    /// Wheels from left to right, and the nearest of them to the seat that was looked at last.
+    along: Vec<usize>,
+    near: usize,
 }
 
 const NOTHING: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -58,7 +61,12 @@ impl Envelope {
             wheel_forces: vec![NOTHING; wheels],
             rail_moments: vec![NOTHING; nodes],
             moments: vec![0.0; nodes],
+            along: (0..wheels).collect(),
+            near: 0,
         };
+        let positions = view.wheel_positions();
+        // Where two wheels are as near, the first of the train counts.
+        self.along.sort_by(|a, b| positions[*a].total_cmp(&positions[*b]).then(b.cmp(a)));
     }
 }
 
@@ -68,6 +76,7 @@ impl Observer for Envelope {
             self.begin(view);
         }
         let wheels = view.wheel_positions();
+        self.near = 0;
         for (seat, model) in view.track().model().seats.iter().enumerate() {
             widen(&mut self.seat_loads[seat], view.seat_load(seat));
             let lowered = view.foot_displacement(seat) - view.unloaded().foot_displacements[seat];
@@ -77,14 +86,16 @@ impl Observer for Envelope {
             if force == 0.0 && view.step() > 0 {
                 self.contact_losses[seat] += view.time_step();
             }
-            let mut nearest = (f64::INFINITY, 0);
-            for (wheel, x) in wheels.iter().enumerate() {
-                let distance = (x - model.x).abs();
-                if distance < nearest.0 {
-                    nearest = (distance, wheel);
+            while self.near + 1 < self.along.len() {
+                let [here, next] = [self.near, self.near + 1].map(|rank| (wheels[self.along[rank]] - model.x).abs());
+                let later = self.along[self.near + 1] > self.along[self.near];
+                if next > here || (next == here && later) {
+                    break;
                 }
+                self.near += 1;
             }
-            let place = seat * wheels.len() + nearest.1;
+            let nearest = self.along.get(self.near).copied().unwrap_or(0);
+            let place = seat * wheels.len() + nearest;
             if let Some(peak) = self.axle_peaks.get_mut(place) {
                 *peak = peak.max(force);
             }

@@ -12,15 +12,16 @@
 //! ```
 //!
 //! One Newton iteration linearises the wheels and moves the supports that contradict their phase. The matrix is symmetric and
-//! quasi-definite. The step has one solution (see `support`); after [`FLIP_ALL`] iterations only the first contradiction is
+//! quasi-definite; ordered along the track it is a skyline whose rows reach back as far as a force is felt. The step has one solution (see `support`); after [`FLIP_ALL`] iterations only the first contradiction is
 //! moved, once the wheels are settled for the present phases, which ends by Murty's least-index argument.
 
 use super::WheelContact;
 use super::contact::WheelLaw;
 use super::influence::Stepper;
 use super::mesh::RailPoint;
+use super::reach::Reach;
 use super::support::{SupportLines, SupportPhase};
-use crate::linalg::dense::solve_symmetric;
+use crate::linalg::skyline::Skyline;
 use nalgebra::DMatrix;
 
 /// The contacts of a passage: their state after the last step and scratch for the next.
@@ -37,15 +38,15 @@ pub(super) struct Interface {
     contacts: Vec<WheelContact>,
     /// Of this step.
     laws: Vec<WheelLaw>,
-    /// Index of its vehicle, and of its vehicle's first wheel.
-    vehicle_of: Vec<(usize, usize)>,
     /// Indentation if this step's wheel forces were zero, m.
     pub free_indentations: Vec<f64>,
-    /// Per vehicle: drop of its wheels per wheel force, m/N.
-    vehicle_compliance: Vec<DMatrix<f64>>,
-    compliance: Vec<f64>,
-    /// Per wheel: first sleeper, and displacement of the sleepers from there per wheel force.
-    at_sleepers: Vec<(usize, Vec<f64>)>,
+    reach: Reach,
+    // Per rank.
+    /// Forces that depend on the motion, N; 0 for given ones.
+    answers: Vec<f64>,
+    next: Vec<f64>,
+    /// Row of the linear system at which a wheel stands or would stand.
+    row_of: Vec<usize>,
     // Per sleeper.
     pub phases: Vec<SupportPhase>,
     /// q, N; 0 for closed supports.
@@ -56,7 +57,9 @@ pub(super) struct Interface {
     pub gaps: Vec<f64>,
     // Of the linear system.
     unknowns: Vec<Contact>,
-    matrix: Vec<f64>,
+    /// Last unknown of the track that a contact touches, per row.
+    ends: Vec<usize>,
+    matrix: Skyline,
     rhs: Vec<f64>,
 }
 
@@ -71,6 +74,7 @@ pub(super) struct InterfaceState {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Contact {
+    /// By rank from left to right.
     Wheel(usize),
     Support(usize),
 }
@@ -91,22 +95,22 @@ const FORCE_TOLERANCE: f64 = 1e-11;
 const INDENTATION_ROUNDING: f64 = 1e-16;
 
 impl Interface {
-    /// Contacts of wheels, vehicle by vehicle with the drop of its wheels per wheel force, and of `sleepers` supports.
-    pub fn new(vehicles: &[(Vec<WheelContact>, DMatrix<f64>)], sleepers: usize) -> Self {
-        let contacts: Vec<WheelContact> = vehicles.iter().flat_map(|(wheels, _)| wheels).copied().collect();
+    /// Contacts of wheels at `positions` (m), vehicle by vehicle with the drop of its wheels per wheel force, and of
+    /// `sleepers` supports.
+    pub fn new(vehicles: Vec<(Vec<WheelContact>, DMatrix<f64>)>, positions: &[f64], sleepers: usize) -> Self {
+        let (contacts, compliances): (Vec<_>, Vec<_>) = vehicles.into_iter().unzip();
+        let contacts: Vec<WheelContact> = contacts.into_iter().flatten().collect();
         let wheels = contacts.len();
-        let mut vehicle_of = Vec::with_capacity(wheels);
-        for (v, (contacts, _)) in vehicles.iter().enumerate() {
-            vehicle_of.extend(vec![(v, vehicle_of.len()); contacts.len()]);
-        }
         Self {
             points: vec![RailPoint::default(); wheels],
             forces: vec![0.0; wheels],
             indentations: vec![0.0; wheels],
             trends: vec![0.0; wheels],
             free_indentations: vec![0.0; wheels],
-            compliance: vec![0.0; wheels * wheels],
-            at_sleepers: vec![(0, Vec::new()); wheels],
+            reach: Reach::new(compliances, positions),
+            answers: vec![0.0; wheels],
+            next: vec![0.0; wheels],
+            row_of: vec![0; wheels],
             phases: vec![SupportPhase::Closed; sleepers],
             corrections: vec![0.0; sleepers],
             lines: vec![SupportLines::default(); sleepers],
@@ -114,8 +118,6 @@ impl Interface {
             gaps: vec![0.0; sleepers],
             laws: contacts.iter().map(|contact| WheelLaw::at_rest(*contact)).collect(),
             contacts,
-            vehicle_of,
-            vehicle_compliance: vehicles.iter().map(|(_, compliance)| compliance.clone()).collect(),
             ..Self::default()
         }
     }
@@ -150,13 +152,13 @@ impl Interface {
 
     /// Sets the drop of a vehicle's wheels per wheel force, m/N.
     pub fn set_compliance(&mut self, vehicle: usize, compliance: DMatrix<f64>) {
-        self.vehicle_compliance[vehicle] = compliance;
+        self.reach.set_vehicle(vehicle, compliance);
     }
 
     /// Solves the contacts of a step whose points, free indentations, lines and free gaps are set; fails with the contact
     /// that was last moved.
     pub fn solve(&mut self, stepper: &Stepper) -> Result<Effort, Contact> {
-        self.gather(stepper);
+        self.reach.gather(stepper, &self.points);
         for j in 0..self.points.len() {
             let (indentation, trend) = (self.indentations[j], self.trends[j]);
             let law = WheelLaw::in_step(self.contacts[j], indentation, trend, stepper.time_step());
@@ -167,17 +169,20 @@ impl Interface {
                 self.indentations[j] += trend;
             }
         }
+        self.take_given();
         let limit = 100 + 4 * self.phases.len();
         let mut moved = Contact::Support(0);
         for iteration in 1..=limit {
             let careful = iteration > FLIP_ALL;
             self.assemble(stepper);
-            let order = self.unknowns.len();
-            solve_symmetric(&mut self.matrix, order, &mut self.rhs).map_err(|row| self.unknowns[row])?;
+            self.matrix.solve_in_place(&mut self.rhs).map_err(|row| self.unknowns[row])?;
             self.corrections.fill(0.0);
             for (unknown, value) in self.unknowns.iter().zip(&self.rhs) {
                 match *unknown {
-                    Contact::Wheel(j) => self.forces[j] = *value,
+                    Contact::Wheel(rank) => {
+                        self.answers[rank] = *value;
+                        self.forces[self.reach.wheels[rank].wheel] = *value;
+                    }
                     Contact::Support(s) => self.corrections[s] = *value,
                 }
             }
@@ -208,76 +213,102 @@ impl Interface {
         self.lines[sleeper].force(phase, self.gaps[sleeper], self.corrections[sleeper]).max(0.0)
     }
 
-    /// Compliances between the wheels at their present points, and from the wheels to the sleepers.
-    fn gather(&mut self, stepper: &Stepper) {
-        let wheels = self.points.len();
-        for j in 0..wheels {
-            let point = self.points[j];
-            let columns = stepper.columns(point.element);
-            for k in j..wheels {
-                let other = self.points[k];
-                let unknowns = stepper.track.element_unknowns(other.element);
-                let mut sum = 0.0;
-                for (column, shape) in columns.into_iter().zip(point.shape) {
-                    for (unknown, other_shape) in unknowns.into_iter().zip(other.shape) {
-                        sum += shape * other_shape * column.at(unknown);
-                    }
-                }
-                if other.element == point.element {
-                    let same = j == k;
-                    sum += if same { point.local_compliance } else { stepper.track.local_deflection(&other, &point) };
-                }
-                let ((vehicle, first), (other_vehicle, _)) = (self.vehicle_of[j], self.vehicle_of[k]);
-                if vehicle == other_vehicle {
-                    sum += self.vehicle_compliance[vehicle][(j - first, k - first)];
-                }
-                self.compliance[j * wheels + k] = sum;
-                self.compliance[k * wheels + j] = sum;
+    /// A contact and the state it is in, for people.
+    pub fn describe(&self, contact: Contact) -> String {
+        match contact {
+            Contact::Wheel(rank) => {
+                let wheel = self.wheel_of(rank);
+                let (force, indentation) = (self.forces[wheel], self.indentations[wheel]);
+                format!("wheel {} with {force:.0} N at an indentation of {indentation:.3e} m", wheel + 1)
             }
-            let columns = stepper.columns_at_sleepers(point.element);
-            let reached = columns.iter().filter(|c| !c.values.is_empty());
-            let start = reached.clone().map(|c| c.start).min().unwrap_or(0);
-            let end = reached.clone().map(|c| c.end()).max().unwrap_or(start);
-            let (first, values) = &mut self.at_sleepers[j];
-            *first = start;
-            values.clear();
-            values.resize(end - start, 0.0);
-            for (column, shape) in columns.into_iter().zip(point.shape).filter(|(c, _)| !c.values.is_empty()) {
-                add_scaled(&mut values[column.start - start..], &column.values, shape);
+            Contact::Support(sleeper) => match (self.phases.get(sleeper), self.gaps.get(sleeper)) {
+                (Some(phase), Some(gap)) => {
+                    format!("the support of sleeper {}, {} at a gap of {gap:.3e} m", sleeper + 1, phase.word())
+                }
+                _ => "no support".to_owned(),
+            },
+        }
+    }
+
+    /// The wheel of a rank, in the order of the train.
+    pub fn wheel_of(&self, rank: usize) -> usize {
+        self.reach.wheels[rank].wheel
+    }
+
+    /// Moves what given forces displace into the free indentations and gaps.
+    fn take_given(&mut self) {
+        let mut any = false;
+        for (ranked, answer) in self.reach.wheels.iter().zip(&mut self.answers) {
+            *answer = self.laws[ranked.wheel].given().unwrap_or(0.0);
+            any |= *answer != 0.0;
+        }
+        if any {
+            self.next.fill(0.0);
+            self.reach.compliance.subtract_product(&self.answers, &mut self.next);
+            for (ranked, drop) in self.reach.wheels.iter().zip(&self.next) {
+                self.free_indentations[ranked.wheel] += drop;
+            }
+            for (ranked, force) in self.reach.wheels.iter().zip(&self.answers) {
+                add_scaled(&mut self.free_gaps[ranked.at_sleepers.0..], &ranked.at_sleepers.1, *force);
+            }
+            self.answers.fill(0.0);
+        }
+    }
+
+    /// The contacts with an unknown, from left to right.
+    fn list_unknowns(&mut self, stepper: &Stepper) {
+        self.unknowns.clear();
+        self.ends.clear();
+        let mut next_sleeper = 0;
+        for rank in 0..=self.reach.wheels.len() {
+            let ranked = self.reach.wheels.get(rank);
+            let until = ranked.map_or(self.phases.len(), |wheel| wheel.sleepers_left);
+            for s in next_sleeper..until {
+                if self.phases[s] != SupportPhase::Closed {
+                    self.unknowns.push(Contact::Support(s));
+                    self.ends.push(stepper.track.sleepers[s].unknown);
+                }
+            }
+            next_sleeper = next_sleeper.max(until);
+            let Some(wheel) = ranked else { continue };
+            self.row_of[rank] = self.unknowns.len();
+            let law = self.laws[wheel.wheel];
+            if law.touches(self.indentations[wheel.wheel]) {
+                self.unknowns.push(Contact::Wheel(rank));
+                self.ends.push(wheel.end);
+            } else {
+                self.answers[rank] = 0.0;
+                self.forces[wheel.wheel] = law.given().unwrap_or(0.0);
             }
         }
     }
 
     fn assemble(&mut self, stepper: &Stepper) {
-        let wheels = self.points.len();
-        self.unknowns.clear();
-        for j in 0..wheels {
-            if self.laws[j].touches(self.indentations[j]) {
-                self.unknowns.push(Contact::Wheel(j));
-            } else {
-                self.forces[j] = self.laws[j].given().unwrap_or(0.0);
-            }
-        }
-        let closed = SupportPhase::Closed;
-        self.unknowns.extend((0..self.phases.len()).filter(|s| self.phases[*s] != closed).map(Contact::Support));
-        let order = self.unknowns.len();
-        self.matrix.resize(order * order, 0.0);
-        self.rhs.resize(order, 0.0);
-        for (r, row) in self.unknowns.iter().enumerate() {
-            for (c, column) in self.unknowns[..=r].iter().enumerate() {
-                self.matrix[r * order + c] = match (*row, *column) {
-                    (Contact::Wheel(j), Contact::Wheel(k)) => self.compliance[j * wheels + k],
-                    (Contact::Support(s), Contact::Wheel(j)) => {
-                        let (first, values) = &self.at_sleepers[j];
-                        values.get(s.wrapping_sub(*first)).copied().unwrap_or(0.0)
+        self.list_unknowns(stepper);
+        let Self { reach, unknowns, matrix, rhs, .. } = self;
+        matrix.clear();
+        rhs.clear();
+        for (r, contact) in unknowns.iter().enumerate() {
+            let (from, coupled) = match *contact {
+                Contact::Wheel(rank) => (reach.wheels[rank].from, self.row_of[reach.wheels[rank].vehicle_first]),
+                Contact::Support(s) => (stepper.of_sleeper[s].start, r),
+            };
+            let felt = self.ends[..r].iter().rev().take_while(|end| **end >= from).count();
+            let row = matrix.push_row((r - felt).min(coupled));
+            let first = r + 1 - row.len();
+            for (entry, other) in row.iter_mut().zip(&unknowns[first..]) {
+                *entry = match (*contact, *other) {
+                    (Contact::Wheel(p), Contact::Wheel(q)) => reach.compliance.get(p, q),
+                    (Contact::Support(s), Contact::Wheel(p)) | (Contact::Wheel(p), Contact::Support(s)) => {
+                        reach.wheels[p].at_sleeper(s)
                     }
                     (Contact::Support(s), Contact::Support(t)) => stepper.of_sleeper_at_sleepers[s].at(t),
-                    (Contact::Wheel(_), Contact::Support(_)) => 0.0, // supports come last
                 };
             }
-            let diagonal = &mut self.matrix[r * order + r];
-            self.rhs[r] = match *row {
-                Contact::Wheel(j) => {
+            let diagonal = &mut row[r - first];
+            rhs.push(match *contact {
+                Contact::Wheel(rank) => {
+                    let j = reach.wheels[rank].wheel;
                     let (flexibility, rest) = self.laws[j].line(self.indentations[j]);
                     *diagonal += flexibility;
                     self.free_indentations[j] - rest
@@ -293,35 +324,23 @@ impl Interface {
                     line.closure - self.free_gaps[s]
                 }
                 Contact::Support(s) => -self.free_gaps[s],
-            };
-        }
-        for (k, law) in self.laws.iter().enumerate() {
-            let Some(force) = law.given() else { continue };
-            let (first, values) = &self.at_sleepers[k];
-            for (r, row) in self.unknowns.iter().enumerate() {
-                self.rhs[r] -= force
-                    * match *row {
-                        Contact::Wheel(j) => self.compliance[j * wheels + k],
-                        Contact::Support(s) => values.get(s.wrapping_sub(*first)).copied().unwrap_or(0.0),
-                    };
-            }
+            });
         }
     }
 
     /// Indentations that follow from the forces; returns the worst wheel whose law is not met yet.
     fn move_wheels(&mut self, damping: f64) -> Option<usize> {
-        let wheels = self.points.len();
+        for (next, ranked) in self.next.iter_mut().zip(&self.reach.wheels) {
+            *next = self.free_indentations[ranked.wheel];
+        }
+        self.reach.compliance.subtract_product(&self.answers, &mut self.next);
+        let any_support = self.unknowns.iter().any(|u| matches!(u, Contact::Support(_)));
         let mut worst = (0.0, None);
-        for j in 0..wheels {
-            let mut next = self.free_indentations[j];
-            for k in 0..wheels {
-                next -= self.compliance[j * wheels + k] * self.forces[k];
-            }
-            for unknown in &self.unknowns {
-                if let Contact::Support(s) = *unknown {
-                    let (first, values) = &self.at_sleepers[j];
-                    next -= values.get(s.wrapping_sub(*first)).copied().unwrap_or(0.0) * self.corrections[s];
-                }
+        for (rank, ranked) in self.reach.wheels.iter().enumerate() {
+            let (j, mut next) = (ranked.wheel, self.next[rank]);
+            if any_support {
+                let (first, values) = &ranked.at_sleepers;
+                next -= values.iter().zip(&self.corrections[*first..]).map(|(a, q)| a * q).sum::<f64>();
             }
             let law = self.laws[j];
             let force = law.force(next);
@@ -329,7 +348,7 @@ impl Interface {
             let tolerance = FORCE_TOLERANCE * force.abs().max(1.0) + law.stiffness(next) * rounding;
             let error = (force - self.forces[j]).abs() - tolerance;
             if error > worst.0 {
-                worst = (error, Some(j));
+                worst = (error, Some(rank));
             }
             let now = self.indentations[j];
             let full = !matches!(law, WheelLaw::Hertz { .. }) || now <= 0.0 || next <= 0.0;
@@ -340,9 +359,9 @@ impl Interface {
 
     fn evaluate_gaps(&mut self, stepper: &Stepper) {
         self.gaps.copy_from_slice(&self.free_gaps);
-        for (force, (first, values)) in self.forces.iter().zip(&self.at_sleepers) {
+        for (force, ranked) in self.answers.iter().zip(&self.reach.wheels) {
             if *force != 0.0 {
-                add_scaled(&mut self.gaps[*first..], values, *force);
+                add_scaled(&mut self.gaps[ranked.at_sleepers.0..], &ranked.at_sleepers.1, *force);
             }
         }
         for unknown in &self.unknowns {

@@ -14,6 +14,17 @@ use super::view::{Observer, StepView};
 use super::{Loads, Motion, StaticState, SupportPhase, TrackError, TrackLevel, Train, WheelContact, solve_static};
 use std::ops::Range;
 
+/// A displacement of the track beyond this is beyond sense, m; a rotation, rad.
+const WILD_DISPLACEMENT: f64 = 1.0;
+/// A wheel force beyond this many static ones is beyond sense.
+const WILD_FORCE: f64 = 100.0;
+
+/// Whether a value makes sense; one that is not a number does not.
+#[inline]
+fn within(value: f64, limit: f64) -> bool {
+    value.abs() <= limit
+}
+
 /// Which train runs from where to where.
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
@@ -66,6 +77,8 @@ pub struct Passage<'a> {
     pub(super) support_forces: Vec<f64>,
     /// Each with its wheels among all.
     pub(super) vehicles: Vec<(RunningVehicle, Range<usize>)>,
+    /// Wheel forces beyond these are senseless, N; per wheel.
+    force_limits: Vec<f64>,
     steady: Vec<f64>,
     predicted: Vec<f64>,
     predicted_velocity: Vec<f64>,
@@ -130,7 +143,7 @@ impl<'a> Passage<'a> {
         let track = &stepper.track;
         let unloaded = solve_static(track, level, &Loads::default())?;
         let (mut vehicles, mut contacts) = (Vec::new(), Vec::new());
-        let mut wheel_positions: Vec<f64> = Vec::new();
+        let (mut wheel_positions, mut force_limits): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
         if let Some((run, _)) = &train {
             wheel_positions.extend(run.train.wheel_positions(run.start));
             let mut first = 0;
@@ -139,12 +152,17 @@ impl<'a> Passage<'a> {
                 let (gravity, scheme) = (track.model.gravity, &stepper.scheme);
                 let running = RunningVehicle::new(vehicle, gravity, scheme, displacement, velocity)?;
                 let of_wheels: Vec<WheelContact> = vehicle.wheels.iter().map(|w| w.contact).collect();
+                let load = vehicle.wheel_load(gravity);
+                force_limits.extend(vehicle.wheels.iter().map(|w| match w.contact {
+                    WheelContact::Given(_) => f64::INFINITY,
+                    _ => WILD_FORCE * load,
+                }));
                 contacts.push((of_wheels, running.wheel_compliance(scheme)));
                 vehicles.push((running, first..first + vehicle.wheels.len()));
                 first += vehicle.wheels.len();
             }
         }
-        let mut interface = Interface::new(&contacts, track.sleepers.len());
+        let mut interface = Interface::new(contacts, &wheel_positions, track.sleepers.len());
         interface.forces.copy_from_slice(&start.state.wheel_forces);
         interface.indentations.copy_from_slice(&start.state.indentations);
         for (point, x) in interface.points.iter_mut().zip(&wheel_positions) {
@@ -183,6 +201,7 @@ impl<'a> Passage<'a> {
             wheel_positions,
             support_forces,
             vehicles,
+            force_limits,
             steady: track.steady_forces(level),
             predicted: vec![0.0; order],
             predicted_velocity: vec![0.0; order],
@@ -233,6 +252,8 @@ impl<'a> Passage<'a> {
     }
 
     /// One time step; after an error the state is not to be used.
+    ///
+    /// Fails where the contacts do not settle, or where the motion has grown beyond sense.
     pub fn step(&mut self) -> Result<(), TrackError> {
         match self.choice.take() {
             Some(mut choice) => {
@@ -313,9 +334,10 @@ impl<'a> Passage<'a> {
             step: self.counters.steps,
             time,
             x: match contact {
-                Contact::Wheel(j) => self.wheel_positions[j],
+                Contact::Wheel(rank) => self.wheel_positions[self.interface.wheel_of(rank)],
                 Contact::Support(s) => track.sleepers.get(s).map_or(f64::NAN, |s| track.model.seats[s.seat].x),
             },
+            contact: self.interface.describe(contact),
         })?;
         self.counters.iterations += effort.iterations;
         self.counters.most_iterations = self.counters.most_iterations.max(effort.iterations);
@@ -333,29 +355,45 @@ impl<'a> Passage<'a> {
                 add_scaled(&mut a[column.start..], &column.values, per_displacement * q);
             }
         }
-        let mut sum = 0.0;
+        let mut wild = false;
         for i in 0..order {
             u[i] = predicted[i] + displacement_share * a[i];
             v[i] = predicted_velocity[i] + scheme.velocity_share() * a[i];
-            sum += u[i];
+            wild |= !within(u[i], WILD_DISPLACEMENT);
         }
         for (vehicle, wheels) in &mut self.vehicles {
             vehicle.finish(scheme, &self.interface.forces[wheels.clone()]);
-            sum += vehicle.displacement.iter().sum::<f64>();
         }
         for s in 0..self.support_forces.len() {
             self.support_forces[s] = self.interface.support_force(s);
         }
-        if !sum.is_finite() {
-            let x = self.wheel_positions.first().copied().unwrap_or(track.model.ends[0]);
-            return Err(TrackError::NotFinite { step: self.counters.steps, time, x });
+        let mut forces = self.interface.forces.iter().zip(&self.force_limits);
+        if let Some(j) = forces.position(|(force, limit)| !within(*force, *limit)) {
+            let (step, x, value) = (self.counters.steps, self.wheel_positions[j], self.interface.forces[j]);
+            return Err(TrackError::Unstable { step, time, x, what: "a wheel force", value, unit: "N" });
+        }
+        if wild {
+            return Err(self.wild_displacement(time));
         }
         Ok(())
     }
 
+    /// Names the first displacement beyond sense.
+    fn wild_displacement(&self, time: f64) -> TrackError {
+        let track = &self.stepper.track;
+        let unknown = self.displacement.iter().position(|u| !within(*u, WILD_DISPLACEMENT)).unwrap_or(0);
+        TrackError::Unstable {
+            step: self.counters.steps,
+            time,
+            x: track.place_of(unknown),
+            what: "a displacement",
+            value: self.displacement[unknown],
+            unit: "m",
+        }
+    }
+
     /// Kinetic and potential energy of the track, J, from the track as built without weight.
-    #[cfg(test)]
-    pub(super) fn energy(&self) -> f64 {
+    pub fn energy(&self) -> f64 {
         let track = &self.stepper.track;
         let quadratic = |matrix: &crate::linalg::banded::SymmetricBanded, x: &[f64]| {
             let mut product = vec![0.0; x.len()];

@@ -96,8 +96,8 @@ impl RunningVehicle {
             }
         }
         rest.fill(0.0);
-        for (j, force) in forces.iter().enumerate() {
-            for (a, inverse) in rest.iter_mut().zip(&self.inverse[j * n..(j + 1) * n]) {
+        for (column, force) in self.inverse.chunks_exact(n.max(1)).zip(forces.iter()) {
+            for (a, inverse) in rest.iter_mut().zip(column) {
                 *a += inverse * force;
             }
         }

@@ -32,6 +32,17 @@ pub enum SupportPhase {
     Open,
 }
 
+impl SupportPhase {
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            SupportPhase::Closed => "closed",
+            SupportPhase::Seating => "seating",
+            SupportPhase::Touching => "touching",
+            SupportPhase::Open => "open",
+        }
+    }
+}
+
 /// A support whose stiffness grows once: before `closure` it is less.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Seating {

@@ -7,6 +7,7 @@
 
 mod standing;
 mod state;
+mod wandering;
 
 use self::standing::StandingTrain;
 use self::state::describe;
@@ -14,6 +15,7 @@ use super::mesh::{FootUnknown, Track};
 use super::{SupportPhase, TrackError, TrackLevel, Train};
 use crate::linalg::banded::BandedFactor;
 pub use state::{Balance, StaticState};
+pub use wandering::standing_deflections;
 
 /// What stands on the track besides its own weight.
 #[derive(Debug, Clone, Copy, Default)]

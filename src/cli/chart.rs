@@ -1,0 +1,163 @@
+//! `trackbed chart`: what a passage costs and how exact it is, over integrators, steps, meshes and beam theories.
+
+use super::scene::SceneArguments;
+use super::study::{self, Subject};
+use super::{Format, Outcome, progress, terminal};
+use crate::report;
+use crate::study::chart::{Request, chart};
+use crate::study::{Chart, Outcome as Ended, Sweep, Variant, chart_csv};
+use crate::units::number;
+use std::path::PathBuf;
+
+/// Chart the error of a passage against its time
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Where `chart.csv` and `chart.svg` go.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Let so many axles settle the track first; the whole traffic where absent.
+    #[arg(long, value_name = "AXLES")]
+    after: Option<u64>,
+    /// How often the scene's time step is halved.
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=8))]
+    halvings: u32,
+    #[arg(long, value_enum, default_value = "human")]
+    format: Format,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Outcome {
+    let compiled = match study::compile(&arguments.scene) {
+        Ok(compiled) => compiled,
+        Err(outcome) => return outcome,
+    };
+    let subject = match Subject::of(&compiled, "chart") {
+        Ok(subject) => subject,
+        Err(outcome) => return outcome,
+    };
+    let bar = progress::share();
+    let settled = {
+        bar.set_message("the scene's own run");
+        let settled = subject.settled(arguments.after, &mut |done, all| progress::at(&bar, done, all));
+        match settled {
+            Ok(settled) => settled,
+            Err(outcome) => {
+                bar.finish_and_clear();
+                return outcome;
+            }
+        }
+    };
+    bar.reset();
+    bar.set_message("passages");
+    let request = Request { halvings: arguments.halvings };
+    let (graph, blocks) = (subject.graph, subject.blocks);
+    let charted = chart(graph, blocks, &settled, &subject.scenario.title, request, &mut |done, all| {
+        progress::at(&bar, done, all);
+    });
+    bar.finish_and_clear();
+    let chart = match charted {
+        Ok(chart) => chart,
+        Err(cause) => return subject.failed(cause, settled.axles),
+    };
+    let files = [("chart.csv", chart_csv(&chart)), ("chart.svg", report::chart_svg(&chart))];
+    if let Err(outcome) = study::write(arguments.out.as_deref(), &files) {
+        return outcome;
+    }
+    match arguments.format {
+        Format::Human => terminal::out(&text(&chart)),
+        Format::Json => return study::json(&chart),
+    }
+    Outcome::Fine
+}
+
+fn text(chart: &Chart) -> String {
+    let mut out = format!(
+        "{}: one passage after {} axles, {} seats lose contact\n\n",
+        chart.title, chart.axles, chart.losing_contact
+    );
+    out += &format!(
+        "  {:<24}{:>9} {:>4}  {:<11}{:>9}{:>10}{:>10}{:>10}{:>10}\n",
+        "integrator", "step ms", "el.", "beam", "time s", "wheel", "seat", "loss", "moment"
+    );
+    let settled = chart.points.iter().filter(|p| p.level == crate::study::Level::Settled);
+    for point in settled {
+        let v = &point.variant;
+        let mark = match (point.default, point.efficient) {
+            (true, _) => "*",
+            (_, true) => "+",
+            _ if point.sweep == Sweep::Reference => "=",
+            _ => " ",
+        };
+        out += &format!(
+            "{mark} {:<24}{:>9} {:>4}  {:<11}{:>9}",
+            v.method.to_string(),
+            number(v.time_step * 1e3),
+            v.elements_per_bay,
+            v.beam.to_string(),
+            format!("{:.4}", point.outcome.seconds())
+        );
+        match &point.outcome {
+            Ended::Done { errors, .. } => {
+                let loss = errors.contact_loss.unwrap_or(errors.contact_loss_s);
+                for error in [errors.wheel_force, errors.seat_load, loss, errors.rail_moment] {
+                    out += &format!("{:>10}", share(error));
+                }
+            }
+            Ended::Unstable { reason, .. } => out += &format!("  unstable: {reason}"),
+            Ended::Failed { reason, .. } => out += &format!("  failed: {reason}"),
+        }
+        out.push('\n');
+    }
+    out += "  * the scene's own, + nothing cheaper has a smaller error of the wheel force, = reference\n\n";
+    out += "order in the time step                    springs back   as built   settled\n";
+    for order in &chart.orders {
+        let shown = |order: Option<f64>| order.map_or("-".to_owned(), |o| format!("{o:.2}"));
+        out += &format!(
+            "  {:<42}{:>12}{:>11}{:>10}\n",
+            order.method.to_string(),
+            shown(order.released),
+            shown(order.as_built),
+            shown(order.settled)
+        );
+    }
+    out += "  springs back: the rail let go from a small force; as built, settled: wheel forces of the finest three steps\n";
+    if let Some(model) = &chart.model_error {
+        out += &format!(
+            "\nEuler against Timoshenko: wheel force {}, seat load {}, rail moment {}\n",
+            share(model.wheel_force),
+            share(model.seat_load),
+            share(model.rail_moment)
+        );
+    }
+    out += "\ncheapest with an error below\n";
+    for row in &chart.cheapest {
+        let what = match (&row.variant, row.seconds) {
+            (Some(v), Some(seconds)) => format!("{} ({seconds:.4} s)", spelled(v)),
+            _ => "none of these".to_owned(),
+        };
+        out += &format!("  {:<18}{:>7}  {what}\n", row.quantity, share(row.tolerance));
+    }
+    out
+}
+
+/// As `solve` spells it.
+fn spelled(v: &Variant) -> String {
+    format!(
+        "integrator = {}, time_step = {} s, elements_per_bay = {}",
+        v.method,
+        number(v.time_step),
+        v.elements_per_bay
+    )
+}
+
+fn share(error: f64) -> String {
+    let percent = 100.0 * error;
+    if percent == 0.0 {
+        "0 %".into()
+    } else if percent < 0.01 {
+        format!("{percent:.1e} %")
+    } else {
+        format!("{percent:.2} %")
+    }
+}

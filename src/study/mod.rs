@@ -1,0 +1,19 @@
+//! Studies of a scene: what its numerics cost and how exact they are, and where they fail.
+//!
+//! [`chart`] runs one passage over the settled track with many numerics and sets error against time; [`stability`] tries
+//! numerics, contacts and voids that no scene should have, and a list of hard scenes, and says of each how it ends.
+
+pub mod chart;
+mod clock;
+mod settled;
+pub mod stability;
+mod stress;
+mod tables;
+mod variant;
+
+pub use chart::{Chart, Level, Outcome, Point, Request, Sweep};
+pub use settled::{NotSettled, Settled, settled};
+pub use stability::{Cell, Map, Stability, Verdict, Void};
+pub use stress::Stress;
+pub use tables::{chart_csv, stability_csv};
+pub use variant::{Case, Errors, Failure, METHODS, Measured, Prepared, Variant};

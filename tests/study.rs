@@ -1,0 +1,132 @@
+//! `trackbed chart` and `trackbed stability` from end to end, on a scene that passes in a moment.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// 21 m of track under one wagon.
+const SMALL: &str = r#"
+use std
+scenario { title = "small", allow = [stiffness_jump: "small", track_too_short: "small"] }
+trackform open {
+  rail = rails.UIC60
+  pad = pads.ahmadi_2026
+  sleeper = sleepers.B70
+  spacing = 0.6 m
+  support = { stiffness = 50 MN/m per seat, damping_time = 1 ms }
+}
+trackform stiff : open { sleeper = none, support = none, slab = slabs.half_width_1600 }
+track line { sections = [open: 12 m, stiff: 9 m] }
+train ore { vehicles = vehicles.ore_wagon_20t, speed = 200 km/h }
+traffic { trains = ore, total = 40 axles }
+solve { update_every = 8 axles, elements_per_bay = 2, time_step = 2e-4 s }
+"#;
+
+fn trackbed(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_trackbed")).args(arguments).env("NO_COLOR", "1").output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+fn scene(dir: &Path, text: &str) -> PathBuf {
+    let path = dir.join("small.track");
+    fs::write(&path, text).unwrap();
+    path
+}
+
+/// Rows of a table, each as its fields by name.
+fn rows(path: &Path) -> Vec<std::collections::HashMap<String, String>> {
+    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
+}
+
+fn check_picture(path: &Path) -> String {
+    let svg = fs::read_to_string(path).unwrap();
+    roxmltree::Document::parse(&svg).unwrap();
+    assert!(!svg.contains("NaN"));
+    svg
+}
+
+#[test]
+fn a_chart_sets_error_against_time() {
+    let dir = tempfile::tempdir().unwrap();
+    let (file, out) = (scene(dir.path(), SMALL), dir.path().join("out"));
+    let (file, out_text) = (file.to_str().unwrap(), out.to_str().unwrap());
+    let output = trackbed(&["chart", file, "--after", "16", "--halvings", "2", "--out", out_text, "--format", "json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+
+    let rows = rows(&out.join("chart.csv"));
+    let number = |row: &std::collections::HashMap<String, String>, name: &str| row[name].parse::<f64>().unwrap();
+    for row in rows.iter().filter(|r| r["sweep"] == "reference") {
+        assert_eq!(number(row, "wheel_force_error"), 0.0);
+        assert_eq!(number(row, "seat_load_error"), 0.0);
+    }
+    assert_eq!(rows.iter().filter(|r| r["sweep"] == "reference" && r["level"] == "settled").count(), 2);
+    let own: Vec<_> = rows.iter().filter(|r| r["default"] == "yes" && r["level"] == "settled").collect();
+    assert_eq!(own.len(), 1);
+    assert_eq!((own[0]["integrator"].as_str(), own[0]["elements_per_bay"].as_str()), ("generalised_alpha(0.85)", "2"));
+    let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(answer["axles"], 16);
+    let orders = answer["orders"].as_array().unwrap();
+    assert_eq!(orders.len(), 5);
+    for order in orders {
+        let smooth = order["released"].as_f64().unwrap();
+        assert!((1.7..2.3).contains(&smooth), "{order}");
+    }
+    let picture = check_picture(&out.join("chart.svg"));
+    assert!(picture.contains("the scene&#39;s own numerics") && picture.contains("newmark"));
+}
+
+#[test]
+fn nothing_is_silently_wrong() {
+    let dir = tempfile::tempdir().unwrap();
+    let (file, out) = (scene(dir.path(), SMALL), dir.path().join("out"));
+    let output = trackbed(&["stability", file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let rows = rows(&out.join("stability.csv"));
+    assert_eq!(rows.iter().filter(|r| r["trial"] == "map").count(), 5 * 4 * 4 * 7);
+    assert!(rows.iter().filter(|r| r["trial"] != "map").count() > 30);
+    for row in &rows {
+        assert_ne!(row["verdict"], "wrong", "{row:?}");
+        // what is not right has a code
+        assert!(row["verdict"] == "stable" || row["code"].len() == 5, "{row:?}");
+    }
+    let ends = |trial: &str| rows.iter().find(|r| r["trial"] == trial).unwrap_or_else(|| panic!("no {trial}"));
+    assert_eq!(ends("the scene as it is")["verdict"], "stable");
+    assert_eq!(ends("a step of two elements' transit")["code"], "E0603");
+    assert_eq!(ends("no gravity")["code"], "E0801");
+    check_picture(&out.join("stability.svg"));
+}
+
+#[test]
+fn a_study_needs_trains_and_known_counts() {
+    let output = trackbed(&["chart", "scenarios/static_check.track"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(said(&output).contains("E0701"), "{}", said(&output));
+
+    let dir = tempfile::tempdir().unwrap();
+    let file = scene(dir.path(), SMALL);
+    let output = trackbed(&["chart", file.to_str().unwrap(), "--after", "12"]);
+    assert_eq!(output.status.code(), Some(1));
+    let text = said(&output);
+    assert!(text.contains("E0702") && text.contains("`--after 8` or `--after 16`"), "{text}");
+}
+
+#[test]
+fn a_run_that_fails_names_the_block_of_the_scene() {
+    let dir = tempfile::tempdir().unwrap();
+    // a soft track, and a train that outruns its waves
+    let text = SMALL
+        .replace("50 MN/m per seat", "1 MN/m per seat")
+        .replace("200 km/h", "450 km/h")
+        .replace("open: 12 m, stiff: 9 m", "open: 36 m, stiff: 24 m")
+        .replace("track_too_short: \"small\"", "critical_speed: \"small\"");
+    let file = scene(dir.path(), &text);
+    let out = dir.path().join("out");
+    let output = trackbed(&["run", file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(1));
+    let text = said(&output);
+    assert!(text.contains("E0703") && text.contains("at this speed") && text.contains("225 km/h"), "{text}");
+    assert!(!out.join("summary.json").exists());
+}
