@@ -103,7 +103,15 @@ const METHODS: [Method; 3] = [
     ("Newmark", Scheme::newmark),
 ];
 
+/// The dip of the oracle as a cubic of the solver.
+fn parabola([start, length, depth]: [f64; 3]) -> Irregularity {
+    let curvatures = [-8.0 * depth / (length * length); 2];
+    Irregularity::cubics(vec![Cubic { ends: [start, start + length], values: [0.0; 2], curvatures }])
+}
+
 struct Study {
+    /// Smallest wheel force of the oracle, as a part of the static one, and the largest.
+    wheels: (f64, f64),
     /// Differences of the solver to the oracle for each method and time step.
     errors: Vec<Vec<[f64; 4]>>,
     /// Of the oracle to itself with a coarser tolerance.
@@ -112,14 +120,16 @@ struct Study {
     events: usize,
 }
 
-fn study(level_of: impl Fn(&TrackModel) -> TrackLevel, wagon: Vehicle, outputs: usize) -> Study {
+fn study(level_of: impl Fn(&TrackModel) -> TrackLevel, wagon: Vehicle, dip: Option<[f64; 3]>, outputs: usize) -> Study {
     let mut model = ballast(40);
+    model.irregularity = dip.map_or(Irregularity::default(), parabola);
     model.elements_per_bay = 2;
     let level = level_of(&model);
     let still = wagon.mass() * 9.81 / 4.0;
     let (_, start) = solved(&model, &level, wagon, METHODS[0].1(1e-4).unwrap(), 1);
     let oracle = |tolerance| {
-        let oracle = Oracle::new(&model, &level, wagon, START, SPEED);
+        let mut oracle = Oracle::new(&model, &level, wagon, START, SPEED);
+        oracle.dip = dip;
         integrated_in_time(oracle, start.clone(), tolerance, outputs)
     };
     let (reference, events) = oracle(1e-9);
@@ -139,7 +149,10 @@ fn study(level_of: impl Fn(&TrackModel) -> TrackLevel, wagon: Vehicle, outputs: 
         println!("  orders {:.2?}", [0, 1, 2].map(|of| order(&of_method, of)));
         errors.push(of_method.to_vec());
     }
-    Study { errors, own, events }
+    let forces = reference.wheels.iter().flatten().map(|force| force / still);
+    let wheels = forces.fold((f64::INFINITY, 0.0f64), |(low, high), force| (low.min(force), high.max(force)));
+    println!("wheel forces of the oracle: {wheels:.3?} of the static one");
+    Study { errors, own, events, wheels }
 }
 
 /// Slope of the straight line through the logarithms of the errors of the four smaller steps.
@@ -154,7 +167,7 @@ fn order(errors: &[[f64; 4]], of: usize) -> f64 {
 #[test]
 fn closed_contacts_are_of_second_order() {
     let light = Vehicle { car_body_mass: 9e3, car_body_inertia: 9e3 * 3.91 * 3.91, ..wagon() };
-    let found = study(TrackLevel::as_built, light, 700);
+    let found = study(TrackLevel::as_built, light, None, 700);
     assert_eq!(found.events, 0);
     assert!(found.own[0] < 1e-6, "the oracle's own error, found 1.1e-7");
     for errors in &found.errors {
@@ -177,7 +190,7 @@ fn lift_off_converges_to_the_exact_motion() {
         }
         level
     };
-    let found = study(voids, wagon(), 1300);
+    let found = study(voids, wagon(), None, 1300);
     assert!(found.events > 30, "found 37");
     assert!(found.own[0] < 1e-6, "the oracle's own error, found 7.9e-8");
     for errors in &found.errors {
@@ -190,5 +203,23 @@ fn lift_off_converges_to_the_exact_motion() {
         // A contact that switches within a step leaves an error of first order in what hangs on it.
         let orders = [0, 1, 2].map(|of| order(errors, of));
         assert!(orders[0] > 1.5 && orders[1] > 0.6 && orders[2] > 0.6, "found 1.76, 0.85, 0.88: {orders:?}");
+    }
+}
+
+/// Over a dip 0.9 m long and 4 mm deep wheels leave the rail and strike it with 3.6 times their static force.
+#[test]
+fn wheels_that_leave_the_rail() {
+    let found = study(TrackLevel::as_built, wagon(), Some([12.0, 0.9, 4e-3]), 500);
+    assert_eq!(found.wheels.0, 0.0, "a wheel lifts off");
+    assert!((found.wheels.1 - 3.61).abs() < 0.01, "found 3.61");
+    assert!(found.own[0] < 1e-6, "the oracle's own error, found 2.6e-8");
+    for errors in &found.errors {
+        let fine = errors[4];
+        assert!(fine[0] < 1.5e-2 && fine[1] < 1.5e-3, "found 8.4e-3 and 7.3e-4 at 6.25 us: {fine:?}");
+        for (dt, error) in TIME_STEPS.iter().zip(errors) {
+            assert!(error[3] < 3.0 * dt, "hanging differs by {:.2} steps, found up to 1.9", error[3] / dt);
+        }
+        let orders = [0, 1, 2].map(|of| order(errors, of));
+        assert!(orders[0] > 1.5 && orders[1] > 1.1 && orders[2] > 1.1, "found 1.73, 1.32, 1.36: {orders:?}");
     }
 }

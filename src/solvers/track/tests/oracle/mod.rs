@@ -36,6 +36,8 @@ pub struct Oracle {
     first_wheel: f64,
     speed: f64,
     pub carrying: Vec<bool>,
+    /// Start, length and depth (m) of a dip in the running surface, a parabola.
+    pub dip: Option<[f64; 3]>,
 }
 
 impl Oracle {
@@ -83,6 +85,7 @@ impl Oracle {
             inverse_mass: Band::factor(rows),
             nodes: elements + 1,
             carrying: vec![true; supports.len()],
+            dip: None,
             supports,
             wagon,
             gravity: model.gravity,
@@ -114,7 +117,11 @@ impl Oracle {
         let a = x - element as f64 * self.h;
         let n = cubics(a / self.h, self.h, 0);
         let rail: f64 = (0..4).map(|i| n[i] * u[2 * element + i]).sum();
-        let approach = u[self.unknowns() - 4 + wheel] - rail;
+        let surface = self.dip.map_or(0.0, |[start, length, depth]| {
+            let t = ((x - start) / length).clamp(0.0, 1.0);
+            4.0 * depth * t * (1.0 - t)
+        });
+        let approach = u[self.unknowns() - 4 + wheel] - rail - surface;
         let local = (a * (self.h - a) / self.h).powi(3) / (3.0 * self.bending_stiffness);
         let hertz = self.wagon.hertz;
         let mut d = approach.max(0.0);
