@@ -7,7 +7,7 @@ use trackbed::solvers::track::*;
 fn main() -> Result<(), TrackError> {
     let ends = [-42.0, 24.0];
     let seat = |x: f64, foot: Foot| Seat { x, pad_stiffness: 40e6, pad_damping: 5e3, foot };
-    let sleeper = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 50e3 };
+    let sleeper = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 50e3, seating: None };
     let mut seats: Vec<Seat> = (1..=69).rev().map(|i| seat(-0.6 * f64::from(i), sleeper)).collect();
     seats.extend((0..40).map(|i| seat(0.6 * f64::from(i), Foot::Slab)));
     let model = TrackModel {
@@ -25,6 +25,7 @@ fn main() -> Result<(), TrackError> {
         auxiliary_rails: Vec::new(),
         joints: Vec::new(),
         rail_ends: RailEnds::Clamped,
+        irregularity: Irregularity::default(),
         elements_per_bay: 4,
         gravity: 9.81,
     };
@@ -64,8 +65,9 @@ fn main() -> Result<(), TrackError> {
     for (direction, start, finish) in [(Direction::Forward, -27.0, 20.0), (Direction::Backward, 10.0, -30.0)] {
         for observed in [false, true] {
             let train = Train::single(vehicle, direction);
+            let run = Run { train: &train, start, finish, motion: &Motion::Constant(55.56) };
             let clock = Instant::now();
-            let mut passage = Passage::new(&stepper, &level, Run { train: &train, start, finish, speed: 55.56 })?;
+            let mut passage = Passage::new(&stepper, &level, run)?;
             let begun = clock.elapsed().as_secs_f64();
             let clock = Instant::now();
             let mut envelope = Envelope::default();

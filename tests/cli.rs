@@ -99,15 +99,53 @@ fn equal_runs_give_equal_bytes() {
         "max_rail_seat_load",
         "max_rail_moment",
         "max_contact_force",
+        "max_contact_pressure",
+        "max_rail_foot_stress",
+        "longitudinal_level_d1",
+        "longitudinal_level_d1_deviation",
+        "loaded_longitudinal_level_d1",
     ] {
         assert!(scalar(&a, name).is_finite(), "{name}");
     }
     assert_eq!(scalar(&a, "axles"), 40.0);
 }
 
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = SMALL.replace("speed = 200 km/h", "speed = 200 km/h, direction = both");
+    let scene = write(dir.path(), "both.track", &text.replace("update_every = 4 axles", "update_every = adaptive"));
+    let run = |threads: &str| {
+        let out = dir.path().join(threads);
+        let (scene, folder) = (scene.to_str().unwrap(), out.to_str().unwrap());
+        let output = trackbed(&["run", scene, "--out", folder, "--threads", threads]);
+        assert_eq!(code(&output), 0, "{}", said(&output));
+        let timings: Value = serde_json::from_slice(&fs::read(out.join("timings.json")).unwrap()).unwrap();
+        assert_eq!(timings["threads"], threads.parse::<f64>().unwrap());
+        out
+    };
+    same_results(&run("1"), &run("2"));
+    assert_eq!(code(&trackbed(&["run", scene.to_str().unwrap(), "--out", "nowhere", "--threads", "0"])), 2);
+}
+
+#[test]
+fn an_overshooting_run_says_so() {
+    let dir = tempfile::tempdir().unwrap();
+    let law = "law fresh : laws.varandas_2014 { form.gamma = 100 mm }\nsolve { law = fresh, update_every = 40 axles";
+    let scene = write(dir.path(), "fresh.track", &SMALL.replace("solve { update_every = 4 axles", law));
+    let out = dir.path().join("run");
+    let output = trackbed(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    assert!(said(&output).contains("E0807") && said(&output).contains("done again in halves"), "{}", said(&output));
+    assert!(scalar(&out, "overshot_blocks") > 0.0 && scalar(&out, "max_overshoot") > 0.0);
+    assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("done again in halves"));
+}
+
 /// Everything but `timings.json` is equal to the last bit.
 fn same_results(a: &Path, b: &Path) {
-    for name in ["summary.json", "sleepers.csv", "blocks.csv", "histories.parquet", "scenario.json", "report.html"] {
+    for name in
+        ["summary.json", "sleepers.csv", "blocks.csv", "rail.csv", "histories.parquet", "scenario.json", "report.html"]
+    {
         assert!(fs::read(a.join(name)).unwrap() == fs::read(b.join(name)).unwrap(), "{name} differs");
     }
 }
@@ -161,6 +199,63 @@ fn a_missed_expectation_is_named_and_sets_the_exit_code() {
     assert!(!said(&output).contains("expected `max(wheel_force)"), "{}", said(&output));
     let verdicts = summary(&out)["expectations"].clone();
     assert_eq!((verdicts[0]["met"].as_bool(), verdicts[1]["met"].as_bool()), (Some(false), Some(true)));
+}
+
+/// A table of numbers, column by column.
+fn columns(path: &Path) -> std::collections::HashMap<String, Vec<f64>> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let header = reader.headers().unwrap().clone();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let column = |i: usize| rows.iter().map(|row| row[i].parse().unwrap_or(f64::NAN)).collect();
+    header.iter().enumerate().map(|(i, name)| (name.to_owned(), column(i))).collect()
+}
+
+/// The rail's profile: its table, the responses made of it and what a scene without a `record` keeps.
+#[test]
+fn the_rail_is_profiled_and_a_record_is_not_needed() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = SMALL.lines().filter(|line| !line.starts_with("record")).collect::<Vec<_>>().join("\n");
+    let text = format!(
+        "{text}\nexpect {{\n that = [\n min(rail_stiffness, over = -4 .. -3 m) > 60 MN/m\n max(rail_stiffness) < 100 MN/m\n \
+         max(contact_pressure) < 0.5 MPa\n -3 m < place_of_max(contact_pressure) < 0 m\n \
+         max(rail_stiffness, after = 0 axles) > mean(rail_stiffness, after = 0 axles)\n ]\n}}\n"
+    );
+    let scene = write(dir.path(), "small.track", &text);
+    let out = dir.path().join("run");
+    let output = trackbed(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    let verdicts = summary(&out)["expectations"].clone();
+    assert_eq!(code(&output), 0, "{}\n{verdicts:#}", said(&output));
+
+    let rail = columns(&out.join("rail.csv"));
+    let after = |name: &str, axles: f64| -> Vec<f64> {
+        rail["axles"].iter().zip(&rail[name]).filter(|(a, _)| **a == axles).map(|(_, value)| *value).collect()
+    };
+    let (x, first, last) = (after("x_m", 0.0), after("stiffness_N_per_m", 0.0), after("stiffness_N_per_m", 40.0));
+    // four places in each bay, seats and the middles of bays among them
+    assert!(x.windows(2).all(|pair| (pair[1] - pair[0] - 0.15).abs() < 1e-9));
+    let at = |values: &[f64], place: f64| values[x.iter().position(|x| (x - place).abs() < 1e-9).unwrap()];
+    assert!(at(&first, -3.6) > at(&first, -3.3), "stiffer over a sleeper than between two");
+    // voids beside the slab make the track softer there, and no softer where nothing hangs
+    assert!(at(&last, -0.6) < 0.99 * at(&first, -0.6) && (at(&last, -4.8) / at(&first, -4.8) - 1.0).abs() < 0.01);
+    // the largest moment of the table is that of the summary, but for nodes between its places
+    let moments = after("max_moment_N_m", 40.0);
+    let largest = moments.iter().copied().fold(0.0, f64::max);
+    assert!((largest / scalar(&out, "max_rail_moment") - 1.0).abs() < 0.05);
+    assert!(scalar(&out, "longitudinal_level_d1") < scalar(&out, "max_settlement"));
+
+    let plan = summary(&out)["provenance"]["plan"].as_str().unwrap().to_owned();
+    assert!(plan.contains("pass record: histories at seats -13, -5, -3, -1, +1, +7"), "{plan}");
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    for id in [
+        "rail_stiffness",
+        "longitudinal_level",
+        "rail_moment",
+        "wheel_force",
+        "history_rail_seat_load",
+        "hanging_sleeper",
+    ] {
+        assert!(page.contains(&format!("<section id=\"{id}\">")), "{id}");
+    }
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! What a reader sees: every file in `tests/bad`, drawn; and that no span and no text upsets the drawing.
 
 use proptest::prelude::*;
+use std::path::Path;
+use trackbed::check::Modules;
 use trackbed::diag::render::{human, json};
 use trackbed::diag::{Code, Diagnostic, Severity, Sources, Span};
 use trackbed::syntax::parse;
@@ -22,6 +24,32 @@ fn bad_files_are_explained() {
         let text = std::fs::read_to_string(&path).unwrap();
         insta::assert_snapshot!(stem, drawn(name, &text));
     }
+}
+
+/// A survey with three mistakes.
+struct Survey;
+
+impl Modules for Survey {
+    fn read(&self, relative: &Path) -> Option<Vec<u8>> {
+        let rows = b"x_m,level_mm\n-12,0.4\n-6,0,9\n0,none\n-1,0.2\n12,0.1\n";
+        (relative == Path::new("survey.csv")).then(|| rows.to_vec())
+    }
+}
+
+#[test]
+fn profiles_and_their_files_are_explained() {
+    let text = r#"use std
+trackform open {
+  rail = rails.UIC60, pad = pads.medium, sleeper = sleepers.B70, spacing = 0.6 m
+  support    = { stiffness = [-12 .. -6 m: 40, -5 .. 0 m: ramp(40 .. 60 MN/m)] MN/m per seat }
+  settlement = [-19 .. -4 sleepers: 0 mm, -4 .. -1 sleepers: 3 mm]
+}
+trackform deck : open { sleeper = none, support = none, usp = usps.soft, settlement = 0 mm, slab = slabs.half_width_1600 }
+track line { sections = [open: 12 m, deck: 12 m], irregularity = file("survey.csv") }
+load jack { on = rail, at = -1 m, force = 100 kN per rail }
+"#;
+    let compiled = trackbed::compile("scene.track", text, &Survey, &[]);
+    insta::assert_snapshot!(human(&compiled.diagnostics, &compiled.sources, false, 100));
 }
 
 fn two_files() -> (Sources, Vec<Diagnostic>) {

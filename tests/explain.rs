@@ -7,16 +7,21 @@ use trackbed::diag::{Code, Severity};
 use trackbed::{Compiled, compile};
 
 /// Codes that no text alone can show, and what shows them instead.
-const RUN_TIME: [(Code, &str); 5] = [
+const RUN_TIME: [(Code, &str); 7] = [
     (Code::E0701, "a chart of a scene without trains: `tests/study.rs`"),
     (Code::E0702, "a chart after a count that is not known: `tests/study.rs`"),
     (Code::E0802, "a run into a directory that is taken: `tests/cli.rs`"),
     (Code::E0803, "a checkpoint of another scene: `a_checkpoint_of_another_scene_is_refused` below"),
     (Code::E0804, "a finished run that misses an expectation: `tests/cli.rs`"),
+    (Code::E0805, "a measured curve beside the scene: `tests/calibrate.rs`"),
+    (Code::E0806, "a measured curve beside the scene: `tests/calibrate.rs`"),
 ];
 
 /// Pages whose failing example is no scene: the bytes of the file are the mistake.
 const NOT_TEXT: [Code; 1] = [Code::E0102];
+
+/// Rules about what the language says and no solver computes yet: until then its scenes are refused.
+const NOT_YET: [Code; 1] = [Code::L1011];
 
 /// A fenced block: what stands behind the fence, and its lines.
 struct Block<'a> {
@@ -84,9 +89,14 @@ fn outcome(text: &str) -> Result<(), Code> {
     let view = trackbed::results::Tables {
         sleepers: &tables.sleepers,
         blocks: &tables.blocks,
+        rail: &tables.rail,
         histories: &histories,
         scalars: &scalars,
+        track: &scenario.track,
     };
+    if trackbed::results::BlockRow::overshoot(&tables.blocks).is_some() {
+        return Err(Code::E0807);
+    }
     let held = trackbed::results::verdicts(&scenario, view).iter().all(|v| v.met);
     if held { Ok(()) } else { Err(Code::E0804) }
 }
@@ -115,6 +125,10 @@ fn what_fails_gives_its_code_alone() {
             match block.kind {
                 "track" => {
                     let compiled = compiled(block.text);
+                    if NOT_YET.contains(code) {
+                        assert_eq!(codes(&compiled), [Code::E0411], "{code} can be tested now");
+                        continue;
+                    }
                     assert!(!codes(&compiled).is_empty(), "{code} finds nothing");
                     assert!(codes(&compiled).iter().all(|c| c == code), "{code}:\n{}", told(&compiled));
                     assert!(compiled.diagnostics.iter().all(|d| d.severity == code.severity()), "{code}");
@@ -138,7 +152,8 @@ fn what_passes_gives_nothing() {
             match block.kind {
                 "track" => {
                     let compiled = compiled(block.text);
-                    assert!(codes(&compiled).is_empty(), "{code}:\n{}", told(&compiled));
+                    let expected: &[Code] = if NOT_YET.contains(code) { &[Code::E0411] } else { &[] };
+                    assert_eq!(codes(&compiled), expected, "{code}:\n{}", told(&compiled));
                 }
                 "track run" => assert_eq!(outcome(block.text), Ok(()), "{code}"),
                 kind => assert_eq!(kind, "console", "{code}"),
@@ -149,7 +164,7 @@ fn what_passes_gives_nothing() {
 
 #[test]
 fn a_rule_can_be_allowed_and_denied() {
-    for code in Code::ALL {
+    for code in Code::ALL.iter().filter(|c| !NOT_YET.contains(c)) {
         let Some(rule) = code.rule() else { continue };
         let scene = blocks(parts(*code).0)[0].text;
         let allowed = compiled(&format!("{scene}\nscenario {{ allow = [{rule}: \"an example\"] }}\n"));

@@ -33,6 +33,7 @@ fn scene(kind: &str, entry: &str) -> String {
         ("rail", "rails.UIC60"),
         ("pad", "pads.medium"),
         ("sleeper", "sleepers.B70"),
+        ("usp", "none"),
         ("slab", "slabs.half_width_1600"),
         ("vehicle", "vehicles.ore_wagon_20t"),
         ("law", "laws.varandas_2014"),
@@ -42,9 +43,9 @@ fn scene(kind: &str, entry: &str) -> String {
     format!(
         "use std
 trackform open {{
-  rail = {}, pad = {}, sleeper = {}, spacing = 0.6 m, support = {{ stiffness = 40 MN/m per seat }}
+  rail = {}, pad = {}, sleeper = {}, spacing = 0.6 m, support = {{ stiffness = 40 MN/m per seat }}, usp = {}
 }}
-trackform deck : open {{ sleeper = none, support = none, slab = {} }}
+trackform deck : open {{ sleeper = none, support = none, usp = none, slab = {} }}
 track line {{ sections = [open: 90 m, deck: 60 m] }}
 train one {{ vehicles = [{}: 2], speed = 60 km/h }}
 traffic {{ trains = one, total = 400 axles }}
@@ -53,6 +54,7 @@ solve {{ law = {} }}
         part("rail"),
         part("pad"),
         part("sleeper"),
+        part("usp"),
         part("slab"),
         part("vehicle"),
         part("law"),
@@ -143,6 +145,8 @@ fn inside(kind: &Kind, fields: &str) -> String {
     match (kind.role, kind.name) {
         (Role::Nested, "primary_suspension") => format!("vehicle v {{ primary = {{ {fields} }} }}\n"),
         (Role::Nested, "secondary_suspension") => format!("vehicle v {{ secondary = {{ {fields} }} }}\n"),
+        (Role::Nested, "seating") => format!("support s {{ seating = {{ {fields} }} }}\n"),
+        (Role::Nested, "auxiliary_rails") => format!("trackform t {{ auxiliary_rails = {{ {fields} }} }}\n"),
         (Role::Nested, name) => format!("vehicle v {{ {name} = {{ {fields} }} }}\n"),
         (_, name) => format!("{name} x {{ {fields} }}\n"),
     }

@@ -6,7 +6,7 @@ use super::modules::ScopeId;
 use super::value::{Slot, Val};
 use crate::diag::{Code, Diagnostic, Span, or_list};
 use crate::scenario::Origin;
-use crate::schema::{self, Form, Measure};
+use crate::schema::{self, Form, Measure, Varies};
 use crate::syntax::tree::{Entry, Item, Name, UnitText, Value, ValueKind};
 use crate::units::{Dimension, number};
 use std::rc::Rc;
@@ -128,6 +128,19 @@ impl Checker<'_> {
                 Some(error)
             }
             Val::Text(_) if matches!(form, Form::Text) => Some(slot),
+            Val::Profile(shape) => {
+                let Form::Number(measure) = form else {
+                    self.wrong_form(form, "a profile along the track", path.span);
+                    return Some(error);
+                };
+                if measure.varies != Varies::Yes {
+                    self.wrong_form(form, "a profile along the track", path.span);
+                    return Some(error);
+                }
+                let held = self.rehold(measure, shape, path.span);
+                let value = held.map_or(Val::Error, |shape| Val::Profile(Rc::new(shape)));
+                Some(Slot { value, span: path.span, origin: self.origin(path.span, scope) })
+            }
             Val::Word { word, .. } if words.iter().any(|w| w.name == word.name) => Some(slot),
             _ => {
                 self.report(
@@ -151,7 +164,7 @@ impl Checker<'_> {
             (Form::Comparison, ValueKind::Compare { .. } | ValueKind::Path(_)) => {
                 self.comparison(value, scope).map(Val::Comparison)
             }
-            (Form::Number(measure), _) => self.number(measure, value, scope).map(Val::Number),
+            (Form::Number(measure), _) => self.number_or_profile(measure, value, scope),
             (Form::Integer { min, max }, _) => self.integer(*min, *max, value, scope).map(Val::Number),
             (Form::Interval(measure), _) => self.interval(measure, value, scope),
             (Form::Place, _) => self.place(value, scope).map(Val::Number),
@@ -241,7 +254,13 @@ impl Checker<'_> {
                     return self.hold(chosen, raw).map(Val::Number);
                 }
             }
-            Shape::Other => {}
+            Shape::Other => {
+                if let (Some(list), ValueKind::List { .. }) =
+                    (forms.iter().find(|f| matches!(f, Form::List(_))), &value.kind)
+                {
+                    return self.fit_form(list, value, scope);
+                }
+            }
         }
         if let ValueKind::Call { word, .. } = &value.kind {
             self.unknown_word(word, &form.words());
@@ -297,7 +316,7 @@ impl Checker<'_> {
 }
 
 /// Gives the unit after a list to a bare number in it.
-fn with_unit(value: &Value, unit: Option<&UnitText>) -> Value {
+pub(super) fn with_unit(value: &Value, unit: Option<&UnitText>) -> Value {
     let Some(unit_text) = unit else { return value.clone() };
     let kind = match &value.kind {
         ValueKind::Number { value: number, unit: None } => {

@@ -282,7 +282,14 @@ impl Places {
         if n.fract() != 0.0 {
             return None;
         }
-        self.counted(transition).find(|(_, number)| f64::from(*number) == n).map(|(i, _)| i)
+        let steps = n.abs() as usize;
+        let Some(boundary) = self.transitions.get(transition) else {
+            return steps.checked_sub(1).filter(|i| n > 0.0 && *i < self.seats.len());
+        };
+        let left = (n < 0.0) == (boundary.side == Side::SoftToStiff);
+        let seats = self.seats_of(if left { transition } else { transition + 1 });
+        let seat = if left { seats.end.checked_sub(steps) } else { (seats.start + steps).checked_sub(1) };
+        seat.filter(|i| steps > 0 && seats.contains(i))
     }
 
     /// Seats of the two sections beside a transition with their numbers from there; all from the left without one.

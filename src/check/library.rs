@@ -7,5 +7,6 @@ pub(super) const MODULES: &[(&str, &str)] = &[
     ("rails", include_str!("../../stdlib/rails.track")),
     ("slabs", include_str!("../../stdlib/slabs.track")),
     ("sleepers", include_str!("../../stdlib/sleepers.track")),
+    ("usps", include_str!("../../stdlib/usps.track")),
     ("vehicles", include_str!("../../stdlib/vehicles.track")),
 ];

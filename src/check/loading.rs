@@ -6,7 +6,7 @@ use super::track::given;
 use super::value::{Number, Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{
-    Given, Integrator, LawForm, Record as Kept, SettlementLaw, Solve, StaticLoad, Target, Traffic, Train, Update,
+    Beam, Given, Integrator, Record as Kept, Solve, StaticLoad, Target, TimeStep, Traffic, Train, Update,
 };
 use crate::units::{Dimension, number};
 
@@ -105,43 +105,22 @@ impl Checker<'_> {
         loads.into_iter().collect()
     }
 
-    fn law(&mut self, record: &Record) -> Option<SettlementLaw> {
-        let slot = record.get("form")?;
-        let Val::Word { arguments, .. } = &slot.value else { return None };
-        let argument = |name: &str| match arguments.get(name).map(|s| &s.value) {
-            Some(Val::Number(n)) => Some(n.of_rail()),
-            _ => None,
-        };
-        let range = |name: &str| match record.get(name).map(|s| &s.value) {
-            Some(Val::Range(a, b)) => Some((a.of_rail(), b.of_rail())),
-            _ => None,
-        };
-        Some(SettlementLaw {
-            name: record.name.clone(),
-            form: LawForm::Varandas {
-                alpha: argument("alpha")?,
-                beta: argument("beta")?,
-                gamma: argument("gamma")?,
-                reference_cycles: argument("reference_cycles")?,
-                reference_force: argument("reference_force")?,
-            },
-            loads: range("loads"),
-            cycles: range("cycles"),
-        })
-    }
-
     pub(super) fn solve(&mut self, record: &Record, places: &Option<Places>) -> Option<Solve> {
-        let law = record.record("law").cloned().and_then(|law| self.law(&law));
+        let laws = record.get("law").and_then(|slot| self.laws(slot));
         let update = record.get("update_every")?;
         let exchange = match &update.value {
             Val::Number(n) => self.whole_axles(n.value, update.span).map(|axles| Update::Fixed { axles }),
-            Val::Word { arguments, .. } => {
+            Val::Word { word, arguments } => {
                 let of = |name: &str| match arguments.get(name).map(|s| (&s.value, s.span)) {
                     Some((Val::Number(n), span)) => Some((n.value, span)),
                     _ => None,
                 };
-                let first = of("first").and_then(|(axles, span)| self.whole_axles(axles, span));
-                first.zip(of("ratio")).map(|(first, (ratio, _))| Update::Geometric { first, ratio })
+                if word.name == "adaptive" {
+                    self.adaptive(of("tolerance"), of("cap"))
+                } else {
+                    let first = of("first").and_then(|(axles, span)| self.whole_axles(axles, span));
+                    first.zip(of("ratio")).map(|(first, (ratio, _))| Update::Geometric { first, ratio })
+                }
             }
             _ => None,
         };
@@ -160,26 +139,41 @@ impl Checker<'_> {
             }
         };
         let (start, finish) = (place("start"), place("finish"));
-        let rho = match &record.get("integrator")?.value {
-            Val::Word { arguments, .. } => match arguments.get("rho")?.value {
-                Val::Number(n) => n.value,
-                _ => return None,
-            },
-            _ => return None,
+        let beam = Given {
+            value: if record.word("beam")? == "timoshenko" { Beam::Timoshenko } else { Beam::Euler },
+            origin: record.get("beam")?.origin,
         };
+        let (integrator, time_step) = (integrator(record), time_step(record));
         let elements = record.number("elements_per_bay")?;
+        let (law, other_laws) = laws?;
         Some(Solve {
-            law: law?,
+            law,
+            other_laws,
             update: exchange?,
             update_span: update.origin.span(),
-            integrator: Integrator::GeneralisedAlpha { rho },
+            integrator: integrator?,
+            beam,
             elements_per_bay: Given { value: elements.value as u32, origin: record.get("elements_per_bay")?.origin },
-            time_step: given(record, "time_step"),
+            time_step: time_step?,
             start: start?,
             finish: finish?,
             gravity: given(record, "gravity")?,
             seed: record.number("seed")?.value as u64,
         })
+    }
+
+    fn adaptive(&mut self, tolerance: Option<(f64, Span)>, cap: Option<(f64, Span)>) -> Option<Update> {
+        let (tolerance, of_error) = tolerance?;
+        if let Some((_, of_block)) = cap.filter(|(cap, _)| *cap < tolerance) {
+            self.report(
+                Diagnostic::new(Code::E0407, "a block may settle less than it may err")
+                    .at(of_error, "error of a block")
+                    .at(of_block, "settlement of a block")
+                    .help("make `cap` larger than `tolerance`, or leave it out"),
+            );
+            return None;
+        }
+        Some(Update::Adaptive { tolerance, cap: cap.map(|(cap, _)| cap) })
     }
 
     pub(super) fn kept(&mut self, record: &Record, places: &Option<Places>, traffic: Option<&Traffic>) -> Option<Kept> {
@@ -203,6 +197,7 @@ impl Checker<'_> {
             seats: seats?,
             after: after?,
             every: record.number("every").map(|n| n.value),
+            near: None,
         })
     }
 
@@ -276,4 +271,31 @@ impl Checker<'_> {
         let x = self.chainage(places, at, from, span)?;
         places.nearest_seat(x)
     }
+}
+
+/// A number among the arguments of a word.
+fn argument(record: &Record, field: &str, name: &str) -> Option<Given> {
+    let Val::Word { arguments, .. } = &record.get(field)?.value else { return None };
+    match arguments.get(name)? {
+        Slot { value: Val::Number(n), origin, .. } => Some(Given { value: n.value, origin: *origin }),
+        _ => None,
+    }
+}
+
+fn integrator(record: &Record) -> Option<Integrator> {
+    Some(match record.word("integrator")? {
+        "hht" => Integrator::Hht { alpha: *argument(record, "integrator", "alpha")? },
+        "newmark" => Integrator::Newmark,
+        _ => Integrator::GeneralisedAlpha { rho: *argument(record, "integrator", "rho")? },
+    })
+}
+
+fn time_step(record: &Record) -> Option<TimeStep> {
+    if let Some(step) = given(record, "time_step") {
+        return Some(TimeStep::Fixed(step));
+    }
+    Some(match record.word("time_step")? {
+        "adaptive" => TimeStep::Adaptive { tolerance: argument(record, "time_step", "tolerance")? },
+        _ => TimeStep::Auto,
+    })
 }

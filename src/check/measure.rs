@@ -9,27 +9,8 @@ use crate::schema::{Form, Measure};
 use crate::syntax::tree::{Value, ValueKind};
 use crate::units::{Dimension, Quantity, number, parse_unit};
 
-/// Words of profiles along the track, which this version does not read.
-const PROFILES: [&str; 4] = ["ramp", "smooth", "random", "file"];
-
 impl Checker<'_> {
     pub(super) fn number(&mut self, measure: &'static Measure, value: &Value, scope: ScopeId) -> Option<Number> {
-        let profile = match &value.kind {
-            ValueKind::Call { word, .. } => PROFILES.contains(&word.text.as_str()),
-            ValueKind::List { entries, .. } => entries.iter().any(|e| e.key.is_some()),
-            _ => false,
-        };
-        if profile {
-            let mistake = if measure.varies {
-                Diagnostic::new(Code::E0411, "this version does not read profiles along the track yet")
-                    .at(value.span, "planned")
-            } else {
-                Diagnostic::new(Code::E0406, "this value is one number; it cannot vary along the track")
-                    .at(value.span, "a profile")
-            };
-            self.report(mistake);
-            return None;
-        }
         let raw = self.raw(value, scope)?;
         self.hold(measure, raw)
     }

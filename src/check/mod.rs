@@ -4,23 +4,32 @@
 //! depends on it.
 
 mod arithmetic;
+mod columns;
 mod complete;
 mod expectation;
 mod fit;
 mod geometry;
+mod law;
 mod library;
 mod loading;
 mod measure;
+mod measured;
 mod modules;
 mod names;
 mod overrides;
+mod profile;
 mod records;
+mod seats;
+mod springs;
+mod table;
 mod track;
+mod trackform;
 mod value;
 mod vehicle;
 mod words;
 
-pub use modules::{Folder, Modules, NoModules};
+pub use measured::{MeasuredCurve, measured_curve};
+pub use modules::{DataError, Folder, LARGEST_DATA_FILE, Modules, NoModules};
 pub use overrides::Override;
 
 use crate::diag::{self, Code, Diagnostic, FileId, Sources, Span};
@@ -32,6 +41,7 @@ use modules::{Loader, Scope, ScopeId};
 use names::ItemId;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::rc::Rc;
+use table::Table;
 use value::{Record, Val};
 
 /// What became of a file: every diagnostic, and the scene where nothing stands against it.
@@ -66,6 +76,7 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
         used: BTreeSet::new(),
         defaults: HashMap::new(),
         numbers: HashMap::new(),
+        tables: HashMap::new(),
         reported: HashSet::new(),
         missing: Vec::new(),
         unreadable,
@@ -99,6 +110,8 @@ struct Checker<'a> {
     defaults: HashMap<&'static str, Rc<Value>>,
     /// Values of lets that are numbers.
     numbers: HashMap<ItemId, Option<arithmetic::Raw>>,
+    /// Data files by name, read once; `None` where they could not be.
+    tables: HashMap<String, Option<Rc<Table>>>,
     /// What has been reported, by code, message and place.
     reported: HashSet<(Code, String, Option<Span>)>,
     /// What objects lack, until all of them are known.
@@ -261,8 +274,8 @@ impl Checker<'_> {
         self.all(main, kind).into_iter().next()
     }
 
-    fn build(&mut self, main: ScopeId, track: &Record) -> Option<Scenario> {
-        let track = self.track(track);
+    fn build(&mut self, main: ScopeId, track_record: &Record) -> Option<Scenario> {
+        let track = self.track(track_record);
         let places = self.seat_places.clone();
         let traffic_record = self.only(main, "traffic");
         let traffic: Option<Traffic> = traffic_record.as_ref().and_then(|r| self.traffic(r));
@@ -270,6 +283,9 @@ impl Checker<'_> {
         let loads: Vec<Option<Vec<_>>> = load_records.iter().map(|r| self.loads(r, &places)).collect();
         let solve = self.only(main, "solve").unwrap_or_else(|| self.default_solve());
         let solve = self.solve(&solve, &places);
+        if let Some(solve) = &solve {
+            self.shear_stiffnesses(track_record, solve.beam);
+        }
         let records = self.all(main, "record");
         let records: Vec<Option<_>> = records.iter().map(|r| self.kept(r, &places, traffic.as_ref())).collect();
         let expectations = self.expectations(main);

@@ -9,11 +9,32 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Where `use site.gravel` finds `site/gravel.track`.
+/// Where `use site.gravel` finds `site/gravel.track`, and `file("level.csv")` its numbers.
 pub trait Modules {
     /// The bytes of a file below the main file's folder; `None` where there is none.
     fn read(&self, relative: &Path) -> Option<Vec<u8>>;
+
+    /// The bytes of a data file. `relative` has plain names only, no `..`; what a link makes of them is for the
+    /// implementation to refuse.
+    fn data(&self, relative: &Path) -> Result<Vec<u8>, DataError> {
+        self.read(relative).ok_or(DataError::Missing)
+    }
 }
+
+/// Why a data file is not read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum DataError {
+    Missing,
+    /// It does not lie below the main file's folder.
+    Outside,
+    /// Its size in bytes is above [`LARGEST_DATA_FILE`].
+    TooLarge(u64),
+    /// What the system says.
+    Unreadable(String),
+}
+
+/// Bytes of a data file, as of a text of the language.
+pub const LARGEST_DATA_FILE: u64 = 8 << 20;
 
 /// Modules in a folder.
 pub struct Folder(pub PathBuf);
@@ -21,6 +42,27 @@ pub struct Folder(pub PathBuf);
 impl Modules for Folder {
     fn read(&self, relative: &Path) -> Option<Vec<u8>> {
         std::fs::read(self.0.join(relative)).ok()
+    }
+
+    fn data(&self, relative: &Path) -> Result<Vec<u8>, DataError> {
+        let fail = |cause: std::io::Error| match cause.kind() {
+            std::io::ErrorKind::NotFound => DataError::Missing,
+            _ => DataError::Unreadable(cause.to_string()),
+        };
+        let folder = if self.0.as_os_str().is_empty() { Path::new(".") } else { &self.0 };
+        let folder = folder.canonicalize().map_err(fail)?;
+        let path = folder.join(relative).canonicalize().map_err(fail)?;
+        if !path.starts_with(&folder) {
+            return Err(DataError::Outside);
+        }
+        let about = path.metadata().map_err(fail)?;
+        if !about.is_file() {
+            return Err(DataError::Unreadable("it is no file".into()));
+        }
+        if about.len() > LARGEST_DATA_FILE {
+            return Err(DataError::TooLarge(about.len()));
+        }
+        std::fs::read(path).map_err(fail)
     }
 }
 
@@ -64,7 +106,7 @@ pub(super) struct Loader<'a> {
     pub sources: Sources,
     pub scopes: Vec<Scope>,
     pub diagnostics: Vec<Diagnostic>,
-    modules: &'a dyn Modules,
+    pub modules: &'a dyn Modules,
     /// Scopes by file; `None` while a file is being read.
     known: BTreeMap<String, Option<ScopeId>>,
     /// Files being read, each used by the one before it.

@@ -2,9 +2,11 @@
 
 use super::Checker;
 use super::geometry::{Places, Plan};
+use super::seats::{Along, Cover};
+use super::trackform::{Built, base_area};
 use super::value::{Number, Record, Val};
 use crate::diag::{Code, Diagnostic};
-use crate::scenario::{Foot, Given, Origin, Pad, Rail, RailEnds, Seat, Section, Side, Slab, Support, Track};
+use crate::scenario::{Curve, Given, Origin, Piece, Profile, RailEnds, Section, Side, Track};
 use crate::units::number;
 use std::rc::Rc;
 
@@ -38,7 +40,7 @@ impl Checker<'_> {
                 plans.push(Plan { name: form.name.clone(), spacing: spacing.value, length: *n, span: length.span });
             }
         }
-        let built: Vec<Option<Built>> = forms.iter().map(|form| self.trackform(form)).collect();
+        let built: Vec<Built> = forms.iter().map(|form| self.trackform(form)).collect();
         if plans.len() < pairs.len() || plans.is_empty() {
             if pairs.is_empty() {
                 self.report(
@@ -49,8 +51,27 @@ impl Checker<'_> {
         }
         let places = self.lay_out(&plans, &sides?)?;
         self.seat_places = Some(places.clone());
-        let built: Vec<Built> = built.into_iter().collect::<Option<_>>()?;
-        Some(assemble(record, &places, &forms, &built, &lengths))
+        let irregularity = self.irregularity(record, &places);
+        let mut seats = Vec::with_capacity(places.seats.len());
+        let mut sections = Vec::new();
+        let mut sound = true;
+        for (i, built) in built.iter().enumerate() {
+            let section = section(built, places.sections[i], lengths[i]);
+            let laid = self.seats(built, &places, i);
+            sound &= laid.is_some() && section.is_some();
+            seats.extend(laid.unwrap_or_default());
+            sections.extend(section);
+        }
+        let rail_ends = match record.word("rail_ends") {
+            Some("pinned") => RailEnds::Pinned,
+            Some("free") => RailEnds::Free,
+            Some("absorbing") => RailEnds::Absorbing,
+            _ => RailEnds::Clamped,
+        };
+        let irregularity = irregularity?;
+        let transitions = places.transitions;
+        let track = Track { name: record.name.clone(), sections, transitions, seats, rail_ends, irregularity };
+        Some(track).filter(|_| sound)
     }
 
     /// Name and side of every boundary.
@@ -111,77 +132,21 @@ impl Checker<'_> {
             .collect()
     }
 
-    fn trackform(&mut self, form: &Record) -> Option<Built> {
-        let rail = self.part(form, "rail", "to carry the wheels").and_then(|r| self.rail(&r));
-        let pad = self.part(form, "pad", "between rail and seat").and_then(|r| self.pad(&r));
-        let spacing = given(form, "spacing");
-        let sleeper = form.record("sleeper").cloned();
-        let slab = form.record("slab").cloned();
-        let foot = if let Some(slab_record) = &slab {
-            if let (Some(_), Some(slab), Some(slot)) = (&sleeper, form.get("slab"), form.get("sleeper")) {
-                self.report(
-                    Diagnostic::new(Code::E0407, format!("trackform `{}` has a slab and sleepers", form.name))
-                        .at(slab.span, "a slab")
-                        .at(slot.span, "and sleepers")
-                        .help("write `sleeper = none`: the pads stand on the slab"),
-                );
+    /// The level of the rail as built; `None` where it is not understood.
+    fn irregularity(&mut self, record: &Record, places: &Places) -> Option<Option<Profile>> {
+        let (start, end) = (places.sections.first()?.0, places.sections.last()?.1);
+        match self.along(record, "irregularity")? {
+            Along::Fixed(level) if *level == 0.0 => Some(None),
+            Along::Fixed(level) => {
+                let curve = Curve::constant(*level);
+                Some(Some(Profile { pieces: vec![Piece { start, end, curve }], origin: level.origin }))
             }
-            let slab = self.slab(slab_record)?;
-            return Some(Built {
-                rail: rail?,
-                pad: pad?,
-                spacing: spacing?,
-                slab: Some(slab),
-                foot: Foot::Slab,
-                sleeper: None,
-            });
-        } else if form.unknown("slab") {
-            None
-        } else if form.word("support") == Some("rigid") {
-            Some(Foot::Rigid)
-        } else {
-            let mass = self.part(form, "sleeper", "or a slab, under the pads").and_then(|s| given(&s, "mass"));
-            let support = self.part(form, "support", "under the sleepers").and_then(|s| self.support(&s));
-            mass.zip(support).map(|(mass, support)| Foot::Sleeper { mass, support })
-        };
-        Some(Built { rail: rail?, pad: pad?, spacing: spacing?, slab: None, foot: foot?, sleeper })
-    }
-
-    /// A part that a trackform cannot do without.
-    fn part(&mut self, form: &Record, name: &str, why: &str) -> Option<Rc<Record>> {
-        if let Some(record) = form.record(name) {
-            return Some(record.clone());
+            Along::Varies(shape, origin) => {
+                let what = format!("the irregularity of track `{}`", record.name);
+                let cover = Cover { what, start, end, seats: None, smooth: true };
+                self.profile(&shape, origin, places, &cover).map(Some)
+            }
         }
-        if !form.unknown(name) {
-            let span = form.get(name).map_or(form.span, |slot| slot.span);
-            let mistake = Diagnostic::new(Code::E0403, format!("trackform `{}` needs a `{name}` {why}", form.name))
-                .at(span, "not given");
-            self.lacks(form, name, mistake);
-        }
-        None
-    }
-
-    fn rail(&mut self, record: &Record) -> Option<Rail> {
-        let product = |a: &str, b: &str| {
-            let (a, b) = (given(record, a)?, given(record, b)?);
-            Some(Given::derived(*a * *b))
-        };
-        let mass = self.agree(
-            record,
-            "mass",
-            &[("mass", given(record, "mass")), ("density * area", product("density", "area"))],
-            "kg/m",
-        );
-        let stiffness = self.agree(
-            record,
-            "bending stiffness",
-            &[
-                ("bending_stiffness", given(record, "bending_stiffness")),
-                ("youngs_modulus * second_moment", product("youngs_modulus", "second_moment")),
-            ],
-            "MN m^2",
-        );
-        Some(Rail { mass: mass?, bending_stiffness: stiffness?, height: record.number("height")?.value })
     }
 
     /// The first of several ways to say one thing; those that are given must agree within 2 %.
@@ -210,89 +175,23 @@ impl Checker<'_> {
         }
         Some(first)
     }
-
-    fn pad(&mut self, record: &Record) -> Option<Pad> {
-        let stiffness = given(record, "stiffness")?;
-        Some(Pad { stiffness, damping: self.damping(record, stiffness)? })
-    }
-
-    fn support(&mut self, record: &Record) -> Option<Support> {
-        let stiffness = given(record, "stiffness")?;
-        Some(Support { stiffness, damping: self.damping(record, stiffness)? })
-    }
-
-    /// `damping`, or `damping_time` times the stiffness.
-    fn damping(&mut self, record: &Record, stiffness: Given) -> Option<Given> {
-        let by_time = record.number("damping_time").map(|t| {
-            let origin = record.get("damping_time").map_or(Origin::Derived, |s| s.origin);
-            Given { value: t.value * *stiffness, origin }
-        });
-        self.agree(
-            record,
-            "damping",
-            &[("damping", given(record, "damping")), ("damping_time * stiffness", by_time)],
-            "kN s/m",
-        )
-    }
-
-    fn slab(&mut self, record: &Record) -> Option<Slab> {
-        let stiffness = given(record, "foundation_stiffness")?;
-        let time = given(record, "foundation_damping_time")?;
-        Some(Slab {
-            bending_stiffness: given(record, "bending_stiffness")?,
-            mass: given(record, "mass")?,
-            foundation_stiffness: stiffness,
-            foundation_damping: Given { value: *time * *stiffness, origin: time.origin },
-        })
-    }
 }
 
-/// A trackform as built.
-struct Built {
-    rail: Rail,
-    pad: Pad,
-    spacing: Given,
-    slab: Option<Slab>,
-    foot: Foot,
-    sleeper: Option<Rc<Record>>,
-}
-
-fn assemble(record: &Record, places: &Places, forms: &[Rc<Record>], built: &[Built], lengths: &[Origin]) -> Track {
-    let size = |r: &Rc<Record>| {
-        let of = |f: &str| r.number(f).map(|n: Number| n.value);
-        Some([of("length")?, of("base_width")?, of("height")?])
-    };
-    let sections = built
-        .iter()
-        .zip(forms)
-        .zip(places.sections.iter().zip(lengths))
-        .map(|((b, form), (&(start, end), length_origin))| Section {
-            name: form.name.clone(),
-            start,
-            end,
-            length_origin: *length_origin,
-            rail: b.rail.clone(),
-            spacing: b.spacing,
-            slab: b.slab.clone(),
-            sleeper_size: b.sleeper.as_ref().and_then(size),
-        })
-        .collect();
-    let seats = places
-        .seats
-        .iter()
-        .map(|&(x, section, transition, number)| Seat {
-            number,
-            transition,
-            x,
-            section,
-            pad: built[section].pad.clone(),
-            foot: built[section].foot.clone(),
-        })
-        .collect();
-    let rail_ends = match record.word("rail_ends") {
-        Some("pinned") => RailEnds::Pinned,
-        Some("free") => RailEnds::Free,
-        _ => RailEnds::Clamped,
-    };
-    Track { name: record.name.clone(), sections, transitions: places.transitions.clone(), seats, rail_ends }
+/// What a section is made of, as far as it does not vary.
+fn section(built: &Built, (start, end): (f64, f64), length_origin: Origin) -> Option<Section> {
+    let sleeper = |field: &str| built.sleeper.as_ref()?.number(field).map(|n: Number| n.value);
+    let size = || Some([sleeper("length")?, sleeper("base_width")?, sleeper("height")?]);
+    Some(Section {
+        name: built.name.clone(),
+        start,
+        end,
+        length_origin,
+        rail: built.rail.clone()?,
+        spacing: built.spacing?,
+        slab: built.slab.clone(),
+        sleeper_size: size(),
+        sleeper_base_area: built.sleeper.as_ref().and_then(|r| base_area(r)),
+        seat_distance: sleeper("seat_distance"),
+        auxiliary_rails: built.auxiliary_rails.clone()?,
+    })
 }

@@ -1,5 +1,6 @@
 //! Checked values: what a field holds once its text has been understood.
 
+use super::profile::Shape;
 use crate::diag::Span;
 use crate::scenario::Origin;
 use crate::scenario::response::{Expectation, Response};
@@ -28,6 +29,8 @@ pub(super) enum Val {
     List(Vec<Slot>),
     Pairs(Vec<(Slot, Slot)>),
     Range(Number, Number),
+    /// A number that varies along the track.
+    Profile(Rc<Shape>),
     Response(Response),
     Comparison(Expectation),
     /// `?`, reported as a warning.
@@ -46,6 +49,7 @@ impl Val {
             Val::Record(_) => "an object",
             Val::List(_) | Val::Pairs(_) => "a list",
             Val::Range(..) => "a range",
+            Val::Profile(_) => "a profile along the track",
             Val::Response(_) => "a response",
             Val::Comparison(_) => "a comparison",
             Val::Hole => "a hole",

@@ -2,10 +2,11 @@
 //! rail.
 
 use super::Checker;
+use super::seats::{Along, Cover};
 use super::track::given;
 use super::value::{Record, Val};
 use crate::diag::{Code, Diagnostic};
-use crate::scenario::{Direction, Given, Origin, Train, Vehicle};
+use crate::scenario::{Direction, Given, Origin, Profile, Train, Vehicle};
 use crate::units::{Dimension, number};
 
 /// Turns an axle load stated as a force into a mass, m/s^2.
@@ -126,7 +127,27 @@ impl Checker<'_> {
         Some(Given { value: derived, origin: Origin::Derived })
     }
 
+    /// The largest speed, and where it varies its course along the whole track.
+    fn speed(&mut self, record: &Record) -> Option<(Given, Option<Profile>)> {
+        match self.along(record, "speed")? {
+            Along::Fixed(speed) => Some((speed, None)),
+            Along::Varies(shape, origin) => {
+                let places = self.seat_places.clone()?;
+                let (start, end) = (places.sections.first()?.0, places.sections.last()?.1);
+                let what = format!("the speed of train `{}`", record.name);
+                let cover = Cover { what, start, end, seats: None, smooth: false };
+                let profile = self.profile(&shape, origin, &places, &cover)?;
+                // straight or level between knots, so that no greater speed lies between them
+                let knots =
+                    profile.pieces.iter().flat_map(|piece| piece.knots().into_iter().map(|x| piece.curve.value(x)));
+                let value = knots.fold(0.0, f64::max);
+                Some((Given { value, origin }, Some(profile)))
+            }
+        }
+    }
+
     pub(super) fn train(&mut self, record: &Record) -> Option<Train> {
+        let speed = self.speed(record);
         let Val::Pairs(pairs) = &record.get("vehicles")?.value else { return None };
         let mut vehicles = Vec::new();
         let mut sound = true;
@@ -166,6 +187,7 @@ impl Checker<'_> {
             "both" => Direction::Both,
             _ => Direction::Forward,
         };
-        Some(Train { name: record.name.clone(), vehicles, speed: given(record, "speed")?, direction })
+        let (speed, speed_profile) = speed?;
+        Some(Train { name: record.name.clone(), vehicles, speed, speed_profile, direction })
     }
 }

@@ -94,7 +94,7 @@ fn text(chart: &Chart) -> String {
             v.method.to_string(),
             number(v.time_step * 1e3),
             v.elements_per_bay,
-            v.beam.name(),
+            v.beam.to_string(),
             format!("{:.4}", point.outcome.seconds())
         );
         match &point.outcome {

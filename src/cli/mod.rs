@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 all is well, 1 the scene or its run has errors, 2 the command was used wrongly.
 
+mod calibrate;
 mod chart;
 mod check;
 mod docs;
@@ -33,6 +34,7 @@ enum Command {
     Check(check::Arguments),
     Plan(plan::Arguments),
     Run(run::Arguments),
+    Calibrate(calibrate::Arguments),
     Report(report::Arguments),
     Chart(chart::Arguments),
     Stability(stability::Arguments),
@@ -73,6 +75,7 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),
         Command::Stability(arguments) => stability::run(&arguments),

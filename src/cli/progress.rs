@@ -10,7 +10,7 @@ pub(super) fn bar() -> ProgressBar {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(1).with_style(
-        ProgressStyle::with_template("{spinner} {bar:32} {pos}/{len} passages, {eta} left")
+        ProgressStyle::with_template("{spinner} {bar:32} {pos}/{len} blocks, {eta} left")
             .unwrap_or_else(|_| ProgressStyle::default_bar()),
     );
     bar.set_draw_target(ProgressDrawTarget::stderr());

@@ -4,7 +4,7 @@ use super::scene::{SceneArguments, failed, not_yet, show};
 use super::{Outcome, progress, report, terminal};
 use crate::diag::{Code, Diagnostic, render};
 use crate::graph::{self, Graph};
-use crate::results::{self, Provenance, Run, RunRecorder, Store, Summary, checkpoint};
+use crate::results::{self, BlockRow, Provenance, Run, RunRecorder, Store, Summary, checkpoint};
 use crate::scenario::Scenario;
 use crate::units::number;
 use crate::{Compiled, fingerprint};
@@ -23,6 +23,9 @@ pub(super) struct Arguments {
     /// Go on where an interrupted run of the same scene stopped.
     #[arg(long)]
     resume: bool,
+    /// Threads that the run may use; all cores where it is not given. The results do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
     /// Replace the results of another run in that directory.
     #[arg(long)]
     force: bool,
@@ -44,6 +47,13 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             &compiled,
             Diagnostic::new(Code::E0802, message).help("give another `--out`, or `--resume` or `--force`"),
         );
+    }
+    if let Some(threads) = arguments.threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
+        if let Err(error) = pool {
+            terminal::error(&format!("cannot start {threads} threads: {error}"));
+            return Outcome::Failed;
+        }
     }
     let bar = progress::bar();
     let store = Store { directory: arguments.out.clone(), scene_sha256: hash.clone() };
@@ -72,7 +82,19 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Ok(page) => summary(&run, &page, computed),
         Err(message) => return stop(&compiled, Diagnostic::new(Code::E0802, message)),
     }
+    warn(&run, &compiled);
     verdicts(&run, &compiled)
+}
+
+/// Says where exchanges of forces and settlement overshot.
+fn warn(run: &Run, compiled: &Compiled) {
+    let Some(found) = BlockRow::overshoot(&run.blocks) else { return };
+    let diagnostic = Diagnostic::new(Code::E0807, found).help("write `update_every = adaptive`");
+    let diagnostic = match run.scenario.solve.update_span {
+        Some(span) => diagnostic.at(span, "too long between two exchanges"),
+        None => diagnostic,
+    };
+    terminal::note(&render::human(&[diagnostic], &compiled.sources, terminal::colour(), terminal::width()));
 }
 
 fn stop(compiled: &Compiled, diagnostic: Diagnostic) -> Outcome {
@@ -90,7 +112,7 @@ fn prepare(arguments: &Arguments) -> Result<(), String> {
     std::fs::create_dir_all(out).map_err(|e| format!("cannot make the directory `{shown}`: {e}"))?;
     let holds = |name: &str| out.join(name).exists();
     if arguments.force {
-        for name in ["summary.json", "checkpoint.json", "histories.parquet"] {
+        for name in ["summary.json", "checkpoint.json", "histories.parquet", "laws.csv"] {
             if holds(name) {
                 std::fs::remove_file(out.join(name)).map_err(|e| format!("cannot replace `{shown}/{name}`: {e}"))?;
             }
@@ -108,12 +130,16 @@ fn prepare(arguments: &Arguments) -> Result<(), String> {
 fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compiled: &Compiled, hash: String) -> Run {
     let tables = &recorder.tables;
     let histories = recorder.all_histories();
-    let scalars = results::summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+    let laws = results::law_rows(scenario, &tables.laws);
+    let mut scalars = results::summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+    scalars.extend(results::summarise_laws(scenario, &laws));
     let view = results::Tables {
         sleepers: &tables.sleepers,
         blocks: &tables.blocks,
+        rail: &tables.rail,
         histories: &histories,
         scalars: &scalars,
+        track: &scenario.track,
     };
     let expectations = results::verdicts(scenario, view);
     // the name alone: equal scenes give equal files wherever they lie
@@ -133,6 +159,8 @@ fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compil
         summary: Summary { scalars, expectations, provenance },
         sleepers: tables.sleepers.clone(),
         blocks: tables.blocks.clone(),
+        laws,
+        rail: tables.rail.clone(),
         histories,
     }
 }
@@ -140,8 +168,11 @@ fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compil
 fn write(run: &Run, out: &Path, computed: f64, started: &Instant) -> Result<PathBuf, String> {
     results::write(run, out).map_err(|e| e.to_string())?;
     let page = report::write(run, out, false)?;
-    let timings =
-        BTreeMap::from([("solve_s".to_string(), computed), ("total_s".to_string(), started.elapsed().as_secs_f64())]);
+    let timings = BTreeMap::from([
+        ("solve_s".to_string(), computed),
+        ("total_s".to_string(), started.elapsed().as_secs_f64()),
+        ("threads".to_string(), rayon::current_num_threads() as f64),
+    ]);
     results::write_timings(&timings, out).map_err(|e| e.to_string())?;
     checkpoint::remove(out).map_err(|e| e.to_string())?;
     Ok(page)
@@ -166,6 +197,12 @@ fn summary(run: &Run, page: &Path, seconds: f64) {
             let value = (scalar.value / size * 1e4).round() / 1e4;
             out.push_str(&format!("  {label:<26}{} {unit}\n", number(value)));
         }
+    }
+    if let Some(spread) = run.summary.scalars.get("law_spread") {
+        out.push_str(&format!("  {:<26}{}\n", "spread between laws", number((spread.value * 1e2).round() / 1e2)));
+    }
+    for sentence in results::unsettled(&run.scenario, &run.blocks, &run.laws) {
+        out.push_str(&format!("  {sentence}\n"));
     }
     out.push_str(&format!("{} ({} s)\n", page.display(), number((seconds * 10.0).round() / 10.0)));
     terminal::out(&out);

@@ -70,6 +70,11 @@ codes! {
     E0503 Error "train longer than its track"
     E0504 Error "transitions that do not match the sections"
     E0505 Error "span that does not ascend"
+    E0506 Error "profile with a gap"
+    E0507 Error "profile whose places do not follow each other"
+    E0508 Error "data file that cannot be read"
+    E0509 Error "data file with other columns"
+    E0510 Error "row of a data file that is not data"
     E0601 Error "scene without something to run"
     E0602 Error "axle counts that do not divide"
     E0603 Error "step too coarse to be stable"
@@ -80,6 +85,9 @@ codes! {
     E0802 Error "output folder that cannot be used"
     E0803 Error "checkpoint of another scene"
     E0804 Error "expectation not met"
+    E0805 Error "measured curve that cannot be used"
+    E0806 Error "law that cannot be fitted"
+    E0807 Warning "exchange that overshoots"
     L1001 Warning "stiffness jump without mitigation"
     L1002 Warning "speed near the critical speed"
     L1003 Warning "track too short for its train"
@@ -87,6 +95,8 @@ codes! {
     L1005 Warning "time step coarse for the contact"
     L1006 Warning "update interval that overshoots"
     L1007 Warning "sleeper passing near a vehicle resonance"
+    L1008 Warning "sleepers below the threshold of their law"
+    L1011 Warning "irregularity too sharp for a wheel"
 }
 
 impl Code {
@@ -105,6 +115,8 @@ impl Code {
             Code::L1005 => "coarse_time_step",
             Code::L1006 => "update_overshoot",
             Code::L1007 => "passing_frequency",
+            Code::L1008 => "below_threshold",
+            Code::L1011 => "irregularity_too_sharp",
             _ => return None,
         })
     }

@@ -1,20 +1,28 @@
 //! Runs the schedule: static state, passage, settlement, block by block, until the axles are done (paper, Fig. 3).
 
-use super::substructure::{Substructure, SubstructureState};
+use super::control::Control;
+use super::exchange::Exchange;
+use super::step::Measured;
+use super::substructure::{Substructure, SubstructureState, initial_settlement};
 use super::system::TrackSystem;
 use super::track::{PassageOutcome, Unloaded};
 use super::{Block, Blocks, Graph, Schedule};
-use crate::scenario::Direction;
+use crate::scenario::{Direction, Update};
 use crate::solvers::track::TrackError;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::ops::Range;
 
 /// The state between two blocks: a run that starts from it gives the same bits as one that never stopped.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint {
-    /// Blocks done.
+    /// Blocks done, and their axles.
     pub blocks: usize,
+    pub axles: u64,
     pub substructure: SubstructureState,
+    /// What the length of the next block hangs on.
+    pub control: Control,
 }
 
 /// Listens to a run. Nothing of what it is told is computed twice, so it must keep what it needs.
@@ -23,12 +31,21 @@ pub trait Recorder {
     fn unloaded(&mut self, axles: u64, state: &Unloaded);
     /// The passage at a recorded count.
     fn passage(&mut self, axles: u64, direction: Direction, passage: &PassageOutcome);
-    /// A block is done: its passages, and the settlement of every seat after it, m. `block` is `None` for the passage
-    /// after the last block.
-    fn block(&mut self, axles: u64, block: Option<&Block>, passages: &[PassageOutcome], before: &[f64], after: &[f64]);
+    /// A block is done: the passages at its start, and the settlement of every seat before and after it, m. `block` is
+    /// `None` for the passage after the last block.
+    fn block(
+        &mut self,
+        axles: u64,
+        block: Option<(&Block, &Measured)>,
+        passages: &[&PassageOutcome],
+        before: &[f64],
+        after: &[f64],
+    );
+    /// Settlement of every seat by each law, the driving one first, m: as built and after each block.
+    fn laws(&mut self, _axles: u64, _settlement: &[Vec<f64>]) {}
     /// Called after each block; a failure stops the run.
     fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<(), String>;
-    /// Passages done and to be done in all.
+    /// Blocks done and to be done in all; the latter is an estimate that changes while the run goes on.
     fn progress(&mut self, done: u64, all: u64);
     /// The state of a static check.
     fn equilibrium(&mut self, state: &Unloaded);
@@ -54,81 +71,151 @@ impl fmt::Display for RunError {
 
 impl std::error::Error for RunError {}
 
-/// Runs a graph, from its beginning or from a checkpoint.
+/// Runs several graphs at once, each from its beginning, and keeps their order. The results are those of [`execute`], bit for
+/// bit.
+pub fn execute_all<R: Recorder + Send>(runs: &mut [(&Graph, R)]) -> Vec<Result<(), RunError>> {
+    runs.par_iter_mut().map(|(graph, recorder)| execute(graph, recorder, None)).collect()
+}
+
+/// Runs a graph, from its beginning or from a checkpoint. May be called from several threads at once; passages that do not
+/// need each other run in the thread pool of rayon, and the result does not depend on the number of its threads.
 pub fn execute(graph: &Graph, recorder: &mut dyn Recorder, from: Option<Checkpoint>) -> Result<(), RunError> {
-    let at = |axles: u64| move |cause: TrackError| RunError::Track { axles, cause };
+    let at = |cause: TrackError| RunError::Track { axles: 0, cause };
     match &graph.schedule {
         Schedule::Static { loads } => {
-            let system = TrackSystem::new(graph).map_err(at(0))?;
-            recorder.equilibrium(&system.equilibrium(loads).map_err(at(0))?);
+            let system = TrackSystem::new(graph).map_err(at)?;
+            recorder.equilibrium(&system.equilibrium(loads).map_err(at)?);
             recorder.progress(1, 1);
             Ok(())
         }
         Schedule::Blocks(blocks) => {
-            let mut run = Run { blocks, system: TrackSystem::new(graph).map_err(at(0))?, recorder };
             let mut substructure = Substructure::new(&graph.substructure, &graph.track);
-            let mut done = 0;
+            let (mut done, mut axles, mut control) = (0, 0, Control::default());
             if let Some(checkpoint) = from {
                 substructure.state = checkpoint.substructure;
-                done = checkpoint.blocks;
+                (done, axles, control) = (checkpoint.blocks, checkpoint.axles, checkpoint.control);
             }
-            for (i, block) in blocks.blocks.iter().enumerate().skip(done) {
-                run.block(block, &mut substructure)?;
-                let checkpoint = Checkpoint { blocks: i + 1, substructure: substructure.state.clone() };
-                run.recorder.checkpoint(&checkpoint).map_err(RunError::Recorder)?;
-                run.recorder.progress(i as u64 + 1, blocks.blocks.len() as u64 + 1);
-            }
-            run.last(&substructure)?;
-            run.recorder.progress(blocks.blocks.len() as u64 + 1, blocks.blocks.len() as u64 + 1);
-            Ok(())
+            let system = TrackSystem::new(graph).map_err(at)?;
+            Run { blocks, system, substructure, control, done, runs: settling(graph), recorder }.go(axles)
         }
     }
 }
 
-struct Run<'a> {
-    blocks: &'a Blocks,
+/// The first passage of a graph, over the track as the scene starts it; `None` where no train runs.
+pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunError> {
+    let Schedule::Blocks(blocks) = &graph.schedule else { return Ok(None) };
+    let at = |cause: TrackError| RunError::Track { axles: 0, cause };
+    let level = initial_settlement(&graph.track.track);
+    let system = TrackSystem::new(graph).map_err(at)?;
+    let (_, passage) = system.passage(0, &level, blocks.leading_direction(), false).map_err(at)?;
+    Ok(Some(passage))
+}
+
+/// Stretches of neighbouring seats that can settle.
+fn settling(graph: &Graph) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for (i, _) in graph.track.track.seats.iter().enumerate().filter(|(_, seat)| seat.is_ballasted()) {
+        match runs.last_mut() {
+            Some(run) if run.end == i => run.end += 1,
+            _ => runs.push(i..i + 1),
+        }
+    }
+    runs
+}
+
+pub(super) struct Run<'a> {
+    pub blocks: &'a Blocks,
     system: TrackSystem<'a>,
+    pub substructure: Substructure<'a>,
+    pub control: Control,
+    /// Blocks done.
+    done: usize,
+    /// Stretches of neighbouring seats that can settle.
+    pub runs: Vec<Range<usize>>,
     recorder: &'a mut dyn Recorder,
 }
 
-impl Run<'_> {
-    /// One exchange: the forces of the track as it lies, and what they settle.
-    fn block(&mut self, block: &Block, substructure: &mut Substructure<'_>) -> Result<(), RunError> {
-        let before = substructure.settlement();
-        let directions = self.blocks.passages(block);
-        let mut passages = Vec::with_capacity(directions.len());
-        for (i, (direction, trains)) in directions.iter().enumerate() {
-            let passage = self.passage(block.before, &before, *direction, i == 0)?;
-            substructure.load(&passage.peaks, *trains);
-            passages.push(passage);
+impl<'a> Run<'a> {
+    fn go(&mut self, axles: u64) -> Result<(), RunError> {
+        let mut here = self.arrive(axles, &self.substructure)?;
+        if self.done == 0 {
+            self.recorder.laws(0, &self.substructure.settlement_by_law());
         }
-        self.recorder.block(block.before, Some(block), &passages, &before, &substructure.settlement());
+        while here.axles < self.blocks.total {
+            self.show(&here);
+            let done = match self.blocks.update {
+                Update::Adaptive { tolerance, cap } => self.adaptive(&mut here, tolerance, cap)?,
+                Update::Fixed { .. } | Update::Geometric { .. } => self.prescribed(&mut here)?,
+            };
+            let after = done.after.settlement();
+            let used = self.blocks.passages(&done.block);
+            let passages: Vec<&PassageOutcome> = used.iter().filter_map(|(d, _)| here.of(*d)).collect();
+            let block = Some((&done.block, &done.measured));
+            self.recorder.block(here.axles, block, &passages, &here.settlement, &after);
+            self.substructure = done.after;
+            self.done += 1;
+            let axles = here.axles + done.block.axles;
+            self.recorder.laws(axles, &self.substructure.settlement_by_law());
+            let (blocks, substructure, control) = (self.done, self.substructure.state.clone(), self.control);
+            let checkpoint = Checkpoint { blocks, axles, substructure, control };
+            self.recorder.checkpoint(&checkpoint).map_err(RunError::Recorder)?;
+            self.recorder.progress(self.done as u64, self.done as u64 + self.blocks_left(axles, done.block.axles) + 1);
+            here = match done.next {
+                Some(next) => next,
+                None => self.arrive(axles, &self.substructure)?,
+            };
+        }
+        self.show(&here);
+        let passages: Vec<&PassageOutcome> = here.passages().collect();
+        self.recorder.block(here.axles, None, &passages, &here.settlement, &here.settlement);
+        self.recorder.progress(self.done as u64 + 1, self.done as u64 + 1);
         Ok(())
     }
 
-    /// The track after all axles.
-    fn last(&mut self, substructure: &Substructure<'_>) -> Result<(), RunError> {
-        let settlement = substructure.settlement();
-        let passage = self.passage(self.blocks.total, &settlement, self.blocks.leading_direction(), true)?;
-        self.recorder.block(self.blocks.total, None, &[passage], &settlement, &settlement);
-        Ok(())
+    /// The track after so many axles, with the passages that the next block is expected to need.
+    pub fn arrive(&self, axles: u64, substructure: &Substructure<'_>) -> Result<Exchange, RunError> {
+        let directions: Vec<Direction> = if axles == self.blocks.total {
+            vec![self.blocks.leading_direction()]
+        } else {
+            let wanted = self.blocks.wanted(axles).map(|wanted| self.control.bounded(wanted));
+            let block = self.blocks.block(axles, wanted.unwrap_or_else(|| self.blocks.trains_left(axles)));
+            self.blocks.passages(&block).into_iter().map(|(direction, _)| direction).collect()
+        };
+        // a block of one train decides which direction comes first
+        let leading = if axles == self.blocks.total || directions.len() > 1 {
+            self.blocks.leading_direction()
+        } else {
+            directions.first().copied().unwrap_or(Direction::Forward)
+        };
+        let recorded = self.blocks.recorded.contains(&axles);
+        let mut exchange = Exchange::new(axles, substructure.settlement(), recorded, leading);
+        self.ensure(&mut exchange, &directions)?;
+        Ok(exchange)
     }
 
-    /// A passage over the settled track; the first one at a recorded count is shown to the recorder.
-    fn passage(
-        &mut self,
-        axles: u64,
-        settlement: &[f64],
-        direction: Direction,
-        first: bool,
-    ) -> Result<PassageOutcome, RunError> {
-        let at = |cause: TrackError| RunError::Track { axles, cause };
-        let recorded = first && self.blocks.recorded.contains(&axles);
-        let (unloaded, passage) = self.system.passage(axles, settlement, direction, recorded).map_err(at)?;
-        if recorded {
-            self.recorder.unloaded(axles, &unloaded);
-            self.recorder.passage(axles, direction, &passage);
+    pub fn ensure(&self, exchange: &mut Exchange, directions: &[Direction]) -> Result<(), RunError> {
+        let axles = exchange.axles;
+        exchange.ensure(&self.system, directions).map_err(|cause| RunError::Track { axles, cause })
+    }
+
+    fn show(&mut self, here: &Exchange) {
+        if let Some((unloaded, direction, passage)) = here.recorded() {
+            self.recorder.unloaded(here.axles, unloaded);
+            self.recorder.passage(here.axles, direction, passage);
         }
-        Ok(passage)
+    }
+
+    /// Blocks from an axle count to the end, as far as one can know.
+    fn blocks_left(&self, axles: u64, last: u64) -> u64 {
+        let left = self.blocks.total - axles;
+        match self.blocks.update {
+            Update::Fixed { axles } => left.div_ceil(axles),
+            // blocks grow with the axles so far, or keep their length if that is not so
+            Update::Geometric { .. } | Update::Adaptive { .. } => {
+                let growth = (last as f64 / axles as f64).min(1.0);
+                let grown = ((self.blocks.total as f64 / axles as f64).ln() / growth.ln_1p()).ceil();
+                (grown as u64).min(left.div_ceil(last))
+            }
+        }
     }
 }

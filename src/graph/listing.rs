@@ -1,7 +1,8 @@
 //! The graph as a person reads it: text, JSON and DOT.
 
-use super::{Decision, Estimate, Graph, Schedule, SubstructureNode};
-use crate::solvers::settlement::Law;
+use super::{Blocks, Decision, Estimate, Graph, NamedLaw, Schedule, SubstructureNode};
+use crate::scenario::{Beam, Integrator, Update, law_argument};
+use crate::solvers::settlement::{Form, Logarithm};
 use crate::units::number;
 use serde::Serialize;
 
@@ -62,7 +63,11 @@ impl Graph {
         let track = &self.track.track;
         let mut details = vec![
             format!(
-                "rail: Euler-Bernoulli, {} elements a bay, {} m .. {} m",
+                "rail: {}, {} elements a bay, {} m .. {} m",
+                match self.track.beam {
+                    Beam::Euler => "Euler-Bernoulli",
+                    Beam::Timoshenko => "Timoshenko",
+                },
                 self.track.elements_per_bay,
                 number(track.start()),
                 number(track.end())
@@ -84,11 +89,12 @@ impl Graph {
                 number(*blocks.train.speed * 3.6)
             ));
             details.push(format!(
-                "passage: wheels from {} m to {} m, generalised-alpha (rho {}), step {} ms",
+                "passage: wheels from {} m to {} m, {}, step {} ms{}",
                 number(plan.left),
                 number(plan.right),
-                number(plan.rho),
-                number(plan.time_step * 1e3)
+                integrator(plan.integrator),
+                number(plan.time_step * 1e3),
+                if plan.adaptive.is_some() { " or shorter" } else { "" }
             ));
         }
         Node { name: "track", model: "2D finite element track with multibody vehicles, one Newton".into(), details }
@@ -101,17 +107,12 @@ impl Graph {
                 model: "supports as given, without settlement".into(),
                 details: Vec::new(),
             },
-            SubstructureNode::Law { name, law: Law::Varandas(law) } => Node {
+            SubstructureNode::Law { law, followers } => Node {
                 name: "substructure",
-                model: format!("tier law: {name} under each sleeper"),
-                details: vec![format!(
-                    "Varandas: alpha {}, beta {}, gamma {} mm after {} axles of {} kN a seat",
-                    number(law.alpha),
-                    number(law.beta),
-                    number(law.gamma * 1e3),
-                    law.reference_cycles,
-                    number(law.reference_force / 1e3)
-                )],
+                model: format!("tier law: {} under each sleeper", law.name),
+                details: std::iter::once(describe(law))
+                    .chain(followers.iter().map(|f| format!("beside it {}, {}", f.name, describe(f))))
+                    .collect(),
             },
         }
     }
@@ -120,21 +121,66 @@ impl Graph {
         match &self.schedule {
             Schedule::Static { .. } => vec!["one static equilibrium under the test loads".to_string()],
             Schedule::Blocks(b) => {
-                let sizes: Vec<u64> = b.blocks.iter().map(|block| block.axles).collect();
-                let range = match (sizes.iter().min(), sizes.iter().max()) {
-                    (Some(min), Some(max)) if min == max => format!("{min} axles each"),
-                    (Some(min), Some(max)) => format!("{min} to {max} axles"),
-                    _ => "no axles".into(),
-                };
                 vec![
-                    format!("{} axles in {} blocks, {range}", b.total, sizes.len()),
-                    "each block: static state -> passage -> settlement of the block".into(),
+                    block_line(b),
+                    match b.update {
+                        Update::Adaptive { .. } => {
+                            "each block: static state -> passage -> settlement of half of it -> passage -> settlement of the block"
+                        }
+                        _ => "each block: static state -> passage -> settlement of the block",
+                    }
+                    .into(),
                     format!(
                         "recorded after {} axles",
                         b.recorded.iter().map(u64::to_string).collect::<Vec<_>>().join(", ")
                     ),
                 ]
             }
+        }
+    }
+}
+
+fn integrator(integrator: Integrator) -> String {
+    match integrator {
+        Integrator::GeneralisedAlpha { rho } => format!("generalised-alpha (rho {})", number(rho)),
+        Integrator::Hht { alpha } => format!("Hilber-Hughes-Taylor (alpha {})", number(alpha)),
+        Integrator::Newmark => "Newmark, average acceleration".into(),
+    }
+}
+
+/// The form of a law with its parameters, SI, of one half sleeper.
+fn describe(named: &NamedLaw) -> String {
+    let mut law = named.law;
+    let name = law.form.name();
+    let parameters = law.form.parameters().into_iter();
+    let parameters: Vec<String> =
+        parameters.map(|(argument, value)| format!("{argument} {}", law_argument(name, argument, *value))).collect();
+    let logarithm = match law.form {
+        Form::Hettler(law) => match law.logarithm {
+            Logarithm::Natural => ", natural logarithm",
+            Logarithm::Decimal => ", decimal logarithm",
+        },
+        _ => "",
+    };
+    format!("{name}: {}{logarithm}; one cycle per {}", parameters.join(", "), law.cycle_per.name())
+}
+
+/// `500 axles in 25 blocks, 20 axles each`
+fn block_line(blocks: &Blocks) -> String {
+    let total = blocks.total;
+    match (blocks.planned(), blocks.update) {
+        (None, Update::Adaptive { tolerance, cap }) => {
+            let cap = cap.map_or(String::new(), |cap| format!(" and {} mm of settlement", number(cap * 1e3)));
+            format!("{total} axles in blocks that err by at most {} mm{cap}", number(tolerance * 1e3))
+        }
+        (planned, _) => {
+            let sizes: Vec<u64> = planned.into_iter().flatten().map(|block| block.axles).collect();
+            let range = match (sizes.iter().min(), sizes.iter().max()) {
+                (Some(min), Some(max)) if min == max => format!("{min} axles each"),
+                (Some(min), Some(max)) => format!("{min} to {max} axles"),
+                _ => "no axles".into(),
+            };
+            format!("{total} axles in {} blocks, {range}", sizes.len())
         }
     }
 }

@@ -3,21 +3,30 @@
 //!
 //! The graph is data: it is printed by `trackbed plan`, costed before a run, and executed by [`execute`].
 
+mod blocks;
+mod control;
+mod exchange;
 mod execute;
 mod listing;
 pub mod model;
+mod oscillation;
+mod profile;
 mod sampler;
+mod step;
 mod substructure;
 mod system;
 mod track;
 
-pub use execute::{Checkpoint, Recorder, RunError, execute};
+pub use control::Control;
+pub use execute::{Checkpoint, Recorder, RunError, execute, execute_all, passage_as_built};
 pub use listing::Listing;
+pub use profile::between;
+pub use step::Measured;
 pub use substructure::SubstructureState;
 pub use system::RUNAWAY;
-pub use track::{PassageOutcome, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
+pub use track::{PassageOutcome, RailPlace, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
 
-use crate::scenario::{Direction, Record, StaticLoad, Track, Train};
+use crate::scenario::{Beam, Direction, Integrator, Record, StaticLoad, Track, Train, Update};
 use crate::solvers::settlement::Law;
 use serde::{Deserialize, Serialize};
 
@@ -37,6 +46,7 @@ pub struct Graph {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrackNode {
     pub track: Track,
+    pub beam: Beam,
     pub elements_per_bay: u32,
     /// m/s^2.
     pub gravity: f64,
@@ -45,10 +55,18 @@ pub struct TrackNode {
 /// What carries the sleepers: forces in, stiffness and settlement out.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum SubstructureNode {
-    /// A settlement law under each sleeper; stiffness as the scene gives it.
-    Law { name: String, law: Law },
+    /// A settlement law under each sleeper; stiffness as the scene gives it. `followers` are evaluated under the forces
+    /// that the driving law leads to.
+    Law { law: NamedLaw, followers: Vec<NamedLaw> },
     /// Nothing settles: a track at rest under test loads.
     Fixed,
+}
+
+/// A settlement law under the name that the scene gives it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NamedLaw {
+    pub name: String,
+    pub law: Law,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -64,7 +82,10 @@ pub enum Schedule {
 pub struct Blocks {
     pub train: Train,
     pub passage: PassagePlan,
-    pub blocks: Vec<Block>,
+    /// How long the blocks are.
+    pub update: Update,
+    /// Whether a fixed or geometric block that overshoots is done again in halves. Off, the oscillation shows.
+    pub cure: bool,
     /// Axle counts at which the state of the track is recorded, ascending.
     pub recorded: Vec<u64>,
     /// Axles of the whole run.
@@ -78,12 +99,21 @@ pub struct PassagePlan {
     /// to the right end while it stands at the right.
     pub left: f64,
     pub right: f64,
-    /// s.
+    /// s; the longest one where steps vary.
     pub time_step: f64,
-    /// Spectral radius of generalised-alpha at infinite frequency.
-    pub rho: f64,
-    /// Interval of histories, in time steps.
+    /// Steps are halved down to `time_step / 2^halvings` where their error asks for it.
+    pub adaptive: Option<AdaptiveSteps>,
+    pub integrator: Integrator,
+    /// Interval of histories, in time steps, the longest ones where they vary.
     pub sample_every: u64,
+}
+
+/// How the length of a time step is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AdaptiveSteps {
+    /// Error that a step may make, as part of the largest deflection of the rail under the standing train.
+    pub tolerance: f64,
+    pub halvings: u32,
 }
 
 /// Trains that run between two exchanges.
@@ -120,14 +150,6 @@ pub struct Estimate {
 const APPROACH: f64 = 1.0;
 
 impl Blocks {
-    /// Directions of the passages that a block needs, with the number of trains of each.
-    pub fn passages(&self, block: &Block) -> Vec<(Direction, u64)> {
-        [(Direction::Forward, block.forward), (Direction::Backward, block.backward)]
-            .into_iter()
-            .filter(|(_, trains)| *trains > 0)
-            .collect()
-    }
-
     /// Chainages between which every wheel of a train comes and goes: seats there see the whole train.
     pub fn passed(&self) -> std::ops::Range<f64> {
         let base = self.train.wheel_base();

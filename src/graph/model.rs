@@ -1,7 +1,7 @@
 //! From the track and train of the scene to those of the solver: plain numbers of one rail.
 
 use super::TrackNode;
-use crate::scenario::{self, Foot, RailEnds, Section, Track};
+use crate::scenario::{self, Beam, Foot, Integrator, Piece, Profile, RailEnds, Section, Track};
 use crate::solvers::track as solver;
 
 /// The solver's model of a track.
@@ -9,28 +9,41 @@ pub fn model(node: &TrackNode) -> solver::TrackModel {
     let track = &node.track;
     solver::TrackModel {
         ends: [track.start(), track.end()],
-        rail: track.sections.iter().map(rail).collect(),
+        rail: track.sections.iter().map(|section| rail(section, node.beam)).collect(),
         seats: track.seats.iter().map(seat).collect(),
         slabs: track.sections.iter().filter_map(slab).collect(),
-        auxiliary_rails: Vec::new(),
+        auxiliary_rails: track.sections.iter().filter_map(auxiliary_rail).collect(),
         joints: Vec::new(),
         rail_ends: match track.rail_ends {
             RailEnds::Clamped => solver::RailEnds::Clamped,
             RailEnds::Pinned => solver::RailEnds::Pinned,
             RailEnds::Free => solver::RailEnds::Free,
+            RailEnds::Absorbing => solver::RailEnds::Absorbing,
         },
+        irregularity: track.irregularity.as_ref().map(irregularity).unwrap_or_default(),
         elements_per_bay: node.elements_per_bay as usize,
         gravity: node.gravity,
     }
 }
 
-fn rail(section: &Section) -> solver::RailSection {
+fn irregularity(profile: &Profile) -> solver::Irregularity {
+    let cubics = profile.pieces.iter().flat_map(Piece::cubics);
+    let cubic = |c: scenario::Cubic| solver::Cubic { ends: c.ends, values: c.values, curvatures: c.curvatures };
+    solver::Irregularity::cubics(cubics.map(cubic).collect())
+}
+
+fn rail(section: &Section, beam: Beam) -> solver::RailSection {
     solver::RailSection {
         start: section.start,
         end: section.end,
         mass: *section.rail.mass,
         bending_stiffness: *section.rail.bending_stiffness,
-        shear: None,
+        shear: match (beam, section.rail.shear_stiffness) {
+            (Beam::Timoshenko, Some(stiffness)) => {
+                Some(solver::Shear { stiffness: *stiffness, rotary_inertia: section.rail.rotary_inertia })
+            }
+            _ => None,
+        },
     }
 }
 
@@ -40,11 +53,15 @@ fn seat(seat: &scenario::Seat) -> solver::Seat {
         pad_stiffness: *seat.pad.stiffness,
         pad_damping: *seat.pad.damping,
         foot: match &seat.foot {
-            Foot::Sleeper { mass, support } => solver::Foot::Sleeper {
-                mass: **mass,
-                support_stiffness: *support.stiffness,
-                support_damping: *support.damping,
-            },
+            Foot::Sleeper { mass, support } => {
+                let spring = support.spring();
+                solver::Foot::Sleeper {
+                    mass: **mass,
+                    support_stiffness: spring.stiffness,
+                    support_damping: spring.damping,
+                    seating: spring.seating.map(|(stiffness, closure)| solver::Seating { stiffness, closure }),
+                }
+            }
             Foot::Rigid => solver::Foot::Rigid,
             Foot::Slab => solver::Foot::Slab,
         },
@@ -62,14 +79,34 @@ fn slab(section: &Section) -> Option<solver::Slab> {
     })
 }
 
+fn auxiliary_rail(section: &Section) -> Option<solver::AuxiliaryRail> {
+    section.auxiliary_rails.as_ref().map(|rails| solver::AuxiliaryRail {
+        start: section.start,
+        end: section.end,
+        mass: *rails.rail.mass,
+        bending_stiffness: *rails.rail.bending_stiffness,
+        pad_stiffness: *rails.pad.stiffness,
+        pad_damping: *rails.pad.damping,
+    })
+}
+
 /// The solver's train.
 pub fn train(train: &scenario::Train, direction: scenario::Direction) -> solver::Train {
-    let vehicles = train.vehicles.iter().map(vehicle).zip(train.vehicle_offsets()).collect();
+    let vehicles = train.vehicles.iter().map(|v| vehicle(v).into()).zip(train.vehicle_offsets()).collect();
     let direction = match direction {
         scenario::Direction::Backward => solver::Direction::Backward,
         _ => solver::Direction::Forward,
     };
     solver::Train { vehicles, direction }
+}
+
+/// How fast it runs.
+pub fn motion(train: &scenario::Train) -> solver::Motion {
+    let Some(profile) = &train.speed_profile else { return solver::Motion::Constant(*train.speed) };
+    let points = profile.pieces.iter().flat_map(|piece| piece.knots().into_iter().map(|x| (x, profile.value(x))));
+    let mut knots: Vec<(f64, f64)> = points.collect();
+    knots.dedup_by(|next, kept| next.0 <= kept.0);
+    solver::Motion::ByChainage(knots)
 }
 
 fn vehicle(v: &scenario::Vehicle) -> solver::Vehicle {
@@ -89,6 +126,15 @@ fn vehicle(v: &scenario::Vehicle) -> solver::Vehicle {
     }
 }
 
+/// The solver's time integration.
+pub fn scheme(integrator: Integrator, time_step: f64) -> Result<solver::Scheme, solver::TrackError> {
+    match integrator {
+        Integrator::GeneralisedAlpha { rho } => solver::Scheme::generalised_alpha(time_step, rho),
+        Integrator::Hht { alpha } => solver::Scheme::hht(time_step, alpha),
+        Integrator::Newmark => solver::Scheme::newmark(time_step),
+    }
+}
+
 /// The settled track: supports where they lie, and the rail ends held at the level of the track there. A clamp that
 /// stayed at the level as built would grow a second transition at the end of the model.
 pub fn level(node: &TrackNode, settlement: &[f64]) -> solver::TrackLevel {
@@ -105,9 +151,11 @@ pub fn level(node: &TrackNode, settlement: &[f64]) -> solver::TrackLevel {
 fn sag(track: &Track, section: usize, gravity: f64) -> f64 {
     let Some(seat) = track.seats.iter().find(|s| s.section == section) else { return 0.0 };
     let form = &track.sections[section];
-    let rail = *form.rail.mass * *form.spacing * gravity; // N a seat
+    let per_seat = *form.spacing * gravity;
+    let rail = *form.rail.mass * per_seat; // N a seat
+    let beside = form.auxiliary_rails.as_ref().map_or(0.0, |rails| *rails.rail.mass * per_seat);
     let below = match (&seat.foot, &form.slab) {
-        (Foot::Sleeper { mass, support }, _) => (rail + **mass * gravity) / *support.stiffness,
+        (Foot::Sleeper { mass, support }, _) => support.spring().compression(rail + beside + **mass * gravity),
         (Foot::Slab, Some(slab)) => *form.rail.mass * gravity / *slab.foundation_stiffness,
         _ => 0.0,
     };

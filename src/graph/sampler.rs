@@ -6,8 +6,8 @@ use crate::scenario::response::Response;
 use crate::solvers::track::{Observer, StepView};
 
 pub(super) struct Sampler {
-    /// Seats and quantities, each once, in the order of the scene.
-    wanted: Vec<(usize, Response)>,
+    /// Seats and quantities, each once, in the order of the scene, with the distance of a wheel within which they are kept.
+    wanted: Vec<(usize, Response, f64)>,
     every: usize,
     recorded: bool,
     pub samples: Vec<Sample>,
@@ -20,8 +20,8 @@ impl Sampler {
         for record in records.iter().filter(|r| r.after.contains(&axles)) {
             for quantity in record.quantities.iter().filter(|q| varies_in_time(**q)) {
                 for seat in &record.seats {
-                    if !wanted.contains(&(*seat, *quantity)) {
-                        wanted.push((*seat, *quantity));
+                    if !wanted.iter().any(|(s, q, _)| (s, q) == (seat, quantity)) {
+                        wanted.push((*seat, *quantity, record.near.unwrap_or(f64::INFINITY)));
                     }
                 }
             }
@@ -46,7 +46,7 @@ fn varies_in_time(quantity: Response) -> bool {
 
 impl Observer for Sampler {
     fn observe(&mut self, view: &StepView<'_>) {
-        if !self.recorded || !view.step().is_multiple_of(self.every) {
+        if !self.recorded || !view.is_on_grid(self.every) {
             return;
         }
         let time = view.time();
@@ -58,9 +58,12 @@ impl Observer for Sampler {
             x: *x,
             value: *value,
         }));
-        for (seat, quantity) in &self.wanted {
+        for (seat, quantity, near) in &self.wanted {
+            let x = view.track().model().seats[*seat].x;
+            if view.wheel_positions().iter().all(|wheel| (wheel - x).abs() > *near) {
+                continue;
+            }
             if let Some(value) = at_seat(view, *seat, *quantity) {
-                let x = view.track().model().seats[*seat].x;
                 self.samples.push(Sample { time, quantity: *quantity, target: Target::Seat(*seat), x, value });
             }
         }

@@ -1,12 +1,15 @@
 //! The track node at work: its statics and its passages, spoken to in the scene's terms.
 
-use super::model::{level, model, train};
+use super::model::{level, model, motion, scheme, train};
+use super::profile;
 use super::sampler::Sampler;
+use super::substructure::initial_settlement;
 use super::track::{PassageOutcome, RailPoint, SeatOutcome, Unloaded, UnloadedSeat};
-use super::{Blocks, Graph, Schedule, TrackNode};
+use super::{AdaptiveSteps, Blocks, Graph, Schedule, TrackNode};
 use crate::scenario::{Direction, Record, StaticLoad, Target};
+use crate::solvers::settlement::Peak;
 use crate::solvers::track::{
-    Envelope, Loads, Passage, Run, Scheme, StaticState, Stepper, Track, TrackError, solve_static,
+    Envelope, Ladder, Loads, Passage, Run, Scheme, StaticState, Stepper, Track, TrackError, TrackLevel, solve_static,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -16,7 +19,31 @@ pub(super) struct TrackSystem<'a> {
     node: &'a TrackNode,
     records: &'a [Record],
     track: Arc<Track>,
-    traffic: Option<(&'a Blocks, Stepper)>,
+    traffic: Option<(&'a Blocks, Steps)>,
+}
+
+/// The time steps of all passages, factored once.
+enum Steps {
+    Even(Stepper),
+    Chosen { ladder: Ladder, tolerance: f64 },
+}
+
+impl Steps {
+    fn new(track: &Arc<Track>, scheme: Scheme, adaptive: Option<AdaptiveSteps>) -> Result<Self, TrackError> {
+        Ok(match adaptive {
+            None => Steps::Even(Stepper::new(track.clone(), scheme)?),
+            Some(AdaptiveSteps { tolerance, halvings }) => {
+                Steps::Chosen { ladder: Ladder::new(track, scheme, halvings as usize)?, tolerance }
+            }
+        })
+    }
+
+    fn begin<'a>(&'a self, level: &'a TrackLevel, run: Run<'a>) -> Result<Passage<'a>, TrackError> {
+        match self {
+            Steps::Even(stepper) => Passage::new(stepper, level, run),
+            Steps::Chosen { ladder, tolerance } => Passage::adaptive(ladder, level, run, *tolerance),
+        }
+    }
 }
 
 /// Seats whose mean stands for those near the ends of the model, see [`TrackSystem::complete`].
@@ -31,8 +58,8 @@ impl<'a> TrackSystem<'a> {
         let traffic = match &graph.schedule {
             Schedule::Static { .. } => None,
             Schedule::Blocks(blocks) => {
-                let scheme = Scheme::generalised_alpha(blocks.passage.time_step, blocks.passage.rho)?;
-                Some((blocks, Stepper::new(track.clone(), scheme)?))
+                let scheme = scheme(blocks.passage.integrator, blocks.passage.time_step)?;
+                Some((blocks, Steps::new(&track, scheme, blocks.passage.adaptive)?))
             }
         };
         Ok(TrackSystem { node: &graph.track, records: &graph.records, track, traffic })
@@ -47,7 +74,7 @@ impl<'a> TrackSystem<'a> {
             (0..seats.len()).min_by(|&a, &b| (seats[a].x - x).abs().total_cmp(&(seats[b].x - x).abs())).unwrap_or(0)
         };
         let sleepers: Vec<(usize, f64)> = on(Target::Sleepers).map(|l| (nearest(l.x), *l.force)).collect();
-        let settlement = vec![0.0; seats.len()];
+        let settlement = initial_settlement(&self.node.track);
         let loads = Loads { rail: &rail, sleepers: &sleepers, train: None };
         let state = solve_static(&self.track, &level(self.node, &settlement), &loads)?;
         Ok(self.at_rest(&state, &settlement))
@@ -64,7 +91,7 @@ impl<'a> TrackSystem<'a> {
             contact_force: state.contact_forces[i],
             seat_load: state.seat_loads[i],
         });
-        Unloaded { rail: rail.collect(), seats: seats.collect() }
+        Unloaded { rail: rail.collect(), seats: seats.collect(), profile: Vec::new() }
     }
 
     /// One train over the settled track, and the track at rest before it. `recorded` asks for histories.
@@ -75,7 +102,7 @@ impl<'a> TrackSystem<'a> {
         direction: Direction,
         recorded: bool,
     ) -> Result<(Unloaded, PassageOutcome), TrackError> {
-        let Some((blocks, stepper)) = &self.traffic else {
+        let Some((blocks, steps)) = &self.traffic else {
             return Err(TrackError::Parameter { name: "trains", value: 0.0, expected: "of 1 or more" });
         };
         let train = train(&blocks.train, direction);
@@ -83,9 +110,14 @@ impl<'a> TrackSystem<'a> {
         let (start, finish) =
             if direction == Direction::Backward { (right - base, left) } else { (left + base, right) };
         let level = level(self.node, settlement);
-        let run = Run { train: &train, start, finish, speed: *blocks.train.speed };
-        let mut passage = Passage::new(stepper, &level, run)?;
-        let unloaded = self.at_rest(passage.unloaded(), settlement);
+        let motion = motion(&blocks.train);
+        let run = Run { train: &train, start, finish, motion: &motion };
+        let mut passage = steps.begin(&level, run)?;
+        let mut unloaded = self.at_rest(passage.unloaded(), settlement);
+        if recorded {
+            let load = blocks.train.mean_wheel_mass() * self.node.gravity;
+            unloaded.profile = profile::profile(&self.track, &level, passage.unloaded(), load, left..=right)?;
+        }
         let mut envelope = Envelope::default();
         let wanted = if recorded { self.records } else { &[] };
         let mut sampler = Sampler::new(wanted, axles, blocks.passage.sample_every, recorded);
@@ -100,7 +132,12 @@ impl<'a> TrackSystem<'a> {
                 contact_loss: envelope.contact_losses[i],
             })
             .collect();
-        let mut peaks: Vec<Vec<f64>> = (0..seats).map(|i| envelope.axle_peaks_of(i).to_vec()).collect();
+        let peaks_of = |seat: usize| {
+            let deflections = envelope.axle_deflections_of(seat);
+            let wheels = envelope.axle_peaks_of(seat).iter().zip(deflections);
+            wheels.map(|(force, deflection)| Peak { force: *force, deflection: *deflection }).collect()
+        };
+        let mut peaks: Vec<Vec<Peak>> = (0..seats).map(peaks_of).collect();
         self.complete(blocks.passed(), &mut outcomes, &mut peaks);
         let largest = |range: &[(f64, f64)]| range.iter().map(|r| r.1).fold(f64::NEG_INFINITY, f64::max);
         let outcome = PassageOutcome {
@@ -109,6 +146,7 @@ impl<'a> TrackSystem<'a> {
             max_wheel_force: largest(&envelope.wheel_forces),
             min_wheel_force: envelope.wheel_forces.iter().map(|r| r.0).fold(f64::INFINITY, f64::min),
             max_rail_moment: largest(&envelope.rail_moments),
+            rail_moments: envelope.rail_moments,
             time_steps: counters.steps as u64,
             newton_iterations: counters.iterations as u64,
             samples: sampler.samples,
@@ -133,7 +171,7 @@ impl<'a> TrackSystem<'a> {
     /// Trains start and stop on the track, so seats near its ends see only some of their wheels. Such a seat takes the mean of
     /// the nearest ten of its section that every wheel passes, as if trains came from afar: otherwise a false step in the
     /// settlement would grow where they start. A section of which no seat is passed keeps what it saw.
-    fn complete(&self, passed: Range<f64>, outcomes: &mut [SeatOutcome], peaks: &mut [Vec<f64>]) {
+    fn complete(&self, passed: Range<f64>, outcomes: &mut [SeatOutcome], peaks: &mut [Vec<Peak>]) {
         let seats = &self.node.track.seats;
         for (i, seat) in seats.iter().enumerate().filter(|(_, s)| !passed.contains(&s.x)) {
             let whole = |n: &usize| seats[*n].section == seat.section && passed.contains(&seats[*n].x);
@@ -146,7 +184,11 @@ impl<'a> TrackSystem<'a> {
                 continue;
             }
             let mean = |of: &dyn Fn(usize) -> f64| from.iter().map(|n| of(*n)).sum::<f64>() / from.len() as f64;
-            peaks[i] = (0..peaks[i].len()).map(|wheel| mean(&|n| peaks[n][wheel])).collect();
+            let mean_peak = |wheel: usize| Peak {
+                force: mean(&|n| peaks[n][wheel].force),
+                deflection: mean(&|n| peaks[n][wheel].deflection),
+            };
+            peaks[i] = (0..peaks[i].len()).map(mean_peak).collect();
             outcomes[i] = SeatOutcome {
                 max_rail_seat_load: mean(&|n| outcomes[n].max_rail_seat_load),
                 max_contact_force: mean(&|n| outcomes[n].max_contact_force),

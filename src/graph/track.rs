@@ -2,6 +2,7 @@
 
 use crate::scenario::Track;
 use crate::scenario::response::Response;
+use crate::solvers::settlement::Peak;
 
 /// The track without a train.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,6 +10,8 @@ pub struct Unloaded {
     /// Every rail node, left to right.
     pub rail: Vec<RailPoint>,
     pub seats: Vec<UnloadedSeat>,
+    /// The rail as a measuring wheel finds it, left to right; empty where nobody records it.
+    pub profile: Vec<RailPlace>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,6 +22,19 @@ pub struct RailPoint {
     pub deflection: f64,
     /// Sagging, N m.
     pub moment: f64,
+}
+
+/// A place on the rail where wheels run, four to a bay and one over each seat.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RailPlace {
+    /// Chainage, m.
+    pub x: f64,
+    /// Unloaded, below the level as built, m.
+    pub level: f64,
+    /// Unloaded, sagging, N m.
+    pub moment: f64,
+    /// The mean wheel load of the train over the deflection that it adds standing here, N/m.
+    pub stiffness: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -39,13 +55,15 @@ pub struct UnloadedSeat {
 #[derive(Debug, Clone, PartialEq)]
 pub struct PassageOutcome {
     pub seats: Vec<SeatOutcome>,
-    /// For every seat the peak contact force of each wheel of the train, N.
-    pub peaks: Vec<Vec<f64>>,
+    /// For every seat what each wheel of the train does to its support at most.
+    pub peaks: Vec<Vec<Peak>>,
     /// N.
     pub max_wheel_force: f64,
     pub min_wheel_force: f64,
     /// Sagging, at rail nodes, N m.
     pub max_rail_moment: f64,
+    /// Smallest and largest sagging moment of every rail node, N m.
+    pub rail_moments: Vec<(f64, f64)>,
     pub time_steps: u64,
     pub newton_iterations: u64,
     /// Histories; empty where the passage is not recorded.

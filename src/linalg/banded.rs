@@ -65,6 +65,11 @@ impl SymmetricBanded {
         self.half_band
     }
 
+    /// Entries that a row of the factor holds.
+    pub(super) fn kernel_width(&self) -> usize {
+        kernel_width(self.half_band)
+    }
+
     /// Adds `value` to the entries (i, j) and (j, i), once where they are the same.
     ///
     /// # Panics
@@ -165,8 +170,23 @@ impl SymmetricBanded {
 }
 
 impl BandedFactor {
+    /// Widths that have an unrolled kernel.
+    pub(super) const UNROLLED: [usize; 3] = [4, 5, 8];
+
     pub fn order(&self) -> usize {
         self.inverse_pivots.len()
+    }
+
+    pub(super) fn inverse_pivots(&self) -> &[f64] {
+        &self.inverse_pivots
+    }
+
+    pub(super) fn lower(&self) -> &[f64] {
+        &self.lower
+    }
+
+    pub(super) fn upper(&self) -> &[f64] {
+        &self.upper
     }
 
     /// Replaces the right-hand side by the solution.
@@ -204,6 +224,13 @@ impl BandedFactor {
             known.copy_within(1.., 0);
             known[W - 1] = value;
             *xi = value;
+        }
+    }
+
+    /// Replaces a right-hand side by `L⁻¹` times it.
+    pub(super) fn substitute_forward(&self, x: &mut [f64]) {
+        for i in 0..self.order() {
+            x[i] -= self.lower_row(i, self.width.min(i), x);
         }
     }
 

@@ -22,7 +22,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Some((what, frequency)) = fast.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { return Vec::new() };
     let needed = 1.0 / (STEPS_A_PERIOD * frequency);
     let step = blocks.passage.time_step;
-    if step <= needed {
+    if step <= needed || blocks.passage.adaptive.is_some() {
         return Vec::new();
     }
     let diagnostic = Diagnostic::new(
@@ -35,7 +35,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         ),
     )
     .help(format!("write `time_step = {} s`", number(rounded_down(needed))));
-    vec![match scenario.solve.time_step.and_then(|t| t.origin.span()) {
+    vec![match scenario.solve.time_step.span() {
         Some(span) => diagnostic.at(span, "coarse"),
         None => diagnostic,
     }]

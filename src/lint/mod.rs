@@ -2,8 +2,10 @@
 //!
 //! A rule is silenced by `scenario { allow = [rule: "reason"] }` and made an error by `deny`.
 
+mod below_threshold;
 mod coarse_time_step;
 mod critical_speed;
+mod irregularity_too_sharp;
 mod law_outside_calibration;
 mod passing_frequency;
 mod stiffness_jump;
@@ -15,11 +17,11 @@ pub use winkler::Winkler;
 
 use crate::diag::{Diagnostic, Severity};
 use crate::graph::Graph;
-use crate::scenario::Scenario;
+use crate::scenario::{Loading, Scenario, SettlementLaw};
 
 type Rule = fn(&Scenario, &Graph) -> Vec<Diagnostic>;
 
-const RULES: [Rule; 7] = [
+const RULES: [Rule; 9] = [
     stiffness_jump::check,
     critical_speed::check,
     track_too_short::check,
@@ -27,6 +29,8 @@ const RULES: [Rule; 7] = [
     coarse_time_step::check,
     update_overshoot::check,
     passing_frequency::check,
+    below_threshold::check,
+    irregularity_too_sharp::check,
 ];
 
 /// Applies every rule, at the level that the scene gives it.
@@ -40,4 +44,21 @@ pub fn lint(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             _ => d,
         })
         .collect()
+}
+
+/// The law that drives the run, then those beside it.
+fn laws(scenario: &Scenario) -> impl Iterator<Item = &SettlementLaw> {
+    std::iter::once(&scenario.solve.law).chain(&scenario.solve.other_laws)
+}
+
+/// Points at the place where the scene asks for a law; where it leaves the law to the default, at its traffic.
+fn pointed(diagnostic: Diagnostic, scenario: &Scenario, law: &SettlementLaw, text: &str) -> Diagnostic {
+    let traffic = match &scenario.loading {
+        Some(Loading::Traffic(traffic)) => traffic.total.origin.span().map(|span| (span, "under this traffic")),
+        _ => None,
+    };
+    match law.origin.span().map(|span| (span, text)).or(traffic) {
+        Some((span, text)) => diagnostic.at(span, text),
+        None => diagnostic,
+    }
 }

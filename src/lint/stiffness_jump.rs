@@ -15,7 +15,11 @@ pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
     let track = &scenario.track;
     let mut found = Vec::new();
     for (i, transition) in track.transitions.iter().enumerate() {
-        let (Some(left), Some(right)) = (Winkler::of(track, i), Winkler::of(track, i + 1)) else { continue };
+        let (Some(left), Some(right)) =
+            (Winkler::beside(track, i, transition.x), Winkler::beside(track, i + 1, transition.x))
+        else {
+            continue;
+        };
         let (a, b) = (left.rail_stiffness(), right.rail_stiffness());
         let ratio = a.max(b) / a.min(b);
         if ratio <= LARGEST_RATIO {

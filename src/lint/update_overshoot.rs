@@ -1,33 +1,29 @@
 //! L1006: so much settles between two exchanges that the loop overshoots.
 //!
-//! The exchange is forward Euler in axles: a perturbation is amplified by 1 - A with A = (dS/dF) k_eff, dS/dF = (1 + alpha)
-//! S/F for the block's settlement S at peak force F, and k_eff at most the series of pad and support. A > 1 overshoots,
-//! A > 2 may grow. The first block is the worst: laws harden.
+//! The exchange is forward Euler in axles: a perturbation is amplified by 1 - A with A = (dS/dF) k_eff for the block's
+//! settlement S at peak force F, and k_eff at most the series of pad and support. A > 1 overshoots, A > 2 may grow. The first
+//! block is the worst: laws harden.
 
-use super::winkler::Winkler;
+use super::winkler::seat_loads;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule, SubstructureNode};
+use crate::graph::{Block, Graph, Schedule, SubstructureNode};
 use crate::scenario::Scenario;
-use crate::solvers::settlement::Law;
+use crate::solvers::settlement::{Law, Peak};
 use crate::units::number;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
-    let Some(first) = blocks.blocks.first() else { return Vec::new() };
+    let Some(wanted) = blocks.wanted(0) else { return Vec::new() };
+    let first = blocks.block(0, wanted);
     let SubstructureNode::Law { law, .. } = &graph.substructure else { return Vec::new() };
-    let Law::Varandas(varandas) = law;
-    let track = &scenario.track;
     let mut worst: Option<(f64, f64)> = None;
-    for section in 0..track.sections.len() {
-        let ballasted = track.seats.iter().any(|s| s.section == section && s.is_ballasted());
-        let Some(winkler) = Winkler::of(track, section).filter(|_| ballasted) else { continue };
-        let spacing = *track.sections[section].spacing;
-        let wheel = blocks.train.vehicles.iter().map(|v| v.mass()).fold(0.0, f64::max) / 4.0 * *scenario.solve.gravity;
-        let force = wheel * winkler.seat_share(spacing);
-        let settled = first_block(law, force, first.axles);
-        let amplification = (1.0 + varandas.alpha) * settled / force * winkler.modulus * spacing;
-        if force > 0.0 && worst.is_none_or(|(a, _)| amplification > a) {
-            worst = Some((amplification, settled));
+    for seat in seat_loads(scenario, blocks) {
+        let settled = |share: f64| first_block(&law.law, seat.peak.scaled(share), &first);
+        // 1 % to either side
+        let slope = (settled(1.01) - settled(0.99)) / (0.02 * seat.peak.force);
+        let amplification = slope * seat.winkler.modulus * seat.spacing;
+        if seat.peak.force > 0.0 && worst.is_none_or(|(a, _)| amplification > a) {
+            worst = Some((amplification, settled(1.0)));
         }
     }
     let Some((amplification, settled)) = worst.filter(|(a, _)| *a > 1.0) else { return Vec::new() };
@@ -40,16 +36,17 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             number(((amplification - 1.0).abs() * 10.0).round() / 10.0)
         ),
     )
-    .help(format!("write `update_every = geometric({} axles, 0.2)`", blocks.train.axles()));
+    .help("write `update_every = adaptive`");
     vec![match scenario.solve.update_span {
         Some(span) => diagnostic.at(span, "too long a block"),
         None => diagnostic,
     }]
 }
 
-/// Settlement under `axles` equal peaks, m.
-fn first_block(law: &Law, force: f64, axles: u64) -> f64 {
+/// Settlement of a fresh support under the equal wheels of one block, m.
+fn first_block(law: &Law, peak: Peak, block: &Block) -> f64 {
     let mut support = law.fresh();
-    law.add_cycles(&mut support, force, axles);
+    let trains = (block.forward + block.backward).max(1);
+    law.load(&mut support, &vec![peak; (block.axles / trains) as usize], trains);
     law.settlement(&support)
 }

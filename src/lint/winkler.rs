@@ -1,6 +1,8 @@
 //! The track as a beam on a Winkler foundation: the closed forms that several rules need.
 
-use crate::scenario::{Foot, Section, Track};
+use crate::graph::Blocks;
+use crate::scenario::{Foot, Scenario, Section, Track, Vehicle};
+use crate::solvers::settlement::Peak;
 
 /// A section smeared along the rail.
 pub struct Winkler {
@@ -13,12 +15,19 @@ pub struct Winkler {
 }
 
 impl Winkler {
-    /// A seat is pad and support in series; a slab adds its foundation over one spacing.
+    /// A seat is pad and support in series; a slab adds its foundation over one spacing. Where they vary, those of the
+    /// section's left end.
     pub fn of(track: &Track, section: usize) -> Option<Winkler> {
+        Winkler::beside(track, section, track.sections[section].start)
+    }
+
+    /// As at the seat of a section that is nearest to a chainage.
+    pub fn beside(track: &Track, section: usize, x: f64) -> Option<Winkler> {
         let Section { rail, spacing, slab, .. } = &track.sections[section];
-        let seat = track.seats.iter().find(|s| s.section == section)?;
+        let seats = track.seats.iter().filter(|s| s.section == section);
+        let seat = seats.min_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()))?;
         let (below, mass) = match (&seat.foot, slab) {
-            (Foot::Sleeper { mass, support }, _) => (1.0 / *support.stiffness, **mass / **spacing),
+            (Foot::Sleeper { mass, support }, _) => (1.0 / support.spring().stiffness, **mass / **spacing),
             (Foot::Slab, Some(slab)) => (1.0 / (*slab.foundation_stiffness * **spacing), 0.0),
             _ => (0.0, 0.0),
         };
@@ -49,4 +58,39 @@ impl Winkler {
     pub fn seat_share(&self, spacing: f64) -> f64 {
         self.lambda() * spacing / 2.0
     }
+}
+
+/// What the heaviest wheel, at rest over a seat of a ballasted section, does to the support there, the track's weight included.
+pub(super) struct SeatLoad {
+    pub section: usize,
+    pub winkler: Winkler,
+    /// Of the seats, m.
+    pub spacing: f64,
+    /// N.
+    pub wheel: f64,
+    pub peak: Peak,
+}
+
+/// The ballasted sections under the heaviest wheel of the train: the seat's share of it and its own weight, and the deflection
+/// of its support.
+pub(super) fn seat_loads(scenario: &Scenario, blocks: &Blocks) -> Vec<SeatLoad> {
+    let track = &scenario.track;
+    let heaviest = blocks.train.vehicles.iter().map(Vehicle::mass).fold(0.0, f64::max);
+    let wheel = heaviest / Vehicle::AXLES as f64 * *scenario.solve.gravity;
+    let of_section = |section: usize| {
+        let seat = track.seats.iter().find(|s| s.section == section && s.is_ballasted())?;
+        let winkler = Winkler::of(track, section)?;
+        let spacing = *track.sections[section].spacing;
+        let Foot::Sleeper { support, .. } = &seat.foot else { return None };
+        let weight = winkler.mass * spacing * *scenario.solve.gravity;
+        let force = wheel * winkler.seat_share(spacing) + weight;
+        Some(SeatLoad {
+            section,
+            winkler,
+            spacing,
+            wheel,
+            peak: Peak { force, deflection: force / *support.stiffness },
+        })
+    };
+    (0..track.sections.len()).filter_map(of_section).collect()
 }

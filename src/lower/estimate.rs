@@ -1,6 +1,7 @@
 //! What a run will take, before it runs: counts of unknowns and steps, times a measured cost.
 
-use crate::graph::{Estimate, Schedule, TrackNode};
+use crate::graph::{Blocks, Estimate, Schedule, TrackNode};
+use crate::scenario::Direction;
 
 /// Seconds a step and unknown of one passage on one core, as `cargo bench --bench track_passage` shows.
 const SECONDS: f64 = 2.5e-8;
@@ -11,11 +12,23 @@ pub(super) fn estimate(node: &TrackNode, schedule: &Schedule) -> Estimate {
     match schedule {
         Schedule::Static { .. } => Estimate { unknowns, passages: 0, steps: 0, seconds: 0.01, bytes },
         Schedule::Blocks(b) => {
-            let passages: u64 = b.blocks.iter().map(|block| b.passages(block).len() as u64).sum::<u64>() + 1;
+            let passages = passages(b);
             let run = b.passage.right - b.passage.left - b.train.wheel_base();
             let steps = (run / *b.train.speed / b.passage.time_step).ceil() as u64 * passages;
             let unknowns = unknowns + 10 * b.train.vehicles.len();
             Estimate { unknowns, passages, steps, seconds: steps as f64 * unknowns as f64 * SECONDS, bytes }
+        }
+    }
+}
+
+/// Passages of a run; of an adaptive one an expectation, from what runs of the shipped scenes took.
+pub(super) fn passages(blocks: &Blocks) -> u64 {
+    match blocks.planned() {
+        Some(planned) => planned.iter().map(|block| blocks.passages(block).len() as u64).sum::<u64>() + 1,
+        None => {
+            let trains = blocks.total as f64 / blocks.train.axles() as f64;
+            let directions = if blocks.train.direction == Direction::Both { 2 } else { 1 };
+            (directions * (1.0 + 3.0 * trains.ln()).ceil() as u64).min(directions * trains as u64) + 1
         }
     }
 }

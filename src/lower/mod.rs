@@ -2,12 +2,12 @@
 
 mod estimate;
 mod passage;
+mod records;
 mod schedule;
 
 use crate::diag::{Code, Diagnostic, Severity};
-use crate::graph::{Decision, Graph, Schedule, SubstructureNode, TrackNode};
-use crate::scenario::{LawForm, Loading, Scenario, SettlementLaw};
-use crate::solvers::settlement::{Law, Varandas};
+use crate::graph::{Decision, Graph, NamedLaw, Schedule, SubstructureNode, TrackNode};
+use crate::scenario::{Loading, Scenario, SettlementLaw};
 
 /// Lowers a scene. Without a graph there is at least one diagnostic.
 pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
@@ -27,25 +27,30 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
         }
         Some(Loading::Traffic(traffic)) => {
             pass.decide("tier", "a settlement law under each sleeper", "the scene gives the stiffness of its supports");
-            let law = SubstructureNode::Law { name: scenario.solve.law.name.clone(), law: law(&scenario.solve.law) };
+            let law = SubstructureNode::Law {
+                law: named(&scenario.solve.law),
+                followers: scenario.solve.other_laws.iter().map(named).collect(),
+            };
             (law, schedule::blocks(&mut pass, scenario, traffic).map(Schedule::Blocks))
         }
     };
-    let Some(schedule) = schedule else { return (None, pass.diagnostics) };
+    let Some(schedule) = schedule.filter(|_| !crate::diag::has_errors(&pass.diagnostics)) else {
+        return (None, pass.diagnostics);
+    };
     let track = TrackNode {
         track: scenario.track.clone(),
+        beam: *scenario.solve.beam,
         elements_per_bay: *scenario.solve.elements_per_bay,
         gravity: *scenario.solve.gravity,
     };
     let estimate = estimate::estimate(&track, &schedule);
-    let graph =
-        Graph { track, substructure, schedule, records: scenario.records.clone(), decisions: pass.decisions, estimate };
+    let records = records::records(&mut pass, scenario);
+    let graph = Graph { track, substructure, schedule, records, decisions: pass.decisions, estimate };
     (Some(graph), pass.diagnostics)
 }
 
-fn law(law: &SettlementLaw) -> Law {
-    let LawForm::Varandas { alpha, beta, gamma, reference_cycles, reference_force } = law.form;
-    Law::Varandas(Varandas { alpha, beta, gamma, reference_cycles: reference_cycles as u64, reference_force })
+fn named(law: &SettlementLaw) -> NamedLaw {
+    NamedLaw { name: law.name.clone(), law: law.law }
 }
 
 /// What the passes collect on their way.

@@ -2,8 +2,8 @@
 
 use super::Pass;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::PassagePlan;
-use crate::scenario::{Direction, Given, Integrator, Scenario, Train};
+use crate::graph::{AdaptiveSteps, PassagePlan};
+use crate::scenario::{Direction, Given, Scenario, TimeStep, Train};
 use crate::units::number;
 
 /// Distance that wheels keep from the ends of the model where there is room, m: about three decay lengths of the
@@ -13,18 +13,21 @@ const MARGIN: f64 = 6.0;
 const LEAST_MARGIN: f64 = 1.0;
 /// Time step where nothing is said, s: resolves the wheel on its contact spring (about 230 Hz) with forty steps.
 const TIME_STEP: f64 = 1e-4;
+/// The longest step where steps vary, s, and how often it may be halved.
+const LONGEST_STEP: f64 = 4e-4;
+const HALVINGS: u32 = 5;
 /// Interval of histories where nothing is said, s.
 const SAMPLE: f64 = 5e-4;
 
 pub(super) fn plan(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<PassagePlan> {
     let (left, right) = ends(pass, scenario, train)?;
-    let time_step = time_step(pass, scenario, train)?;
-    let rho = match scenario.solve.integrator {
-        Integrator::GeneralisedAlpha { rho } => rho,
+    let (time_step, adaptive) = match scenario.solve.time_step {
+        TimeStep::Adaptive { tolerance } => varying_steps(pass, scenario, train, *tolerance),
+        _ => (time_step(pass, scenario, train)?, None),
     };
     let every = scenario.records.iter().filter_map(|r| r.every).fold(SAMPLE, f64::min);
     let sample_every = (every / time_step).round().max(1.0) as u64;
-    Some(PassagePlan { left, right, time_step, rho, sample_every })
+    Some(PassagePlan { left, right, time_step, adaptive, integrator: scenario.solve.integrator, sample_every })
 }
 
 /// Chainage of the hindmost wheel at the left and of the foremost one at the right.
@@ -110,12 +113,28 @@ fn ends(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<(f64, f64
     Some((left, right))
 }
 
-fn time_step(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<f64> {
+/// Seconds in which a wheel runs over the shortest element.
+fn transit(scenario: &Scenario, train: &Train) -> f64 {
     let spacing = scenario.track.sections.iter().map(|s| *s.spacing).fold(f64::INFINITY, f64::min);
-    let element = spacing / f64::from(*scenario.solve.elements_per_bay);
-    let speed = *train.speed;
-    let transit = element / speed;
-    if let Some(given) = scenario.solve.time_step {
+    spacing / f64::from(*scenario.solve.elements_per_bay) / *train.speed
+}
+
+/// The longest of the steps that vary, and how they do.
+fn varying_steps(pass: &mut Pass, scenario: &Scenario, train: &Train, tolerance: f64) -> (f64, Option<AdaptiveSteps>) {
+    let longest = LONGEST_STEP.min(transit(scenario, train) / 4.0);
+    let shortest = longest / f64::from(1u32 << HALVINGS);
+    pass.decide(
+        "time step",
+        format!("{} to {} ms", number(shortest * 1e3), number(longest * 1e3)),
+        "halved where the motion changes within a step, doubled where it is calm",
+    );
+    (longest, Some(AdaptiveSteps { tolerance, halvings: HALVINGS }))
+}
+
+fn time_step(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<f64> {
+    let (speed, transit) = (*train.speed, transit(scenario, train));
+    let element = transit * speed;
+    if let Some(given) = scenario.solve.time_step.fixed() {
         if *given > transit {
             let mut mistake = Diagnostic::new(
                 Code::E0603,

@@ -1,9 +1,9 @@
 //! Divides the axles of a run into blocks, between which forces and settlement are exchanged.
 
-use super::{Pass, passage};
+use super::{Pass, estimate, passage};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::graph::{Block, Blocks};
-use crate::scenario::{Direction, Scenario, Traffic, Train, Update};
+use crate::graph::Blocks;
+use crate::scenario::{Scenario, Traffic, Train, Update};
 
 pub(super) fn blocks(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic) -> Option<Blocks> {
     let train = &traffic.train;
@@ -23,6 +23,7 @@ pub(super) fn blocks(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic) ->
         Update::Fixed { axles } => {
             sound &= divides(pass, *axles, train, "an update interval", scenario.solve.update_span)
         }
+        Update::Adaptive { .. } => {}
     }
     let mut recorded: Vec<u64> =
         scenario.records.iter().flat_map(|r| r.after.iter().copied()).chain([0, total]).collect();
@@ -41,15 +42,23 @@ pub(super) fn blocks(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic) ->
     if !sound {
         return None;
     }
-    let blocks = divide(update, total, &recorded, train);
+    let blocks = Blocks { train: train.clone(), passage: plan?, update, cure: true, recorded, total };
     if axles < total {
-        pass.decide(
-            "share",
-            format!("{} passages stand for {} trains", blocks.len() + 1, total / axles),
-            "trains of one block run over the same settled track, so one passage gives the forces of all",
-        );
+        let trains = total / axles;
+        let why = "trains of one block run over the same settled track, so one passage gives the forces of all";
+        match blocks.planned() {
+            Some(planned) => {
+                let passages: usize = planned.iter().map(|block| blocks.passages(block).len()).sum();
+                pass.decide("share", format!("{} passages stand for {trains} trains", passages + 1), why)
+            }
+            None => pass.decide(
+                "share",
+                format!("about {} passages stand for {trains} trains", estimate::passages(&blocks)),
+                why,
+            ),
+        }
     }
-    Some(Blocks { train: train.clone(), passage: plan?, blocks, recorded, total })
+    Some(blocks)
 }
 
 /// Whether a count is a whole number of trains.
@@ -71,32 +80,4 @@ fn divides(pass: &mut Pass, count: u64, train: &Train, what: &str, span: Option<
     }
     pass.diagnostics.push(mistake);
     false
-}
-
-/// Blocks of whole trains that end at every recorded count.
-fn divide(update: Update, total: u64, recorded: &[u64], train: &Train) -> Vec<Block> {
-    let axles = train.axles();
-    let mut blocks = Vec::new();
-    let mut before = 0;
-    let mut trains_before = 0;
-    while before < total {
-        let wanted = match update {
-            Update::Fixed { axles } => axles,
-            Update::Geometric { first, ratio } => first.max((ratio * before as f64) as u64 / axles * axles),
-        };
-        let stop = recorded.iter().copied().find(|c| *c > before).unwrap_or(total);
-        let size = wanted.min(stop - before);
-        let trains = size / axles;
-        let (forward, backward) = match train.direction {
-            Direction::Forward => (trains, 0),
-            Direction::Backward => (0, trains),
-            // the first of every two trains of the run goes forward
-            Direction::Both if trains_before % 2 == 0 => (trains.div_ceil(2), trains / 2),
-            Direction::Both => (trains / 2, trains.div_ceil(2)),
-        };
-        blocks.push(Block { before, axles: size, forward, backward });
-        before += size;
-        trains_before += trains;
-    }
-    blocks
 }

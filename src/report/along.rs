@@ -6,7 +6,7 @@ use super::counts::{self, Count};
 use super::number::{shown_unit, significant, whole};
 use super::scene::WIDTH;
 use super::svg::{Frame, Svg};
-use crate::results::{Run, SleeperRow};
+use crate::results::{RailRow, Run, SleeperRow};
 use crate::scenario::{Loading, Scenario};
 
 const HEIGHT: f64 = 320.0;
@@ -16,9 +16,9 @@ pub fn settlement(run: &Run) -> Option<Figure> {
     let mut chart = track_chart(run, "Settlement", "m", true);
     chart.series = per_seat(run, true, |row| row.settlement_m);
     chart.series.retain(|series| series.points.iter().any(|point| point.1.is_finite() && point.1 != 0.0));
-    let caption = "Permanent settlement of each sleeper's support, downwards as in the track; shaded where no ballast \
-         carries the seats. Sleepers near the ends, which only some wheels of a train pass, take the mean of their \
-         neighbours.";
+    let caption = "Permanent settlement of each sleeper's support, downward as in the track; seats are numbered from the \
+         transition (dashed), negative on its softer side; shaded where no ballast carries the seats. Sleepers near the \
+         ends, which only some wheels of a train pass, take the mean of their neighbours.";
     figure(&chart, "settlement", "Settlement along the track", caption)
 }
 
@@ -26,8 +26,8 @@ pub fn settlement(run: &Run) -> Option<Figure> {
 pub fn rail_level(run: &Run) -> Option<Figure> {
     let mut chart = track_chart(run, "Rail level below as built", "m", true);
     chart.series = counts::shown(run).iter().map(|count| along_rail(run, "rail_level", count)).collect();
-    let caption = "Level of the unloaded rail under its own weight: where it lies above the settled supports, sleepers \
-                   hang from it.";
+    let caption = "Level of the unloaded rail under its own weight, downward from the track as built: where it lies above \
+                   the settled supports, sleepers hang from it.";
     figure(&chart, "rail_level", "Rail level without a vehicle", caption)
 }
 
@@ -35,7 +35,8 @@ pub fn rail_level(run: &Run) -> Option<Figure> {
 pub fn seat_loads(run: &Run) -> Option<Figure> {
     let mut chart = track_chart(run, "Largest rail seat load", "N", false);
     chart.series = per_seat(run, false, |row| row.max_rail_seat_load_N);
-    let caption = "Largest force of the rail on each pad during one passage, per seat.";
+    let caption = "Largest force of the rail on each pad during one passage, per seat, in compression positive. The seat on \
+                   the stiff edge takes what its hanging neighbours leave.";
     figure(&chart, "rail_seat_load", "Rail seat loads along the track", caption)
 }
 
@@ -46,28 +47,6 @@ pub fn gravity_contact(run: &Run) -> Option<Figure> {
     let caption = "Force of each half sleeper on its support under dead load alone: a sleeper at zero hangs, and its \
                    neighbours carry its weight.";
     figure(&chart, "gravity_contact_force", "Sleeper\u{2013}ballast contact under dead load", caption)
-}
-
-/// Settlement of telling sleepers against the axles.
-pub fn settlement_with_axles(run: &Run) -> Option<Figure> {
-    let mut chart = Chart::new(Axis::new("Axles", ("", 1.0)), downwards(Axis::new("Settlement", shown_unit("m"))));
-    chart.y.from_zero = true;
-    for (index, (row, why)) in telling_seats(run).into_iter().enumerate() {
-        let blocks = run.histories.iter().filter(|h| h.quantity == "settlement" && h.id == row.sleeper);
-        let mut points: Vec<(f64, f64)> = blocks.map(|h| (h.axles as f64, h.value)).collect();
-        let counts = run.sleepers.iter().filter(|other| other.sleeper == row.sleeper);
-        points.extend(counts.map(|other| (other.axles as f64, other.settlement_m)));
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        points.dedup_by(|a, b| a.0 == b.0);
-        let name = format!("{} ({why})", row.sleeper.replace('-', "\u{2212}"));
-        chart.series.push(Series::new(&name, &format!("s{index}"), Mark::Dots, points));
-    }
-    if chart.series.iter().all(|series| series.points.len() < 2) {
-        return None;
-    }
-    let caption = "Settlement against the axles passed, at the sleeper that settles most, the one nearest to a \
-                   transition and one in the far field.";
-    figure(&chart, "settlement_with_axles", "Settlement with the axles", caption)
 }
 
 /// Rail deflection of a static check.
@@ -123,11 +102,14 @@ pub fn track_chart(run: &Run, label: &str, unit: &str, down: bool) -> Chart {
     let mut chart = Chart::new(Axis::chainage((track.start(), track.end())), axis);
     chart.bands = counts::sections(&run.scenario);
     chart.uprights = track.transitions.iter().map(|transition| transition.x).collect();
+    chart.seats = track.seats.iter().map(|seat| (seat.x, seat.number)).collect();
     chart
 }
 
-fn downwards(axis: Axis) -> Axis {
-    Axis { downwards: true, ..axis }
+/// One series of `rail.csv` at a count.
+pub fn along_profile(run: &Run, count: &Count, value: fn(&RailRow) -> f64) -> Series {
+    let rows = run.rail.iter().filter(|row| row.axles == count.axles);
+    Series::new(&count.name, &count.class, Mark::Line, rows.map(|row| (row.x_m, value(row))).collect())
 }
 
 /// One series a count over the seats, of the ballasted ones only where the quantity is the ballast's.
@@ -144,7 +126,8 @@ fn per_seat(run: &Run, ballasted: bool, value: fn(&SleeperRow) -> f64) -> Vec<Se
     counts::shown(run).iter().map(of_count).collect()
 }
 
-fn ballasted_names(scenario: &Scenario) -> std::collections::HashSet<String> {
+/// Names of the seats that a settling support carries.
+pub fn ballasted_names(scenario: &Scenario) -> std::collections::HashSet<String> {
     let track = &scenario.track;
     track.seats.iter().filter(|seat| seat.is_ballasted()).map(|seat| track.seat_name(seat)).collect()
 }
@@ -154,40 +137,6 @@ fn along_rail(run: &Run, quantity: &str, count: &Count) -> Series {
     let mut points: Vec<(f64, f64)> = rows.map(|h| (h.x_m, h.value)).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     Series::new(&count.name, &count.class, Mark::Line, points)
-}
-
-/// Rows of the last count: the sleeper that settled most, the one nearest to a transition, one of the far field.
-fn telling_seats(run: &Run) -> Vec<(&SleeperRow, &'static str)> {
-    let names = ballasted_names(&run.scenario);
-    let last = run.sleepers.iter().map(|row| row.axles).max();
-    let rows: Vec<&SleeperRow> = run
-        .sleepers
-        .iter()
-        .filter(|row| Some(row.axles) == last && names.contains(&row.sleeper) && row.settlement_m.is_finite())
-        .collect();
-    let distance = |row: &&&SleeperRow| {
-        let distances = run.scenario.track.transitions.iter().map(|t| (t.x - row.x_m).abs());
-        distances.fold(f64::INFINITY, f64::min)
-    };
-    let far_field = run.summary.scalars.get("far_field_settlement").map_or(0.0, |s| s.value);
-    // The far-field one: of the farther half, the one that is nearest to the far-field settlement.
-    let mut farther: Vec<&&SleeperRow> = rows.iter().collect();
-    farther.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
-    farther.truncate(rows.len().div_ceil(2));
-    let off = |row: &&&SleeperRow| (row.settlement_m - far_field).abs();
-    let chosen = [
-        (rows.iter().max_by(|a, b| a.settlement_m.total_cmp(&b.settlement_m)), "largest"),
-        (rows.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))), "at the transition"),
-        (farther.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))), "far field"),
-    ];
-    let mut seats: Vec<(&SleeperRow, &str)> = Vec::new();
-    for (row, why) in chosen {
-        let Some(row) = row else { continue };
-        if !seats.iter().any(|(other, _)| other.sleeper == row.sleeper) {
-            seats.push((row, why));
-        }
-    }
-    seats
 }
 
 /// A figure of one chart over the full width; `None` where there is nothing to see.

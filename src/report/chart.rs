@@ -19,11 +19,21 @@ pub struct Axis {
     /// In SI; the extent of the data where absent.
     pub range: Option<(f64, f64)>,
     pub from_zero: bool,
+    /// Powers of ten at equal distances; values are above zero.
+    pub logarithmic: bool,
 }
 
 impl Axis {
     pub fn new(label: &str, (unit, size): (&'static str, f64)) -> Self {
-        Axis { label: label.to_owned(), unit, size, downwards: false, range: None, from_zero: false }
+        Axis {
+            label: label.to_owned(),
+            unit,
+            size,
+            downwards: false,
+            range: None,
+            from_zero: false,
+            logarithmic: false,
+        }
     }
 
     /// Chainage, m.
@@ -85,11 +95,20 @@ pub struct Chart {
     pub uprights: Vec<f64>,
     /// Dotted level lines with a name, SI.
     pub levels: Vec<(f64, String)>,
+    /// Places of numbered seats, for the upper edge; SI.
+    pub seats: Vec<(f64, i32)>,
+    /// A second scale of the upright axis: its title, and its value per SI of the first.
+    pub second: Option<(String, f64)>,
 }
 
 const LEFT: f64 = 56.0;
 const RIGHT: f64 = 14.0;
 const BOTTOM: f64 = 42.0;
+/// Room that a second scale and the numbers of seats take, px.
+const SECOND: f64 = 34.0;
+const PLACES: f64 = 18.0;
+/// Room of one number of a seat, px.
+const NUMBER: f64 = 36.0;
 const LEGEND_ROW: f64 = 19.0;
 
 /// The plane of the data, and how it lies on the picture.
@@ -98,11 +117,16 @@ struct Plane {
     x: (f64, f64),
     y: (f64, f64),
     downwards: bool,
+    logarithmic: bool,
 }
 
 impl Plane {
     fn at(&self, point: (f64, f64)) -> (f64, f64) {
-        let across = (point.0 - self.x.0) / (self.x.1 - self.x.0);
+        let across = if self.logarithmic {
+            (point.0 / self.x.0).ln() / (self.x.1 / self.x.0).ln()
+        } else {
+            (point.0 - self.x.0) / (self.x.1 - self.x.0)
+        };
         let up = (point.1 - self.y.0) / (self.y.1 - self.y.0);
         let down = if self.downwards { up } else { 1.0 - up };
         (self.frame.x + across * self.frame.width, self.frame.y + down * self.frame.height)
@@ -111,7 +135,7 @@ impl Plane {
 
 impl Chart {
     pub fn new(x: Axis, y: Axis) -> Self {
-        Chart { x, y, series: vec![], bands: vec![], uprights: vec![], levels: vec![] }
+        Chart { x, y, series: vec![], bands: vec![], uprights: vec![], levels: vec![], seats: vec![], second: None }
     }
 
     /// Whether there is anything to see.
@@ -121,11 +145,12 @@ impl Chart {
 
     /// Draws the diagram with its labels into `frame`. `id` is unique on a page.
     pub fn draw(&self, svg: &mut Svg, id: &str, frame: Frame) {
-        let top = self.draw_head(svg, frame);
+        let top = self.draw_head(svg, frame) + if self.seats.is_empty() { 0.0 } else { PLACES };
+        let right = if self.second.is_some() { RIGHT + SECOND } else { RIGHT };
         let plane = self.plane(Frame {
             x: frame.x + LEFT,
             y: top,
-            width: frame.width - LEFT - RIGHT,
+            width: frame.width - LEFT - right,
             height: frame.y + frame.height - BOTTOM - top,
         });
         self.draw_bands(svg, &plane);
@@ -134,6 +159,8 @@ impl Chart {
             self.series.iter().for_each(|series| draw_series(svg, &plane, series, self))
         });
         self.draw_names(svg, &plane);
+        self.draw_seats(svg, &plane);
+        self.draw_second(svg, &plane);
     }
 
     /// The axis's title and the legend; gives the top of the plane.
@@ -160,7 +187,7 @@ impl Chart {
                 _ => svg.line(&class, (x, y - 4.0), (x + 20.0, y - 4.0)),
             }
             if series.mark == Mark::Dots {
-                svg.circle(&format!("dot {}", series.class), (x + 10.0, y - 4.0), 3.0, "");
+                draw_symbol(svg, &series.class, (x + 10.0, y - 4.0), 3.0, "");
             }
             svg.text("", (x + 25.0, y), Anchor::Start, &series.name);
             x += width(series);
@@ -176,7 +203,8 @@ impl Chart {
             let levels = self.levels.iter().map(|(level, _)| *level);
             self.round_range(extent(inside.chain(levels).chain(self.y.from_zero.then_some(0.0))), frame.height)
         });
-        Plane { frame, x: widened(x), y: widened(y), downwards: self.y.downwards }
+        let logarithmic = self.x.logarithmic;
+        Plane { frame, x: widened(x), y: widened(y), downwards: self.y.downwards, logarithmic }
     }
 
     /// The range of the upright axis, SI, that shows `series` whole on a plane of `height` px.
@@ -208,7 +236,7 @@ impl Chart {
         let frame = plane.frame;
         let (right, bottom) = (frame.x + frame.width, frame.y + frame.height);
         let (low, high) = (plane.y.0 / self.y.size, plane.y.1 / self.y.size);
-        let marks = ticks(low, high, rows(frame.height));
+        let marks = ticks(low, high, rows(frame.height) + 1);
         let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
         for mark in marks {
             let y = plane.at((plane.x.0, mark * self.y.size)).1;
@@ -216,7 +244,8 @@ impl Chart {
             svg.text("small muted", (frame.x - 7.0, y + 4.0), Anchor::End, &tick_label(mark, step));
         }
         let (low, high) = (plane.x.0 / self.x.size, plane.x.1 / self.x.size);
-        let marks = ticks(low, high, (frame.width / 75.0) as usize);
+        let marks =
+            if self.x.logarithmic { decades(low, high) } else { ticks(low, high, (frame.width / 75.0) as usize) };
         let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
         for mark in marks {
             let x = plane.at((mark * self.x.size, plane.y.0)).0;
@@ -233,6 +262,42 @@ impl Chart {
         svg.text("", (frame.x + frame.width / 2.0, bottom + 35.0), Anchor::Middle, &self.x.title());
     }
 
+    /// Seat numbers over the plane: round ones, as many as have room.
+    fn draw_seats(&self, svg: &mut Svg, plane: &Plane) {
+        let Frame { x: left, y: top, width, .. } = plane.frame;
+        let (Some(first), Some(last)) = (self.seats.first(), self.seats.last()) else { return };
+        let gap = (plane.at((last.0, 0.0)).0 - plane.at((first.0, 0.0)).0) / self.seats.len() as f64;
+        let fits = |step: &i32| f64::from(*step) * gap >= NUMBER;
+        let step = [1, 2, 5, 10, 20, 50, 100, 200, 500].into_iter().find(fits).unwrap_or(1000);
+        svg.text("small muted", (left - 7.0, top - 8.0), Anchor::End, "Seat");
+        let mut free = left + 0.4 * NUMBER;
+        for (place, number) in self.seats.iter().filter(|seat| seat.1 % step == 0) {
+            let x = plane.at((*place, 0.0)).0;
+            if (free..=left + width).contains(&x) {
+                free = x + 0.9 * NUMBER;
+                svg.line("axis", (x, top - 4.0), (x, top));
+                let name = format!("{number:+}").replace('-', "\u{2212}");
+                svg.text("small muted", (x, top - 8.0), Anchor::Middle, &name);
+            }
+        }
+    }
+
+    /// The second scale, right of the plane.
+    fn draw_second(&self, svg: &mut Svg, plane: &Plane) {
+        let Some((title, factor)) = &self.second else { return };
+        let Frame { x, y, width, height } = plane.frame;
+        let right = x + width;
+        let marks = ticks(plane.y.0 * factor, plane.y.1 * factor, rows(height) + 3);
+        let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
+        svg.line("axis", (right, y), (right, y + height));
+        for mark in marks {
+            let at = plane.at((plane.x.0, mark / factor)).1;
+            svg.line("axis", (right, at), (right + 4.0, at));
+            svg.text("small muted", (right + 7.0, at + 4.0), Anchor::Start, &tick_label(mark, step));
+        }
+        svg.text("small muted", (right + RIGHT + SECOND - 2.0, y + height + 35.0), Anchor::End, title);
+    }
+
     /// Reference lines and every name inside the plane, above the data.
     fn draw_names(&self, svg: &mut Svg, plane: &Plane) {
         let Frame { x: left, y: top, width, height } = plane.frame;
@@ -243,7 +308,9 @@ impl Chart {
         for (level, name) in &self.levels {
             let y = plane.at((plane.x.0, *level)).1;
             svg.line("load", (left, y), (left + width, y));
-            svg.text("small muted halo", (left + 6.0, y - 5.0), Anchor::Start, name);
+            if !name.is_empty() {
+                svg.text("small muted halo", (left + 6.0, y - 5.0), Anchor::Start, name);
+            }
         }
         for band in self.bands.iter().filter(|band| !band.label.is_empty()) {
             let from = plane.at((band.from, 0.0)).0.max(left);
@@ -279,8 +346,26 @@ fn draw_series(svg: &mut Svg, plane: &Plane, series: &Series, chart: &Chart) {
     if series.mark == Mark::Dots && series.points.len() <= 400 {
         let radius = if series.points.len() > 150 { 1.8 } else { 2.2 };
         for (index, pixel) in pixels.iter().enumerate().filter(|(_, p)| finite(p)) {
-            svg.circle(&class("dot"), *pixel, radius, &label(series, index, chart));
+            draw_symbol(svg, &series.class, *pixel, radius, &label(series, index, chart));
         }
+    }
+}
+
+/// A symbol of its own for every colour that curves of one chart may have.
+fn draw_symbol(svg: &mut Svg, class: &str, (x, y): (f64, f64), radius: f64, title: &str) {
+    let kind = format!("dot {class}");
+    let r = 1.25 * radius;
+    match class {
+        "s1" | "k2" => svg.path(&kind, &[(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)], true, title),
+        "s2" | "k0" => {
+            let r = 1.2 * r;
+            svg.path(&kind, &[(x, y - r), (x + r, y + r), (x - r, y + r)], true, title);
+        }
+        "s3" | "k3" => {
+            let r = 1.25 * r;
+            svg.path(&kind, &[(x, y - r), (x + r, y), (x, y + r), (x - r, y)], true, title);
+        }
+        _ => svg.circle(&kind, (x, y), radius, title),
     }
 }
 
@@ -295,6 +380,14 @@ fn label(series: &Series, index: usize, chart: &Chart) -> String {
 
 fn finite(point: &(f64, f64)) -> bool {
     point.0.is_finite() && point.1.is_finite()
+}
+
+/// Powers of ten, and twice and five times them where they are few.
+fn decades(low: f64, high: f64) -> Vec<f64> {
+    let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
+    let parts: &[f64] = if last - first > 4 { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    let all = (first..=last).flat_map(|power| parts.iter().map(move |part| part * 10f64.powi(power)));
+    all.filter(|mark| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(mark)).collect()
 }
 
 fn rows(height: f64) -> usize {
@@ -328,6 +421,6 @@ mod tests {
         chart.draw(&mut svg, "id", Frame { x: 0.0, y: 0.0, width: 300.0, height: 200.0 });
         let text = svg.finish(300.0, 200.0, "d");
         assert!(!text.contains("NaN") && !text.contains("inf"));
-        assert_eq!(text.matches("<path").count(), 2);
+        assert_eq!(text.matches(r#"<path class="line"#).count(), 2);
     }
 }

@@ -19,6 +19,13 @@ pub struct Count {
     pub class: String,
 }
 
+impl Count {
+    /// The count alone, for small charts.
+    pub fn short(&self) -> &str {
+        self.name.trim_start_matches("after ").trim_end_matches(" axles")
+    }
+}
+
 /// The counts at which sleepers were recorded; six of them, spread evenly, where there are more.
 pub fn shown(run: &Run) -> Vec<Count> {
     let of_sleepers = run.sleepers.iter().map(|row| row.axles);

@@ -5,17 +5,30 @@
 //! numbers are those of the run's tables.
 
 mod along;
+mod blocks;
 mod chart;
 mod counts;
+mod exchanges;
+mod hanging;
+mod headline;
+mod histories;
+mod laws;
+mod level;
+mod limits;
+mod moments;
 mod number;
 mod page;
-mod passage;
+mod panels;
+mod pressure;
 mod scene;
+mod seat_clock;
 mod stability;
+mod stiffness;
 mod svg;
 mod symbols;
 mod thin;
 mod vehicle;
+mod wheels;
 mod work_precision;
 
 pub use page::page;
@@ -56,16 +69,23 @@ pub fn figures(run: &Run) -> Vec<Figure> {
         );
     } else {
         let along = [
+            stiffness::rail_stiffness(run),
             along::settlement(run),
+            exchanges::settlement_with_axles(run),
             along::rail_level(run),
-            passage::wheel_force(run),
-            along::seat_loads(run),
+            level::level_d1(run),
             along::gravity_contact(run),
-            along::settlement_with_axles(run),
+            pressure::contact_pressure(run),
+            along::seat_loads(run),
+            moments::rail_moments(run),
+            wheels::wheel_force(run),
+            blocks::lengths(run),
         ];
         figures.extend(along.into_iter().flatten());
+        figures.extend(laws::spread(run));
     }
-    figures.extend(passage::histories(run));
+    figures.extend(histories::histories(run));
+    figures.extend(hanging::hanging_sleeper(run));
     figures
 }
 
@@ -91,15 +111,20 @@ mod tests {
         let ids: Vec<&str> = figures.iter().map(|figure| figure.id.as_str()).collect();
         let expected = [
             "scene",
+            "rail_stiffness",
             "settlement",
-            "rail_level",
-            "wheel_force",
-            "rail_seat_load",
-            "gravity_contact_force",
             "settlement_with_axles",
+            "rail_level",
+            "longitudinal_level",
+            "gravity_contact_force",
+            "contact_pressure",
+            "rail_seat_load",
+            "rail_moment",
+            "wheel_force",
+            "block_lengths",
             "history_rail_seat_load",
-            "history_contact_force",
             "history_rail_displacement",
+            "hanging_sleeper",
         ];
         assert_eq!(ids, expected);
         figures.iter().for_each(check_svg);
@@ -117,7 +142,9 @@ mod tests {
     fn a_run_without_data_has_its_scene_only() {
         let mut run = example::transition();
         run.sleepers.clear();
+        run.rail.clear();
         run.histories.clear();
+        run.blocks.clear();
         assert_eq!(figures(&run).len(), 1);
         let empty = page(&run);
         assert!(empty.contains("</html>"));
@@ -135,10 +162,62 @@ mod tests {
         let outside = page.replace("http://www.w3.org/2000/svg", "");
         assert!(!outside.contains("http") && !outside.contains("<script") && !outside.contains("url(\""));
         let ids: Vec<&str> = page.split(" id=\"").skip(1).map(|rest| &rest[..rest.find('"').unwrap()]).collect();
+        // every entry of the contents leads somewhere
+        let entries: Vec<&str> = page.split("href=\"#").skip(1).map(|rest| &rest[..rest.find('"').unwrap()]).collect();
+        assert!(entries.len() > 10 && entries.iter().all(|entry| ids.contains(entry)), "{entries:?}");
         let mut unique = ids.clone();
         unique.sort_unstable();
         unique.dedup();
         assert_eq!(ids.len(), unique.len());
+    }
+
+    /// The text of a picture, piece by piece.
+    fn said(figure: &Figure) -> Vec<String> {
+        let document = roxmltree::Document::parse(&figure.svg).unwrap();
+        document.descendants().filter(|node| node.is_text()).filter_map(|node| node.text()).map(str::to_owned).collect()
+    }
+
+    #[test]
+    fn figures_name_what_they_show() {
+        let figures = figures(&example::transition());
+        let of = |id: &str| figures.iter().find(|figure| figure.id == id).unwrap();
+        let has = |id: &str, text: &str| said(of(id)).iter().any(|piece| piece == text);
+        // axes with units, counts, seats and the second scale of stress
+        assert!(
+            has("rail_stiffness", "Static stiffness at rail level [MN/m]") && has("rail_stiffness", "after 500 axles")
+        );
+        assert!(has("rail_stiffness", "Seat") && has("rail_stiffness", "\u{2212}10") && has("rail_stiffness", "+10"));
+        assert!(has("rail_moment", "Foot stress [MPa]") && has("rail_moment", "Rail moment without a vehicle [kN m]"));
+        assert!(has("contact_pressure", "500 kPa, concrete sleepers (UIC, unchecked)"));
+        assert!(has("wheel_force", "Wheel 4 [kN]"));
+        assert!(has("hanging_sleeper", "\u{2212}3: contact force [kN]"));
+        assert!(has("hanging_sleeper", "\u{2212}13: contact force [kN]"));
+        // contact is lost at sleeper -3, and the picture is shaded there
+        assert!(of("hanging_sleeper").svg.contains(r#"class="lost""#));
+        assert!(of("longitudinal_level").caption.contains("alert from 7.0 to 12 mm"));
+        // settlement over axles and over their logarithm, a symbol for each exchange
+        assert_eq!(said(of("settlement_with_axles")).iter().filter(|piece| *piece == "Axles").count(), 2);
+    }
+
+    #[test]
+    fn the_head_of_the_page_says_what_engineers_ask_first() {
+        let page = page(&example::transition());
+        let head = &page[page.find("At a glance").unwrap()..page.find("Contents").unwrap()];
+        for text in [
+            "Largest settlement",
+            "seat \u{2212}5, \u{2212}3 m",
+            "Hanging sleepers",
+            "160 kN (EN 14363)",
+            "Stress at the rail",
+            "Stiffness at rail level",
+            "alert from 7 mm (EN 13848-5)",
+            "500 kPa (UIC, concrete)",
+            "unchecked",
+        ] {
+            assert!(head.contains(text), "{text}: {head}");
+        }
+        let bench = super::page(&example::bench());
+        assert!(bench.contains("Largest rail deflection") && !bench.contains("EN 14363"));
     }
 
     /// A bridge: two transitions, a long train that runs backwards, more counts than colours.
@@ -189,7 +268,12 @@ mod tests {
     fn every_figure_of_a_bridge_is_valid() {
         let figures = figures(&bridge());
         assert_eq!(figures[0].svg.matches("42 m, 69 seats at 0.6 m").count(), 2);
-        assert_eq!(figures[1].svg.matches("<circle").count() - 5, 5 * 138, "five counts that settle, and the legend");
+        let settlement = figures.iter().find(|figure| figure.id == "settlement").unwrap();
+        assert_eq!(
+            settlement.svg.matches(r#"class="dot "#).count() - 5,
+            5 * 138,
+            "five counts that settle, and the legend"
+        );
         figures.iter().for_each(check_svg);
     }
 

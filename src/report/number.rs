@@ -84,6 +84,8 @@ pub fn shown_unit(si: &str) -> (&'static str, f64) {
         "N m" => ("kN m", 1e3),
         "m" => ("mm", 1e-3),
         "N/m" => ("MN/m", 1e6),
+        "Pa" => ("kPa", 1e3),
+        "Pa stress" => ("MPa", 1e6), // in steel
         "s" => ("s", 1.0),
         "m/s" => ("mm/s", 1e-3),
         "m/s^2" => ("m/s\u{b2}", 1.0),

@@ -1,8 +1,9 @@
 //! The report of a run: one HTML page with its pictures inside, that needs no script and nothing from elsewhere.
 
-use super::number::{plain, shown_unit, significant, whole};
+use super::headline::headline;
+use super::number::{plain, significant, whole};
 use super::svg::{STYLE, escape};
-use super::{Figure, figures};
+use super::{Figure, figures, laws};
 use crate::results::{Run, Verdict};
 use crate::scenario::{Loading, Scenario};
 use std::fmt::Write;
@@ -23,9 +24,12 @@ pub fn page(run: &Run) -> String {
         figures = STYLE,
         subtitle = escape(&subtitle(&run.scenario))
     );
-    tiles(&mut html, run);
+    let figures = figures(run);
+    headline(&mut html, run);
+    laws::remarks(&mut html, run);
     expectations(&mut html, &run.summary.expectations);
-    figures(run).iter().for_each(|figure| picture(&mut html, figure));
+    contents(&mut html, &figures, run);
+    figures.iter().for_each(|figure| picture(&mut html, figure));
     blocks(&mut html, run);
     provenance(&mut html, run);
     html += "</main></body></html>\n";
@@ -59,41 +63,16 @@ fn subtitle(scenario: &Scenario) -> String {
     text
 }
 
-/// The key figures in a row.
-fn tiles(html: &mut String, run: &Run) {
-    let scalar = |name: &str| run.summary.scalars.get(name).map(|s| s.value).filter(|value| value.is_finite());
-    let mut tiles = String::new();
-    let mut tile = |name: &str, value: Option<f64>, unit: &str, note: String| {
-        let Some(value) = value else { return };
-        let (shown, size) = shown_unit(unit);
-        let value =
-            if unit == "1" && value.fract() == 0.0 { whole(value as u64) } else { significant(value / size, 3) };
-        let _ = write!(
-            tiles,
-            "<div class=\"tile\"><div class=\"name\">{name}</div><div class=\"value\">{value} <span>{shown}</span></div>\
-             <div class=\"note\">{}</div></div>",
-            escape(&note)
-        );
-    };
-    let load = |name: &str| run.summary.scalars.get(name).map(|s| significant(s.value / 1e3, 3));
-    let place = scalar("max_settlement_x").map(|x| format!("at {} m", plain(x, 3)));
-    tile("Largest settlement", scalar("max_settlement"), "m", place.unwrap_or_default());
-    tile("Far-field settlement", scalar("far_field_settlement"), "m", "median".to_owned());
-    tile("Differential settlement", scalar("differential_settlement"), "m", "largest less far field".to_owned());
-    let void = scalar("max_void").map(|gap| format!("largest void {} mm", significant(gap * 1e3, 2)));
-    tile("Voided sleepers", scalar("voided_sleepers"), "1", void.unwrap_or_default());
-    let amplification =
-        scalar("dynamic_amplification").map(|factor| format!("{} \u{d7} static", significant(factor, 3)));
-    let least = load("min_wheel_force").map(|force| format!("least {force} kN"));
-    let wheel = amplification.into_iter().chain(least).collect::<Vec<_>>().join(", ");
-    tile("Largest wheel force", scalar("max_wheel_force"), "N", wheel);
-    tile("Largest rail seat load", scalar("max_rail_seat_load"), "N", "per seat".to_owned());
-    tile("Largest contact force", scalar("max_contact_force"), "N", "sleeper on ballast, per seat".to_owned());
-    tile("Largest rail moment", scalar("max_rail_moment"), "N m", "sagging, one rail".to_owned());
-    tile("Largest rail deflection", scalar("max_rail_displacement"), "m", String::new());
-    if !tiles.is_empty() {
-        let _ = writeln!(html, "<div class=\"tiles\">{tiles}</div>");
+/// Where to find what.
+fn contents(html: &mut String, figures: &[Figure], run: &Run) {
+    *html += "<nav id=\"contents\"><h2>Contents</h2><ol>";
+    for figure in figures {
+        let _ = write!(html, "<li><a href=\"#{}\">{}</a></li>", escape(&figure.id), escape(&figure.title));
     }
+    if !run.blocks.is_empty() {
+        *html += "<li><a href=\"#blocks\">Blocks</a></li>";
+    }
+    *html += "<li><a href=\"#provenance\">What made this</a></li></ol></nav>\n";
 }
 
 fn expectations(html: &mut String, verdicts: &[Verdict]) {
@@ -183,7 +162,8 @@ fn blocks(html: &mut String, run: &Run) {
     let _ = writeln!(
         html,
         "<section class=\"long\" id=\"blocks\"><h2>Blocks</h2><p class=\"caption\">Extremes of the passage computed for \
-         each block of axles.</p>{table}</section>"
+         each block of axles. {}</p>{table}</section>",
+        escape(&super::blocks::said(run))
     );
 }
 

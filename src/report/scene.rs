@@ -267,7 +267,7 @@ fn carried(section: &Section, seats: &[&Seat]) -> String {
     let supports: Vec<f64> = seats
         .iter()
         .filter_map(|seat| match &seat.foot {
-            Foot::Sleeper { support, .. } => Some(*support.stiffness),
+            Foot::Sleeper { support, .. } => Some(support.spring().stiffness),
             _ => None,
         })
         .collect();

@@ -2,8 +2,9 @@
 
 use super::number::significant;
 use super::svg::{Anchor, Frame, Svg, text_width};
+use crate::scenario::{Beam, Integrator};
 use crate::study::chart::{QUANTITIES, ReadError};
-use crate::study::{Beam, Chart, Level, Method, Outcome, Point, Sweep};
+use crate::study::{Chart, Level, Outcome, Point, Sweep};
 use crate::units::number;
 
 const WIDTH: f64 = 1080.0;
@@ -38,7 +39,7 @@ pub fn chart_svg(chart: &Chart) -> String {
 struct Picture<'a> {
     chart: &'a Chart,
     beam: Beam,
-    methods: Vec<Method>,
+    methods: Vec<Integrator>,
     /// Decades of the time axis.
     decades: (f64, f64),
     /// Upper end of the axis of errors.
@@ -49,7 +50,7 @@ impl<'a> Picture<'a> {
     fn new(chart: &'a Chart) -> Self {
         let own = chart.points.iter().find(|p| p.default);
         let beam = own.map_or(Beam::Euler, |p| p.variant.beam);
-        let mut methods: Vec<Method> = Vec::new();
+        let mut methods: Vec<Integrator> = Vec::new();
         for point in chart.points.iter().filter(|p| p.sweep == Sweep::TimeStep) {
             if !methods.contains(&point.variant.method) {
                 methods.push(point.variant.method);
@@ -67,7 +68,7 @@ impl<'a> Picture<'a> {
     }
 
     /// Points of a line, from the cheapest to the dearest, whatever became of them.
-    fn line(&self, method: Method, beam: Beam) -> Vec<&'a Point> {
+    fn line(&self, method: Integrator, beam: Beam) -> Vec<&'a Point> {
         let of_line = |p: &&Point| {
             p.level == Level::Settled
                 && p.sweep == Sweep::TimeStep
@@ -90,8 +91,8 @@ impl<'a> Picture<'a> {
         let (mut x, y) = (16.0, 88.0);
         let other = if self.beam == Beam::Euler { Beam::Timoshenko } else { Beam::Euler };
         svg.line("other s0", (x, y - 4.0), (x + 24.0, y - 4.0));
-        svg.text("", (x + 30.0, y), Anchor::Start, other.name());
-        x += 44.0 + text_width(other.name());
+        svg.text("", (x + 30.0, y), Anchor::Start, &other.to_string());
+        x += 44.0 + text_width(&other.to_string());
         svg.circle("hollow s0", (x + 6.0, y - 4.0), 6.5, "");
         svg.text("small", (x + 6.0, y), Anchor::Middle, "4");
         svg.text("", (x + 18.0, y), Anchor::Start, "elements a bay");
@@ -209,13 +210,8 @@ impl<'a> Picture<'a> {
 
 fn title(point: &Point, error: ReadError) -> String {
     let v = &point.variant;
-    let head = format!(
-        "{}, {} ms, {} elements a bay, {}",
-        v.method,
-        number(v.time_step * 1e3),
-        v.elements_per_bay,
-        v.beam.name()
-    );
+    let head =
+        format!("{}, {} ms, {} elements a bay, {}", v.method, number(v.time_step * 1e3), v.elements_per_bay, v.beam);
     match &point.outcome {
         Outcome::Done { seconds, errors, .. } => {
             format!("{head}: {} % in {} s", significant(100.0 * error(errors), 3), significant(*seconds, 3))

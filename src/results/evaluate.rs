@@ -3,11 +3,11 @@
 //! A seat's response is the one value that `sleepers.csv` holds for it (the peak of the passage where it varies in
 //! time); velocities and accelerations come from histories, as do the wheels' and the rail's responses.
 
-use super::{BlockRow, HistoryRow, Scalar, SleeperRow, Verdict};
-use crate::scenario::Scenario;
+use super::{BlockRow, HistoryRow, RailRow, Scalar, SleeperRow, Verdict};
 use crate::scenario::response::{Expectation, Expression, Measure, Place, Reduction, Response};
+use crate::scenario::{Scenario, Track};
 use crate::syntax::tree::{BinaryOp, Comparison};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// Slack at the ends of an interval of chainage, m: places are sums of spacings.
 const PLACE_TOLERANCE: f64 = 1e-6;
@@ -17,8 +17,17 @@ const PLACE_TOLERANCE: f64 = 1e-6;
 pub struct Tables<'a> {
     pub sleepers: &'a [SleeperRow],
     pub blocks: &'a [BlockRow],
+    pub rail: &'a [RailRow],
     pub histories: &'a [HistoryRow],
     pub scalars: &'a BTreeMap<String, Scalar>,
+    pub track: &'a Track,
+}
+
+/// Chainage and largest contact pressure of each row whose sleeper lies on a known area, m and Pa.
+pub fn contact_pressures<'a>(track: &Track, rows: impl Iterator<Item = &'a SleeperRow>) -> Vec<(f64, f64)> {
+    let area = |seat| Some((track.seat_name(seat), track.bearing_area(seat)?));
+    let areas: HashMap<String, f64> = track.seats.iter().filter_map(area).collect();
+    rows.filter_map(|row| Some((row.x_m, row.max_contact_force_N / areas.get(&row.sleeper)?))).collect()
 }
 
 /// The value of an expression in SI units, or why it has none. The value is finite.
@@ -123,6 +132,16 @@ fn values(measure: &Measure, tables: Tables<'_>) -> Result<Vec<(f64, f64)>, Stri
         let rows = tables.sleepers.iter().filter(|row| Some(row.axles) == axles && inside(row.x_m));
         return Ok(rows.map(|row| (row.x_m, column(row))).collect());
     }
+    if measure.response == Response::ContactPressure {
+        let axles = measure.after.or_else(|| tables.sleepers.iter().map(|row| row.axles).max());
+        let rows = tables.sleepers.iter().filter(|row| Some(row.axles) == axles && inside(row.x_m));
+        return Ok(contact_pressures(tables.track, rows));
+    }
+    if measure.response == Response::RailStiffness {
+        let axles = measure.after.or_else(|| tables.rail.iter().map(|row| row.axles).max());
+        let rows = tables.rail.iter().filter(|row| Some(row.axles) == axles && inside(row.x_m));
+        return Ok(rows.map(|row| (row.x_m, row.stiffness_N_per_m)).collect());
+    }
     let name = measure.response.name();
     let on_rail = measure.response.place() == Place::Rail;
     let rows = || tables.histories.iter().filter(|row| row.quantity == name && (!on_rail || row.id == "rail"));
@@ -161,8 +180,10 @@ mod tests {
         let tables = Tables {
             sleepers: &run.sleepers,
             blocks: &run.blocks,
+            rail: &run.rail,
             histories: &run.histories,
             scalars: &run.summary.scalars,
+            track: &run.scenario.track,
         };
         let value = |measure: Measure| evaluate(&Expression::Measure(measure), tables);
         let place = value(measure(Reduction::PlaceOfMax, Response::Settlement)).unwrap();
@@ -183,7 +204,8 @@ mod tests {
     #[test]
     fn arithmetic_and_division_by_zero() {
         let scalars = BTreeMap::new();
-        let tables = Tables { sleepers: &[], blocks: &[], histories: &[], scalars: &scalars };
+        let track = example::bench().scenario.track;
+        let tables = Tables { sleepers: &[], blocks: &[], rail: &[], histories: &[], scalars: &scalars, track: &track };
         let number = |value| Box::new(Expression::Number(value));
         let binary = |a, operator, b| evaluate(&Expression::Binary(number(a), operator, number(b)), tables);
         assert_eq!(binary(2.0, BinaryOp::Power, 3.0), Ok(8.0));

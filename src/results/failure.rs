@@ -31,7 +31,7 @@ type Labels = Vec<(Option<Span>, String)>;
 impl Scene<'_> {
     fn blame(&self, axles: u64, cause: &TrackError) -> (Labels, String) {
         match cause {
-            TrackError::StepNotConverged { x, .. } | TrackError::NotFinite { x, .. } => {
+            TrackError::StepNotConverged { x, .. } | TrackError::Unstable { x, .. } => {
                 (vec![self.time_step(), self.contact(), self.place(*x)], self.half_a_step())
             }
             TrackError::NoEquilibrium { x, .. } if axles > 0 => {
@@ -112,7 +112,7 @@ impl Scene<'_> {
     }
 
     fn time_step(&self) -> (Option<Span>, String) {
-        (self.scenario.solve.time_step.and_then(|t| t.origin.span()), "too coarse here".into())
+        (self.scenario.solve.time_step.span(), "too coarse here".into())
     }
 
     fn contact(&self) -> (Option<Span>, String) {
@@ -135,6 +135,10 @@ impl Scene<'_> {
         let present = match self.scenario.solve.update {
             crate::scenario::Update::Fixed { axles } => axles,
             crate::scenario::Update::Geometric { first, .. } => first,
+            // the shortest is one train already
+            crate::scenario::Update::Adaptive { .. } => {
+                return "let the supports settle less at once: check the settlement law".into();
+            }
         };
         let half = (present / 2 / trains).max(1) * trains;
         format!("exchange more often: write `update_every = {half} axles` in `solve`, or check the settlement law")
@@ -144,7 +148,7 @@ impl Scene<'_> {
         let (solve, train) = (&self.scenario.solve, self.traffic().map(|t| &t.train));
         let span = match name {
             "speed" => train.and_then(|t| t.speed.origin.span()),
-            "time step" => solve.time_step.and_then(|t| t.origin.span()),
+            "time step" => solve.time_step.span(),
             "gravity" => solve.gravity.origin.span(),
             "elements per bay" => solve.elements_per_bay.origin.span(),
             "distance" => solve.finish.or(solve.start).and_then(|f| f.origin.span()),

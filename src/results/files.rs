@@ -22,11 +22,16 @@ pub fn write(run: &Run, directory: &Path) -> Result<(), ResultsError> {
         (SCENARIO, scenario_json(run, directory)?),
         (super::SleeperRow::FILE, table(&run.sleepers, directory)?),
         (super::BlockRow::FILE, table(&run.blocks, directory)?),
+        (super::LawRow::FILE, table(&run.laws, directory)?),
+        (super::RailRow::FILE, table(&run.rail, directory)?),
         (HISTORIES, histories::encode(&run.histories, directory)?),
         (SUMMARY, summary_json(run, directory)?), // last: a directory with a summary is complete
     ];
     fs::create_dir_all(directory).map_err(|cause| ResultsError::io(directory, "create", cause))?;
-    files.iter().try_for_each(|(name, bytes)| atomic::write(&directory.join(name), bytes))
+    // a table of laws is there only where several are compared
+    let skipped = |name: &str| name == super::LawRow::FILE && run.laws.is_empty();
+    let written = files.iter().filter(|(name, _)| !skipped(name));
+    written.into_iter().try_for_each(|(name, bytes)| atomic::write(&directory.join(name), bytes))
 }
 
 /// Reads a run back from its directory.
@@ -36,6 +41,8 @@ pub fn read(directory: &Path) -> Result<Run, ResultsError> {
         scenario: read_json(&directory.join(SCENARIO))?,
         sleepers: read_table(directory)?,
         blocks: read_table(directory)?,
+        laws: if directory.join(super::LawRow::FILE).exists() { read_table(directory)? } else { Vec::new() },
+        rail: read_table(directory)?,
         histories: histories::decode(&directory.join(HISTORIES))?,
     })
 }
@@ -142,7 +149,7 @@ fn read_table<R: Row>(directory: &Path) -> Result<Vec<R>, ResultsError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::results::{BlockRow, SleeperRow, example};
+    use crate::results::{BlockRow, RailRow, SleeperRow, example};
 
     fn columns<R: Row>(row: &R) {
         let fields = serde_json::to_value(row).unwrap();
@@ -157,6 +164,7 @@ mod tests {
         let run = example::transition();
         columns::<SleeperRow>(&run.sleepers[0]);
         columns::<BlockRow>(&run.blocks[0]);
+        columns::<RailRow>(&run.rail[0]);
     }
 
     #[test]
@@ -176,7 +184,10 @@ mod tests {
         let mut names: Vec<String> =
             fs::read_dir(&first).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
-        assert_eq!(names, ["blocks.csv", "histories.parquet", "scenario.json", "sleepers.csv", "summary.json"]);
+        assert_eq!(
+            names,
+            ["blocks.csv", "histories.parquet", "rail.csv", "scenario.json", "sleepers.csv", "summary.json"]
+        );
         for name in names {
             assert!(fs::read(first.join(&name)).unwrap() == fs::read(second.join(&name)).unwrap(), "{name}");
         }

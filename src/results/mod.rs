@@ -10,6 +10,8 @@ mod evaluate;
 mod failure;
 mod files;
 mod histories;
+mod laws;
+mod level;
 mod recorder;
 mod summarise;
 mod summary;
@@ -20,13 +22,15 @@ pub(crate) mod example;
 
 pub use atomic::write as write_atomically;
 pub use error::ResultsError;
-pub use evaluate::{Tables, evaluate, verdicts};
+pub use evaluate::{Tables, contact_pressures, evaluate, verdicts};
 pub use failure::diagnose;
 pub use files::{read, read_timings, write, write_timings};
+pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};
+pub use level::{LongitudinalLevel, longitudinal_level};
 pub use recorder::{RunRecorder, RunTables, Store};
-pub use summarise::{RailMaxima, VOID_THRESHOLD, static_wheel_load, summarise};
+pub use summarise::{RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise};
 pub use summary::{Provenance, Scalar, Summary, Verdict};
-pub use tables::{BlockRow, HistoryRow, Row, SleeperRow};
+pub use tables::{BlockRow, HistoryRow, RailRow, Row, SleeperRow};
 
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};
@@ -38,5 +42,8 @@ pub struct Run {
     pub summary: Summary,
     pub sleepers: Vec<SleeperRow>,
     pub blocks: Vec<BlockRow>,
+    /// Settlement by each law; empty where there is only one.
+    pub laws: Vec<LawRow>,
+    pub rail: Vec<RailRow>,
     pub histories: Vec<HistoryRow>,
 }

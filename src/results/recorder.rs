@@ -2,8 +2,10 @@
 //! histories go into their own file as soon as they exist.
 
 use super::histories::HISTORIES;
-use super::{BlockRow, HistoryRow, RailMaxima, ResultsError, SleeperRow, atomic, checkpoint, histories};
-use crate::graph::{self, Block, PassageOutcome, Recorder, Unloaded};
+use super::{
+    BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, SleeperRow, atomic, checkpoint, histories,
+};
+use crate::graph::{self, Block, Measured, PassageOutcome, Recorder, Unloaded};
 use crate::scenario::response::Response;
 use crate::scenario::{Direction, Foot, Scenario, Track};
 use serde::{Deserialize, Serialize};
@@ -21,11 +23,16 @@ pub struct Store {
 pub struct RunTables {
     pub sleepers: Vec<SleeperRow>,
     pub blocks: Vec<BlockRow>,
+    pub rail: Vec<RailRow>,
     /// Settlement of every ballasted seat after every block.
     pub settlements: Vec<HistoryRow>,
+    /// Settlement by each law after every block; empty where there is only one law.
+    pub laws: Vec<LawCount>,
     /// Largest sagging moment of the last passage, N m, and displacement of a static check, m.
     pub max_rail_moment: Option<f64>,
     pub max_rail_displacement: Option<f64>,
+    /// Largest tension in the rail's foot of the last recorded passage, Pa.
+    pub max_foot_stress: Option<f64>,
 }
 
 /// What a checkpoint holds.
@@ -39,7 +46,7 @@ struct Saved {
 pub struct RunRecorder<'a> {
     scenario: &'a Scenario,
     store: Option<Store>,
-    progress: Box<dyn FnMut(u64, u64) + 'a>,
+    progress: Box<dyn FnMut(u64, u64) + Send + 'a>,
     pub tables: RunTables,
     pub histories: Vec<HistoryRow>,
     /// Rows of `histories` that are in their file already.
@@ -49,7 +56,7 @@ pub struct RunRecorder<'a> {
 
 impl<'a> RunRecorder<'a> {
     /// Without a store nothing is written while the run goes on.
-    pub fn new(scenario: &'a Scenario, store: Option<Store>, progress: impl FnMut(u64, u64) + 'a) -> Self {
+    pub fn new(scenario: &'a Scenario, store: Option<Store>, progress: impl FnMut(u64, u64) + Send + 'a) -> Self {
         RunRecorder {
             scenario,
             store,
@@ -80,7 +87,12 @@ impl<'a> RunRecorder<'a> {
     }
 
     pub fn rail_maxima(&self) -> RailMaxima {
-        RailMaxima { moment: self.tables.max_rail_moment, displacement: self.tables.max_rail_displacement }
+        RailMaxima {
+            moment: self.tables.max_rail_moment,
+            displacement: self.tables.max_rail_displacement,
+            foot_stress: self.tables.max_foot_stress,
+            ..RailMaxima::of_profile(self.scenario, &self.tables.rail)
+        }
     }
 
     fn track(&self) -> &'a Track {
@@ -98,6 +110,28 @@ impl<'a> RunRecorder<'a> {
             x_m: seat.x,
             value: *value,
         }));
+    }
+
+    /// The rail at a recorded count, and the extremes of its moment between the same places.
+    fn keep_profile(&mut self, axles: u64, unloaded: &Unloaded, passage: &PassageOutcome) {
+        let nodes: Vec<f64> = unloaded.rail.iter().map(|p| p.x).collect();
+        let between = |x: f64, of: fn(&(f64, f64)) -> f64| {
+            let (left, share) = graph::between(&nodes, x);
+            let (a, b) = (of(&passage.rail_moments[left]), of(&passage.rail_moments[left + 1]));
+            a + share * (b - a)
+        };
+        self.tables.rail.extend(unloaded.profile.iter().map(|p| RailRow {
+            axles,
+            x_m: p.x,
+            level_m: p.level,
+            moment_N_m: p.moment,
+            stiffness_N_per_m: p.stiffness,
+            max_moment_N_m: between(p.x, |m| m.1),
+            min_moment_N_m: between(p.x, |m| m.0),
+        }));
+        let track = self.track();
+        let stress = |(node, moment): (&f64, &(f64, f64))| Some(moment.1 / track.rail_at(*node)?.foot_modulus());
+        self.tables.max_foot_stress = nodes.iter().zip(&passage.rail_moments).filter_map(stress).reduce(f64::max);
     }
 
     fn keep_rail(&mut self, axles: u64, quantity: Response, points: impl Iterator<Item = (f64, f64)>) {
@@ -130,9 +164,10 @@ impl Recorder for RunRecorder<'_> {
         });
         self.histories.extend(rows);
         let Some(unloaded) = self.unloaded.take() else { return };
+        self.keep_profile(axles, &unloaded, passage);
         for ((seat, outcome), rest) in track.seats.iter().zip(&passage.seats).zip(&unloaded.seats) {
             let stiffness = match &seat.foot {
-                Foot::Sleeper { support, .. } => *support.stiffness,
+                Foot::Sleeper { support, .. } => support.spring().stiffness,
                 Foot::Rigid | Foot::Slab => 0.0,
             };
             self.tables.sleepers.push(SleeperRow {
@@ -151,8 +186,17 @@ impl Recorder for RunRecorder<'_> {
         }
     }
 
-    fn block(&mut self, axles: u64, block: Option<&Block>, passages: &[PassageOutcome], before: &[f64], after: &[f64]) {
-        let largest = |of: fn(&PassageOutcome) -> f64| passages.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+    fn block(
+        &mut self,
+        axles: u64,
+        block: Option<(&Block, &Measured)>,
+        passages: &[&PassageOutcome],
+        before: &[f64],
+        after: &[f64],
+    ) {
+        let measured = block.map_or(Measured::default(), |(_, measured)| *measured);
+        let block = block.map(|(block, _)| block);
+        let largest = |of: fn(&PassageOutcome) -> f64| passages.iter().map(|p| of(p)).fold(f64::NEG_INFINITY, f64::max);
         let seats = |p: &PassageOutcome, of: fn(&graph::SeatOutcome) -> f64| p.seats.iter().map(of).fold(0.0, f64::max);
         let steps = before.iter().zip(after).map(|(b, a)| a - b).fold(0.0, f64::max);
         self.tables.blocks.push(BlockRow {
@@ -164,8 +208,13 @@ impl Recorder for RunRecorder<'_> {
             max_contact_force_N: passages.iter().map(|p| seats(p, |s| s.max_contact_force)).fold(0.0, f64::max),
             max_settlement_m: after.iter().copied().fold(0.0, f64::max),
             max_settlement_step_m: steps,
-            time_steps: passages.iter().map(|p| p.time_steps).sum(),
-            newton_iterations: passages.iter().map(|p| p.newton_iterations).sum(),
+            error_m: measured.error,
+            overshoot: measured.overshoot.unwrap_or(0.0),
+            sawtooth: measured.sawtooth,
+            rejected: measured.rejected,
+            overshot: measured.overshot,
+            time_steps: passages.iter().map(|p| p.time_steps).sum::<u64>() + measured.time_steps,
+            newton_iterations: passages.iter().map(|p| p.newton_iterations).sum::<u64>() + measured.newton_iterations,
         });
         if axles == 0 {
             self.keep_settlements(0, before);
@@ -174,6 +223,14 @@ impl Recorder for RunRecorder<'_> {
             self.keep_settlements(axles + block.axles, after);
         }
         self.tables.max_rail_moment = Some(largest(|p| p.max_rail_moment));
+    }
+
+    fn laws(&mut self, axles: u64, settlement: &[Vec<f64>]) {
+        if settlement.len() > 1 {
+            let ballasted: Vec<bool> = self.track().seats.iter().map(|seat| seat.is_ballasted()).collect();
+            let of_law = |law: &Vec<f64>| law.iter().zip(&ballasted).filter(|(_, b)| **b).map(|(s, _)| *s).collect();
+            self.tables.laws.push(LawCount { axles, settlement: settlement.iter().map(of_law).collect() });
+        }
     }
 
     fn checkpoint(&mut self, checkpoint: &graph::Checkpoint) -> Result<(), String> {
@@ -201,7 +258,7 @@ impl Recorder for RunRecorder<'_> {
         self.keep_rail(0, Response::RailMoment, state.rail.iter().map(|p| (p.x, p.moment)));
         for (seat, rest) in track.seats.iter().zip(&state.seats) {
             let stiffness = match &seat.foot {
-                Foot::Sleeper { support, .. } => *support.stiffness,
+                Foot::Sleeper { support, .. } => support.spring().stiffness,
                 Foot::Rigid | Foot::Slab => 0.0,
             };
             self.tables.sleepers.push(SleeperRow {

@@ -1,6 +1,6 @@
 //! The scalars of `summary.json`, from the tables: every extreme is that after the last axle count.
 
-use super::{BlockRow, Scalar, SleeperRow};
+use super::{BlockRow, LongitudinalLevel, RailRow, Scalar, SleeperRow, longitudinal_level};
 use crate::scenario::{Loading, Scenario, Seat, Vehicle};
 use std::collections::{BTreeMap, HashMap};
 
@@ -17,6 +17,27 @@ pub struct RailMaxima {
     pub moment: Option<f64>,
     /// Downward displacement, m; of a static check.
     pub displacement: Option<f64>,
+    /// Tension in the foot, Pa.
+    pub foot_stress: Option<f64>,
+    /// Longitudinal level D1, largest from its mean and standard deviation, m: of the rail without a vehicle, and under a
+    /// standing wheel.
+    pub level: Option<(f64, f64)>,
+    pub loaded_level: Option<(f64, f64)>,
+}
+
+impl RailMaxima {
+    /// What the rail's profile after the last axle count says.
+    pub fn of_profile(scenario: &Scenario, rail: &[RailRow]) -> Self {
+        let last = rail.iter().map(|row| row.axles).max();
+        let rows: Vec<&RailRow> = rail.iter().filter(|row| Some(row.axles) == last).collect();
+        let level =
+            |points: Vec<(f64, f64)>| longitudinal_level(&points).map(|l: LongitudinalLevel| (l.peak, l.deviation));
+        RailMaxima {
+            level: level(rows.iter().map(|row| (row.x_m, row.level_m)).collect()),
+            loaded_level: level(loaded_level(scenario, rows.iter().copied())),
+            ..RailMaxima::default()
+        }
+    }
 }
 
 /// Computes the scalars that the tables allow; what does not exist on the scene is left out.
@@ -41,6 +62,11 @@ pub fn summarise(
     if matches!(scenario.loading, Some(Loading::Static(_))) {
         put("max_rail_displacement", rail.displacement, "m");
     }
+    put("max_rail_foot_stress", rail.foot_stress, "Pa");
+    put("longitudinal_level_d1", rail.level.map(|l| l.0), "m");
+    put("longitudinal_level_d1_deviation", rail.level.map(|l| l.1), "m");
+    put("loaded_longitudinal_level_d1", rail.loaded_level.map(|l| l.0), "m");
+    put("loaded_longitudinal_level_d1_deviation", rail.loaded_level.map(|l| l.1), "m");
 
     let ballasted = ballasted(scenario, &last);
     if !ballasted.is_empty() {
@@ -55,8 +81,15 @@ pub fn summarise(
         let voided = ballasted.iter().filter(|(_, row)| row.void_m > VOID_THRESHOLD).count();
         put("voided_sleepers", Some(voided as f64), "1");
         put("max_contact_force", largest(ballasted.iter().map(|(_, row)| row.max_contact_force_N)), "N");
+        let pressure =
+            |(seat, row): &(&Seat, &SleeperRow)| Some(row.max_contact_force_N / scenario.track.bearing_area(seat)?);
+        put("max_contact_pressure", largest(ballasted.iter().filter_map(pressure)), "Pa");
     }
     if let Some(block) = blocks.last() {
+        put("update_error", Some(blocks.iter().map(|b| b.error_m).sum()), "m");
+        put("max_overshoot", largest(blocks.iter().map(|b| b.overshoot)), "1");
+        put("max_sawtooth", largest(blocks.iter().map(|b| b.sawtooth)), "1");
+        put("overshot_blocks", Some(blocks.iter().map(|b| b.overshot).sum::<u64>() as f64), "1");
         put("max_wheel_force", Some(block.max_wheel_force_N), "N");
         put("min_wheel_force", Some(block.min_wheel_force_N), "N");
         let amplification = static_wheel_load(scenario).map(|load| block.max_wheel_force_N / load);
@@ -70,6 +103,18 @@ pub fn static_wheel_load(scenario: &Scenario) -> Option<f64> {
     let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
     let loads = traffic.train.vehicles.iter().map(|v| v.mass() * *scenario.solve.gravity / Vehicle::AXLES as f64);
     largest(loads).filter(|load| *load > 0.0)
+}
+
+/// The load under which the stiffness at rail level is taken, N; `None` without traffic or without gravity.
+pub fn mean_wheel_load(scenario: &Scenario) -> Option<f64> {
+    let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
+    Some(traffic.train.mean_wheel_mass() * *scenario.solve.gravity).filter(|load| *load > 0.0)
+}
+
+/// Chainage and level of the rail under a standing mean wheel, m below the level as built; empty without traffic.
+pub fn loaded_level<'a>(scenario: &Scenario, rows: impl Iterator<Item = &'a RailRow>) -> Vec<(f64, f64)> {
+    let Some(load) = mean_wheel_load(scenario) else { return vec![] };
+    rows.map(|row| (row.x_m, row.level_m + load / row.stiffness_N_per_m)).collect()
 }
 
 fn last_count(sleepers: &[SleeperRow], blocks: &[BlockRow]) -> u64 {
@@ -87,12 +132,16 @@ fn ballasted<'a>(scenario: &'a Scenario, rows: &[&'a SleeperRow]) -> Vec<(&'a Se
 
 /// Median settlement of the seats far from every transition; of the far half where none is far enough.
 fn far_field(scenario: &Scenario, ballasted: &[(&Seat, &SleeperRow)]) -> Option<f64> {
-    let distance = |seat: &Seat| {
-        let distances = scenario.track.transitions.iter().map(|transition| (seat.x - transition.x).abs());
+    far_field_of(scenario, ballasted.iter().map(|(seat, row)| (seat.x, row.settlement_m)).collect())
+}
+
+/// The same of settlements (m) by chainage (m).
+pub(super) fn far_field_of(scenario: &Scenario, settlements: Vec<(f64, f64)>) -> Option<f64> {
+    let distance = |x: f64| {
+        let distances = scenario.track.transitions.iter().map(|transition| (x - transition.x).abs());
         distances.fold(f64::INFINITY, f64::min)
     };
-    let mut by_distance: Vec<(f64, f64)> =
-        ballasted.iter().map(|(seat, row)| (distance(seat), row.settlement_m)).collect();
+    let mut by_distance: Vec<(f64, f64)> = settlements.into_iter().map(|(x, s)| (distance(x), s)).collect();
     by_distance.sort_by(|a, b| b.0.total_cmp(&a.0));
     let far = by_distance.iter().take_while(|(distance, _)| *distance > FAR_FIELD_DISTANCE).count();
     let far = if far == 0 { by_distance.len().div_ceil(2) } else { far };
@@ -109,7 +158,7 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     }
 }
 
-fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
+pub(super) fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
     values.max_by(f64::total_cmp)
 }
 

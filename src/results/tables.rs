@@ -18,12 +18,14 @@ pub struct SleeperRow {
     pub axles: u64,
     pub sleeper: String,
     pub x_m: f64,
+    /// What the scene starts with and what traffic has added.
     pub settlement_m: f64,
     pub void_m: f64,
     pub gravity_contact_force_N: f64,
     pub max_contact_force_N: f64,
     pub max_rail_seat_load_N: f64,
     pub max_sleeper_displacement_m: f64,
+    /// Of support and under sleeper pad in series.
     pub support_stiffness_N_per_m: f64,
     pub contact_loss_s: f64,
 }
@@ -45,6 +47,30 @@ impl Row for SleeperRow {
     ];
 }
 
+/// One place on the rail at one recorded axle count (`rail.csv`): where wheels run, four in each bay and
+/// one of them over a seat.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub struct RailRow {
+    pub axles: u64,
+    pub x_m: f64,
+    /// Unloaded, below the level as built.
+    pub level_m: f64,
+    /// Unloaded, sagging.
+    pub moment_N_m: f64,
+    /// The train's mean wheel load over the deflection that it adds standing here.
+    pub stiffness_N_per_m: f64,
+    /// During the passage, sagging; linear between the nodes of the mesh.
+    pub max_moment_N_m: f64,
+    pub min_moment_N_m: f64,
+}
+
+impl Row for RailRow {
+    const FILE: &'static str = "rail.csv";
+    const COLUMNS: &'static [&'static str] =
+        &["axles", "x_m", "level_m", "moment_N_m", "stiffness_N_per_m", "max_moment_N_m", "min_moment_N_m"];
+}
+
 /// One block of the iteration (`blocks.csv`): a passage computed at `axles`, and the axles that it stands for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case)]
@@ -61,8 +87,43 @@ pub struct BlockRow {
     pub max_settlement_m: f64,
     /// Largest settlement of the block at any sleeper.
     pub max_settlement_step_m: f64,
+    /// Estimated error of settlement that the block adds at the worst seat; 0 for a block of one train, which has none.
+    pub error_m: f64,
+    /// By how much a disturbance comes back with the other sign: the exchange overshoots above 1 and grows above 2. 0 where
+    /// the track moved too evenly to tell.
+    pub overshoot: f64,
+    /// Amplitude of a sawtooth along the track in what the block settled, as a share of `max_settlement_step_m`.
+    pub sawtooth: f64,
+    /// Longer blocks that were tried and thrown away, and those of them that overshot.
+    pub rejected: u64,
+    pub overshot: u64,
     pub time_steps: u64,
     pub newton_iterations: u64,
+}
+
+/// From here on a sawtooth is more than sleepers of unlike loads make.
+const SAWTOOTH: f64 = 0.1;
+
+impl BlockRow {
+    /// What the exchanges of a run show of overshooting, in a sentence; `None` where all is well.
+    pub fn overshoot(blocks: &[BlockRow]) -> Option<String> {
+        let cured: Vec<&BlockRow> = blocks.iter().filter(|b| b.overshot > 0).collect();
+        let worst = blocks.iter().max_by(|a, b| a.sawtooth.total_cmp(&b.sawtooth)).filter(|b| b.sawtooth > SAWTOOTH);
+        let sawtooth = worst.map(|b| {
+            format!(
+                "settlement alternates from sleeper to sleeper by {} % of its largest step after {} axles",
+                (b.sawtooth * 100.0).round(),
+                b.axles
+            )
+        });
+        let shortest = cured.iter().map(|b| b.block_axles).min();
+        let cured = shortest.map(|shortest| {
+            let tried: u64 = cured.iter().map(|b| b.overshot).sum();
+            format!("{tried} blocks overshot and were done again in halves, down to {shortest} axles")
+        });
+        let said: Vec<String> = cured.into_iter().chain(sawtooth).collect();
+        (!said.is_empty()).then(|| said.join("; "))
+    }
 }
 
 impl Row for BlockRow {
@@ -76,6 +137,11 @@ impl Row for BlockRow {
         "max_contact_force_N",
         "max_settlement_m",
         "max_settlement_step_m",
+        "error_m",
+        "overshoot",
+        "sawtooth",
+        "rejected",
+        "overshot",
         "time_steps",
         "newton_iterations",
     ];

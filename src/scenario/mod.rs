@@ -5,16 +5,25 @@
 //! settlement and force are positive; every number a person may have written carries its [`Origin`].
 
 mod given;
+mod law;
+mod profile;
 pub mod response;
 mod track;
 mod traffic;
 
 pub use given::{Given, Origin};
-pub use track::{Foot, Pad, Rail, RailEnds, Seat, Section, Side, Slab, Support, Track, Transition};
-pub use traffic::{Direction, LawForm, SettlementLaw, StaticLoad, Target, Traffic, Train, Vehicle};
+pub use law::{SettlementLaw, law_argument};
+pub use profile::{Cubic, Curve, Piece, Profile};
+pub use track::{
+    AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, Spring, Support, Track, Transition,
+    Usp,
+};
+pub use traffic::{Direction, StaticLoad, Target, Traffic, Train, Vehicle};
 
 use crate::diag::Span;
+use crate::units::number;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// A whole scene, ready to be lowered.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -41,15 +50,19 @@ pub enum Loading {
 /// How the answer is computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Solve {
+    /// By which the supports settle.
     pub law: SettlementLaw,
+    /// Laws that are shown beside it, under the same forces.
+    pub other_laws: Vec<SettlementLaw>,
     pub update: Update,
     /// The word after `update_every`, for messages.
     pub update_span: Option<Span>,
     pub integrator: Integrator,
+    /// Beam theory of the rail.
+    pub beam: Given<Beam>,
     /// Beam elements between two neighbouring rail seats.
     pub elements_per_bay: Given<u32>,
-    /// s; `None` is chosen by the planner.
-    pub time_step: Option<Given>,
+    pub time_step: TimeStep,
     /// Chainage of the leading wheel at the start and at the end of a passage, m; `None` is chosen by the planner.
     pub start: Option<Given>,
     pub finish: Option<Given>,
@@ -65,6 +78,9 @@ pub enum Update {
     Fixed { axles: u64 },
     /// `first` axles, then blocks of `ratio` times the axles so far, never smaller than `first`.
     Geometric { first: u64, ratio: f64 },
+    /// Blocks as long as their estimated error of settlement allows: at most `tolerance` at any seat, m. `cap` bounds the
+    /// settlement of a block as well, m.
+    Adaptive { tolerance: f64, cap: Option<f64> },
 }
 
 /// Time integration of the track and vehicle.
@@ -72,6 +88,66 @@ pub enum Update {
 pub enum Integrator {
     /// Spectral radius at infinite frequency, 0 .. 1.
     GeneralisedAlpha { rho: f64 },
+    /// Hilber, Hughes and Taylor: alpha from 0 to 1/3; a greater one damps high frequencies more.
+    Hht { alpha: f64 },
+    /// Average acceleration (beta 1/4, gamma 1/2): damps nothing.
+    Newmark,
+}
+
+/// Beam theory of the rail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Beam {
+    /// Euler and Bernoulli: bends.
+    Euler,
+    /// Timoshenko: bends and shears, and its cross-section has a rotary inertia.
+    Timoshenko,
+}
+
+/// As a scene spells it.
+impl fmt::Display for Integrator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Integrator::GeneralisedAlpha { rho } => write!(f, "generalised_alpha({})", number(*rho)),
+            Integrator::Hht { alpha } => write!(f, "hht({})", number(*alpha)),
+            Integrator::Newmark => f.write_str("newmark"),
+        }
+    }
+}
+
+impl fmt::Display for Beam {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Beam::Euler => "euler",
+            Beam::Timoshenko => "timoshenko",
+        })
+    }
+}
+
+/// The time step of track and vehicle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum TimeStep {
+    /// Chosen by the planner.
+    Auto,
+    /// s.
+    Fixed(Given),
+    /// As small as the wanted error of a step, relative to the answer, asks for.
+    Adaptive { tolerance: Given },
+}
+
+impl TimeStep {
+    /// Where the scene says something about it.
+    pub fn span(self) -> Option<Span> {
+        match self {
+            TimeStep::Auto => None,
+            TimeStep::Fixed(step) => step.origin.span(),
+            TimeStep::Adaptive { tolerance } => tolerance.origin.span(),
+        }
+    }
+
+    /// The step that the scene states, s.
+    pub fn fixed(self) -> Option<Given> {
+        if let TimeStep::Fixed(step) = self { Some(step) } else { None }
+    }
 }
 
 /// A history that a person asked for.
@@ -84,4 +160,6 @@ pub struct Record {
     pub after: Vec<u64>,
     /// Sampling interval, s; `None` is chosen by the planner.
     pub every: Option<f64>,
+    /// Kept only while a wheel is nearer to the seat than this, m; `None` keeps the whole passage.
+    pub near: Option<f64>,
 }

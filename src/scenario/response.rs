@@ -14,6 +14,8 @@ pub enum Response {
     ContactForce,
     /// The same without a vehicle.
     GravityContactForce,
+    /// `contact_force` over the bearing area of half a sleeper, Pa.
+    ContactPressure,
     /// Force of a wheel on the rail, N.
     WheelForce,
     /// Downward displacement of the rail from the unloaded state of that axle count, m.
@@ -22,7 +24,9 @@ pub enum Response {
     RailLevel,
     /// Sagging rail moment, N m.
     RailMoment,
-    /// Permanent downward move of a support, m.
+    /// Static stiffness at rail level under a standing wheel, N/m.
+    RailStiffness,
+    /// Permanent downward move of a support, that of the start included, m.
     Settlement,
     /// Gap under a sleeper of the unloaded track, m.
     Void,
@@ -32,7 +36,7 @@ pub enum Response {
     SleeperVelocity,
     /// m/s^2, downward.
     SleeperAcceleration,
-    /// N/m per seat.
+    /// Of support and under sleeper pad in series, N/m per seat.
     SupportStiffness,
     /// Time without contact of sleeper and support during a passage, s.
     ContactLoss,
@@ -103,10 +107,12 @@ impl Response {
         Response::RailSeatLoad,
         Response::ContactForce,
         Response::GravityContactForce,
+        Response::ContactPressure,
         Response::WheelForce,
         Response::RailDisplacement,
         Response::RailLevel,
         Response::RailMoment,
+        Response::RailStiffness,
         Response::Settlement,
         Response::Void,
         Response::SleeperDisplacement,
@@ -124,10 +130,12 @@ impl Response {
             Response::RailSeatLoad => "rail_seat_load",
             Response::ContactForce => "contact_force",
             Response::GravityContactForce => "gravity_contact_force",
+            Response::ContactPressure => "contact_pressure",
             Response::WheelForce => "wheel_force",
             Response::RailDisplacement => "rail_displacement",
             Response::RailLevel => "rail_level",
             Response::RailMoment => "rail_moment",
+            Response::RailStiffness => "rail_stiffness",
             Response::Settlement => "settlement",
             Response::Void => "void",
             Response::SleeperDisplacement => "sleeper_displacement",
@@ -148,7 +156,9 @@ impl Response {
     pub fn place(self) -> Place {
         match self {
             Response::WheelForce => Place::Wheel,
-            Response::RailDisplacement | Response::RailLevel | Response::RailMoment => Place::Rail,
+            Response::RailDisplacement | Response::RailLevel | Response::RailMoment | Response::RailStiffness => {
+                Place::Rail
+            }
             Response::FarFieldSettlement | Response::DifferentialSettlement | Response::VoidedSleepers => Place::Scene,
             _ => Place::Seat,
         }
@@ -163,7 +173,8 @@ impl Response {
             Response::RailMoment => "N m",
             Response::SleeperVelocity => "m/s",
             Response::SleeperAcceleration => "m/s^2",
-            Response::SupportStiffness => "N/m",
+            Response::SupportStiffness | Response::RailStiffness => "N/m",
+            Response::ContactPressure => "Pa",
             Response::ContactLoss => "s",
             Response::VoidedSleepers => "1",
             _ => "m",

@@ -1,6 +1,6 @@
-//! What acts on the track: vehicles, trains and test loads, and the law by which the supports settle.
+//! What acts on the track: vehicles, trains and test loads.
 
-use super::Given;
+use super::{Given, Profile};
 use serde::{Deserialize, Serialize};
 
 /// A vehicle on two bogies of two axles each, as carried by **one rail**: half of every mass, inertia and stiffness.
@@ -57,14 +57,21 @@ pub struct Train {
     pub name: String,
     /// In the order of the train, the leading one first.
     pub vehicles: Vec<Vehicle>,
-    /// m/s.
+    /// m/s; the largest where it varies.
     pub speed: Given,
+    /// m/s by the chainage of the leading wheel, over the whole track; `None` is `speed` everywhere.
+    pub speed_profile: Option<Profile>,
     pub direction: Direction,
 }
 
 impl Train {
     pub fn axles(&self) -> u64 {
         Vehicle::AXLES * self.vehicles.len() as u64
+    }
+
+    /// Mass that a wheel carries on average, kg.
+    pub fn mean_wheel_mass(&self) -> f64 {
+        self.vehicles.iter().map(Vehicle::mass).sum::<f64>() / self.axles() as f64
     }
 
     /// Distance of each vehicle's leading wheel behind the train's leading wheel, m. Vehicles of a train are centred
@@ -122,21 +129,4 @@ pub struct StaticLoad {
 pub enum Target {
     Rail,
     Sleepers,
-}
-
-/// By what rule a support settles under the peaks of its contact force.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SettlementLaw {
-    pub name: String,
-    pub form: LawForm,
-    /// Range of peak forces per seat that the law was calibrated for, N.
-    pub loads: Option<(f64, f64)>,
-    /// Range of axle counts that it was calibrated for.
-    pub cycles: Option<(f64, f64)>,
-}
-
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum LawForm {
-    /// Varandas, Hölscher and Silva (2014): `reference_force` F0 in N for `reference_cycles` N0 gives `gamma` in m.
-    Varandas { alpha: f64, beta: f64, gamma: f64, reference_cycles: f64, reference_force: f64 },
 }

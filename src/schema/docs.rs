@@ -1,6 +1,6 @@
 //! The vocabulary as text: `trackbed docs` and `trackbed docs KIND`.
 
-use super::{Field, Form, KINDS, Kind, Need, PLANNED_KINDS, Role, kinds::COMMON};
+use super::{Field, Form, KINDS, Kind, Need, PLANNED_KINDS, Role, Varies, kinds::COMMON};
 use crate::units::number;
 
 /// One line a kind.
@@ -69,7 +69,8 @@ fn form(form: &Form) -> String {
                     .collect();
                 text.push_str(&format!(" per {}", names.join(" | ")));
             }
-            format!("{text}, {} .. {}", number(m.min), number(m.max))
+            let along = if m.varies == Varies::Yes { ", may vary along the track" } else { "" };
+            format!("{text}, {} .. {}{along}", number(m.min), number(m.max))
         }
         Form::Integer { min, max } => format!("whole number, {min} .. {max}"),
         Form::OneOf(forms) => forms.iter().map(self::form).collect::<Vec<_>>().join(" | "),

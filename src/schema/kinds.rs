@@ -1,40 +1,47 @@
 //! The table of kinds and fields. Ranges are in the unit of their field; `per` names the basis of the range first.
 
-use super::{Alternative, Basis, Field, Form, Kind, Measure, Need, Role, Word};
+use super::{Alternative, Basis, Field, Form, Kind, Measure, Need, Role, Varies, Word};
 
 const fn field(name: &'static str, form: Form, need: Need, doc: &'static str) -> Field {
     Field { name, form, need, doc }
 }
-const fn required(name: &'static str, form: Form, doc: &'static str) -> Field {
+pub(super) const fn required(name: &'static str, form: Form, doc: &'static str) -> Field {
     field(name, form, Need::Required, doc)
 }
 const fn optional(name: &'static str, form: Form, doc: &'static str) -> Field {
     field(name, form, Need::Optional, doc)
 }
-const fn default(name: &'static str, form: Form, text: &'static str, doc: &'static str) -> Field {
+pub(super) const fn default(name: &'static str, form: Form, text: &'static str, doc: &'static str) -> Field {
     field(name, form, Need::Default(text), doc)
 }
 const fn way(name: &'static str, form: Form, doc: &'static str) -> Field {
     field(name, form, Need::Alternative, doc)
 }
 
-const fn measure(unit: &'static str, min: f64, max: f64) -> Measure {
-    Measure { unit, min, max, basis: None, varies: false }
+pub(super) const fn measure(unit: &'static str, min: f64, max: f64) -> Measure {
+    Measure { unit, min, max, basis: None, varies: Varies::No }
 }
-const fn number(unit: &'static str, min: f64, max: f64) -> Form {
+pub(super) const fn number(unit: &'static str, min: f64, max: f64) -> Form {
     Form::Number(measure(unit, min, max))
 }
-const fn per(unit: &'static str, min: f64, max: f64, basis: &'static Basis) -> Form {
+pub(super) const fn per(unit: &'static str, min: f64, max: f64, basis: &'static Basis) -> Form {
     Form::Number(Measure { basis: Some(basis), ..measure(unit, min, max) })
 }
 /// A number that may vary along the track.
 const fn along(form: Form) -> Form {
+    varying(form, Varies::Yes)
+}
+/// A number that will vary along the track in a later version.
+const fn along_later(form: Form) -> Form {
+    varying(form, Varies::Planned)
+}
+const fn varying(form: Form, varies: Varies) -> Form {
     match form {
-        Form::Number(m) => Form::Number(Measure { varies: true, ..m }),
+        Form::Number(m) => Form::Number(Measure { varies, ..m }),
         other => other,
     }
 }
-const fn word(name: &'static str, doc: &'static str) -> Word {
+pub(super) const fn word(name: &'static str, doc: &'static str) -> Word {
     Word { name, doc, arguments: &[], planned: false }
 }
 const fn planned(name: &'static str) -> Word {
@@ -53,10 +60,13 @@ const BOGIE_OR_RAIL: Basis = Basis { names: &[("bogie", 0.5), ("rail", 1.0)], as
 const WHEELSET_OR_WHEEL: Basis = Basis { names: &[("wheelset", 0.5), ("wheel", 1.0)], assumed: None };
 const PRIMARY: Basis =
     Basis { names: &[("wheel", 1.0), ("wheelset", 0.5), ("bogie", 0.25), ("rail", 1.0)], assumed: None };
-const SEAT: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: Some("seat") };
+pub(super) const SEAT: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: Some("seat") };
 
 const NONE: &[Word] = &[word("none", "absent")];
 const AUTO: &[Word] = &[word("auto", "chosen by the planner")];
+const USP: Form = Form::OneOf(&[Form::Object("usp"), Form::Words(NONE)]);
+const SEATING: Form = Form::OneOf(&[Form::Object("seating"), Form::Words(NONE)]);
+const AUXILIARY_RAILS: Form = Form::OneOf(&[Form::Object("auxiliary_rails"), Form::Words(NONE)]);
 const RAIL: Form = Form::OneOf(&[Form::Object("rail"), Form::Words(NONE)]);
 const PAD: Form = Form::OneOf(&[Form::Object("pad"), Form::Words(NONE)]);
 const SLEEPER: Form = Form::OneOf(&[Form::Object("sleeper"), Form::Words(NONE)]);
@@ -101,13 +111,18 @@ pub const KINDS: &[Kind] = &[
             ),
             way("youngs_modulus", number("GPa", 190.0, 220.0), "of the steel"),
             way("second_moment", number("cm^4", 500.0, 5000.0), "about the horizontal axis"),
+            optional(
+                "shear_stiffness",
+                number("MN", 50.0, 500.0),
+                "kappa G A, vertical; needed for `solve.beam = timoshenko`",
+            ),
             default("height", number("mm", 100.0, 200.0), "172 mm", "for the drawing"),
         ],
         alternatives: &[
             either(&[&["mass"], &["density", "area"]]),
             either(&[&["bending_stiffness"], &["youngs_modulus", "second_moment"]]),
         ],
-        planned: &["shear_stiffness"],
+        planned: &[],
     },
     Kind {
         name: "pad",
@@ -125,6 +140,22 @@ pub const KINDS: &[Kind] = &[
         planned: &[],
     },
     Kind {
+        name: "usp",
+        doc: "An under sleeper pad, in series with the support. It makes the track softer and spreads the load over more sleepers.",
+        role: Role::Part,
+        fields: &[
+            required(
+                "bedding_modulus",
+                along(number("N/mm^3", 0.01, 1.0)),
+                "static, of pad on ballast; times the sleeper's base area it is a stiffness",
+            ),
+            default("damping_time", number("ms", 0.0, 2.0), "0.2 ms", "damping / stiffness"),
+            default("thickness", number("mm", 3.0, 30.0), "10 mm", "for the drawing"),
+        ],
+        alternatives: &[],
+        planned: &[],
+    },
+    Kind {
         name: "sleeper",
         doc: "A sleeper, rigid.",
         role: Role::Part,
@@ -139,9 +170,15 @@ pub const KINDS: &[Kind] = &[
             default("length", number("m", 2.0, 3.0), "2.6 m", "across the track"),
             default("base_width", number("m", 0.2, 0.7), "0.3 m", "along the track"),
             default("height", number("m", 0.1, 0.3), "0.21 m", ""),
+            optional(
+                "base_area",
+                number("m^2", 0.3, 1.5),
+                "that bears on the ballast; length x base_width where absent",
+            ),
+            default("seat_distance", number("m", 1.0, 1.8), "1.5 m", "between the rails"),
         ],
         alternatives: &[],
-        planned: &["base_area", "seat_distance"],
+        planned: &[],
     },
     Kind {
         name: "slab",
@@ -168,11 +205,28 @@ pub const KINDS: &[Kind] = &[
             ),
             way("damping", along(per("kN s/m", 0.0, 5000.0, &SEAT_OR_SLEEPER)), ""),
             way("damping_time", number("ms", 0.0, 5.0), "damping / stiffness"),
+            default(
+                "seating",
+                SEATING,
+                "none",
+                "a softer first part of its compression: ballast without load is far softer",
+            ),
         ],
         alternatives: &[Alternative {
             ways: &[&["damping"], &["damping_time"]],
             default: Some(("damping_time", "1 ms")),
         }],
+        planned: &[],
+    },
+    Kind {
+        name: "seating",
+        doc: "The first compression of a support: up to `closure` its force grows with this stiffness, beyond it with that of the support.",
+        role: Role::Nested,
+        fields: &[
+            required("stiffness", per("MN/m", 0.1, 1000.0, &SEAT_OR_SLEEPER), "not above the support's"),
+            required("closure", number("mm", 0.01, 20.0), "compression at which ballast and sleeper have closed up"),
+        ],
+        alternatives: &[],
         planned: &[],
     },
     Kind {
@@ -183,12 +237,37 @@ pub const KINDS: &[Kind] = &[
             optional("rail", RAIL, ""),
             optional("pad", PAD, ""),
             optional("sleeper", SLEEPER, "a slab has none"),
-            required("spacing", along(number("m", 0.3, 1.2)), "of sleepers or seats"),
+            optional("usp", USP, "under the sleepers, in series with the support"),
+            required("spacing", along_later(number("m", 0.3, 1.2)), "of sleepers or seats"),
             optional("slab", SLAB, "carries the seats instead of sleepers and support"),
             optional("support", SUPPORT, "carries the sleepers"),
+            default(
+                "settlement",
+                along(number("mm", -100.0, 100.0)),
+                "0 mm",
+                "permanent settlement of the supports at the start; where the rail does not follow it, a void opens",
+            ),
+            default(
+                "auxiliary_rails",
+                AUXILIARY_RAILS,
+                "none",
+                "rails beside the running rails, from one end of the section to the other: they spread the load",
+            ),
         ],
         alternatives: &[],
-        planned: &["usp", "layers", "auxiliary_rails", "settlement"],
+        planned: &["layers"],
+    },
+    Kind {
+        name: "auxiliary_rails",
+        doc: "Rails beside the running rails on pads of their own. They carry no wheel.",
+        role: Role::Nested,
+        fields: &[
+            required("rail", Form::Object("rail"), "each of them"),
+            default("count", Form::Integer { min: 1, max: 4 }, "2", "of the whole track; one rail has half of them"),
+            required("pad", Form::Object("pad"), "under each of them at each sleeper; the same along the section"),
+        ],
+        alternatives: &[],
+        planned: &[],
     },
     Kind {
         name: "track",
@@ -222,14 +301,20 @@ pub const KINDS: &[Kind] = &[
                     word("clamped", "held level, at the level of the settled track there"),
                     word("pinned", "held at that level, free to turn"),
                     word("free", "not held"),
-                    planned("absorbing"),
+                    word("absorbing", "let waves out, as if the track went on"),
                 ]),
                 "clamped",
                 "what holds the rail at the ends of the model",
             ),
+            default(
+                "irregularity",
+                along(number("mm", -50.0, 50.0)),
+                "0 mm",
+                "level of the rail as built, positive down; a file of it is read as a smooth curve",
+            ),
         ],
         alternatives: &[],
-        planned: &["stretches", "bed_width", "bed_ends", "base", "irregularity"],
+        planned: &["stretches", "bed_width", "bed_ends", "base"],
     },
     Kind {
         name: "vehicle",
@@ -339,7 +424,7 @@ pub const KINDS: &[Kind] = &[
                 },
                 "in order, the leading one first",
             ),
-            required("speed", along(number("km/h", 1.0, 600.0)), ""),
+            required("speed", along(number("km/h", 1.0, 600.0)), "by the place of the leading wheel where it varies"),
             default(
                 "direction",
                 Form::Words(&[
@@ -387,41 +472,23 @@ pub const KINDS: &[Kind] = &[
         doc: "The settlement of a support under the peaks of its contact force.",
         role: Role::Part,
         fields: &[
-            required(
-                "form",
-                Form::Words(&[
-                    Word {
-                        name: "varandas",
-                        doc: "Varandas, Hölscher and Silva (2014): the integral over force of what each exceedance of that force adds",
-                        arguments: &[
-                            default("alpha", number("", 0.0, 5.0), "0.6", "exponent of the force"),
-                            default("beta", number("", 0.0, 5.0), "0.82", "how fast repeated load loses its effect"),
-                            default(
-                                "gamma",
-                                number("mm", 0.01, 1000.0),
-                                "10 mm",
-                                "settlement after `reference_cycles` of `reference_force`",
-                            ),
-                            default("reference_cycles", number("axles", 1.0, 1e12), "1_000_000 axles", "N0"),
-                            default("reference_force", per("kN", 0.1, 1000.0, &SEAT), "50 kN per seat", "F0"),
-                        ],
-                        planned: false,
-                    },
-                    planned("nasrollahi"),
-                    planned("sato"),
-                    planned("shenton"),
-                    planned("hettler"),
-                    planned("guerin"),
-                    planned("power"),
-                ]),
-                "",
-            ),
+            required("form", Form::Words(super::laws::FORMS), ""),
             optional(
                 "loads",
                 Form::Interval(Measure { basis: Some(&SEAT), ..measure("kN", 0.0, 10_000.0) }),
                 "peak forces for which it was calibrated",
             ),
             optional("cycles", Form::Interval(measure("axles", 0.0, 1e12)), "axle counts for which it was calibrated"),
+            default(
+                "cycle_per",
+                Form::Words(&[
+                    word("axle", "every axle is a cycle"),
+                    word("bogie", "the larger peak of its two axles is one cycle"),
+                    word("vehicle", "the largest peak of its four axles is one cycle"),
+                ]),
+                "axle",
+                "what one cycle of the law is: publications differ, by a factor of four",
+            ),
         ],
         alternatives: &[],
         planned: &[],
@@ -443,7 +510,12 @@ pub const KINDS: &[Kind] = &[
                 "auto",
                 "the tier of the model under the sleepers",
             ),
-            default("law", Form::Object("law"), "laws.varandas_2014", "by which the supports settle"),
+            default(
+                "law",
+                Form::OneOf(&[Form::Object("law"), Form::List(&Form::Object("law"))]),
+                "laws.varandas_2014",
+                "by which the supports settle; of several the first drives, all are shown as a spread",
+            ),
             default(
                 "update_every",
                 Form::OneOf(&[
@@ -458,10 +530,27 @@ pub const KINDS: &[Kind] = &[
                             ],
                             planned: false,
                         },
-                        planned("adaptive"),
+                        Word {
+                            name: "adaptive",
+                            doc: "blocks as long as their estimated error allows",
+                            arguments: &[
+                                default(
+                                    "tolerance",
+                                    number("mm", 1e-6, 10.0),
+                                    "0.003 mm",
+                                    "error of settlement that a block may add at any seat",
+                                ),
+                                optional(
+                                    "cap",
+                                    number("mm", 1e-4, 100.0),
+                                    "settlement of a block at any seat, at most",
+                                ),
+                            ],
+                            planned: false,
+                        },
                     ]),
                 ]),
-                "geometric(4 axles, 0.2)",
+                "adaptive(0.003 mm)",
                 "axles between two exchanges of forces and settlement",
             ),
             default(
@@ -472,7 +561,10 @@ pub const KINDS: &[Kind] = &[
             ),
             default(
                 "beam",
-                Form::Words(&[word("euler", "Euler-Bernoulli"), planned("timoshenko")]),
+                Form::Words(&[
+                    word("euler", "Euler-Bernoulli: bends"),
+                    word("timoshenko", "bends and shears; needs the rail's `shear_stiffness`"),
+                ]),
                 "euler",
                 "beam theory of the rail",
             ),
@@ -491,15 +583,41 @@ pub const KINDS: &[Kind] = &[
                         )],
                         planned: false,
                     },
-                    planned("hht"),
-                    planned("newmark"),
+                    Word {
+                        name: "hht",
+                        doc: "Hilber, Hughes and Taylor (1977)",
+                        arguments: &[default(
+                            "alpha",
+                            number("", 0.0, 1.0 / 3.0),
+                            "0.1",
+                            "damping of high frequencies",
+                        )],
+                        planned: false,
+                    },
+                    word("newmark", "average acceleration, without damping of its own"),
                 ]),
                 "generalised_alpha(0.85)",
                 "time integration of track and vehicle",
             ),
             default(
                 "time_step",
-                Form::OneOf(&[number("s", 1e-7, 0.01), Form::Words(AUTO)]),
+                Form::OneOf(&[
+                    number("s", 1e-7, 0.01),
+                    Form::Words(&[
+                        word("auto", "chosen by the planner"),
+                        Word {
+                            name: "adaptive",
+                            doc: "steps as large as the wanted error allows",
+                            arguments: &[default(
+                                "tolerance",
+                                number("", 1e-8, 0.001),
+                                "1e-5",
+                                "error of a step as part of the rail's largest deflection",
+                            )],
+                            planned: false,
+                        },
+                    ]),
+                ]),
                 "auto",
                 "of track and vehicle",
             ),

@@ -4,6 +4,7 @@
 
 mod docs;
 mod kinds;
+mod laws;
 
 pub use docs::{index, page};
 pub use kinds::{COMMON, KINDS};
@@ -94,8 +95,16 @@ pub struct Measure {
     pub min: f64,
     pub max: f64,
     pub basis: Option<&'static Basis>,
-    /// May vary along the track, once profiles are read.
-    pub varies: bool,
+    pub varies: Varies,
+}
+
+/// Whether a number may vary along the track.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Varies {
+    No,
+    /// In the language, not in this version.
+    Planned,
+    Yes,
 }
 
 /// Of what a value is: of one rail, or of a whole that the model halves.
@@ -128,7 +137,7 @@ pub struct Alternative {
 }
 
 /// Kinds of the language that this version does not read yet.
-pub const PLANNED_KINDS: &[&str] = &["granular", "grading", "soil", "usp", "stretch", "tamping", "study"];
+pub const PLANNED_KINDS: &[&str] = &["granular", "grading", "soil", "stretch", "tamping", "study"];
 
 /// The kind of that name, nested ones included.
 pub fn kind(name: &str) -> Option<&'static Kind> {
@@ -200,6 +209,15 @@ impl Form {
             Form::Words(words) => words.iter().find(|w| w.name == name),
             Form::OneOf(forms) => forms.iter().find_map(|f| f.word(name)),
             Form::List(item) => item.word(name),
+            _ => None,
+        }
+    }
+
+    /// The measure of its number, of the first where several units may stand.
+    pub fn measure(&self) -> Option<&Measure> {
+        match self {
+            Form::Number(measure) => Some(measure),
+            Form::OneOf(forms) => forms.iter().find_map(Form::measure),
             _ => None,
         }
     }

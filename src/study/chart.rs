@@ -4,12 +4,14 @@
 //! reference of a beam theory has the finest step halved once more and twice the elements of the scene, at least eight. The
 //! difference of the two references is the error of the model, which no step mends.
 //!
-//! Orders of convergence come from a track that springs back, where all is smooth, and from the wheel forces of passages: the
-//! wheel crosses nodes of the mesh, where the curvature of cubic elements jumps, and sleepers lift and strike. The differences d of neighbouring steps give log2(d(2 dt) / d(dt)).
+//! Orders of convergence come from a track that springs back, where all is smooth, and from the wheel forces of passages,
+//! which begin quasi-statically and in which sleepers lift and strike. The differences d of neighbouring steps give
+//! log2(d(2 dt) / d(dt)).
 
 use super::settled::Settled;
-use super::variant::{Beam, Case, Errors, Measured, Method, Prepared, Variant};
+use super::variant::{Case, Errors, METHODS, Measured, Prepared, Variant};
 use crate::graph::{Blocks, Graph, RUNAWAY};
+use crate::scenario::{Beam, Integrator};
 use crate::solvers::track::TrackError;
 use serde::Serialize;
 
@@ -108,7 +110,7 @@ impl Outcome {
 /// Observed order of an integrator in the time step; none where too few of its steps gave an answer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Order {
-    pub method: Method,
+    pub method: Integrator,
     /// Of the rail that springs back from a small force, without a train.
     pub released: Option<f64>,
     /// Of the wheel forces.
@@ -188,7 +190,7 @@ pub fn chart(
     let losing_contact = bench
         .reference(Level::Settled, own.beam)
         .map_or(0, |r| r.contact_losses.iter().filter(|loss| **loss > 0.0).count());
-    let orders = Method::ALL
+    let orders = METHODS
         .into_iter()
         .map(|method| Order {
             method,
@@ -226,7 +228,7 @@ fn plan(own: Variant, case: &Case, request: Request) -> Vec<(Level, Sweep, Varia
         // of the time step alone: on the mesh of the scene
         (Level::AsBuilt, Sweep::Reference, Variant { time_step: step(finest), ..own }),
     ];
-    let mut methods = Method::ALL.to_vec();
+    let mut methods = METHODS.to_vec();
     if !methods.contains(&own.method) {
         methods.insert(0, own.method);
     }
@@ -325,7 +327,7 @@ impl Bench {
     }
 
     /// From the finest three steps of an integrator at the scene's mesh that lie below twice the scene's own step.
-    fn order(&self, method: Method, level: Level) -> Option<f64> {
+    fn order(&self, method: Integrator, level: Level) -> Option<f64> {
         let mut traces: Vec<_> = self
             .traces
             .iter()

@@ -16,4 +16,4 @@ pub use settled::{NotSettled, Settled, settled};
 pub use stability::{Cell, Map, Stability, Verdict, Void};
 pub use stress::Stress;
 pub use tables::{chart_csv, stability_csv};
-pub use variant::{Beam, Case, Errors, Failure, Measured, Method, Prepared, Variant};
+pub use variant::{Case, Errors, Failure, METHODS, Measured, Prepared, Variant};

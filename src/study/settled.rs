@@ -1,6 +1,6 @@
 //! The track as a run of the scene leaves it: the state over which variants are compared.
 
-use crate::graph::{self, Block, Checkpoint, Graph, PassageOutcome, Recorder, RunError, Unloaded};
+use crate::graph::{self, Block, Checkpoint, Graph, Measured, PassageOutcome, Recorder, RunError, Unloaded};
 use crate::scenario::Direction;
 
 /// Settlement after some axles.
@@ -47,8 +47,15 @@ impl Recorder for Keeper<'_> {
     fn passage(&mut self, _: u64, _: Direction, _: &PassageOutcome) {}
     fn equilibrium(&mut self, _: &Unloaded) {}
 
-    fn block(&mut self, axles: u64, block: Option<&Block>, _: &[PassageOutcome], before: &[f64], after: &[f64]) {
-        let ends = block.map(|block| (axles + block.axles, after));
+    fn block(
+        &mut self,
+        axles: u64,
+        block: Option<(&Block, &Measured)>,
+        _: &[&PassageOutcome],
+        before: &[f64],
+        after: &[f64],
+    ) {
+        let ends = block.map(|(block, _)| (axles + block.axles, after));
         for (count, settlement) in [(axles, before)].into_iter().chain(ends) {
             if self.after.is_none_or(|after| count <= after) {
                 self.last = Some(Settled { axles: count, settlement: settlement.to_vec() });

@@ -5,13 +5,13 @@
 //! no number, and of which nothing has warned, is **wrong**: the one end that must not be.
 
 use super::stress::{Stress, stresses};
-use super::variant::{Case, Measured, Method, Prepared, Variant};
+use super::variant::{Case, METHODS, Measured, Prepared, Variant};
 use crate::diag::Code;
 use crate::graph::{Blocks, Graph, RUNAWAY, RunError, Schedule};
 use crate::lint::lint;
 use crate::lower::lower;
 use crate::results::diagnose;
-use crate::scenario::{Given, Loading, Scenario, Track};
+use crate::scenario::{Given, Integrator, Loading, Scenario, TimeStep, Track};
 use crate::solvers::track::TrackError;
 use crate::units::number;
 use serde::Serialize;
@@ -129,7 +129,7 @@ pub(super) fn middle(track: &Track) -> f64 {
 /// One passage of the map.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cell {
-    pub method: Method,
+    pub method: Integrator,
     /// s.
     pub time_step: f64,
     /// Times the Hertz constant of the scene.
@@ -140,7 +140,7 @@ pub struct Cell {
 
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Map {
-    pub methods: Vec<Method>,
+    pub methods: Vec<Integrator>,
     /// s, the coarsest first.
     pub time_steps: Vec<f64>,
     pub contacts: Vec<f64>,
@@ -179,7 +179,7 @@ pub fn stability(
     blocks: &Blocks,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Stability, TrackError> {
-    let trials = Void::ALL.len() * CONTACTS.len() * (Method::ALL.len() + 2) + 40;
+    let trials = Void::ALL.len() * CONTACTS.len() * (METHODS.len() + 2) + 40;
     let mut done = 0;
     let mut tick = || {
         done += 1;
@@ -196,7 +196,7 @@ fn map(scenario: &Scenario, graph: &Graph, blocks: &Blocks, tick: &mut dyn FnMut
     let prepare = |variant| Prepared::new(&graph.track, variant, own.time_step);
     let reference = prepare(Variant { time_step: REFERENCE_STEP * own.time_step, ..own })?;
     let mut prepared = Vec::new();
-    for method in Method::ALL {
+    for method in METHODS {
         for time_step in &time_steps {
             prepared.push((method, *time_step, prepare(Variant { method, time_step: *time_step, ..own })));
         }
@@ -231,7 +231,7 @@ fn map(scenario: &Scenario, graph: &Graph, blocks: &Blocks, tick: &mut dyn FnMut
             }
         }
     }
-    Ok(Map { methods: Method::ALL.to_vec(), time_steps, contacts: CONTACTS.to_vec(), voids, cells })
+    Ok(Map { methods: METHODS.to_vec(), time_steps, contacts: CONTACTS.to_vec(), voids, cells })
 }
 
 /// The first bogie of the train over the transition.
@@ -266,7 +266,7 @@ impl Foreseen {
 
 fn foreseen(scenario: &Scenario, time_step: f64, contact: f64) -> Foreseen {
     let mut scenario = scenario.clone();
-    scenario.solve.time_step = Some(Given::derived(time_step));
+    scenario.solve.time_step = TimeStep::Fixed(Given::derived(time_step));
     if let Some(Loading::Traffic(traffic)) = &mut scenario.loading {
         traffic.train.vehicles.iter_mut().for_each(|v| v.hertz.value *= contact);
     }

@@ -1,10 +1,10 @@
 //! Scenes that are hard for the methods: each is run with the scene's own numerics and again at a quarter of its step.
 
 use super::stability::{Foreseen, Verdict, Void, check, judge, middle, refused};
-use super::variant::{Case, Method, Prepared, Variant};
+use super::variant::{Case, METHODS, Prepared, Variant};
 use crate::graph::{Blocks, Graph, Schedule};
 use crate::lint::Winkler;
-use crate::scenario::{Foot, Given, Loading, RailEnds, Scenario, Track, Train};
+use crate::scenario::{Foot, Given, Integrator, Loading, RailEnds, Scenario, TimeStep, Track, Train};
 use crate::units::number;
 use serde::Serialize;
 
@@ -42,7 +42,7 @@ struct Hard {
     settlement: Vec<f64>,
     /// Distance of the outermost wheels from the ends of the model, where the plan is not asked, m.
     margin: Option<f64>,
-    method: Option<Method>,
+    method: Option<Integrator>,
 }
 
 /// Share by which undamped free vibration may seem to gain energy: what one step makes of a strike.
@@ -56,7 +56,7 @@ pub(super) fn stresses(scenario: &Scenario, tick: &mut dyn FnMut()) -> Vec<Stres
         rows.push(passage(&hard));
         tick();
     }
-    for method in Method::ALL {
+    for method in METHODS {
         for coarser in [1.0, 4.0] {
             rows.extend(free_vibration(scenario, method, coarser));
         }
@@ -125,7 +125,7 @@ fn list(scenario: &Scenario) -> Vec<Hard> {
         }),
         hard("one element a bay", &|s| s.solve.elements_per_bay.value = 1),
         Hard {
-            method: Some(Method::Newmark),
+            method: Some(Integrator::Newmark),
             settlement: void(1e-3, Some(3)),
             ..hard("newmark without damping, three hang by 1 mm", &undamp)
         },
@@ -171,7 +171,7 @@ fn coarsest(scenario: &mut Scenario, transits: f64) {
     let spacing = scenario.track.sections.iter().map(|s| *s.spacing).fold(f64::INFINITY, f64::min);
     let Some(Loading::Traffic(traffic)) = &scenario.loading else { return };
     let transit = spacing / f64::from(*scenario.solve.elements_per_bay) / *traffic.train.speed;
-    scenario.solve.time_step = Some(Given::derived(transit * transits * (1.0 - 1e-9)));
+    scenario.solve.time_step = TimeStep::Fixed(Given::derived(transit * transits * (1.0 - 1e-9)));
 }
 
 fn blocks(graph: &Graph) -> Option<&Blocks> {
@@ -223,7 +223,7 @@ fn passage(hard: &Hard) -> Stress {
 }
 
 /// The track without any damping springs back from under the train, three sleepers hanging: its energy must not grow.
-fn free_vibration(scenario: &Scenario, method: Method, coarser: f64) -> Option<Stress> {
+fn free_vibration(scenario: &Scenario, method: Integrator, coarser: f64) -> Option<Stress> {
     let mut scenario = scenario.clone();
     undamp(&mut scenario);
     let (graph, ..) = check(&scenario);
@@ -232,7 +232,7 @@ fn free_vibration(scenario: &Scenario, method: Method, coarser: f64) -> Option<S
     let case = Case::of(&graph, blocks, Void { depth: 1e-3, sleepers: Some(3) }.settlement(&scenario.track));
     let own = Variant::of(&graph, blocks);
     let time_step = coarser * own.time_step;
-    scenario.solve.time_step = Some(Given::derived(time_step));
+    scenario.solve.time_step = TimeStep::Fixed(Given::derived(time_step));
     let (_, foreseen, warnings) = check(&scenario);
     let wheels = wheels_at(&scenario.track, &case.train);
     let pressed: Vec<(f64, f64)> = wheels.into_iter().map(|x| (x, case.static_wheel_force())).collect();

@@ -33,7 +33,7 @@ pub fn chart_csv(chart: &Chart) -> String {
         let mut row = vec![
             point.level.name().to_owned(),
             point.sweep.name().to_owned(),
-            v.beam.name().to_owned(),
+            v.beam.to_string(),
             v.method.to_string(),
             v.time_step.to_string(),
             v.elements_per_bay.to_string(),

@@ -4,88 +4,38 @@
 //! a variant factored for a track; it runs any case on that track and says what came out and what it cost.
 
 use super::clock::Clock;
-use crate::graph::model::{level, model, train};
+use crate::graph::model::{level, model, motion, scheme, train};
 use crate::graph::{Blocks, Graph, TrackNode};
-use crate::scenario::{Direction, Train};
+use crate::scenario::{Beam, Direction, Integrator, Train};
 use crate::solvers::track::{
-    Counters, Envelope, Passage, Run, Scheme, Shear, StepView, Stepper, Track, TrackError, TrackLevel, TrackModel,
+    Counters, Envelope, Passage, Run, Shear, StepView, Stepper, Track, TrackError, TrackLevel, TrackModel,
 };
-use crate::units::number;
 use serde::{Serialize, Serializer};
 use std::fmt;
 use std::sync::Arc;
 
-/// A rule of time integration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Method {
-    /// Spectral radius at infinite frequency, 0 .. 1.
-    GeneralisedAlpha { rho: f64 },
-    /// Hilber, Hughes and Taylor, alpha 0 .. 1/3.
-    Hht { alpha: f64 },
-    /// Average acceleration, without damping.
-    Newmark,
-}
+/// The methods that charts and maps compare.
+pub const METHODS: [Integrator; 5] = [
+    Integrator::GeneralisedAlpha { rho: 0.85 },
+    Integrator::GeneralisedAlpha { rho: 0.5 },
+    Integrator::GeneralisedAlpha { rho: 1.0 },
+    Integrator::Hht { alpha: 0.1 },
+    Integrator::Newmark,
+];
 
-impl Method {
-    /// The methods that charts and maps compare.
-    pub const ALL: [Method; 5] = [
-        Method::GeneralisedAlpha { rho: 0.85 },
-        Method::GeneralisedAlpha { rho: 0.5 },
-        Method::GeneralisedAlpha { rho: 1.0 },
-        Method::Hht { alpha: 0.1 },
-        Method::Newmark,
-    ];
-
-    pub(super) fn scheme(self, time_step: f64) -> Result<Scheme, TrackError> {
-        match self {
-            Method::GeneralisedAlpha { rho } => Scheme::generalised_alpha(time_step, rho),
-            Method::Hht { alpha } => Scheme::hht(time_step, alpha),
-            Method::Newmark => Scheme::newmark(time_step),
-        }
-    }
-}
-
-/// As a scene spells it.
-impl fmt::Display for Method {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Method::GeneralisedAlpha { rho } => write!(f, "generalised_alpha({})", number(*rho)),
-            Method::Hht { alpha } => write!(f, "hht({})", number(*alpha)),
-            Method::Newmark => f.write_str("newmark"),
-        }
-    }
-}
-
-impl Serialize for Method {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(self)
-    }
-}
-
-/// Beam theory of the rail.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Beam {
-    Euler,
-    Timoshenko,
-}
-
-impl Beam {
-    pub fn name(self) -> &'static str {
-        match self {
-            Beam::Euler => "euler",
-            Beam::Timoshenko => "timoshenko",
-        }
-    }
+fn as_word<T: fmt::Display, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(value)
 }
 
 /// The numerics of a passage.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Variant {
-    pub method: Method,
+    #[serde(serialize_with = "as_word")]
+    pub method: Integrator,
     /// s.
     pub time_step: f64,
     pub elements_per_bay: u32,
+    #[serde(serialize_with = "as_word")]
     pub beam: Beam,
 }
 
@@ -93,10 +43,10 @@ impl Variant {
     /// What the plan of a scene says.
     pub fn of(graph: &Graph, blocks: &Blocks) -> Variant {
         Variant {
-            method: Method::GeneralisedAlpha { rho: blocks.passage.rho },
+            method: blocks.passage.integrator,
             time_step: blocks.passage.time_step,
             elements_per_bay: graph.track.elements_per_bay,
-            beam: Beam::Euler,
+            beam: graph.track.beam,
         }
     }
 }
@@ -201,7 +151,7 @@ impl Prepared {
         let mut model = model(&node);
         set_beam(&mut model, variant.beam);
         let track = Arc::new(Track::new(model)?);
-        let stepper = Stepper::new(track, variant.method.scheme(variant.time_step)?)?;
+        let stepper = Stepper::new(track, scheme(variant.method, variant.time_step)?)?;
         Ok(Prepared { stepper, interval, setup_s: started.seconds() })
     }
 
@@ -217,7 +167,8 @@ impl Prepared {
             (case.left + base, case.right)
         };
         let level = level(&case.node, &case.settlement);
-        let run = Run { train: &train, start, finish, speed: *case.train.speed };
+        let motion = motion(&case.train);
+        let run = Run { train: &train, start, finish, motion: &motion };
         let mut passage = Passage::new(&self.stepper, &level, run).map_err(failed)?;
         let setup_s = self.setup_s + started.seconds();
 

@@ -22,8 +22,8 @@ pub struct Varandas {
     pub beta: f64,
     /// Settlement after the reference cycles, m.
     pub gamma: f64,
-    /// N₀, number of reference cycles, 1 or more.
-    pub reference_cycles: u64,
+    /// N₀, number of reference cycles, 1 or more, whole.
+    pub reference_cycles: f64,
     /// F₀, their peak force, N.
     pub reference_force: f64,
 }
@@ -38,7 +38,7 @@ pub struct VarandasState {
 impl Default for Varandas {
     /// The values of the publication: 10 mm after a million cycles of 50 kN.
     fn default() -> Self {
-        Self { alpha: 0.6, beta: 0.82, gamma: 0.010, reference_cycles: 1_000_000, reference_force: 50e3 }
+        Self { alpha: 0.6, beta: 0.82, gamma: 0.010, reference_cycles: 1e6, reference_force: 50e3 }
     }
 }
 
@@ -53,7 +53,7 @@ impl Varandas {
             let below = state.cycles.get(i + 1).map_or(0.0, |next| area(next.0));
             total += sums.up_to(reached) * (area(peak) - below);
         }
-        self.gamma * total / sums.up_to(self.reference_cycles)
+        self.gamma * total / sums.up_to(self.reference_cycles as u64)
     }
 }
 
@@ -137,7 +137,7 @@ mod tests {
     /// The law as published: one cycle after the other, the integral band by band.
     fn summed(peaks: &[f64]) -> f64 {
         let law = Varandas::default();
-        let norm: f64 = (1..=law.reference_cycles).map(|j| (j as f64).powf(-law.beta)).sum();
+        let norm: f64 = (1..=law.reference_cycles as u64).map(|j| (j as f64).powf(-law.beta)).sum();
         let area = |f: f64| (f / law.reference_force).powf(law.alpha + 1.0);
         let mut total = 0.0;
         for (n, peak) in peaks.iter().enumerate() {

@@ -72,7 +72,7 @@ impl Track {
             let (rail, foot) = (self.rail[self.seat_nodes[i]], self.foot_unknown(i));
             add_spring(&mut self.stiffness, rail, foot, seat.pad_stiffness);
             add_spring(&mut self.damping, rail, foot, seat.pad_damping);
-            if let (Foot::Sleeper { mass, support_stiffness, support_damping }, FootUnknown::Sleeper(s)) =
+            if let (Foot::Sleeper { mass, support_stiffness, support_damping, .. }, FootUnknown::Sleeper(s)) =
                 (seat.foot, self.feet[i])
             {
                 let unknown = self.sleepers[s].unknown;

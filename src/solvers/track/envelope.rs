@@ -16,11 +16,16 @@ pub struct Envelope {
     /// Row by row for each seat: the largest contact force while each wheel was the nearest to the seat, N. A wheel that
     /// never was the nearest, or a seat without a sleeper, has 0.
     pub axle_peaks: Vec<f64>,
+    /// As `axle_peaks`: how far the sleeper presses its support below its unloaded level at most, m.
+    pub axle_deflections: Vec<f64>,
     /// Smallest and largest force of each wheel, N.
     pub wheel_forces: Vec<(f64, f64)>,
     /// Sagging rail moment at each node, smallest and largest, N m.
     pub rail_moments: Vec<(f64, f64)>,
     moments: Vec<f64>,
+    /// Wheels from left to right, and the nearest of them to the seat that was looked at last.
+    along: Vec<usize>,
+    near: usize,
 }
 
 const NOTHING: (f64, f64) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -37,6 +42,12 @@ impl Envelope {
         &self.axle_peaks[seat * wheels..(seat + 1) * wheels]
     }
 
+    /// The largest deflection of a seat's support for each wheel in turn, m.
+    pub fn axle_deflections_of(&self, seat: usize) -> &[f64] {
+        let wheels = self.wheel_forces.len();
+        &self.axle_deflections[seat * wheels..(seat + 1) * wheels]
+    }
+
     fn begin(&mut self, view: &StepView<'_>) {
         let (seats, wheels) = (view.track().model().seats.len(), view.wheel_forces().len());
         let nodes = view.track().nodes().len();
@@ -46,10 +57,16 @@ impl Envelope {
             foot_displacements: vec![f64::NEG_INFINITY; seats],
             contact_losses: vec![0.0; seats],
             axle_peaks: vec![0.0; seats * wheels],
+            axle_deflections: vec![0.0; seats * wheels],
             wheel_forces: vec![NOTHING; wheels],
             rail_moments: vec![NOTHING; nodes],
             moments: vec![0.0; nodes],
+            along: (0..wheels).collect(),
+            near: 0,
         };
+        let positions = view.wheel_positions();
+        // Where two wheels are as near, the first of the train counts.
+        self.along.sort_by(|a, b| positions[*a].total_cmp(&positions[*b]).then(b.cmp(a)));
     }
 }
 
@@ -59,6 +76,7 @@ impl Observer for Envelope {
             self.begin(view);
         }
         let wheels = view.wheel_positions();
+        self.near = 0;
         for (seat, model) in view.track().model().seats.iter().enumerate() {
             widen(&mut self.seat_loads[seat], view.seat_load(seat));
             let lowered = view.foot_displacement(seat) - view.unloaded().foot_displacements[seat];
@@ -68,15 +86,23 @@ impl Observer for Envelope {
             if force == 0.0 && view.step() > 0 {
                 self.contact_losses[seat] += view.time_step();
             }
-            let mut nearest = (f64::INFINITY, 0);
-            for (wheel, x) in wheels.iter().enumerate() {
-                let distance = (x - model.x).abs();
-                if distance < nearest.0 {
-                    nearest = (distance, wheel);
+            while self.near + 1 < self.along.len() {
+                let [here, next] = [self.near, self.near + 1].map(|rank| (wheels[self.along[rank]] - model.x).abs());
+                let later = self.along[self.near + 1] > self.along[self.near];
+                if next > here || (next == here && later) {
+                    break;
                 }
+                self.near += 1;
             }
-            if let Some(peak) = self.axle_peaks.get_mut(seat * wheels.len() + nearest.1) {
+            let nearest = self.along.get(self.near).copied().unwrap_or(0);
+            let place = seat * wheels.len() + nearest;
+            if let Some(peak) = self.axle_peaks.get_mut(place) {
                 *peak = peak.max(force);
+            }
+            if let (Some(most), Some(deflection)) =
+                (self.axle_deflections.get_mut(place), view.support_deflection(seat))
+            {
+                *most = most.max(deflection);
             }
         }
         for (range, force) in self.wheel_forces.iter_mut().zip(view.wheel_forces()) {

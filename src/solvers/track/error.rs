@@ -14,12 +14,12 @@ pub enum TrackError {
     Mechanism { x: f64 },
     /// No set of closed supports was found that is in equilibrium; `x` (m) is where it last changed.
     NoEquilibrium { x: f64, iterations: usize },
-    /// The contacts of a time step did not settle; `x` (m) is where they last changed.
-    StepNotConverged { step: usize, time: f64, x: f64 },
+    /// The contacts of a time step did not settle; `x` (m) is where they last changed, `contact` what is there.
+    StepNotConverged { step: usize, time: f64, x: f64, contact: String },
     /// A wheel force (N) is so many times its static value that the answer means nothing; `x` (m) is the seat that bears most.
     RanAway { x: f64, force: f64, times: f64 },
-    /// A displacement is not a number; `x` (m) is the position of the leading wheel.
-    NotFinite { step: usize, time: f64, x: f64 },
+    /// A value has gone beyond sense, or is no number: the step is too long for what happens at `x` (m).
+    Unstable { step: usize, time: f64, x: f64, what: &'static str, value: f64, unit: &'static str },
 }
 
 impl fmt::Display for TrackError {
@@ -34,15 +34,17 @@ impl fmt::Display for TrackError {
             TrackError::NoEquilibrium { x, iterations } => {
                 write!(f, "no equilibrium after {iterations} iterations, the supports near x = {x} m keep changing")
             }
-            TrackError::StepNotConverged { step, time, x } => {
-                write!(f, "contacts near x = {x} m did not settle in step {step} at {time} s")
+            TrackError::StepNotConverged { step, time, x, contact } => {
+                write!(f, "contacts near x = {x} m did not settle in step {step} at {time} s, last {contact}")
             }
             TrackError::RanAway { x, force, times } => {
                 write!(f, "a wheel force of {:.0} kN near x = {x} m, {times:.0} times the static one", force / 1e3)
             }
-            TrackError::NotFinite { step, time, x } => {
-                write!(f, "displacements are not finite in step {step} at {time} s, leading wheel at x = {x} m")
-            }
+            TrackError::Unstable { step, time, x, what, value, unit } => write!(
+                f,
+                "the motion is unstable: {what} of {value:.3e} {unit} at x = {x} m in step {step} at {time} s; a shorter \
+                 step or more damping of fast motion holds it"
+            ),
         }
     }
 }

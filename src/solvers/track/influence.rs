@@ -7,7 +7,8 @@
 
 use super::scheme::Scheme;
 use super::{Track, TrackError};
-use crate::linalg::banded::{BandedFactor, SymmetricBanded, Window};
+use crate::linalg::banded::{NotPositiveDefinite, SymmetricBanded, Window};
+use crate::linalg::twisted::TwistedFactor;
 use std::sync::Arc;
 
 /// A time step prepared for one track; immutable and shared by all passages.
@@ -15,7 +16,7 @@ use std::sync::Arc;
 pub struct Stepper {
     pub(super) track: Arc<Track>,
     pub(super) scheme: Scheme,
-    pub(super) factor: BandedFactor,
+    pub(super) factor: TwistedFactor,
     /// Columns of A for the unknowns of the rail: displacement of all unknowns per force, m/N.
     pub(super) of_rail: Vec<Window>,
     /// The same columns at the sleepers alone, counted by sleeper.
@@ -39,7 +40,8 @@ impl Stepper {
         for (unknown, _) in &track.held {
             matrix.pin(*unknown);
         }
-        let factor = matrix.factor().map_err(|e| TrackError::Mechanism { x: track.place_of(e.row) })?;
+        let mechanism = |e: NotPositiveDefinite| TrackError::Mechanism { x: track.place_of(e.row) };
+        let factor = matrix.factor().map_err(mechanism)?;
 
         let mut scratch = vec![0.0; track.order()];
         let mut column = |unknown: usize| {
@@ -62,7 +64,7 @@ impl Stepper {
             of_sleeper_at_sleepers: of_sleeper.iter().map(at_sleepers).collect(),
             of_rail,
             of_sleeper,
-            factor,
+            factor: TwistedFactor::new(&matrix).map_err(mechanism)?,
             scheme,
             track,
         })

@@ -1,25 +1,28 @@
 //! The contacts of one time step: wheel forces and the supports that are not closed, all else being linear.
 //!
-//! Unknowns are the wheel forces F and, for each support that is open or touching, the force q by which it falls short of its
+//! Unknowns are the wheel forces F and, for each support that is not closed, the force q by which it falls short of its
 //! closed line. With the compliances A (track), B (vehicle) and L (rail within its element):
 //!
 //! ```text
-//! wheel:      δ = δ_free - (A + B + L) F - A q,   F = C_H max(0, δ)^1.5
-//! open:       q = k_e g + c d                      (R = 0)
-//! touching:   g = 0,  R = c d - q in [0, c d]
+//! wheel:      δ = δ_free - (A + B + L) F - A q,   F = F(δ)
+//! open:       q = closed line at g                (R = 0)
+//! touching:   g = 0,  R = closed line at 0 - q in [0, c d]
+//! seating:    q = (k - k_s) (g - a)
 //! every gap:  g = g_free + A F + A q
 //! ```
 //!
 //! One Newton iteration linearises the wheels and moves the supports that contradict their phase. The matrix is symmetric and
-//! quasi-definite. The step has one solution (see `contact`); after [`FLIP_ALL`] iterations only the first contradiction is
+//! quasi-definite; ordered along the track it is a skyline whose rows reach back as far as a force is felt. The step has one solution (see `support`); after [`FLIP_ALL`] iterations only the first contradiction is
 //! moved, once the wheels are settled for the present phases, which ends by Murty's least-index argument.
 
-use super::contact::{SupportLine, SupportPhase, hertz_force, hertz_stiffness};
+use super::WheelContact;
+use super::contact::WheelLaw;
 use super::influence::Stepper;
 use super::mesh::RailPoint;
-use super::vehicle::WHEELS;
-use crate::linalg::dense::solve_symmetric;
-use nalgebra::Matrix4;
+use super::reach::Reach;
+use super::support::{SupportLines, SupportPhase};
+use crate::linalg::skyline::Skyline;
+use nalgebra::DMatrix;
 
 /// The contacts of a passage: their state after the last step and scratch for the next.
 #[derive(Debug, Clone, Default)]
@@ -32,30 +35,46 @@ pub(super) struct Interface {
     pub indentations: Vec<f64>,
     /// Change of the indentation over the last step, m: the first guess of the next.
     trends: Vec<f64>,
-    pub hertz: Vec<f64>,
+    contacts: Vec<WheelContact>,
+    /// Of this step.
+    laws: Vec<WheelLaw>,
     /// Indentation if this step's wheel forces were zero, m.
     pub free_indentations: Vec<f64>,
-    /// Per vehicle: drop of its wheels per wheel force, m/N.
-    pub vehicle_compliance: Vec<Matrix4<f64>>,
-    compliance: Vec<f64>,
-    /// Per wheel: first sleeper, and displacement of the sleepers from there per wheel force.
-    at_sleepers: Vec<(usize, Vec<f64>)>,
+    reach: Reach,
+    // Per rank.
+    /// Forces that depend on the motion, N; 0 for given ones.
+    answers: Vec<f64>,
+    next: Vec<f64>,
+    /// Row of the linear system at which a wheel stands or would stand.
+    row_of: Vec<usize>,
     // Per sleeper.
     pub phases: Vec<SupportPhase>,
     /// q, N; 0 for closed supports.
     pub corrections: Vec<f64>,
-    pub lines: Vec<SupportLine>,
+    pub lines: Vec<SupportLines>,
     /// Gap if wheel forces and corrections were zero, m.
     pub free_gaps: Vec<f64>,
     pub gaps: Vec<f64>,
     // Of the linear system.
     unknowns: Vec<Contact>,
-    matrix: Vec<f64>,
+    /// Last unknown of the track that a contact touches, per row.
+    ends: Vec<usize>,
+    matrix: Skyline,
     rhs: Vec<f64>,
+}
+
+/// What of an [`Interface`] the next step depends on.
+#[derive(Debug, Clone, Default)]
+pub(super) struct InterfaceState {
+    points: Vec<RailPoint>,
+    wheels: [Vec<f64>; 3],
+    phases: Vec<SupportPhase>,
+    supports: [Vec<f64>; 2],
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Contact {
+    /// By rank from left to right.
     Wheel(usize),
     Support(usize),
 }
@@ -72,54 +91,98 @@ pub(super) struct Effort {
 const FLIP_ALL: usize = 12;
 /// Wheel forces are converged to this part of their size.
 const FORCE_TOLERANCE: f64 = 1e-11;
-/// Part of a wheel force that the indentation's rounding may make, m.
+/// Indentations below this are none, m.
 const INDENTATION_ROUNDING: f64 = 1e-16;
 
 impl Interface {
-    /// Contacts of `wheels` wheels, given by their Hertz constants, and `sleepers` supports.
-    pub fn new(hertz: Vec<f64>, vehicle_compliance: Vec<Matrix4<f64>>, sleepers: usize) -> Self {
-        let wheels = hertz.len();
+    /// Contacts of wheels at `positions` (m), vehicle by vehicle with the drop of its wheels per wheel force, and of
+    /// `sleepers` supports.
+    pub fn new(vehicles: Vec<(Vec<WheelContact>, DMatrix<f64>)>, positions: &[f64], sleepers: usize) -> Self {
+        let (contacts, compliances): (Vec<_>, Vec<_>) = vehicles.into_iter().unzip();
+        let contacts: Vec<WheelContact> = contacts.into_iter().flatten().collect();
+        let wheels = contacts.len();
         Self {
             points: vec![RailPoint::default(); wheels],
             forces: vec![0.0; wheels],
             indentations: vec![0.0; wheels],
             trends: vec![0.0; wheels],
             free_indentations: vec![0.0; wheels],
-            compliance: vec![0.0; wheels * wheels],
-            at_sleepers: vec![(0, Vec::new()); wheels],
+            reach: Reach::new(compliances, positions),
+            answers: vec![0.0; wheels],
+            next: vec![0.0; wheels],
+            row_of: vec![0; wheels],
             phases: vec![SupportPhase::Closed; sleepers],
             corrections: vec![0.0; sleepers],
-            lines: vec![SupportLine::default(); sleepers],
+            lines: vec![SupportLines::default(); sleepers],
             free_gaps: vec![0.0; sleepers],
             gaps: vec![0.0; sleepers],
-            hertz,
-            vehicle_compliance,
+            laws: contacts.iter().map(|contact| WheelLaw::at_rest(*contact)).collect(),
+            contacts,
             ..Self::default()
         }
+    }
+
+    pub fn save(&self, state: &mut InterfaceState) {
+        state.points.clone_from(&self.points);
+        for (kept, now) in state.wheels.iter_mut().zip([&self.forces, &self.indentations, &self.trends]) {
+            kept.clone_from(now);
+        }
+        state.phases.clone_from(&self.phases);
+        for (kept, now) in state.supports.iter_mut().zip([&self.corrections, &self.gaps]) {
+            kept.clone_from(now);
+        }
+    }
+
+    pub fn restore(&mut self, state: &InterfaceState) {
+        self.points.clone_from(&state.points);
+        let [forces, indentations, trends] = &state.wheels;
+        self.forces.clone_from(forces);
+        self.indentations.clone_from(indentations);
+        self.trends.clone_from(trends);
+        self.phases.clone_from(&state.phases);
+        let [corrections, gaps] = &state.supports;
+        self.corrections.clone_from(corrections);
+        self.gaps.clone_from(gaps);
+    }
+
+    /// Goes on in steps `ratio` times as long.
+    pub fn scale_trends(&mut self, ratio: f64) {
+        self.trends.iter_mut().for_each(|trend| *trend *= ratio);
+    }
+
+    /// Sets the drop of a vehicle's wheels per wheel force, m/N.
+    pub fn set_compliance(&mut self, vehicle: usize, compliance: DMatrix<f64>) {
+        self.reach.set_vehicle(vehicle, compliance);
     }
 
     /// Solves the contacts of a step whose points, free indentations, lines and free gaps are set; fails with the contact
     /// that was last moved.
     pub fn solve(&mut self, stepper: &Stepper) -> Result<Effort, Contact> {
-        self.gather(stepper);
+        self.reach.gather(stepper, &self.points);
         for j in 0..self.points.len() {
-            let guess = self.indentations[j] + self.trends[j];
-            self.trends[j] = -self.indentations[j];
-            if self.indentations[j] > 0.0 && guess > 0.0 {
-                self.indentations[j] = guess;
+            let (indentation, trend) = (self.indentations[j], self.trends[j]);
+            let law = WheelLaw::in_step(self.contacts[j], indentation, trend, stepper.time_step());
+            self.laws[j] = law;
+            self.forces[j] = law.given().unwrap_or(self.forces[j]);
+            self.trends[j] = -indentation;
+            if law.touches(indentation) && law.touches(indentation + trend) {
+                self.indentations[j] += trend;
             }
         }
+        self.take_given();
         let limit = 100 + 4 * self.phases.len();
         let mut moved = Contact::Support(0);
         for iteration in 1..=limit {
             let careful = iteration > FLIP_ALL;
             self.assemble(stepper);
-            let order = self.unknowns.len();
-            solve_symmetric(&mut self.matrix, order, &mut self.rhs).map_err(|row| self.unknowns[row])?;
+            self.matrix.solve_in_place(&mut self.rhs).map_err(|row| self.unknowns[row])?;
             self.corrections.fill(0.0);
             for (unknown, value) in self.unknowns.iter().zip(&self.rhs) {
                 match *unknown {
-                    Contact::Wheel(j) => self.forces[j] = *value,
+                    Contact::Wheel(rank) => {
+                        self.answers[rank] = *value;
+                        self.forces[self.reach.wheels[rank].wheel] = *value;
+                    }
                     Contact::Support(s) => self.corrections[s] = *value,
                 }
             }
@@ -146,126 +209,149 @@ impl Interface {
     /// Force of a support at the end of the step, N.
     #[inline]
     pub fn support_force(&self, sleeper: usize) -> f64 {
-        let line = &self.lines[sleeper];
-        match self.phases[sleeper] {
-            SupportPhase::Closed => (line.stiffness * self.gaps[sleeper] + line.offset).max(0.0),
-            SupportPhase::Touching => (line.offset - self.corrections[sleeper]).max(0.0),
-            SupportPhase::Open => 0.0,
+        let phase = self.phases[sleeper];
+        self.lines[sleeper].force(phase, self.gaps[sleeper], self.corrections[sleeper]).max(0.0)
+    }
+
+    /// A contact and the state it is in, for people.
+    pub fn describe(&self, contact: Contact) -> String {
+        match contact {
+            Contact::Wheel(rank) => {
+                let wheel = self.wheel_of(rank);
+                let (force, indentation) = (self.forces[wheel], self.indentations[wheel]);
+                format!("wheel {} with {force:.0} N at an indentation of {indentation:.3e} m", wheel + 1)
+            }
+            Contact::Support(sleeper) => match (self.phases.get(sleeper), self.gaps.get(sleeper)) {
+                (Some(phase), Some(gap)) => {
+                    format!("the support of sleeper {}, {} at a gap of {gap:.3e} m", sleeper + 1, phase.word())
+                }
+                _ => "no support".to_owned(),
+            },
         }
     }
 
-    /// Compliances between the wheels at their present points, and from the wheels to the sleepers.
-    fn gather(&mut self, stepper: &Stepper) {
-        let wheels = self.points.len();
-        for j in 0..wheels {
-            let point = self.points[j];
-            let columns = stepper.columns(point.element);
-            for k in j..wheels {
-                let other = self.points[k];
-                let unknowns = stepper.track.element_unknowns(other.element);
-                let mut sum = 0.0;
-                for (column, shape) in columns.into_iter().zip(point.shape) {
-                    for (unknown, other_shape) in unknowns.into_iter().zip(other.shape) {
-                        sum += shape * other_shape * column.at(unknown);
-                    }
-                }
-                if other.element == point.element {
-                    let beam = &stepper.track.elements[point.element].beam;
-                    sum += if j == k {
-                        point.local_compliance
-                    } else {
-                        beam.clamped_deflection(other.offset, point.offset)
-                    };
-                }
-                if j / WHEELS == k / WHEELS {
-                    sum += self.vehicle_compliance[j / WHEELS][(j % WHEELS, k % WHEELS)];
-                }
-                self.compliance[j * wheels + k] = sum;
-                self.compliance[k * wheels + j] = sum;
+    /// The wheel of a rank, in the order of the train.
+    pub fn wheel_of(&self, rank: usize) -> usize {
+        self.reach.wheels[rank].wheel
+    }
+
+    /// Moves what given forces displace into the free indentations and gaps.
+    fn take_given(&mut self) {
+        let mut any = false;
+        for (ranked, answer) in self.reach.wheels.iter().zip(&mut self.answers) {
+            *answer = self.laws[ranked.wheel].given().unwrap_or(0.0);
+            any |= *answer != 0.0;
+        }
+        if any {
+            self.next.fill(0.0);
+            self.reach.compliance.subtract_product(&self.answers, &mut self.next);
+            for (ranked, drop) in self.reach.wheels.iter().zip(&self.next) {
+                self.free_indentations[ranked.wheel] += drop;
             }
-            let columns = stepper.columns_at_sleepers(point.element);
-            let reached = columns.iter().filter(|c| !c.values.is_empty());
-            let start = reached.clone().map(|c| c.start).min().unwrap_or(0);
-            let end = reached.clone().map(|c| c.end()).max().unwrap_or(start);
-            let (first, values) = &mut self.at_sleepers[j];
-            *first = start;
-            values.clear();
-            values.resize(end - start, 0.0);
-            for (column, shape) in columns.into_iter().zip(point.shape).filter(|(c, _)| !c.values.is_empty()) {
-                add_scaled(&mut values[column.start - start..], &column.values, shape);
+            for (ranked, force) in self.reach.wheels.iter().zip(&self.answers) {
+                add_scaled(&mut self.free_gaps[ranked.at_sleepers.0..], &ranked.at_sleepers.1, *force);
+            }
+            self.answers.fill(0.0);
+        }
+    }
+
+    /// The contacts with an unknown, from left to right.
+    fn list_unknowns(&mut self, stepper: &Stepper) {
+        self.unknowns.clear();
+        self.ends.clear();
+        let mut next_sleeper = 0;
+        for rank in 0..=self.reach.wheels.len() {
+            let ranked = self.reach.wheels.get(rank);
+            let until = ranked.map_or(self.phases.len(), |wheel| wheel.sleepers_left);
+            for s in next_sleeper..until {
+                if self.phases[s] != SupportPhase::Closed {
+                    self.unknowns.push(Contact::Support(s));
+                    self.ends.push(stepper.track.sleepers[s].unknown);
+                }
+            }
+            next_sleeper = next_sleeper.max(until);
+            let Some(wheel) = ranked else { continue };
+            self.row_of[rank] = self.unknowns.len();
+            let law = self.laws[wheel.wheel];
+            if law.touches(self.indentations[wheel.wheel]) {
+                self.unknowns.push(Contact::Wheel(rank));
+                self.ends.push(wheel.end);
+            } else {
+                self.answers[rank] = 0.0;
+                self.forces[wheel.wheel] = law.given().unwrap_or(0.0);
             }
         }
     }
 
     fn assemble(&mut self, stepper: &Stepper) {
-        let wheels = self.points.len();
-        self.unknowns.clear();
-        for j in 0..wheels {
-            if self.indentations[j] > 0.0 {
-                self.unknowns.push(Contact::Wheel(j));
-            } else {
-                self.forces[j] = 0.0;
-            }
-        }
-        let closed = SupportPhase::Closed;
-        self.unknowns.extend((0..self.phases.len()).filter(|s| self.phases[*s] != closed).map(Contact::Support));
-        let order = self.unknowns.len();
-        self.matrix.resize(order * order, 0.0);
-        self.rhs.resize(order, 0.0);
-        for (r, row) in self.unknowns.iter().enumerate() {
-            for (c, column) in self.unknowns[..=r].iter().enumerate() {
-                self.matrix[r * order + c] = match (*row, *column) {
-                    (Contact::Wheel(j), Contact::Wheel(k)) => self.compliance[j * wheels + k],
-                    (Contact::Support(s), Contact::Wheel(j)) => {
-                        let (first, values) = &self.at_sleepers[j];
-                        values.get(s.wrapping_sub(*first)).copied().unwrap_or(0.0)
+        self.list_unknowns(stepper);
+        let Self { reach, unknowns, matrix, rhs, .. } = self;
+        matrix.clear();
+        rhs.clear();
+        for (r, contact) in unknowns.iter().enumerate() {
+            let (from, coupled) = match *contact {
+                Contact::Wheel(rank) => (reach.wheels[rank].from, self.row_of[reach.wheels[rank].vehicle_first]),
+                Contact::Support(s) => (stepper.of_sleeper[s].start, r),
+            };
+            let felt = self.ends[..r].iter().rev().take_while(|end| **end >= from).count();
+            let row = matrix.push_row((r - felt).min(coupled));
+            let first = r + 1 - row.len();
+            for (entry, other) in row.iter_mut().zip(&unknowns[first..]) {
+                *entry = match (*contact, *other) {
+                    (Contact::Wheel(p), Contact::Wheel(q)) => reach.compliance.get(p, q),
+                    (Contact::Support(s), Contact::Wheel(p)) | (Contact::Wheel(p), Contact::Support(s)) => {
+                        reach.wheels[p].at_sleeper(s)
                     }
                     (Contact::Support(s), Contact::Support(t)) => stepper.of_sleeper_at_sleepers[s].at(t),
-                    (Contact::Wheel(_), Contact::Support(_)) => 0.0, // supports come last
                 };
             }
-            let diagonal = &mut self.matrix[r * order + r];
-            self.rhs[r] = match *row {
-                Contact::Wheel(j) => {
-                    let indentation = self.indentations[j];
-                    let tangent = hertz_stiffness(self.hertz[j], indentation);
-                    *diagonal += 1.0 / tangent;
-                    // F/F' = 2/3 δ for the power 3/2.
-                    self.free_indentations[j] - indentation + indentation / 1.5
+            let diagonal = &mut row[r - first];
+            rhs.push(match *contact {
+                Contact::Wheel(rank) => {
+                    let j = reach.wheels[rank].wheel;
+                    let (flexibility, rest) = self.laws[j].line(self.indentations[j]);
+                    *diagonal += flexibility;
+                    self.free_indentations[j] - rest
                 }
                 Contact::Support(s) if self.phases[s] == SupportPhase::Open => {
-                    *diagonal -= 1.0 / self.lines[s].stiffness;
-                    -(self.free_gaps[s] + self.lines[s].offset / self.lines[s].stiffness)
+                    let line = &self.lines[s];
+                    *diagonal -= 1.0 / line.stiffness;
+                    -(self.free_gaps[s] + line.closed(0.0) / line.stiffness)
+                }
+                Contact::Support(s) if self.phases[s] == SupportPhase::Seating => {
+                    let line = &self.lines[s];
+                    *diagonal -= 1.0 / line.lack;
+                    line.closure - self.free_gaps[s]
                 }
                 Contact::Support(s) => -self.free_gaps[s],
-            };
+            });
         }
     }
 
     /// Indentations that follow from the forces; returns the worst wheel whose law is not met yet.
     fn move_wheels(&mut self, damping: f64) -> Option<usize> {
-        let wheels = self.points.len();
+        for (next, ranked) in self.next.iter_mut().zip(&self.reach.wheels) {
+            *next = self.free_indentations[ranked.wheel];
+        }
+        self.reach.compliance.subtract_product(&self.answers, &mut self.next);
+        let any_support = self.unknowns.iter().any(|u| matches!(u, Contact::Support(_)));
         let mut worst = (0.0, None);
-        for j in 0..wheels {
-            let mut next = self.free_indentations[j];
-            for k in 0..wheels {
-                next -= self.compliance[j * wheels + k] * self.forces[k];
+        for (rank, ranked) in self.reach.wheels.iter().enumerate() {
+            let (j, mut next) = (ranked.wheel, self.next[rank]);
+            if any_support {
+                let (first, values) = &ranked.at_sleepers;
+                next -= values.iter().zip(&self.corrections[*first..]).map(|(a, q)| a * q).sum::<f64>();
             }
-            for unknown in &self.unknowns {
-                if let Contact::Support(s) = *unknown {
-                    let (first, values) = &self.at_sleepers[j];
-                    next -= values.get(s.wrapping_sub(*first)).copied().unwrap_or(0.0) * self.corrections[s];
-                }
-            }
-            let law = hertz_force(self.hertz[j], next);
-            let tolerance =
-                FORCE_TOLERANCE * law.max(1.0) + hertz_stiffness(self.hertz[j], next) * INDENTATION_ROUNDING;
-            let error = (law - self.forces[j]).abs() - tolerance;
+            let law = self.laws[j];
+            let force = law.force(next);
+            let rounding = INDENTATION_ROUNDING + f64::EPSILON * self.free_indentations[j].abs();
+            let tolerance = FORCE_TOLERANCE * force.abs().max(1.0) + law.stiffness(next) * rounding;
+            let error = (force - self.forces[j]).abs() - tolerance;
             if error > worst.0 {
-                worst = (error, Some(j));
+                worst = (error, Some(rank));
             }
             let now = self.indentations[j];
-            let full = now <= 0.0 || next <= 0.0;
+            let full = !matches!(law, WheelLaw::Hertz { .. }) || now <= 0.0 || next <= 0.0;
             self.indentations[j] = if full { next } else { now + damping * (next - now) };
         }
         worst.1
@@ -273,9 +359,9 @@ impl Interface {
 
     fn evaluate_gaps(&mut self, stepper: &Stepper) {
         self.gaps.copy_from_slice(&self.free_gaps);
-        for (force, (first, values)) in self.forces.iter().zip(&self.at_sleepers) {
+        for (force, ranked) in self.answers.iter().zip(&self.reach.wheels) {
             if *force != 0.0 {
-                add_scaled(&mut self.gaps[*first..], values, *force);
+                add_scaled(&mut self.gaps[ranked.at_sleepers.0..], &ranked.at_sleepers.1, *force);
             }
         }
         for unknown in &self.unknowns {
@@ -291,11 +377,7 @@ impl Interface {
         let mut moved = None;
         for s in 0..self.phases.len() {
             let (line, gap, now) = (self.lines[s], self.gaps[s], self.phases[s]);
-            let force = match now {
-                SupportPhase::Closed => line.stiffness * gap + line.offset,
-                SupportPhase::Touching => line.offset - self.corrections[s],
-                SupportPhase::Open => 0.0,
-            };
+            let force = line.force(now, gap, self.corrections[s]);
             let next = line.phase_after(now, gap, force);
             if next != now {
                 self.phases[s] = next;

@@ -8,7 +8,7 @@
 use super::beam::Element;
 use super::ends;
 use super::model::SAME_PLACE;
-use super::{Foot, RailEnds, TrackError, TrackLevel, TrackModel};
+use super::{Foot, RailEnds, Seating, TrackError, TrackLevel, TrackModel};
 use crate::linalg::banded::SymmetricBanded;
 
 /// A [`TrackModel`] with its mesh and matrices; immutable and shared by all states and passages.
@@ -66,6 +66,7 @@ pub(super) struct Sleeper {
     pub unknown: usize,
     pub support_stiffness: f64,
     pub support_damping: f64,
+    pub seating: Option<Seating>,
 }
 
 /// A beam below or beside the rail, over some of its nodes.
@@ -190,6 +191,12 @@ impl Track {
         RailPoint { element, offset, shape: beam.shape(offset), local_compliance }
     }
 
+    /// Deflection at one point under a unit force at another of the same element, beyond that of the cubic, m/N.
+    #[inline]
+    pub(super) fn local_deflection(&self, at: &RailPoint, load: &RailPoint) -> f64 {
+        self.elements[at.element].beam.clamped_deflection(at.offset, load.offset)
+    }
+
     /// The four unknowns of the rail element `element`.
     #[inline]
     pub(super) fn element_unknowns(&self, element: usize) -> [usize; 4] {
@@ -260,7 +267,8 @@ impl Track {
     pub(super) fn steady_forces(&self, level: &TrackLevel) -> Vec<f64> {
         let mut forces = self.own_forces(level);
         for sleeper in &self.sleepers {
-            forces[sleeper.unknown] += sleeper.support_stiffness * level.settlements[sleeper.seat];
+            forces[sleeper.unknown] +=
+                sleeper.support_stiffness * level.settlements[sleeper.seat] + sleeper.seating_loss();
         }
         forces
     }
@@ -352,10 +360,10 @@ impl Numbering {
 
     fn number_sleeper(&mut self, model: &TrackModel, seat: Option<usize>) {
         if let Some(seat) = seat
-            && let Foot::Sleeper { support_stiffness, support_damping, .. } = model.seats[seat].foot
+            && let Foot::Sleeper { support_stiffness, support_damping, seating, .. } = model.seats[seat].foot
         {
             self.feet[seat] = FootUnknown::Sleeper(self.sleepers.len());
-            self.sleepers.push(Sleeper { seat, unknown: self.order, support_stiffness, support_damping });
+            self.sleepers.push(Sleeper { seat, unknown: self.order, support_stiffness, support_damping, seating });
             self.order += 1;
         }
     }

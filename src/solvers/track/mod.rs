@@ -1,13 +1,15 @@
 //! One rail on its seats, and the vehicles that run over it: statics with lift-off, and passages in time.
 //!
 //! The rail is a beam after Euler–Bernoulli or Timoshenko, slabs and auxiliary rails are beams after Euler–Bernoulli, pads are
-//! springs and dampers, a sleeper is a mass on a support that can only push, and a vehicle is ten rigid-body unknowns on Hertz
-//! contacts. Displacements and forces are positive downward, moments positive where the rail sags, x grows to the right.
+//! springs and dampers, a sleeper is a mass on a support that can only push, and a vehicle is a linear multibody system on
+//! wheels that press on the rail by the law of Hertz, a spring or a given force. Displacements and forces are positive
+//! downward, moments positive where the rail sags, x grows to the right.
 //!
 //! [`TrackModel`] says what there is; [`Track`] is its mesh and matrices; [`solve_static`] finds the state at rest;
 //! [`Stepper`] factors one time step for all passages over that track; [`Passage`] runs one train over it and shows every
 //! step to an [`Observer`].
 
+mod adaptive;
 mod assembly;
 mod beam;
 mod contact;
@@ -16,25 +18,37 @@ mod envelope;
 mod error;
 mod influence;
 mod interface;
+mod irregularity;
 mod mesh;
 mod model;
+mod motion;
+mod multibody;
 mod passage;
 mod quasi_static;
+mod reach;
+mod running;
 mod scheme;
 mod statics;
+mod support;
+mod train;
 mod vehicle;
 mod view;
 
-pub use contact::SupportPhase;
+pub use adaptive::Ladder;
 pub use envelope::Envelope;
 pub use error::TrackError;
 pub use influence::Stepper;
+pub use irregularity::{Cubic, Irregularity};
 pub use mesh::Track;
 pub use model::{AuxiliaryRail, Foot, RailEnds, RailSection, Seat, Shear, Slab, TrackLevel, TrackModel};
+pub use motion::Motion;
+pub use multibody::{Multibody, Wheel, WheelContact};
 pub use passage::{Counters, Passage, Run};
 pub use scheme::Scheme;
-pub use statics::{Balance, Loads, StaticState, solve_static};
-pub use vehicle::{Direction, Train, Vehicle};
+pub use statics::{Balance, Loads, StaticState, solve_static, standing_deflections};
+pub use support::{Seating, SupportPhase};
+pub use train::{Direction, Train};
+pub use vehicle::Vehicle;
 pub use view::{Observer, StepView};
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The track as numbers, before it is meshed, and the checks that a mesh relies on. Everything belongs to one rail.
 
-use super::TrackError;
+use super::{Irregularity, Seating, TrackError};
 
 /// What the track of one rail consists of; SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +18,8 @@ pub struct TrackModel {
     /// Chainages at which the rail is hinged, m.
     pub joints: Vec<f64>,
     pub rail_ends: RailEnds,
+    /// Of the rail's running surface.
+    pub irregularity: Irregularity,
     /// Rail elements between neighbouring seats; more resolve higher frequencies. Statics are exact with one.
     pub elements_per_bay: usize,
     /// m/s^2, 0 or more.
@@ -77,8 +79,9 @@ pub struct Seat {
 /// What a pad stands on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Foot {
-    /// Half a sleeper (kg) on a support (N/m, N s/m) that pushes and never pulls.
-    Sleeper { mass: f64, support_stiffness: f64, support_damping: f64 },
+    /// Half a sleeper (kg) on a support (N/m, N s/m) that pushes and never pulls; with a seating, its stiffness is less at
+    /// first.
+    Sleeper { mass: f64, support_stiffness: f64, support_damping: f64, seating: Option<Seating> },
     /// Ground that does not move.
     Rigid,
     /// The slab under the seat; the right one where two slabs meet.
@@ -171,7 +174,11 @@ impl TrackModel {
         self.check_rail()?;
         self.check_slabs()?;
         self.check_seats()?;
-        self.check_auxiliary_rails()
+        self.check_auxiliary_rails()?;
+        match self.irregularity.flaw() {
+            Some(x) => fail(x, "the irregularity is not a number or has a gap"),
+            None => Ok(()),
+        }
     }
 
     fn check_rail(&self) -> Result<(), TrackError> {
@@ -233,7 +240,11 @@ impl TrackModel {
             }
             match seat.foot {
                 Foot::Rigid => {}
-                Foot::Sleeper { mass, support_stiffness, support_damping } => {
+                Foot::Sleeper { mass, support_stiffness, support_damping, seating } => {
+                    let soft = |s: Seating| positive(s.stiffness) && s.stiffness <= support_stiffness;
+                    if seating.is_some_and(|s| !soft(s) || !positive(s.closure)) {
+                        return fail(seat.x, "a seating is not softer than its support, or lacks stiffness or closure");
+                    }
                     if !positive(mass) || !positive(support_stiffness) || !not_negative(support_damping) {
                         return fail(seat.x, "a sleeper lacks mass or support stiffness, or has a negative damping");
                     }

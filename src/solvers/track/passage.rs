@@ -3,14 +3,27 @@
 //! A step solves the linear track with all supports closed, then the contacts ([`super::interface`]), and adds what the
 //! contact forces displace. Nothing is factored and nothing allocated while it runs.
 
-use super::contact::{SupportLine, SupportPhase};
+use super::adaptive::Choice;
 use super::influence::Stepper;
 use super::interface::{Contact, Interface, add_scaled};
+use super::motion::Timetable;
 use super::quasi_static::{self, Start};
-use super::vehicle::{UNKNOWNS, VehicleMatrix, VehicleVector, WHEEL, WHEELS};
+use super::running::RunningVehicle;
+
 use super::view::{Observer, StepView};
-use super::{Loads, StaticState, TrackError, TrackLevel, Train, solve_static};
-use nalgebra::Matrix4;
+use super::{Loads, Motion, StaticState, SupportPhase, TrackError, TrackLevel, Train, WheelContact, solve_static};
+use std::ops::Range;
+
+/// A displacement of the track beyond this is beyond sense, m; a rotation, rad.
+const WILD_DISPLACEMENT: f64 = 1.0;
+/// A wheel force beyond this many static ones is beyond sense.
+const WILD_FORCE: f64 = 100.0;
+
+/// Whether a value makes sense; one that is not a number does not.
+#[inline]
+fn within(value: f64, limit: f64) -> bool {
+    value.abs() <= limit
+}
 
 /// Which train runs from where to where.
 #[derive(Debug, Clone, Copy)]
@@ -19,8 +32,7 @@ pub struct Run<'a> {
     /// Chainage of the leading wheel at the start and at the finish, m; all wheels stand on the track at both.
     pub start: f64,
     pub finish: f64,
-    /// m/s, above 0.
-    pub speed: f64,
+    pub motion: &'a Motion,
 }
 
 /// What a passage has cost so far.
@@ -33,6 +45,10 @@ pub struct Counters {
     pub most_iterations: usize,
     /// The most supports of one step that were not closed.
     pub most_open_supports: usize,
+    /// Steps that were taken back for shorter ones.
+    pub rejected: usize,
+    /// Steps kept although their error was above the tolerance, as no shorter one was at hand.
+    pub beyond_tolerance: usize,
 }
 
 /// A passage under way. All vectors run over the unknowns of the track unless said otherwise.
@@ -40,10 +56,17 @@ pub struct Counters {
 pub struct Passage<'a> {
     pub(super) stepper: &'a Stepper,
     pub(super) level: &'a TrackLevel,
-    train: Option<Run<'a>>,
+    pub(super) train: Option<(Run<'a>, Timetable)>,
     pub(super) unloaded: StaticState,
     pub(super) counters: Counters,
-    planned_steps: usize,
+    /// Time in ticks: the step itself, or the shortest one of a ladder.
+    pub(super) tick: u64,
+    pub(super) tick_length: f64,
+    pub(super) ticks_per_step: u64,
+    pub(super) ticks_per_longest: u64,
+    planned_ticks: u64,
+    /// How the length of a step is chosen; none where it is fixed.
+    pub(super) choice: Option<Box<Choice<'a>>>,
     pub(super) displacement: Vec<f64>,
     pub(super) velocity: Vec<f64>,
     pub(super) acceleration: Vec<f64>,
@@ -52,48 +75,31 @@ pub struct Passage<'a> {
     pub(super) wheel_positions: Vec<f64>,
     /// Per sleeper, N.
     pub(super) support_forces: Vec<f64>,
-    pub(super) vehicles: Vec<RunningVehicle>,
+    /// Each with its wheels among all.
+    pub(super) vehicles: Vec<(RunningVehicle, Range<usize>)>,
+    /// Wheel forces beyond these are senseless, N; per wheel.
+    force_limits: Vec<f64>,
     steady: Vec<f64>,
     predicted: Vec<f64>,
     predicted_velocity: Vec<f64>,
     mean: [Vec<f64>; 3],
 }
 
-/// A vehicle's motion and the matrices of its step.
-#[derive(Debug, Clone)]
-pub(super) struct RunningVehicle {
-    stiffness: VehicleMatrix,
-    damping: VehicleMatrix,
-    masses: VehicleVector,
-    weight: VehicleVector,
-    inverse: VehicleMatrix,
-    pub displacement: VehicleVector,
-    pub velocity: VehicleVector,
-    pub acceleration: VehicleVector,
-    predicted: VehicleVector,
-    predicted_velocity: VehicleVector,
-}
-
 impl<'a> Passage<'a> {
     /// Places the train at its start, on a track at `level`, in quasi-static motion.
     ///
-    /// Fails where a wheel stands off the track at the start or finish, where the speed is not above 0, where the finish does
+    /// Fails where a wheel stands off the track at the start or finish, where a speed is not above 0, where the finish does
     /// not lie ahead, or where there is no static equilibrium.
     pub fn new(stepper: &'a Stepper, level: &'a TrackLevel, run: Run<'a>) -> Result<Self, TrackError> {
         let (track, sign) = (&stepper.track, run.train.direction.sign());
-        if !(run.speed > 0.0 && run.speed.is_finite()) {
-            return Err(TrackError::Parameter { name: "speed", value: run.speed, expected: "above 0" });
-        }
-        let distance = sign * (run.finish - run.start);
-        if !(distance > 0.0 && distance.is_finite()) {
-            return Err(TrackError::Parameter { name: "distance", value: distance, expected: "above 0" });
-        }
+        let timetable = run.motion.timetable(run.start, run.finish, sign)?;
         for x in run.train.wheel_positions(run.start).chain(run.train.wheel_positions(run.finish)) {
             track.rail_point(x)?;
         }
-        let start = quasi_static::start(track, level, run.train, run.start, run.speed)?;
-        let mut passage = Self::begin(stepper, level, Some(run), start)?;
-        passage.planned_steps = (distance / (run.speed * stepper.time_step()) + 1e-9).floor() as usize;
+        let start = quasi_static::start(track, level, run.train, run.start, run.motion.speed_at(run.start))?;
+        let planned_steps = (timetable.duration / stepper.time_step() + 1e-9).floor() as u64;
+        let mut passage = Self::begin(stepper, level, Some((run, timetable)), start)?;
+        passage.planned_ticks = planned_steps;
         Ok(passage)
     }
 
@@ -124,36 +130,39 @@ impl<'a> Passage<'a> {
             track.held.iter().for_each(|(unknown, _)| forces[*unknown] = 0.0);
             mass.solve_in_place(forces);
         }
-        passage.planned_steps = steps;
+        passage.planned_ticks = steps as u64;
         Ok(passage)
     }
 
     fn begin(
         stepper: &'a Stepper,
         level: &'a TrackLevel,
-        train: Option<Run<'a>>,
+        train: Option<(Run<'a>, Timetable)>,
         start: Start,
     ) -> Result<Self, TrackError> {
         let track = &stepper.track;
         let unloaded = solve_static(track, level, &Loads::default())?;
-        let mut vehicles = Vec::new();
-        let (mut hertz, mut compliance, mut wheel_positions) = (Vec::new(), Vec::new(), Vec::new());
-        if let Some(run) = &train {
+        let (mut vehicles, mut contacts) = (Vec::new(), Vec::new());
+        let (mut wheel_positions, mut force_limits): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+        if let Some((run, _)) = &train {
             wheel_positions.extend(run.train.wheel_positions(run.start));
+            let mut first = 0;
             for (v, (vehicle, _)) in run.train.vehicles.iter().enumerate() {
-                let running = RunningVehicle::new(stepper, vehicle, &start, v).ok_or(TrackError::Parameter {
-                    name: "vehicle",
-                    value: v as f64,
-                    expected: "with masses that a step can move",
-                })?;
-                hertz.extend([vehicle.hertz; WHEELS]);
-                let (_, _, share) = stepper.scheme.effective();
-                let wheels: Matrix4<f64> = running.inverse.fixed_view::<WHEELS, WHEELS>(WHEEL, WHEEL).into_owned();
-                compliance.push(share * wheels);
-                vehicles.push(running);
+                let (displacement, velocity) = (start.state.vehicles[v].clone(), start.vehicle_velocity[v].clone());
+                let (gravity, scheme) = (track.model.gravity, &stepper.scheme);
+                let running = RunningVehicle::new(vehicle, gravity, scheme, displacement, velocity)?;
+                let of_wheels: Vec<WheelContact> = vehicle.wheels.iter().map(|w| w.contact).collect();
+                let load = vehicle.wheel_load(gravity);
+                force_limits.extend(vehicle.wheels.iter().map(|w| match w.contact {
+                    WheelContact::Given(_) => f64::INFINITY,
+                    _ => WILD_FORCE * load,
+                }));
+                contacts.push((of_wheels, running.wheel_compliance(scheme)));
+                vehicles.push((running, first..first + vehicle.wheels.len()));
+                first += vehicle.wheels.len();
             }
         }
-        let mut interface = Interface::new(hertz, compliance, track.sleepers.len());
+        let mut interface = Interface::new(contacts, &wheel_positions, track.sleepers.len());
         interface.forces.copy_from_slice(&start.state.wheel_forces);
         interface.indentations.copy_from_slice(&start.state.indentations);
         for (point, x) in interface.points.iter_mut().zip(&wheel_positions) {
@@ -162,12 +171,15 @@ impl<'a> Passage<'a> {
         let mut support_forces = vec![0.0; track.sleepers.len()];
         for (s, sleeper) in track.sleepers.iter().enumerate() {
             let gap = start.state.unknowns[sleeper.unknown] - level.settlements[sleeper.seat];
-            let linear = sleeper.support_stiffness * gap + sleeper.support_damping * start.velocity[sleeper.unknown];
-            let carries = start.state.closed[s] && linear >= 0.0;
+            let damper = sleeper.support_damping * start.velocity[sleeper.unknown];
+            let phase = start.state.phases[s];
+            let force = sleeper.spring_force(phase, gap) + damper;
+            let carries = phase != SupportPhase::Open && force >= 0.0;
+            support_forces[s] = if carries { force } else { 0.0 };
             interface.gaps[s] = gap;
-            interface.phases[s] = if carries { SupportPhase::Closed } else { SupportPhase::Open };
-            interface.corrections[s] = if carries { 0.0 } else { linear };
-            support_forces[s] = if carries { linear } else { 0.0 };
+            interface.phases[s] = if carries { phase } else { SupportPhase::Open };
+            let closed = sleeper.spring_force(SupportPhase::Closed, gap) + damper;
+            interface.corrections[s] = closed - support_forces[s];
         }
         let order = track.order();
         Ok(Self {
@@ -176,7 +188,12 @@ impl<'a> Passage<'a> {
             train,
             unloaded,
             counters: Counters::default(),
-            planned_steps: 0,
+            tick: 0,
+            tick_length: stepper.time_step(),
+            ticks_per_step: 1,
+            ticks_per_longest: 1,
+            planned_ticks: 0,
+            choice: None,
             displacement: start.state.unknowns,
             velocity: start.velocity,
             acceleration: start.acceleration,
@@ -184,6 +201,7 @@ impl<'a> Passage<'a> {
             wheel_positions,
             support_forces,
             vehicles,
+            force_limits,
             steady: track.steady_forces(level),
             predicted: vec![0.0; order],
             predicted_velocity: vec![0.0; order],
@@ -200,9 +218,17 @@ impl<'a> Passage<'a> {
         self.counters
     }
 
-    /// Steps from the start to the finish.
+    /// Steps from the start to the finish, were all as long as the first.
     pub fn planned_steps(&self) -> usize {
-        self.planned_steps
+        (self.planned_ticks / self.ticks_per_longest) as usize
+    }
+
+    /// Counts time in ticks that are the step `halvings` times halved.
+    pub(super) fn divide_ticks(&mut self, halvings: u32) {
+        self.ticks_per_step <<= halvings;
+        self.ticks_per_longest = self.ticks_per_step;
+        self.planned_ticks <<= halvings;
+        self.tick_length = self.stepper.time_step() / self.ticks_per_step as f64;
     }
 
     /// The present state.
@@ -213,7 +239,7 @@ impl<'a> Passage<'a> {
     /// Runs to the finish; `observer` sees the start and every step.
     pub fn run(&mut self, observer: &mut impl Observer) -> Result<Counters, TrackError> {
         observer.observe(&self.view());
-        while self.counters.steps < self.planned_steps {
+        while self.tick < self.planned_ticks {
             self.step()?;
             observer.observe(&self.view());
         }
@@ -222,11 +248,25 @@ impl<'a> Passage<'a> {
 
     /// s, since the start.
     pub fn time(&self) -> f64 {
-        self.counters.steps as f64 * self.stepper.time_step()
+        self.tick as f64 * self.tick_length
     }
 
     /// One time step; after an error the state is not to be used.
+    ///
+    /// Fails where the contacts do not settle, or where the motion has grown beyond sense.
     pub fn step(&mut self) -> Result<(), TrackError> {
+        match self.choice.take() {
+            Some(mut choice) => {
+                let outcome = self.chosen_step(&mut choice);
+                self.choice = Some(choice);
+                outcome
+            }
+            None => self.step_once(),
+        }
+    }
+
+    /// A step of the present length.
+    pub(super) fn step_once(&mut self) -> Result<(), TrackError> {
         let (track, scheme) = (&*self.stepper.track, &self.stepper.scheme);
         let (dt, alpha_f) = (scheme.time_step, scheme.alpha_f);
         let (displacement_share, rate) = (scheme.displacement_share(), scheme.rate());
@@ -261,43 +301,43 @@ impl<'a> Passage<'a> {
 
         // Contacts.
         self.counters.steps += 1;
-        let travelled = self.counters.steps as f64 * dt;
-        if let Some(run) = &self.train {
-            let leading = run.start + run.train.direction.sign() * run.speed * travelled;
+        self.tick += self.ticks_per_step;
+        let travelled = self.tick as f64 * self.tick_length;
+        if let Some((run, timetable)) = &self.train {
+            let leading = timetable.position(travelled);
             for (position, x) in self.wheel_positions.iter_mut().zip(run.train.wheel_positions(leading)) {
                 *position = x;
             }
         }
-        for (i, vehicle) in self.vehicles.iter_mut().enumerate() {
-            let wheels = i * WHEELS..(i + 1) * WHEELS;
+        for (vehicle, wheels) in &mut self.vehicles {
             vehicle.predict(scheme, &self.interface.forces[wheels.clone()]);
-            for j in wheels {
+            for j in wheels.clone() {
                 let point = track.moved_point(self.interface.points[j].element, self.wheel_positions[j]);
                 let unknowns = track.element_unknowns(point.element);
                 let rail: f64 = (0..4)
                     .map(|k| point.shape[k] * (predicted[unknowns[k]] + displacement_share * a[unknowns[k]]))
                     .sum();
                 self.interface.points[j] = point;
-                self.interface.free_indentations[j] = vehicle.free_wheel(scheme, j % WHEELS) - rail;
+                self.interface.free_indentations[j] = vehicle.free_wheel(scheme, j - wheels.start)
+                    - rail
+                    - track.model.irregularity.at(self.wheel_positions[j]);
             }
         }
         for (s, sleeper) in track.sleepers.iter().enumerate() {
             let (i, settlement) = (sleeper.unknown, self.level.settlements[sleeper.seat]);
             self.interface.free_gaps[s] = predicted[i] + displacement_share * a[i] - settlement;
             let passing_speed = predicted_velocity[i] + rate * (settlement - predicted[i]);
-            self.interface.lines[s] = SupportLine {
-                stiffness: sleeper.support_stiffness + rate * sleeper.support_damping,
-                offset: sleeper.support_damping * passing_speed,
-            };
+            self.interface.lines[s] = sleeper.lines(rate, passing_speed);
         }
         let time = travelled;
         let effort = self.interface.solve(self.stepper).map_err(|contact| TrackError::StepNotConverged {
             step: self.counters.steps,
             time,
             x: match contact {
-                Contact::Wheel(j) => self.wheel_positions[j],
+                Contact::Wheel(rank) => self.wheel_positions[self.interface.wheel_of(rank)],
                 Contact::Support(s) => track.sleepers.get(s).map_or(f64::NAN, |s| track.model.seats[s.seat].x),
             },
+            contact: self.interface.describe(contact),
         })?;
         self.counters.iterations += effort.iterations;
         self.counters.most_iterations = self.counters.most_iterations.max(effort.iterations);
@@ -315,24 +355,41 @@ impl<'a> Passage<'a> {
                 add_scaled(&mut a[column.start..], &column.values, per_displacement * q);
             }
         }
-        let mut sum = 0.0;
+        let mut wild = false;
         for i in 0..order {
             u[i] = predicted[i] + displacement_share * a[i];
             v[i] = predicted_velocity[i] + scheme.velocity_share() * a[i];
-            sum += u[i];
+            wild |= !within(u[i], WILD_DISPLACEMENT);
         }
-        for (i, vehicle) in self.vehicles.iter_mut().enumerate() {
-            vehicle.finish(scheme, &self.interface.forces[i * WHEELS..(i + 1) * WHEELS]);
-            sum += vehicle.displacement.sum();
+        for (vehicle, wheels) in &mut self.vehicles {
+            vehicle.finish(scheme, &self.interface.forces[wheels.clone()]);
         }
         for s in 0..self.support_forces.len() {
             self.support_forces[s] = self.interface.support_force(s);
         }
-        if !sum.is_finite() {
-            let x = self.wheel_positions.first().copied().unwrap_or(track.model.ends[0]);
-            return Err(TrackError::NotFinite { step: self.counters.steps, time, x });
+        let mut forces = self.interface.forces.iter().zip(&self.force_limits);
+        if let Some(j) = forces.position(|(force, limit)| !within(*force, *limit)) {
+            let (step, x, value) = (self.counters.steps, self.wheel_positions[j], self.interface.forces[j]);
+            return Err(TrackError::Unstable { step, time, x, what: "a wheel force", value, unit: "N" });
+        }
+        if wild {
+            return Err(self.wild_displacement(time));
         }
         Ok(())
+    }
+
+    /// Names the first displacement beyond sense.
+    fn wild_displacement(&self, time: f64) -> TrackError {
+        let track = &self.stepper.track;
+        let unknown = self.displacement.iter().position(|u| !within(*u, WILD_DISPLACEMENT)).unwrap_or(0);
+        TrackError::Unstable {
+            step: self.counters.steps,
+            time,
+            x: track.place_of(unknown),
+            what: "a displacement",
+            value: self.displacement[unknown],
+            unit: "m",
+        }
     }
 
     /// Kinetic and potential energy of the track, J, from the track as built without weight.
@@ -349,64 +406,10 @@ impl<'a> Passage<'a> {
         for sleeper in &track.sleepers {
             let (u, k) = (u[sleeper.unknown], sleeper.support_stiffness);
             let gap = (u - self.level.settlements[sleeper.seat]).max(0.0);
-            energy += 0.5 * k * (gap * gap - u * u);
+            let (soft, closure) = sleeper.seating.map_or((k, 0.0), |s| (s.stiffness, s.closure));
+            let (first, then) = (gap.min(closure), (gap - closure).max(0.0));
+            energy += 0.5 * (soft * first * first + k * then * then - k * u * u) + soft * closure * then;
         }
         energy
-    }
-}
-
-impl RunningVehicle {
-    fn new(stepper: &Stepper, vehicle: &super::Vehicle, start: &Start, index: usize) -> Option<Self> {
-        let (stiffness, damping) = vehicle.suspension();
-        let masses = vehicle.masses();
-        let (of_mass, of_damping, of_stiffness) = stepper.scheme.effective();
-        let matrix =
-            VehicleMatrix::from_diagonal(&(of_mass * masses)) + of_damping * damping + of_stiffness * stiffness;
-        Some(Self {
-            stiffness,
-            damping,
-            masses,
-            weight: vehicle.weight(stepper.track.model.gravity),
-            inverse: matrix.cholesky()?.inverse(),
-            displacement: start.state.vehicles[index],
-            velocity: start.vehicle_velocity[index],
-            acceleration: VehicleVector::zeros(),
-            predicted: VehicleVector::zeros(),
-            predicted_velocity: VehicleVector::zeros(),
-        })
-    }
-
-    /// Begins a step: the acceleration that it would end with if the wheel forces at its end were zero.
-    fn predict(&mut self, scheme: &super::Scheme, old_forces: &[f64]) {
-        let (dt, alpha_f) = (scheme.time_step, scheme.alpha_f);
-        let acceleration = self.acceleration;
-        self.predicted = self.displacement + dt * self.velocity + (0.5 - scheme.beta) * dt * dt * acceleration;
-        self.predicted_velocity = self.velocity + (1.0 - scheme.gamma) * dt * acceleration;
-        let mean = (1.0 - alpha_f) * self.predicted + alpha_f * self.displacement;
-        let mean_velocity = (1.0 - alpha_f) * self.predicted_velocity + alpha_f * self.velocity;
-        let mut forces = self.weight
-            - self.stiffness * mean
-            - self.damping * mean_velocity
-            - scheme.alpha_m * self.masses.component_mul(&acceleration);
-        for (w, force) in old_forces.iter().enumerate() {
-            forces[WHEEL + w] -= alpha_f * force;
-        }
-        self.acceleration = self.inverse * forces;
-    }
-
-    /// Displacement of a wheel at the end of the step if the wheel forces there were zero, m.
-    fn free_wheel(&self, scheme: &super::Scheme, wheel: usize) -> f64 {
-        self.predicted[WHEEL + wheel] + scheme.displacement_share() * self.acceleration[WHEEL + wheel]
-    }
-
-    /// Ends a step with its wheel forces.
-    fn finish(&mut self, scheme: &super::Scheme, forces: &[f64]) {
-        for (w, force) in forces.iter().enumerate() {
-            for i in 0..UNKNOWNS {
-                self.acceleration[i] -= (1.0 - scheme.alpha_f) * force * self.inverse[(i, WHEEL + w)];
-            }
-        }
-        self.displacement = self.predicted + scheme.displacement_share() * self.acceleration;
-        self.velocity = self.predicted_velocity + scheme.velocity_share() * self.acceleration;
     }
 }

@@ -9,15 +9,14 @@
 
 use super::mesh::{Track, usual_bay};
 use super::statics::{Inertia, solve_with_inertia};
-use super::vehicle::VehicleVector;
-use super::{Loads, StaticState, TrackError, TrackLevel, Train, solve_static};
+use super::{Loads, StaticState, SupportPhase, TrackError, TrackLevel, Train, solve_static};
 
 /// A state in motion.
 pub(super) struct Start {
     pub state: StaticState,
     pub velocity: Vec<f64>,
     pub acceleration: Vec<f64>,
-    pub vehicle_velocity: Vec<VehicleVector>,
+    pub vehicle_velocity: Vec<Vec<f64>>,
 }
 
 /// Distance of the states that are compared, m: small beside an element, large beside the rounding of a deflection.
@@ -44,22 +43,25 @@ pub(super) fn start(
     let velocity: Vec<f64> = (0..track.order()).map(difference).collect();
     let acceleration: Vec<f64> = (0..track.order()).map(second).collect();
     let half = 0.5 * usual_bay(&track.model);
-    let mut vehicle_velocity = vec![VehicleVector::zeros(); train.vehicles.len()];
+    let mut vehicle_velocity: Vec<Vec<f64>> = train.vehicles.iter().map(|(v, _)| vec![0.0; v.order()]).collect();
     if let (Ok(behind), Ok(ahead)) = (at(leading - sign * half), at(leading + sign * half)) {
         for (v, velocity) in vehicle_velocity.iter_mut().enumerate() {
-            *velocity = (ahead.vehicles[v] - behind.vehicles[v]) * (0.5 * speed / half);
+            for (i, velocity) in velocity.iter_mut().enumerate() {
+                *velocity = (ahead.vehicles[v][i] - behind.vehicles[v][i]) * (0.5 * speed / half);
+            }
         }
     }
 
     let mut inertia = Inertia { track: vec![0.0; track.order()], vehicles: Vec::new() };
     track.mass.subtract_product(&acceleration, &mut inertia.track);
     track.damping.subtract_product(&velocity, &mut inertia.track);
-    for (sleeper, _) in track.sleepers.iter().zip(&here.closed).filter(|(_, closed)| !**closed) {
+    for (sleeper, _) in track.sleepers.iter().zip(&here.phases).filter(|(_, phase)| **phase == SupportPhase::Open) {
         inertia.track[sleeper.unknown] += sleeper.support_damping * velocity[sleeper.unknown];
     }
     for (v, (vehicle, _)) in train.vehicles.iter().enumerate() {
-        let (_, damping) = vehicle.suspension();
-        inertia.vehicles.push(-(damping * vehicle_velocity[v]));
+        let velocity = &vehicle_velocity[v];
+        let row = |i: usize| -velocity.iter().enumerate().map(|(j, v)| vehicle.damping[(i, j)] * v).sum::<f64>();
+        inertia.vehicles.push((0..vehicle.order()).map(row).collect());
     }
     let loads = Loads { train: Some((train, leading)), ..Loads::default() };
     let state = solve_with_inertia(track, level, &loads, &inertia)?;
@@ -69,11 +71,10 @@ pub(super) fn start(
 impl Start {
     /// A state without velocity or acceleration.
     pub fn at_rest(track: &Track, state: StaticState) -> Self {
-        let vehicles = state.vehicles.len();
         Self {
             velocity: vec![0.0; track.order()],
             acceleration: vec![0.0; track.order()],
-            vehicle_velocity: vec![VehicleVector::zeros(); vehicles],
+            vehicle_velocity: state.vehicles.iter().map(|v| vec![0.0; v.len()]).collect(),
             state,
         }
     }

@@ -1,9 +1,8 @@
-//! Vehicles as ten rigid-body unknowns over one rail: car body and two bogies with bounce and pitch, four wheels.
-//!
-//! Pitch is the slope of the body seen in the direction of motion, so a train that runs the other way has the same matrices.
+//! The data sheet of a vehicle on two bogies: ten rigid-body unknowns over one rail, which are car body and two bogies with
+//! bounce and pitch, and four wheels.
 
-use super::TrackError;
-use nalgebra::{SMatrix, SVector};
+use super::{Multibody, Wheel, WheelContact};
+use nalgebra::DMatrix;
 
 /// A vehicle on two bogies of two axles each, as carried by **one rail**: half of every mass, inertia and stiffness.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,44 +31,17 @@ pub struct Vehicle {
     pub hertz: f64,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Direction {
-    /// As x grows.
-    Forward,
-    Backward,
-}
-
-/// Vehicles that run together.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Train {
-    /// Leading one first, each with the distance of its leading wheel behind the train's leading wheel, m.
-    pub vehicles: Vec<(Vehicle, f64)>,
-    pub direction: Direction,
-}
-
-/// Unknowns of a vehicle: car body bounce and pitch, the same of the leading and of the trailing bogie, four wheels.
-pub(super) const UNKNOWNS: usize = 10;
+/// Unknowns: car body bounce and pitch, the same of the leading and of the trailing bogie, four wheels.
+const UNKNOWNS: usize = 10;
 /// The first wheel's unknown.
-pub(super) const WHEEL: usize = 6;
-pub(super) const WHEELS: usize = 4;
-
-pub(super) type VehicleMatrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
-pub(super) type VehicleVector = SVector<f64, UNKNOWNS>;
-
-impl Direction {
-    /// +1 or -1.
-    pub fn sign(self) -> f64 {
-        match self {
-            Direction::Forward => 1.0,
-            Direction::Backward => -1.0,
-        }
-    }
-}
+const WHEEL: usize = 6;
+/// The rotations.
+const PITCHES: [usize; 3] = [1, 3, 5];
 
 impl Vehicle {
     /// Mass over one rail, kg.
     pub fn mass(&self) -> f64 {
-        self.car_body_mass + 2.0 * self.bogie_mass + WHEELS as f64 * self.wheel_mass
+        self.car_body_mass + 2.0 * self.bogie_mass + 4.0 * self.wheel_mass
     }
 
     /// Distances of the four wheels behind the leading one, m.
@@ -79,110 +51,52 @@ impl Vehicle {
     }
 
     /// Stiffness and damping matrices.
-    pub(super) fn suspension(&self) -> (VehicleMatrix, VehicleMatrix) {
-        let mut matrices = (VehicleMatrix::zeros(), VehicleMatrix::zeros());
-        let mut connect = |stiffness: f64, damping: f64, extension: VehicleVector| {
-            let outer = extension * extension.transpose();
-            matrices.0 += stiffness * outer;
-            matrices.1 += damping * outer;
+    fn suspension(&self) -> (DMatrix<f64>, DMatrix<f64>) {
+        let zeros = DMatrix::zeros(UNKNOWNS, UNKNOWNS);
+        let (mut stiffness, mut damping) = (zeros.clone(), zeros);
+        // A spring and a damper that a combination of unknowns extends.
+        let mut connect = |k: f64, c: f64, extension: &[(usize, f64)]| {
+            for (i, a) in extension {
+                for (j, b) in extension {
+                    stiffness[(*i, *j)] += k * a * b;
+                    damping[(*i, *j)] += c * a * b;
+                }
+            }
         };
         for (bogie, side) in [(2, 0.5), (4, -0.5)] {
-            let mut extension = VehicleVector::zeros();
-            extension[0] = 1.0;
-            extension[1] = side * self.bogie_spacing;
-            extension[bogie] = -1.0;
-            connect(self.secondary_stiffness, self.secondary_damping, extension);
+            let secondary = [(0, 1.0), (1, side * self.bogie_spacing), (bogie, -1.0)];
+            connect(self.secondary_stiffness, self.secondary_damping, &secondary);
             for (axle, side) in [(0, 0.5), (1, -0.5)] {
-                let mut extension = VehicleVector::zeros();
-                extension[bogie] = 1.0;
-                extension[bogie + 1] = side * self.wheelset_spacing;
-                extension[WHEEL + bogie - 2 + axle] = -1.0;
-                connect(self.primary_stiffness, self.primary_damping, extension);
+                let wheel = WHEEL + bogie - 2 + axle;
+                let primary = [(bogie, 1.0), (bogie + 1, side * self.wheelset_spacing), (wheel, -1.0)];
+                connect(self.primary_stiffness, self.primary_damping, &primary);
             }
         }
-        matrices
+        (stiffness, damping)
     }
 
     /// The diagonal of the mass matrix.
-    pub(super) fn masses(&self) -> VehicleVector {
+    fn masses(&self) -> [f64; UNKNOWNS] {
         let (bogie, inertia, wheel) = (self.bogie_mass, self.bogie_inertia, self.wheel_mass);
-        VehicleVector::from_column_slice(&[
-            self.car_body_mass,
-            self.car_body_inertia,
-            bogie,
-            inertia,
-            bogie,
-            inertia,
-            wheel,
-            wheel,
-            wheel,
-            wheel,
-        ])
-    }
-
-    /// Gravity on the unknowns, N.
-    pub(super) fn weight(&self, gravity: f64) -> VehicleVector {
-        let mut weight = self.masses() * gravity;
-        for pitch in [1, 3, 5] {
-            weight[pitch] = 0.0;
-        }
-        weight
-    }
-
-    fn check(&self) -> Result<(), TrackError> {
-        let positive = [
-            ("car body mass", self.car_body_mass),
-            ("car body inertia", self.car_body_inertia),
-            ("bogie mass", self.bogie_mass),
-            ("bogie inertia", self.bogie_inertia),
-            ("bogie spacing", self.bogie_spacing),
-            ("wheel mass", self.wheel_mass),
-            ("wheelset spacing", self.wheelset_spacing),
-            ("primary stiffness", self.primary_stiffness),
-            ("secondary stiffness", self.secondary_stiffness),
-            ("hertz constant", self.hertz),
-        ];
-        for (name, value) in positive {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(TrackError::Parameter { name, value, expected: "above 0" });
-            }
-        }
-        for (name, value) in [("primary damping", self.primary_damping), ("secondary damping", self.secondary_damping)]
-        {
-            if !(value >= 0.0 && value.is_finite()) {
-                return Err(TrackError::Parameter { name, value, expected: "of 0 or more" });
-            }
-        }
-        Ok(())
+        let (car, car_inertia) = (self.car_body_mass, self.car_body_inertia);
+        [car, car_inertia, bogie, inertia, bogie, inertia, wheel, wheel, wheel, wheel]
     }
 }
 
-impl Train {
-    /// One vehicle.
-    pub fn single(vehicle: Vehicle, direction: Direction) -> Self {
-        Self { vehicles: vec![(vehicle, 0.0)], direction }
-    }
-
-    /// Number of wheels.
-    pub fn wheels(&self) -> usize {
-        WHEELS * self.vehicles.len()
-    }
-
-    /// Chainage of every wheel while the leading one is at `leading` (m), vehicle by vehicle.
-    pub fn wheel_positions(&self, leading: f64) -> impl Iterator<Item = f64> + '_ {
-        let sign = self.direction.sign();
-        self.vehicles
-            .iter()
-            .flat_map(move |(vehicle, offset)| vehicle.wheel_offsets().map(|wheel| leading - sign * (offset + wheel)))
-    }
-
-    /// Distance from the leading to the last wheel, m.
-    pub fn wheel_base(&self) -> f64 {
-        let last = |(vehicle, offset): &(Vehicle, f64)| offset + vehicle.wheel_offsets()[WHEELS - 1];
-        self.vehicles.iter().map(last).fold(0.0, f64::max)
-    }
-
-    pub(super) fn check(&self) -> Result<(), TrackError> {
-        self.vehicles.iter().try_for_each(|(vehicle, _)| vehicle.check())
+impl From<Vehicle> for Multibody {
+    fn from(vehicle: Vehicle) -> Self {
+        let (stiffness, damping) = vehicle.suspension();
+        let masses = vehicle.masses().to_vec();
+        let mut weighing = masses.clone();
+        for pitch in PITCHES {
+            weighing[pitch] = 0.0;
+        }
+        let wheel = |(w, offset): (usize, f64)| Wheel {
+            unknown: Some(WHEEL + w),
+            offset,
+            contact: WheelContact::Hertz(vehicle.hertz),
+        };
+        let wheels = vehicle.wheel_offsets().into_iter().enumerate().map(wheel).collect();
+        Multibody { masses, stiffness, damping, weighing, forces: vec![0.0; UNKNOWNS], wheels }
     }
 }

@@ -1,6 +1,6 @@
 //! What an observer may ask a passage at each step; every answer is a few operations on the present state.
 
-use super::contact::SupportPhase;
+use super::SupportPhase;
 use super::mesh::FootUnknown;
 use super::passage::{Counters, Passage};
 use super::{StaticState, Track};
@@ -53,6 +53,11 @@ impl<'a> StepView<'a> {
         self.passage.counters.steps
     }
 
+    /// Whether the time is a whole number of `every` times the passage's longest step: a grid that all steps keep to.
+    pub fn is_on_grid(&self, every: usize) -> bool {
+        self.passage.tick.is_multiple_of(every as u64 * self.passage.ticks_per_longest)
+    }
+
     /// s, since the start.
     pub fn time(&self) -> f64 {
         self.passage.time()
@@ -68,9 +73,19 @@ impl<'a> StepView<'a> {
         &self.passage.wheel_positions
     }
 
-    /// Force of each wheel on the rail, N, never negative.
+    /// Force of each wheel on the rail, N; never negative on a contact of Hertz.
     pub fn wheel_forces(&self) -> &'a [f64] {
         &self.passage.interface.forces
+    }
+
+    /// The unknowns of a vehicle of the train, m and rad.
+    pub fn vehicle_displacements(&self, vehicle: usize) -> &'a [f64] {
+        &self.passage.vehicles[vehicle].0.displacement
+    }
+
+    /// Their second derivatives, m/s^2 and rad/s^2.
+    pub fn vehicle_accelerations(&self, vehicle: usize) -> &'a [f64] {
+        &self.passage.vehicles[vehicle].0.acceleration
     }
 
     /// Force of the rail on the pad, N.
@@ -97,6 +112,18 @@ impl<'a> StepView<'a> {
     pub fn support_phase(&self, seat: usize) -> Option<SupportPhase> {
         match self.track().feet[seat] {
             FootUnknown::Sleeper(s) => Some(self.passage.interface.phases[s]),
+            _ => None,
+        }
+    }
+
+    /// How far the sleeper presses its support below the support's unloaded level, m, 0 where it hangs; none for a seat without
+    /// a sleeper.
+    pub fn support_deflection(&self, seat: usize) -> Option<f64> {
+        match self.track().feet[seat] {
+            FootUnknown::Sleeper(s) => {
+                let foot = self.passage.displacement[self.track().sleepers[s].unknown];
+                Some((foot - self.passage.level.settlements[seat]).max(0.0))
+            }
             _ => None,
         }
     }

@@ -10,7 +10,7 @@ fn ringing(seats: usize, rail_ends: RailEnds) -> TrackModel {
     model.rail_ends = rail_ends;
     model.seats.iter_mut().for_each(|s| {
         s.pad_damping = 500.0;
-        s.foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 5e3 };
+        s.foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 5e3, seating: None };
     });
     model
 }

@@ -1,8 +1,16 @@
 //! Cases with known answers, by what they exercise.
 
+mod adaptive;
 mod beams;
 mod dynamics;
 mod ends;
+mod harsh;
+mod momentum;
+mod oracle;
 mod reference;
+mod runge_kutta;
 mod scenes;
+mod standing;
 mod statics;
+mod uneven;
+mod vehicles;

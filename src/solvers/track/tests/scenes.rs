@@ -1,8 +1,9 @@
 //! The tracks and vehicles that the tests share.
 
 use crate::solvers::track::*;
+use std::sync::Arc;
 
-pub const SLEEPER: Foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 50e3 };
+pub const SLEEPER: Foot = Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 50e3, seating: None };
 
 pub fn seat(x: f64, foot: Foot) -> Seat {
     Seat { x, pad_stiffness: 40e6, pad_damping: 5e3, foot }
@@ -24,6 +25,7 @@ pub fn beam(length: f64, bending_stiffness: f64, mass: f64, rail_ends: RailEnds,
         joints: Vec::new(),
         rail_ends,
         elements_per_bay: elements,
+        irregularity: Irregularity::default(),
         gravity: 0.0,
     }
 }
@@ -40,6 +42,7 @@ pub fn ballast(seats: usize) -> TrackModel {
         joints: Vec::new(),
         rail_ends: RailEnds::Clamped,
         elements_per_bay: 4,
+        irregularity: Irregularity::default(),
         gravity: 9.81,
     }
 }
@@ -65,6 +68,7 @@ pub fn transition(sleepers: usize, slab_seats: usize) -> TrackModel {
         joints: Vec::new(),
         rail_ends: RailEnds::Clamped,
         elements_per_bay: 4,
+        irregularity: Irregularity::default(),
         gravity: 9.81,
     }
 }
@@ -97,4 +101,10 @@ pub fn hollow(model: &TrackModel, even: f64, depth: f64, middle: f64, half_width
         _ => 0.0,
     };
     TrackLevel { settlements: model.seats.iter().map(settlement).collect(), ends: [even, 0.0] }
+}
+
+/// A meshed track with a step of `time_step` (s).
+pub fn stepper(model: TrackModel, time_step: f64, spectral_radius: f64) -> Stepper {
+    Stepper::new(Arc::new(Track::new(model).unwrap()), Scheme::generalised_alpha(time_step, spectral_radius).unwrap())
+        .unwrap()
 }

@@ -145,13 +145,21 @@ fn places_off_the_track_are_refused() {
 
 #[test]
 fn contradictions_are_refused() {
-    let broken: [fn(&mut TrackModel); 6] = [
-        |m| m.seats[3].x = m.seats[2].x,
-        |m| m.seats[3].foot = Foot::Slab,
-        |m| m.rail[0].end -= 1.0,
-        |m| m.rail[0].bending_stiffness = f64::NAN,
-        |m| m.ends[1] = -1.0,
-        |m| m.seats[1].pad_stiffness = 0.0,
+    let seating = |m: &mut TrackModel, stiffness: f64, closure: f64| {
+        let seating = Some(Seating { stiffness, closure });
+        m.seats[2].foot = Foot::Sleeper { mass: 1.0, support_stiffness: 1e6, support_damping: 0.0, seating };
+    };
+    let too_stiff = |m: &mut TrackModel| seating(m, 2e6, 1e-3);
+    let too_short = |m: &mut TrackModel| seating(m, 1e5, 0.0);
+    let broken: [&dyn Fn(&mut TrackModel); 8] = [
+        &too_stiff,
+        &too_short,
+        &|m: &mut TrackModel| m.seats[3].x = m.seats[2].x,
+        &|m: &mut TrackModel| m.seats[3].foot = Foot::Slab,
+        &|m: &mut TrackModel| m.rail[0].end -= 1.0,
+        &|m: &mut TrackModel| m.rail[0].bending_stiffness = f64::NAN,
+        &|m: &mut TrackModel| m.ends[1] = -1.0,
+        &|m: &mut TrackModel| m.seats[1].pad_stiffness = 0.0,
     ];
     for change in broken {
         let mut model = ballast(10);
@@ -170,4 +178,38 @@ fn slabs_that_meet() {
     let (track, state) = at_rest(model, &Loads { rail: &[(6.0, 1e5)], ..Loads::default() });
     close(state.balance.supports(), state.balance.loads, 1e-9);
     assert!(state.rail_deflection_at(&track, 6.0).unwrap() > 0.0);
+}
+
+/// Sleepers that all carry the same sink as one spring in two pieces.
+#[test]
+fn a_support_that_seats() {
+    let (soft, stiff, closure) = (8e6, 50e6, 0.5e-3);
+    let seated = |seats: usize, gravity: f64| {
+        let mut model = ballast(seats);
+        (model.rail_ends, model.gravity) = (RailEnds::Free, gravity);
+        for seat in &mut model.seats {
+            let seating = Some(Seating { stiffness: soft, closure });
+            seat.foot = Foot::Sleeper { mass: 150.0, support_stiffness: stiff, support_damping: 0.0, seating };
+        }
+        model
+    };
+    for force in [1e3, 3.9e3, 4e3, 4.1e3, 60e3] {
+        let loads: Vec<(usize, f64)> = (0..12).map(|seat| (seat, force)).collect();
+        let (_, state) = at_rest(seated(12, 0.0), &Loads { sleepers: &loads, ..Loads::default() });
+        let expected = (force / soft).min(closure) + ((force - soft * closure) / stiff).max(0.0);
+        for seat in 0..12 {
+            close(state.foot_displacements[seat], expected, 1e-10);
+            close(state.contact_forces[seat], force, 1e-10);
+        }
+    }
+    // Under a wagon some supports are closed, some seat and some hang; all together they carry it.
+    let model = seated(30, 9.81);
+    let level = hollow(&model, 0.0, 4e-3, 13.0, 2.0);
+    let train = Train::single(Vehicle { bogie_spacing: 2.5, ..wagon() }, Direction::Forward);
+    let track = Track::new(model).unwrap();
+    let state = solve_static(&track, &level, &Loads { train: Some((&train, 5.9)), ..Loads::default() }).unwrap();
+    close(state.balance.supports(), state.balance.loads, 1e-9);
+    let lowest = |i: &usize| state.foot_displacements[*i] - level.settlements[*i];
+    assert!((0..30).any(|i| state.contact_forces[i] == 0.0));
+    assert!((0..30).any(|i| (0.0..closure).contains(&lowest(&i))) && (0..30).any(|i| lowest(&i) > closure));
 }

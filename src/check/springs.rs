@@ -1,0 +1,166 @@
+//! The seats of a section: where a field varies along the track, each seat takes the value of its place.
+
+use super::Checker;
+use super::geometry::Places;
+use super::seats::{Along, Cover, Laid};
+use super::trackform::{Base, Bed, Built, Cushion, Damped};
+use super::value::Record;
+use crate::diag::{Code, Diagnostic};
+use crate::scenario::{Foot, Given, Origin, Pad, Seat, Seating, Support, Usp};
+use crate::units::number;
+use std::ops::Range;
+
+/// A [`Damped`] laid along the track.
+pub(super) struct LaidSpring<'a> {
+    record: &'a Record,
+    stiffness: Laid,
+    damping: Option<Laid>,
+    time: Option<Given>,
+}
+
+/// A [`Base`] laid along the track.
+enum LaidFoot<'a> {
+    Sleeper { mass: Given, support: LaidSpring<'a>, seating: Option<Seating>, usp: Option<(&'a Cushion, Laid)> },
+    Fixed(Foot),
+}
+
+impl Checker<'_> {
+    /// The seats of a section, each with the values of its place. Whatever varies is laid out, even beside parts that are not
+    /// understood.
+    pub(super) fn seats(&mut self, built: &Built, places: &Places, section: usize) -> Option<Vec<Seat>> {
+        let (start, end) = places.sections[section];
+        let range = places.seats_of(section);
+        let cover = |what: &str| Cover {
+            what: format!("the {what} of trackform `{}`", built.name),
+            start,
+            end,
+            seats: Some(range.clone()),
+            smooth: false,
+        };
+        let pad = built.pad.as_ref().and_then(|pad| self.lay_spring(pad, places, "pad", &cover));
+        let settlement = built.settlement.as_ref().and_then(|along| self.lay(along, places, &cover("settlement")));
+        let foot = match built.foot.as_ref() {
+            Some(Base::Sleeper(bed)) => self.lay_bed(built, bed, places, range.clone(), &cover),
+            Some(Base::Rigid) => Some(LaidFoot::Fixed(Foot::Rigid)),
+            Some(Base::Slab) => Some(LaidFoot::Fixed(Foot::Slab)),
+            None => None,
+        };
+        let (pad, settlement, foot) = (pad?, settlement?, foot?);
+        let mut seats = Vec::with_capacity(range.len());
+        for &(x, section, transition, number) in &places.seats[range] {
+            let (stiffness, damping) = self.spring_at(&pad, x)?;
+            let foot = match &foot {
+                LaidFoot::Sleeper { mass, support, seating, usp } => {
+                    let (stiffness, damping) = self.spring_at(support, x)?;
+                    let usp = usp.as_ref().map(|(usp, modulus)| usp.at(modulus, x));
+                    Foot::Sleeper { mass: *mass, support: Support { stiffness, damping, seating: *seating, usp } }
+                }
+                LaidFoot::Fixed(foot) => foot.clone(),
+            };
+            let initial_settlement = *settlement.at(x);
+            let pad = Pad { stiffness, damping };
+            seats.push(Seat { number, transition, x, section, pad, foot, initial_settlement });
+        }
+        Some(seats)
+    }
+
+    fn lay_bed<'a>(
+        &mut self,
+        built: &Built,
+        bed: &'a Bed,
+        places: &Places,
+        seats: Range<usize>,
+        cover: &dyn Fn(&str) -> Cover,
+    ) -> Option<LaidFoot<'a>> {
+        let support = bed.support.as_ref().and_then(|support| self.lay_spring(support, places, "support", cover));
+        let usp = match &bed.usp {
+            Some(Some(usp)) => {
+                self.lay(&usp.bedding_modulus, places, &cover("bedding modulus")).map(|laid| Some((usp, laid)))
+            }
+            Some(None) => Some(None),
+            None => None,
+        };
+        let soft = match (bed.seating, &support) {
+            (Some(Some(seating)), Some(support)) => {
+                let seats = places.seats[seats].iter().map(|seat| seat.0);
+                self.seats_softly(built, seating, support, seats)
+            }
+            _ => true,
+        };
+        let (mass, support, seating, usp) = (bed.mass?, support?, bed.seating?, usp?);
+        soft.then_some(LaidFoot::Sleeper { mass, support, seating, usp })
+    }
+
+    /// A support grows stiffer as it closes up, never softer.
+    fn seats_softly(
+        &mut self,
+        built: &Built,
+        seating: Seating,
+        support: &LaidSpring<'_>,
+        mut seats: impl Iterator<Item = f64>,
+    ) -> bool {
+        let Some(stiffness) = seats.find_map(|x| Some(support.stiffness.at(x)).filter(|k| **k < *seating.stiffness))
+        else {
+            return true;
+        };
+        let shown = |given: Given| format!("{} MN/m per seat", number(*given / 1e6));
+        let message = format!("the support of trackform `{}` seats itself more stiffly than it carries", built.name);
+        let mut mistake = Diagnostic::new(Code::E0407, message);
+        for (given, what) in [(seating.stiffness, "while it seats itself"), (stiffness, "under load")] {
+            if let Some(span) = given.origin.span() {
+                mistake = mistake.at(span, format!("{} {what}", shown(given)));
+            }
+        }
+        self.report(mistake.help("ballast closes up under load: give `seating` the smaller stiffness"));
+        false
+    }
+
+    fn lay_spring<'a>(
+        &mut self,
+        spring: &'a Damped,
+        places: &Places,
+        part: &str,
+        cover: &dyn Fn(&str) -> Cover,
+    ) -> Option<LaidSpring<'a>> {
+        let stiffness = self.lay(&spring.stiffness, places, &cover(&format!("{part} stiffness")));
+        let damping = match &spring.damping {
+            Some(damping) => Some(self.lay(damping, places, &cover(&format!("{part} damping")))?),
+            None => None,
+        };
+        Some(LaidSpring { record: &spring.record, stiffness: stiffness?, damping, time: spring.time })
+    }
+
+    /// Stiffness and damping at a chainage; a damping time goes with the stiffness there.
+    pub(super) fn spring_at(&mut self, spring: &LaidSpring<'_>, x: f64) -> Option<(Given, Given)> {
+        let stiffness = spring.stiffness.at(x);
+        let by_time = spring.time.map(|time| Given { value: *time * *stiffness, origin: time.origin });
+        let damping = spring.damping.as_ref().map(|damping| damping.at(x));
+        let ways = [("damping", damping), ("damping_time * stiffness", by_time)];
+        let damping = self.agree(spring.record, "damping", &ways, "kN s/m")?;
+        Some((stiffness, damping))
+    }
+}
+
+impl Damped {
+    /// Without a place; `None` where it varies.
+    pub fn laid_anywhere(&self) -> Option<LaidSpring<'_>> {
+        let fixed = |along: &Along| match along {
+            Along::Fixed(given) => Some(Laid::Fixed(*given)),
+            Along::Varies(..) => None,
+        };
+        let damping = match &self.damping {
+            Some(damping) => Some(fixed(damping)?),
+            None => None,
+        };
+        Some(LaidSpring { record: &self.record, stiffness: fixed(&self.stiffness)?, damping, time: self.time })
+    }
+}
+
+impl Cushion {
+    fn at(&self, modulus: &Laid, x: f64) -> Usp {
+        let modulus = modulus.at(x);
+        let stiffness = Given { value: *modulus * self.half_area, origin: modulus.origin };
+        let damping = Given { value: *self.time * *stiffness, origin: Origin::Derived };
+        Usp { stiffness, damping, thickness: self.thickness }
+    }
+}

@@ -1,0 +1,89 @@
+//! Signs that an exchange overshoots, from what it did along the track.
+//!
+//! An exchange is explicit: a disturbance e of the settlement comes back as (1 - A) e, where A is what the settlement of a
+//! block changes by when the track has moved by e. Moving everywhere alike changes no force and says nothing; short waves
+//! change most. So A is taken of second differences along x, in which the far field vanishes and a sawtooth counts
+//! sixteenfold: A = -<D g, D s> / <D s, D s>, s the move of the seats and g the change of the block's settlement that
+//! follows from it. A < 1 is monotone, A > 1 overshoots, A > 2 grows.
+
+use std::ops::Range;
+
+/// Second differences below this share of the move are of an even track and say nothing.
+const EVEN: f64 = 1e-3;
+
+/// The amplification A, see above; `None` where the track moved too evenly to tell. Both are of every seat, of those that
+/// cannot settle too: beside them the track bends most.
+pub(super) fn amplification(moved: &[f64], change: &[f64]) -> Option<f64> {
+    let (of_move, of_change) = (bends(moved), bends(change));
+    let sharpest = of_move.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+    if sharpest <= EVEN * largest(moved) {
+        return None;
+    }
+    let product: f64 = of_move.iter().zip(&of_change).map(|(a, b)| a * b).sum();
+    let square: f64 = of_move.iter().map(|d| d * d).sum();
+    Some(-product / square)
+}
+
+/// The amplitude of a sawtooth in what the seats of `runs`, stretches of neighbours that settle, settled, as a share of the most that any settled. Only second differences
+/// that change sign from seat to seat four times on end count: a dip, however narrow, has fewer, and rounding noise has no
+/// amplitude.
+pub(super) fn sawtooth(runs: &[Range<usize>], settled: &[f64]) -> f64 {
+    let most = largest(settled);
+    if most <= 0.0 {
+        return 0.0;
+    }
+    let amplitude = |window: &[f64]| {
+        let alternates = window.windows(2).all(|pair| pair[0] * pair[1] < 0.0);
+        if alternates { window.iter().fold(f64::INFINITY, |least, d| least.min(d.abs())) / 4.0 } else { 0.0 }
+    };
+    let of_run =
+        |run: &Range<usize>| bends(&settled[run.clone()]).windows(ALTERNATIONS).map(amplitude).fold(0.0, f64::max);
+    runs.iter().map(of_run).fold(0.0, f64::max) / most
+}
+
+/// Second differences in a row that make a sawtooth.
+const ALTERNATIONS: usize = 5;
+
+/// Second differences.
+fn bends(values: &[f64]) -> Vec<f64> {
+    values.windows(3).map(|w| w[0] - 2.0 * w[1] + w[2]).collect()
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most: f64, value| most.max(value.abs()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wave_that_comes_back_has_its_amplification() {
+        let moved: Vec<f64> = (0..40).map(|i| 1e-3 + 1e-4 * (0.7 * f64::from(i)).sin()).collect();
+        for factor in [0.0, 0.4, 1.0, 2.5] {
+            let change: Vec<f64> = moved.iter().map(|s| -factor * (s - 1e-3)).collect();
+            assert!((amplification(&moved, &change).unwrap() - factor).abs() < 1e-9);
+        }
+        assert_eq!(amplification(&[1e-3; 40], &moved), None, "an even move");
+        assert_eq!(amplification(&[0.0; 40], &moved), None, "no move");
+    }
+
+    /// One stretch of all seats.
+    fn along(settled: &[f64]) -> f64 {
+        sawtooth(std::slice::from_ref(&(0..settled.len())), settled)
+    }
+
+    #[test]
+    fn only_a_sawtooth_is_one() {
+        let tooth = |size: f64| (0..30).map(|i| 1e-3 + size * f64::from(1 - 2 * (i % 2))).collect::<Vec<f64>>();
+        let found = along(&tooth(2e-4));
+        assert!((found - 2e-4 / 1.2e-3).abs() < 1e-9, "{found}");
+        assert!(along(&tooth(1e-18)) < 1e-12, "rounding noise");
+        let dip: Vec<f64> = (0..30).map(|i| 1e-3 * (-(f64::from(i) - 22.0).powi(2)).exp()).collect();
+        assert_eq!(along(&dip), 0.0, "a dip over a sleeper or two");
+        let edge: Vec<f64> = [1.0, 1.0, 1.0, 1.05, 1.2, 0.6, 0.1].map(|s| s * 1e-3).to_vec();
+        assert_eq!(along(&edge), 0.0, "the edge of a transition");
+        assert_eq!(along(&[0.0; 30]), 0.0);
+        assert_eq!(sawtooth(&[0..2, 2..4], &tooth(2e-4)), 0.0, "too few neighbours");
+    }
+}

@@ -1,0 +1,180 @@
+//! One block: as long as the scene prescribes and its exchange stays calm, or as long as its error allows.
+
+use super::Block;
+use super::control::largest_within;
+use super::exchange::{Exchange, Work};
+use super::execute::{Run, RunError};
+use super::oscillation::{amplification, sawtooth};
+use super::substructure::Substructure;
+use crate::scenario::Direction;
+
+/// What the exchange of a block was worth, and what it took besides the passages at its start.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Measured {
+    /// Estimate of the error of settlement that the block adds at the worst seat, m; 0 for a block of one train.
+    pub error: f64,
+    /// By how much a disturbance of the settlement comes back with the other sign: above 1 the exchange overshoots, above 2
+    /// it grows. `None` where the track moved too evenly to tell.
+    pub overshoot: Option<f64>,
+    /// Amplitude of a sawtooth along x in what the block settled, as a share of the most that it settled anywhere.
+    pub sawtooth: f64,
+    /// Longer blocks that were tried from the same start and thrown away.
+    pub rejected: u64,
+    /// Those of them that overshot.
+    pub overshot: u64,
+    /// Work beyond the passages at the start.
+    pub time_steps: u64,
+    pub newton_iterations: u64,
+}
+
+/// A block as it was accepted: what it leaves behind, and the exchange at its end where that has been computed.
+pub(super) struct Done<'a> {
+    pub block: Block,
+    pub measured: Measured,
+    pub after: Substructure<'a>,
+    pub next: Option<Exchange>,
+}
+
+/// Largest amplification at which a disturbance keeps its sign, and what a block that is shortened must come down to.
+const MONOTONE: f64 = 1.0;
+const CALM: f64 = 0.5;
+/// Amplification from which the second-order step grows disturbances; it never turns their sign.
+const UNSTABLE: f64 = 2.0;
+
+impl<'a> Run<'a> {
+    /// A block of the length that the scene prescribes, with the forces of its start. Where it overshoots it is done again
+    /// in halves until it is far from that, down to one train.
+    pub fn prescribed(&mut self, here: &mut Exchange) -> Result<Done<'a>, RunError> {
+        let wanted = self.blocks.wanted(here.axles).unwrap_or(1);
+        let mut measured = Measured::default();
+        loop {
+            let trains = self.control.bounded(wanted);
+            let block = self.blocks.block(here.axles, trains);
+            let shares = self.blocks.passages(&block);
+            let directions: Vec<Direction> = shares.iter().map(|(direction, _)| *direction).collect();
+            self.ensure(here, &directions)?;
+            let after = here.load(&self.substructure, &shares);
+            let next = self.arrive(here.axles + block.axles, &after)?;
+            let settled = difference(&after.settlement(), &here.settlement);
+            let change = self.change(here, &next, trains);
+            measured.overshoot = change.as_ref().and_then(|change| amplification(&settled, change));
+            measured.sawtooth = sawtooth(&self.runs, &settled);
+            // the mean of the forces of both ends would settle half the change more
+            measured.error = if trains > 1 { change.map_or(0.0, |change| largest(&change) / 2.0) } else { 0.0 };
+            let bound = if self.control.limit.is_some() { CALM } else { MONOTONE };
+            if trains > 1 && measured.overshoot.is_some_and(|a| a > bound) && self.blocks.cure {
+                measured.rejected += 1;
+                measured.overshot += 1;
+                measured.add(&next, Work::default());
+                self.control.shorten(trains);
+                continue;
+            }
+            self.control.lengthen(trains, wanted);
+            return Ok(Done { block, measured, after, next: Some(next) });
+        }
+    }
+
+    /// How much more a block of so many trains from `here` would settle with the forces of `there`, m; `None` where no
+    /// direction was run at both.
+    fn change(&self, here: &Exchange, there: &Exchange, trains: u64) -> Option<Vec<f64>> {
+        let both = |direction: &Direction| here.of(*direction).is_some() && there.of(*direction).is_some();
+        let direction = [Direction::Forward, Direction::Backward].into_iter().find(both)?;
+        let after = |exchange: &Exchange| exchange.load(&self.substructure, &[(direction, trains)]).settlement();
+        Some(difference(&after(there), &after(here)))
+    }
+
+    /// A block as long as its error allows.
+    ///
+    /// It is done in one piece with the forces of its start, and in two halves with forces computed anew between them; the
+    /// difference is the error of the first. What is kept is of second order: the first train passes with the forces of the
+    /// start, as it truly does, all others with those of the middle. Two trains are therefore exact.
+    pub fn adaptive(&mut self, here: &mut Exchange, tolerance: f64, cap: Option<f64>) -> Result<Done<'a>, RunError> {
+        let mut measured = Measured::default();
+        let mut most = self.blocks.trains_left(here.axles);
+        let mut middle: Option<Exchange> = None;
+        loop {
+            let trains = self.choose(here, most);
+            let block = self.blocks.block(here.axles, trains);
+            let shares = self.blocks.passages(&block);
+            let directions: Vec<Direction> = shares.iter().map(|(direction, _)| *direction).collect();
+            self.ensure(here, &directions)?;
+            let whole = here.load(&self.substructure, &shares);
+            let settled = difference(&whole.settlement(), &here.settlement);
+            if trains == 1 {
+                measured.sawtooth = sawtooth(&self.runs, &settled);
+                return Ok(Done { block, measured, after: whole, next: None });
+            }
+
+            let half = self.blocks.block(here.axles, trains / 2);
+            let begun = here.load(&self.substructure, &self.blocks.passages(&half));
+            let axles = half.before + half.axles;
+            // a shorter block after a rejected one may have the same middle
+            let mut between = middle
+                .take()
+                .filter(|middle| middle.axles == axles)
+                .unwrap_or_else(|| Exchange::new(axles, begun.settlement(), false, self.blocks.leading_direction()));
+            let known = between.work();
+            self.ensure(&mut between, &directions)?;
+            measured.add(&between, known);
+            let rest = self.blocks.block(axles, trains.div_ceil(2));
+            let halves = between.load(&begun, &self.blocks.passages(&rest)).settlement();
+            let error = largest(&difference(&whole.settlement(), &halves));
+            let moved = difference(&between.settlement, &here.settlement);
+            let change = self.change(here, &between, trains);
+            measured.overshoot = change.and_then(|change| amplification(&moved, &change));
+            self.control.learn(error, largest(&settled), tolerance, cap);
+            if trains > 2 && (error > tolerance || measured.overshoot.is_some_and(|a| a > UNSTABLE)) {
+                measured.rejected += 1;
+                most = (trains / 2).max(2);
+                middle = Some(between);
+                continue;
+            }
+            measured.error = if trains > 2 { error } else { 0.0 };
+            let one = self.blocks.block(here.axles, 1);
+            let others = self.blocks.block(here.axles + one.axles, trains - 1);
+            let first = here.load(&self.substructure, &self.blocks.passages(&one));
+            let after = between.load(&first, &self.blocks.passages(&others));
+            measured.sawtooth = sawtooth(&self.runs, &difference(&after.settlement(), &here.settlement));
+            return Ok(Done { block, measured, after, next: None });
+        }
+    }
+
+    /// Trains whose settlement, with the forces of the start, is the aim, and two at least where so many are left. What is
+    /// left until the next stop is divided evenly where it would take two blocks.
+    fn choose(&self, here: &Exchange, most: u64) -> u64 {
+        let left = self.blocks.trains_left(here.axles);
+        let Some(aim) = self.control.aim else { return left.min(2) };
+        let trains = largest_within(aim, most, |trains| self.predicted(here, trains)).max(left.min(2));
+        if trains == left {
+            trains
+        } else if left < 2 * trains {
+            left.div_ceil(2)
+        } else {
+            trains / 2 * 2 // so that the middle is one
+        }
+    }
+
+    /// The most that any seat settles under so many trains with the forces of the start, m.
+    fn predicted(&self, here: &Exchange, trains: u64) -> f64 {
+        let shares = self.blocks.passages(&self.blocks.block(here.axles, trains));
+        let known: Vec<(Direction, u64)> = shares.into_iter().filter(|(d, _)| here.of(*d).is_some()).collect();
+        largest(&difference(&here.load(&self.substructure, &known).settlement(), &here.settlement))
+    }
+}
+
+impl Measured {
+    /// Counts the work of an exchange beyond what was `known` of it before.
+    fn add(&mut self, exchange: &Exchange, known: Work) {
+        let work = exchange.work();
+        self.time_steps += work.time_steps - known.time_steps;
+        self.newton_iterations += work.newton_iterations - known.newton_iterations;
+    }
+}
+
+fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
+}
+
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most: f64, value| most.max(value.abs()))
+}

@@ -1,0 +1,35 @@
+//! L1008: under a law with a threshold, no sleeper carries enough to settle.
+//!
+//! The seat load is the static one of a beam on a Winkler foundation; what the passage adds to it is not known before a run.
+
+use super::winkler::seat_loads;
+use super::{laws, pointed};
+use crate::diag::{Code, Diagnostic};
+use crate::graph::{Graph, Schedule};
+use crate::scenario::Scenario;
+use crate::units::number;
+
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let seats = seat_loads(scenario, blocks);
+    let Some(most) = seats.iter().max_by(|a, b| a.peak.force.total_cmp(&b.peak.force)) else { return Vec::new() };
+    let below = laws(scenario).filter_map(|law| Some((law, law.law.threshold()?)));
+    let kilonewtons = |force: f64| number((force / 1e2).round() / 10.0);
+    below
+        .filter(|(_, threshold)| most.peak.force <= *threshold)
+        .map(|(law, threshold)| {
+            let diagnostic = Diagnostic::new(
+                Code::L1008,
+                format!(
+                    "law `{}` settles nothing below {} kN a seat, wheels of {} kN at rest give at most about {} kN",
+                    law.name,
+                    kilonewtons(threshold),
+                    kilonewtons(most.wheel),
+                    kilonewtons(most.peak.force)
+                ),
+            )
+            .help("give the law thresholds that were found for such loads, or choose a law without one");
+            pointed(diagnostic, scenario, law, "its threshold is out of reach")
+        })
+        .collect()
+}

@@ -1,0 +1,104 @@
+//! Settlement of named sleepers with the axles, every exchange of forces and settlement marked (paper, Fig. 20).
+
+use super::Figure;
+use super::along::ballasted_names;
+use super::chart::{Axis, Chart, Mark, Series};
+use super::number::shown_unit;
+use super::panels::{Names, panels};
+use crate::results::{Run, SleeperRow};
+
+/// Curves that a reader can tell apart.
+const MOST: usize = 4;
+/// Ratio of the last count to the first from which a logarithmic scale shows more.
+const DECADES: f64 = 20.0;
+/// Distance from every transition at which the far field begins, m.
+const FAR_FIELD: f64 = 10.0;
+
+pub fn settlement_with_axles(run: &Run) -> Option<Figure> {
+    let y = Axis { downwards: true, from_zero: true, ..Axis::new("Settlement", shown_unit("m")) };
+    let mut chart = Chart::new(Axis::new("Axles", ("", 1.0)), y);
+    for (index, (row, why)) in telling_seats(run).into_iter().enumerate() {
+        let name = format!("{}{why}", row.sleeper.replace('-', "\u{2212}"));
+        chart.series.push(Series::new(&name, &format!("s{index}"), Mark::Dots, of_sleeper(run, &row.sleeper)));
+    }
+    if chart.series.iter().all(|series| series.points.len() < 2) {
+        return None;
+    }
+    let counts: Vec<f64> = chart.series.iter().flat_map(|s| &s.points).map(|p| p.0).filter(|n| *n > 0.0).collect();
+    let first = counts.iter().copied().fold(f64::INFINITY, f64::min);
+    let last = counts.iter().copied().fold(0.0, f64::max);
+    let mut charts = vec![(chart.clone(), 300.0)];
+    let mut caption =
+        "Settlement against the axles passed; each symbol is an exchange of forces and settlement between \
+                       track and supports. Sleepers by number, negative on the softer side."
+            .to_owned();
+    if last / first >= DECADES {
+        let mut logarithmic = chart;
+        logarithmic.x = Axis { logarithmic: true, range: Some((first, last)), ..logarithmic.x };
+        for series in &mut logarithmic.series {
+            series.points.retain(|point| point.0 > 0.0);
+        }
+        charts.push((logarithmic, 300.0));
+        caption += " Right, the same over the logarithm of the axles: a straight line there is settlement that grows by \
+                    equal steps with every tenfold of axles.";
+    }
+    let columns = charts.len();
+    let names = Names { id: "settlement_with_axles", title: "Settlement with the axles", caption: &caption };
+    panels(&names, &charts, columns)
+}
+
+/// Axles and settlement of a sleeper, of every block and every recorded count.
+fn of_sleeper(run: &Run, sleeper: &str) -> Vec<(f64, f64)> {
+    let blocks = run.histories.iter().filter(|h| h.quantity == "settlement" && h.id == sleeper);
+    let mut points: Vec<(f64, f64)> = blocks.map(|h| (h.axles as f64, h.value)).collect();
+    let counts = run.sleepers.iter().filter(|other| other.sleeper == sleeper);
+    points.extend(counts.map(|other| (other.axles as f64, other.settlement_m)));
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points.dedup_by(|a, b| a.0 == b.0);
+    points
+}
+
+/// Rows of the last count: the sleeper that settled most, the one nearest to a transition, one of the far field, and what
+/// the scene records besides.
+fn telling_seats(run: &Run) -> Vec<(&SleeperRow, &'static str)> {
+    let names = ballasted_names(&run.scenario);
+    let last = run.sleepers.iter().map(|row| row.axles).max();
+    let rows: Vec<&SleeperRow> = run
+        .sleepers
+        .iter()
+        .filter(|row| Some(row.axles) == last && names.contains(&row.sleeper) && row.settlement_m.is_finite())
+        .collect();
+    let distance = |row: &&&SleeperRow| {
+        let distances = run.scenario.track.transitions.iter().map(|t| (t.x - row.x_m).abs());
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    let far_field = run.summary.scalars.get("far_field_settlement").map_or(0.0, |s| s.value);
+    let track = &run.scenario.track;
+    let recorded =
+        run.scenario.records.iter().flat_map(|record| &record.seats).filter_map(|seat| track.seats.get(*seat));
+    let recorded: Vec<String> = recorded.map(|seat| track.seat_name(seat)).collect();
+    // The far-field one: a recorded one or else the one that is nearest to the far-field settlement.
+    let mut farther: Vec<&&SleeperRow> = rows.iter().collect();
+    farther.sort_by(|a, b| distance(b).total_cmp(&distance(a)));
+    let far = farther.iter().filter(|row| distance(row) > FAR_FIELD).count();
+    farther.truncate(if far > 0 { far } else { rows.len().div_ceil(2) });
+    let off = |row: &&&SleeperRow| (!recorded.contains(&row.sleeper), (row.settlement_m - far_field).abs());
+    let nearer = |a: &&&SleeperRow, b: &&&SleeperRow| {
+        let ((a, a_off), (b, b_off)) = (off(a), off(b));
+        a.cmp(&b).then(a_off.total_cmp(&b_off))
+    };
+    let chosen = [
+        (rows.iter().max_by(|a, b| a.settlement_m.total_cmp(&b.settlement_m)), ", largest"),
+        (rows.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))), ", nearest"),
+        (farther.into_iter().min_by(nearer), ", far field"),
+    ];
+    let further = recorded.iter().map(|name| (rows.iter().find(|row| row.sleeper == *name), ""));
+    let mut seats: Vec<(&SleeperRow, &str)> = Vec::new();
+    for (row, why) in chosen.into_iter().chain(further) {
+        let Some(row) = row else { continue };
+        if seats.len() < MOST && !seats.iter().any(|(other, _)| other.sleeper == row.sleeper) {
+            seats.push((row, why));
+        }
+    }
+    seats
+}

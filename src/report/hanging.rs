@@ -1,0 +1,74 @@
+//! How a hanging sleeper meets its ballast, beside one of the far field: contact force, velocity and acceleration during a
+//! passage, shaded while there is no contact (paper, Figs. 16 and 17).
+
+use super::chart::Chart;
+use super::panels::{Names, panels, share_scale};
+use super::seat_clock::{panel, seats, shown};
+use super::{Figure, counts};
+use crate::results::{Run, SleeperRow};
+use crate::scenario::response::Response;
+
+const HEIGHT: f64 = 235.0;
+
+const SHOWN: [(Response, &str); 3] = [
+    (Response::ContactForce, "contact force"),
+    (Response::SleeperVelocity, "velocity"),
+    (Response::SleeperAcceleration, "acceleration"),
+];
+
+pub fn hanging_sleeper(run: &Run) -> Option<Figure> {
+    let counts = counts::shown(run);
+    let chosen = chosen(run);
+    if chosen.is_empty() {
+        return None;
+    }
+    let mut charts: Vec<(Chart, f64)> = Vec::new();
+    for (quantity, title) in SHOWN {
+        let title = |seat: &str| format!("{}: {title}", shown(seat));
+        let mut row: Vec<Chart> = chosen.iter().map(|seat| panel(run, quantity, seat, &title(seat), &counts)).collect();
+        if row.iter().all(|chart| !chart.is_empty()) {
+            share_scale(row.iter_mut(), HEIGHT - 70.0);
+            charts.extend(row.into_iter().map(|chart| (chart, HEIGHT)));
+        }
+    }
+    let others = seats(run, Response::ContactForce).len() - chosen.len();
+    let mut caption = "Left the recorded sleeper with the largest void, right one of the far field, both by number. Shaded while the sleeper \
+                       has no contact with its support at the last count: a hanging sleeper is lifted before the wheel \
+                       comes, meets the ballast with a blow and leaves it again between the bogies. Contact force of half a \
+                       sleeper, never negative; velocity and acceleration positive and drawn downward. Time counts from the \
+                       leading wheel over the sleeper."
+        .to_owned();
+    if chosen.len() == 1 {
+        caption = caption.replace(
+            "Left the recorded sleeper with the largest void, right one of the far field, both by number. ",
+            "",
+        );
+    }
+    if others > 0 {
+        caption += " The other recorded sleepers are in histories.parquet.";
+    }
+    let names = Names { id: "hanging_sleeper", title: "Sleeper and ballast during a passage", caption: &caption };
+    panels(&names, &charts, chosen.len())
+}
+
+/// The recorded sleeper with the largest void at the last count, and the one farthest from every transition.
+fn chosen(run: &Run) -> Vec<String> {
+    let recorded = seats(run, Response::ContactForce);
+    let last = run.sleepers.iter().map(|row| row.axles).max();
+    let at_last = |name: &str| run.sleepers.iter().find(|row| Some(row.axles) == last && row.sleeper == name);
+    let rows: Vec<&SleeperRow> = recorded.iter().filter_map(|(name, _)| at_last(name)).collect();
+    let distance = |row: &SleeperRow| {
+        let distances = run.scenario.track.transitions.iter().map(|transition| (transition.x - row.x_m).abs());
+        distances.fold(f64::INFINITY, f64::min)
+    };
+    let voided = rows.iter().max_by(|a, b| {
+        a.void_m
+            .total_cmp(&b.void_m)
+            .then(a.contact_loss_s.total_cmp(&b.contact_loss_s))
+            .then(distance(b).total_cmp(&distance(a)))
+    });
+    let far = rows.iter().max_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let mut names: Vec<String> = voided.into_iter().chain(far).map(|row| row.sleeper.clone()).collect();
+    names.dedup();
+    names
+}

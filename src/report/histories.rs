@@ -1,0 +1,62 @@
+//! What rail and seats do while a vehicle passes, at the recorded sleepers (paper, Figs. 13 to 15).
+
+use super::chart::Chart;
+use super::panels::{Names, panels, share_scale};
+use super::seat_clock::{panel, seats, shown};
+use super::{Figure, counts};
+use crate::results::Run;
+use crate::scenario::response::Response;
+
+const HEIGHT: f64 = 225.0;
+
+/// Quantities with what their figure says. What sleepers do on their supports has a figure of its own, see `hanging`.
+const SHOWN: [(Response, &str, &str); 4] = [
+    (
+        Response::RailSeatLoad,
+        "Rail seat loads during a passage",
+        "Force of the rail on each pad, per seat, in compression positive: below zero the rail lifts the sleeper.",
+    ),
+    (
+        Response::RailDisplacement,
+        "Rail displacement during a passage",
+        "Displacement of the rail over each seat from the unloaded level of that axle count, downward as in the track; \
+         settlement so far is left out, so that the counts can be compared.",
+    ),
+    (
+        Response::RailMoment,
+        "Rail moment during a passage",
+        "Bending moment of one rail over each seat, drawn on the tension side: sagging positive, downward. Where sleepers \
+         hang it is not zero before the vehicle comes.",
+    ),
+    (
+        Response::SleeperDisplacement,
+        "Sleeper displacement during a passage",
+        "Displacement of each sleeper from the unloaded level of that axle count, downward as in the track.",
+    ),
+];
+
+/// One figure a quantity, one panel a seat, one curve a count.
+pub fn histories(run: &Run) -> Vec<Figure> {
+    SHOWN.iter().filter_map(|(quantity, title, what)| history(run, *quantity, title, what)).collect()
+}
+
+fn history(run: &Run, quantity: Response, title: &str, what: &str) -> Option<Figure> {
+    let counts = counts::shown(run);
+    let seats = seats(run, quantity);
+    let mut charts: Vec<Chart> = seats
+        .iter()
+        .map(|(seat, _)| panel(run, quantity, seat, &format!("Seat {}", shown(seat)), &counts))
+        .filter(|chart| !chart.is_empty())
+        .collect();
+    share_scale(charts.iter_mut(), HEIGHT - 70.0);
+    let mut caption = format!(
+        "{what} Time counts from the leading wheel over the seat; the legend counts the axles that had passed; all panels \
+         have one scale."
+    );
+    if charts.iter().any(|chart| !chart.bands.is_empty()) {
+        caption += " Shaded while the sleeper has lost its support at the last count.";
+    }
+    let columns = if charts.len() == 1 { 1 } else { 2 };
+    let charts: Vec<(Chart, f64)> = charts.into_iter().map(|chart| (chart, HEIGHT)).collect();
+    panels(&Names { id: &format!("history_{}", quantity.name()), title, caption: &caption }, &charts, columns)
+}

@@ -1,0 +1,31 @@
+//! By what rule the supports settle under what acts on them.
+
+use super::Origin;
+use crate::schema;
+use crate::solvers::settlement::Law;
+use crate::units::{number, parse_unit};
+use serde::{Deserialize, Serialize};
+
+/// A settlement law of the scene, of one half sleeper.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SettlementLaw {
+    pub name: String,
+    pub law: Law,
+    /// Range of peak forces per seat that the law was calibrated for, N.
+    pub loads: Option<(f64, f64)>,
+    /// Range of axle counts that it was calibrated for.
+    pub cycles: Option<(f64, f64)>,
+    /// Where the scene asks for it.
+    pub origin: Origin,
+}
+
+/// An argument of a law's word as the language writes it, from its SI value: `35 kN per seat`, `0.11 mm^-1`.
+pub fn law_argument(form: &str, argument: &str, value: f64) -> String {
+    let word = schema::kind("law").and_then(|k| k.field("form")?.form.word(form));
+    let field = word.and_then(|w| w.arguments.iter().find(|a| a.name == argument));
+    let Some(measure) = field.and_then(|f| f.form.measure()) else { return number(value) };
+    let size = parse_unit(measure.unit).map_or(1.0, |u| u.factor);
+    let unit = if measure.unit.is_empty() { String::new() } else { format!(" {}", measure.unit) };
+    let basis = measure.basis.map_or(String::new(), |b| format!(" per {}", b.names[0].0));
+    format!("{}{unit}{basis}", number(value / size))
+}

@@ -1,0 +1,44 @@
+//! A power law of the user's own: `S = a (F/F₀)^m N^b`.
+//!
+//! Under varying load S^(1/b) adds up (see `hardening`): the order of the cycles does not matter.
+
+use super::hardening::Growth;
+use serde::{Deserialize, Serialize};
+
+/// The parameters of the law.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Power {
+    /// Settlement of the first cycle of the reference force, m.
+    pub a: f64,
+    /// Exponent of the force; a larger one lets strong cycles settle more.
+    pub m: f64,
+    /// Exponent of the count, above 0 and at most 1; a larger one lets settlement go on.
+    pub b: f64,
+    /// F₀, N.
+    pub reference_force: f64,
+}
+
+impl Default for Power {
+    /// No publication: the shape of the box tests of Selig and Waters (1994), N^0.17, 4.318 mm in the first cycle.
+    fn default() -> Self {
+        Self { a: 4.318e-3, m: 1.0, b: 0.17, reference_force: 50e3 }
+    }
+}
+
+impl Growth for Power {
+    fn amplitude(&self, force: f64) -> f64 {
+        self.a * (force / self.reference_force).powf(self.m)
+    }
+
+    fn shape(&self, cycles: f64) -> f64 {
+        cycles.powf(self.b)
+    }
+
+    fn cycles(&self, shape: f64) -> f64 {
+        shape.powf(1.0 / self.b)
+    }
+
+    fn order_is_free(&self) -> bool {
+        true
+    }
+}

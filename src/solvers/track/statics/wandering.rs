@@ -1,0 +1,76 @@
+//! One load that stands at one place after the other: what a measuring wheel finds at walking speed.
+//!
+//! Every place is an equilibrium of its own, with its own set of support phases. It is unique, so that where the search
+//! for it begins does not matter: it begins with those of the last place, which neighbours mostly share, and with it the
+//! factorised stiffness.
+
+use super::standing::StandingTrain;
+use super::{Inertia, Loads, factor, solve_static};
+use crate::linalg::banded::BandedFactor;
+use crate::solvers::track::mesh::Track;
+use crate::solvers::track::support::SupportPhase;
+use crate::solvers::track::{TrackError, TrackLevel};
+
+/// Sets of phases that are tried from the last place's before the search starts anew.
+const TRIES: usize = 6;
+
+/// Deflection of the rail (m, from the track as built) under gravity and `force` (N, down) where that force stands, for
+/// each of `places` (m). Fails as [`solve_static`] does.
+pub fn standing_deflections(
+    track: &Track,
+    level: &TrackLevel,
+    force: f64,
+    places: &[f64],
+) -> Result<Vec<f64>, TrackError> {
+    track.check_level(level)?;
+    let mut search = Search { phases: vec![SupportPhase::Closed; track.sleepers.len()], factor: None };
+    let deflection = |x: &f64| {
+        let point = track.rail_point(*x)?;
+        let mut forces = track.own_forces(level);
+        track.add_force(&point, force, &mut forces);
+        let unknowns = match search.near_last(track, level, &forces)? {
+            Some(unknowns) => unknowns,
+            None => {
+                let state = solve_static(track, level, &Loads { rail: &[(*x, force)], ..Loads::default() })?;
+                search = Search { phases: state.phases, factor: None };
+                state.unknowns
+            }
+        };
+        Ok(track.deflection_at(&point, &unknowns) + force * point.local_compliance)
+    };
+    places.iter().map(deflection).collect()
+}
+
+/// The phases of the last equilibrium, and its factorised stiffness.
+struct Search {
+    phases: Vec<SupportPhase>,
+    factor: Option<BandedFactor>,
+}
+
+impl Search {
+    /// The equilibrium under `forces`, if a few steps from the last set reach it.
+    fn near_last(&mut self, track: &Track, level: &TrackLevel, forces: &[f64]) -> Result<Option<Vec<f64>>, TrackError> {
+        let mut nothing = StandingTrain::new(track, None, &Inertia::default())?;
+        for _ in 0..TRIES {
+            let known = match self.factor.take() {
+                Some(known) => known,
+                None => match factor(track, &self.phases) {
+                    Ok(new) => new,
+                    Err(_) => return Ok(None), // too many supports opened at once
+                },
+            };
+            let unknowns = nothing.solve(track, level, &self.phases, &known, forces)?;
+            let mut consistent = true;
+            for (sleeper, phase) in track.sleepers.iter().zip(&mut self.phases) {
+                let next = sleeper.phase_at_rest(*phase, unknowns[sleeper.unknown] - level.settlements[sleeper.seat]);
+                consistent &= next == *phase;
+                *phase = next;
+            }
+            if consistent {
+                self.factor = Some(known);
+                return Ok(Some(unknowns));
+            }
+        }
+        Ok(None)
+    }
+}

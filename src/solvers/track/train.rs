@@ -1,0 +1,70 @@
+//! Vehicles that run together.
+
+use super::{Multibody, TrackError};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// As x grows.
+    Forward,
+    Backward,
+}
+
+/// Vehicles that run together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Train {
+    /// Leading one first, each with the distance of its first wheel behind the train's first wheel, m.
+    pub vehicles: Vec<(Multibody, f64)>,
+    pub direction: Direction,
+}
+
+impl Direction {
+    /// +1 or -1.
+    pub fn sign(self) -> f64 {
+        match self {
+            Direction::Forward => 1.0,
+            Direction::Backward => -1.0,
+        }
+    }
+}
+
+impl Train {
+    /// One vehicle.
+    pub fn single(vehicle: impl Into<Multibody>, direction: Direction) -> Self {
+        Self { vehicles: vec![(vehicle.into(), 0.0)], direction }
+    }
+
+    /// Number of wheels.
+    pub fn wheels(&self) -> usize {
+        self.vehicles.iter().map(|(vehicle, _)| vehicle.wheels.len()).sum()
+    }
+
+    /// Distance of every wheel behind the first one, m, vehicle by vehicle.
+    pub(super) fn wheel_offsets(&self) -> impl Iterator<Item = f64> + '_ {
+        self.vehicles.iter().flat_map(|(vehicle, offset)| vehicle.wheels.iter().map(move |w| offset + w.offset))
+    }
+
+    /// Chainage of every wheel while the leading one is at `leading` (m), vehicle by vehicle.
+    pub fn wheel_positions(&self, leading: f64) -> impl Iterator<Item = f64> + '_ {
+        let sign = self.direction.sign();
+        self.wheel_offsets().map(move |offset| leading - sign * offset)
+    }
+
+    /// Distance from the leading to the last wheel, m.
+    pub fn wheel_base(&self) -> f64 {
+        self.wheel_offsets().fold(0.0, f64::max)
+    }
+
+    pub(super) fn check(&self) -> Result<(), TrackError> {
+        for (vehicle, offset) in &self.vehicles {
+            vehicle.check()?;
+            if !(*offset >= 0.0 && offset.is_finite()) {
+                return Err(TrackError::Parameter {
+                    name: "offset of a vehicle",
+                    value: *offset,
+                    expected: "of 0 or more",
+                });
+            }
+        }
+        Ok(())
+    }
+}
