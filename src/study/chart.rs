@@ -140,8 +140,11 @@ pub struct Chart {
     pub model_error: Option<Errors>,
 }
 
-/// The quantities of a chart, and how to read their errors.
-pub const QUANTITIES: [(&str, fn(&Errors) -> f64); 4] = [
+/// A quantity of a chart, and how to read its error.
+pub type Quantity = (&'static str, fn(&Errors) -> f64);
+
+/// The quantities of a chart.
+pub const QUANTITIES: [Quantity; 4] = [
     ("wheel force", |e| e.wheel_force),
     ("seat load", |e| e.seat_load),
     ("contact-loss time", |e| e.contact_loss.unwrap_or(e.contact_loss_s)),
