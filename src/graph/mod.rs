@@ -74,7 +74,7 @@ pub enum Schedule {
     /// One state of equilibrium.
     Static { loads: Vec<StaticLoad> },
     /// Blocks of trains, each with one exchange of forces and settlement.
-    Blocks(Blocks),
+    Blocks(Box<Blocks>),
 }
 
 /// The loop over axles.

@@ -59,7 +59,7 @@ impl<'a> TrackSystem<'a> {
             Schedule::Static { .. } => None,
             Schedule::Blocks(blocks) => {
                 let scheme = scheme(blocks.passage.integrator, blocks.passage.time_step)?;
-                Some((blocks, Steps::new(&track, scheme, blocks.passage.adaptive)?))
+                Some((&**blocks, Steps::new(&track, scheme, blocks.passage.adaptive)?))
             }
         };
         Ok(TrackSystem { node: &graph.track, records: &graph.records, track, traffic })

@@ -31,7 +31,7 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
                 law: named(&scenario.solve.law),
                 followers: scenario.solve.other_laws.iter().map(named).collect(),
             };
-            (law, schedule::blocks(&mut pass, scenario, traffic).map(Schedule::Blocks))
+            (law, schedule::blocks(&mut pass, scenario, traffic).map(|blocks| Schedule::Blocks(Box::new(blocks))))
         }
     };
     let Some(schedule) = schedule.filter(|_| !crate::diag::has_errors(&pass.diagnostics)) else {

@@ -267,11 +267,20 @@ impl<'a> Passage<'a> {
 
     /// A step of the present length.
     pub(super) fn step_once(&mut self) -> Result<(), TrackError> {
+        self.move_freely();
+        self.counters.steps += 1;
+        self.tick += self.ticks_per_step;
+        self.move_wheels();
+        self.place_supports();
+        self.solve_contacts()?;
+        self.add_contacts();
+        self.check_sense()
+    }
+
+    /// The track at the end of the step with all supports closed and without the wheel forces there.
+    fn move_freely(&mut self) {
         let (track, scheme) = (&*self.stepper.track, &self.stepper.scheme);
         let (dt, alpha_f) = (scheme.time_step, scheme.alpha_f);
-        let (displacement_share, rate) = (scheme.displacement_share(), scheme.rate());
-
-        // Track with all supports closed and without wheel forces at the end of the step.
         let [mean, mean_velocity, mean_acceleration] = &mut self.mean;
         let order = track.order();
         let (u, v, a) = (&mut self.displacement[..order], &mut self.velocity[..order], &mut self.acceleration[..order]);
@@ -298,41 +307,52 @@ impl<'a> Passage<'a> {
             a[*unknown] = 0.0;
         }
         self.stepper.factor.solve_in_place(a);
+    }
 
-        // Contacts.
-        self.counters.steps += 1;
-        self.tick += self.ticks_per_step;
-        let travelled = self.tick as f64 * self.tick_length;
+    /// The wheels at the end of the step, and how far they would indent the free rail without wheel forces.
+    fn move_wheels(&mut self) {
+        let (track, scheme) = (&*self.stepper.track, &self.stepper.scheme);
+        let time = self.time();
         if let Some((run, timetable)) = &self.train {
-            let leading = timetable.position(travelled);
+            let leading = timetable.position(time);
             for (position, x) in self.wheel_positions.iter_mut().zip(run.train.wheel_positions(leading)) {
                 *position = x;
             }
         }
+        let share = scheme.displacement_share();
+        let (predicted, a) = (&self.predicted, &self.acceleration);
         for (vehicle, wheels) in &mut self.vehicles {
             vehicle.predict(scheme, &self.interface.forces[wheels.clone()]);
             for j in wheels.clone() {
-                let point = track.moved_point(self.interface.points[j].element, self.wheel_positions[j]);
+                let x = self.wheel_positions[j];
+                let point = track.moved_point(self.interface.points[j].element, x);
                 let unknowns = track.element_unknowns(point.element);
-                let rail: f64 = (0..4)
-                    .map(|k| point.shape[k] * (predicted[unknowns[k]] + displacement_share * a[unknowns[k]]))
-                    .sum();
+                let rail: f64 =
+                    (0..4).map(|k| point.shape[k] * (predicted[unknowns[k]] + share * a[unknowns[k]])).sum();
                 self.interface.points[j] = point;
-                self.interface.free_indentations[j] = vehicle.free_wheel(scheme, j - wheels.start)
-                    - rail
-                    - track.model.irregularity.at(self.wheel_positions[j]);
+                self.interface.free_indentations[j] =
+                    vehicle.free_wheel(scheme, j - wheels.start) - rail - track.model.irregularity.at(x);
             }
         }
+    }
+
+    /// The gaps under the free track, and the lines on which supports carry within this step.
+    fn place_supports(&mut self) {
+        let (track, scheme) = (&*self.stepper.track, &self.stepper.scheme);
+        let (share, rate) = (scheme.displacement_share(), scheme.rate());
         for (s, sleeper) in track.sleepers.iter().enumerate() {
             let (i, settlement) = (sleeper.unknown, self.level.settlements[sleeper.seat]);
-            self.interface.free_gaps[s] = predicted[i] + displacement_share * a[i] - settlement;
-            let passing_speed = predicted_velocity[i] + rate * (settlement - predicted[i]);
+            self.interface.free_gaps[s] = self.predicted[i] + share * self.acceleration[i] - settlement;
+            let passing_speed = self.predicted_velocity[i] + rate * (settlement - self.predicted[i]);
             self.interface.lines[s] = sleeper.lines(rate, passing_speed);
         }
-        let time = travelled;
+    }
+
+    fn solve_contacts(&mut self) -> Result<(), TrackError> {
+        let track = &*self.stepper.track;
         let effort = self.interface.solve(self.stepper).map_err(|contact| TrackError::StepNotConverged {
             step: self.counters.steps,
-            time,
+            time: self.tick as f64 * self.tick_length,
             x: match contact {
                 Contact::Wheel(rank) => self.wheel_positions[self.interface.wheel_of(rank)],
                 Contact::Support(s) => track.sleepers.get(s).map_or(f64::NAN, |s| track.model.seats[s.seat].x),
@@ -342,9 +362,15 @@ impl<'a> Passage<'a> {
         self.counters.iterations += effort.iterations;
         self.counters.most_iterations = self.counters.most_iterations.max(effort.iterations);
         self.counters.most_open_supports = self.counters.most_open_supports.max(effort.active);
+        Ok(())
+    }
 
-        // What the contact forces add, and the end of the step.
-        let per_displacement = 1.0 / displacement_share;
+    /// Adds what the contact forces displace: the end of the step.
+    fn add_contacts(&mut self) {
+        let scheme = &self.stepper.scheme;
+        let (share, velocity_share) = (scheme.displacement_share(), scheme.velocity_share());
+        let per_displacement = 1.0 / share;
+        let a = &mut self.acceleration[..];
         for (point, force) in self.interface.points.iter().zip(&self.interface.forces) {
             for (column, shape) in self.stepper.columns(point.element).into_iter().zip(point.shape) {
                 add_scaled(&mut a[column.start..], &column.values, per_displacement * shape * force);
@@ -355,11 +381,12 @@ impl<'a> Passage<'a> {
                 add_scaled(&mut a[column.start..], &column.values, per_displacement * q);
             }
         }
-        let mut wild = false;
+        let order = a.len();
+        let (u, v) = (&mut self.displacement[..order], &mut self.velocity[..order]);
+        let (predicted, predicted_velocity) = (&self.predicted[..order], &self.predicted_velocity[..order]);
         for i in 0..order {
-            u[i] = predicted[i] + displacement_share * a[i];
-            v[i] = predicted_velocity[i] + scheme.velocity_share() * a[i];
-            wild |= !within(u[i], WILD_DISPLACEMENT);
+            u[i] = predicted[i] + share * a[i];
+            v[i] = predicted_velocity[i] + velocity_share * a[i];
         }
         for (vehicle, wheels) in &mut self.vehicles {
             vehicle.finish(scheme, &self.interface.forces[wheels.clone()]);
@@ -367,15 +394,20 @@ impl<'a> Passage<'a> {
         for s in 0..self.support_forces.len() {
             self.support_forces[s] = self.interface.support_force(s);
         }
+    }
+
+    /// Fails where a wheel force or a displacement is beyond sense.
+    fn check_sense(&self) -> Result<(), TrackError> {
         let mut forces = self.interface.forces.iter().zip(&self.force_limits);
         if let Some(j) = forces.position(|(force, limit)| !within(*force, *limit)) {
             let (step, x, value) = (self.counters.steps, self.wheel_positions[j], self.interface.forces[j]);
-            return Err(TrackError::Unstable { step, time, x, what: "a wheel force", value, unit: "N" });
+            return Err(TrackError::Unstable { step, time: self.time(), x, what: "a wheel force", value, unit: "N" });
         }
-        if wild {
-            return Err(self.wild_displacement(time));
+        if self.displacement.iter().fold(true, |sound, u| sound & within(*u, WILD_DISPLACEMENT)) {
+            Ok(())
+        } else {
+            Err(self.wild_displacement(self.time()))
         }
-        Ok(())
     }
 
     /// Names the first displacement beyond sense.
