@@ -309,7 +309,9 @@ impl Chart {
             let y = plane.at((plane.x.0, *level)).1;
             svg.line("load", (left, y), (left + width, y));
             if !name.is_empty() {
-                svg.text("small muted halo", (left + 6.0, y - 5.0), Anchor::Start, name);
+                // below the line where there is no room above it
+                let shift = if y - top < 16.0 { 14.0 } else { -5.0 };
+                svg.text("small muted halo", (left + 6.0, y + shift), Anchor::Start, name);
             }
         }
         for band in self.bands.iter().filter(|band| !band.label.is_empty()) {

@@ -4,6 +4,7 @@
 mod modal;
 mod scenes;
 
+mod bogie;
 mod bouncing;
 mod chatter;
 mod equal_models;
