@@ -21,6 +21,10 @@ pub(super) struct Start {
 
 /// Distance of the states that are compared, m: small beside an element, large beside the rounding of a deflection.
 const DISTANCE: f64 = 2e-3;
+/// The same as a part of the usual bay where rails shear. Their deflection has a kink under a wheel and over a seat, so that
+/// close states of a wheel over a seat would make an acceleration without bound; a distance like this gives the mean over
+/// the time in which the wheel passes.
+const SHEARED_DISTANCE: f64 = 0.25;
 
 /// The train with its leading wheel at `leading` (m), moving at `speed` (m/s).
 pub(super) fn start(
@@ -33,9 +37,11 @@ pub(super) fn start(
     let at = |x: f64| solve_static(track, level, &Loads { train: Some((train, x)), ..Loads::default() });
     let here = at(leading)?;
     let sign = train.direction.sign();
-    let interval = DISTANCE / speed;
+    let sheared = track.model.rail.iter().any(|section| section.shear.is_some());
+    let distance = if sheared { SHEARED_DISTANCE * usual_bay(&track.model) } else { DISTANCE };
+    let interval = distance / speed;
     // A wheel may stand at the very end of the track: then there is no state behind or ahead of it.
-    let (behind, ahead) = (at(leading - sign * DISTANCE), at(leading + sign * DISTANCE));
+    let (behind, ahead) = (at(leading - sign * distance), at(leading + sign * distance));
     let (Ok(behind), Ok(ahead)) = (behind, ahead) else { return Ok(Start::at_rest(track, here)) };
 
     let difference = |i: usize| (ahead.unknowns[i] - behind.unknowns[i]) / (2.0 * interval);

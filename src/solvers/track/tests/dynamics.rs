@@ -145,6 +145,28 @@ fn even_track_is_steady() {
     assert!(within(early) && within(late));
 }
 
+/// A rail that shears has a kink over each seat, which a wheel feels all along an even track; that it starts on one adds
+/// nothing.
+#[test]
+fn a_start_on_a_kink_is_steady() {
+    let mut model = ballast(80);
+    model.rail[0].shear = Some(Shear { stiffness: 248e6, rotary_inertia: 0.24 });
+    let level = TrackLevel::as_built(&model);
+    let seat = model.seats[25].x;
+    let stepper = stepper(model, 5e-5);
+    let (mut early, mut late) = ((f64::INFINITY, 0.0f64), (f64::INFINITY, 0.0f64));
+    let still = wagon().mass() * 9.81 / 4.0;
+    run(&stepper, &level, wagon(), (seat, 40.0), |view| {
+        let range = if view.time() < 0.05 { &mut early } else { &mut late };
+        for force in view.wheel_forces() {
+            *range = (range.0.min(force / still), range.1.max(force / still));
+        }
+    });
+    println!("wheel forces under shear: first 50 ms {early:?}, later {late:?}");
+    assert!(late.0 > 0.96 && late.1 < 1.04);
+    assert!(early.0 > late.0 - 0.01 && early.1 < late.1 + 0.01);
+}
+
 #[test]
 fn direction_mirrors() {
     let model = ballast(40);
