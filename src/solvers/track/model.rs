@@ -278,6 +278,11 @@ impl TrackModel {
         Ok(())
     }
 
+    /// Whether a part of the rail shears.
+    pub(super) fn shears(&self) -> bool {
+        self.rail.iter().any(|section| section.shear.is_some())
+    }
+
     /// Index of the slab under x, the right one where two meet.
     pub(super) fn slab_under(&self, x: f64) -> Option<usize> {
         self.slabs.iter().rposition(|s| s.start - SAME_PLACE <= x && x <= s.end + SAME_PLACE)

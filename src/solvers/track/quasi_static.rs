@@ -37,8 +37,7 @@ pub(super) fn start(
     let at = |x: f64| solve_static(track, level, &Loads { train: Some((train, x)), ..Loads::default() });
     let here = at(leading)?;
     let sign = train.direction.sign();
-    let sheared = track.model.rail.iter().any(|section| section.shear.is_some());
-    let distance = if sheared { SHEARED_DISTANCE * usual_bay(&track.model) } else { DISTANCE };
+    let distance = if track.model.shears() { SHEARED_DISTANCE * usual_bay(&track.model) } else { DISTANCE };
     let interval = distance / speed;
     // A wheel may stand at the very end of the track: then there is no state behind or ahead of it.
     let (behind, ahead) = (at(leading - sign * distance), at(leading + sign * distance));
