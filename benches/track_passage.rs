@@ -1,5 +1,8 @@
 //! Time per step of one wagon over the transition of 66 m: 69 sleepers, 24 m of slab, 200 km/h, dt 0.1 ms.
 
+#[path = "shared/wagon.rs"]
+mod wagon;
+
 use std::sync::Arc;
 use std::time::Instant;
 use trackbed::linalg::banded::SymmetricBanded;
@@ -30,20 +33,7 @@ fn main() -> Result<(), TrackError> {
         elements_per_bay: 4,
         gravity: 9.81,
     };
-    let vehicle = Vehicle {
-        car_body_mass: 36_518.0,
-        car_body_inertia: 36_518.0 * 3.91 * 3.91,
-        bogie_mass: 400.0,
-        bogie_inertia: 365.0,
-        bogie_spacing: 6.77,
-        wheel_mass: 670.5,
-        wheelset_spacing: 1.78,
-        primary_stiffness: 15e6,
-        primary_damping: 35e3,
-        secondary_stiffness: 1.875e6,
-        secondary_damping: 5e3,
-        hertz: 100e9,
-    };
+    let vehicle = wagon::wagon();
     let settlement = |seat: &Seat| match seat.foot {
         Foot::Sleeper { .. } => {
             let s = ((seat.x + 3.0) / 2.4).clamp(-1.0, 1.0);

@@ -2,9 +2,13 @@
 //!
 //! Per wagon it should stay about constant, and with one wagon grow as the length of the track.
 
+#[path = "shared/wagon.rs"]
+mod wagon;
+
 use std::sync::Arc;
 use std::time::Instant;
 use trackbed::solvers::track::*;
+use wagon::wagon;
 
 /// Length of a wagon over its buffers, m.
 const WAGON: f64 = 11.0;
@@ -25,23 +29,6 @@ fn model(length: f64) -> TrackModel {
         irregularity: Irregularity::default(),
         elements_per_bay: 4,
         gravity: 9.81,
-    }
-}
-
-fn wagon() -> Vehicle {
-    Vehicle {
-        car_body_mass: 36_518.0,
-        car_body_inertia: 36_518.0 * 3.91 * 3.91,
-        bogie_mass: 400.0,
-        bogie_inertia: 365.0,
-        bogie_spacing: 6.77,
-        wheel_mass: 670.5,
-        wheelset_spacing: 1.78,
-        primary_stiffness: 15e6,
-        primary_damping: 35e3,
-        secondary_stiffness: 1.875e6,
-        secondary_damping: 5e3,
-        hertz: 100e9,
     }
 }
 

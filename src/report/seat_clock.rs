@@ -12,27 +12,16 @@ const BEFORE: f64 = 9.0;
 /// Most of a train that is shown: about one vehicle, m.
 const MOST: f64 = 22.0;
 
-/// The leading wheel's place at one count: `x = start + speed t`.
-#[derive(Debug, Clone, Copy)]
-struct Motion {
-    start: f64,
-    /// m/s, negative for a train that runs backward.
-    speed: f64,
-}
-
-impl Motion {
-    fn of(run: &Run, axles: u64) -> Option<Motion> {
-        let leads = |h: &&HistoryRow| h.quantity == "wheel_force" && h.id == "wheel 1" && h.axles == axles;
-        let first = run.histories.iter().find(leads)?;
-        let last = run.histories.iter().rfind(leads)?;
-        let speed = (last.x_m - first.x_m) / (last.time_s - first.time_s);
-        (speed.is_finite() && speed != 0.0).then_some(Motion { start: first.x_m - speed * first.time_s, speed })
-    }
-
-    /// When the leading wheel stands over x, s.
-    fn arrival(self, x: f64) -> f64 {
-        (x - self.start) / self.speed
-    }
+/// When the leading wheel stands over x at a count, s; before its first and after its last sample it keeps its speed there.
+fn arrival(run: &Run, axles: u64, x: f64) -> Option<f64> {
+    let leads = |h: &&HistoryRow| h.quantity == "wheel_force" && h.id == "wheel 1" && h.axles == axles;
+    let path: Vec<(f64, f64)> = run.histories.iter().filter(leads).map(|h| (h.time_s, h.x_m)).collect();
+    let forward = path.last()?.1 > path.first()?.1;
+    let after = path.partition_point(|(_, place)| if forward { *place < x } else { *place > x });
+    let right = after.clamp(1, path.len().checked_sub(1).filter(|last| *last > 0)?);
+    let [(t0, x0), (t1, x1)] = [path[right - 1], path[right]];
+    let arrival = t0 + (x - x0) * (t1 - t0) / (x1 - x0);
+    arrival.is_finite().then_some(arrival)
 }
 
 /// The time that panels show, s: the leading vehicle, or as much of it as tells something.
@@ -48,7 +37,7 @@ pub fn history(run: &Run, quantity: Response, seat: &str, axles: u64) -> Vec<(f6
     let rows = run.histories.iter().filter(|h| h.quantity == quantity.name() && h.id == seat && h.axles == axles);
     let mut rows = rows.peekable();
     let Some(x) = rows.peek().map(|row| row.x_m) else { return vec![] };
-    let zero = Motion::of(run, axles).map_or(0.0, |motion| motion.arrival(x));
+    let zero = arrival(run, axles, x).unwrap_or(0.0);
     rows.map(|row| (row.time_s - zero, row.value)).collect()
 }
 
@@ -107,4 +96,34 @@ fn is_downward(quantity: Response) -> bool {
 /// `-3` with a true minus sign.
 pub fn shown(seat: &str) -> String {
     seat.replace('-', "\u{2212}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::results::example;
+
+    #[test]
+    fn a_train_that_slows_down_arrives_when_it_does() {
+        let mut run = example::transition();
+        for sign in [1.0, -1.0] {
+            let row = |time_s: f64| HistoryRow {
+                axles: 0,
+                time_s,
+                quantity: "wheel_force".into(),
+                id: "wheel 1".into(),
+                x_m: sign * (20.0 * time_s - 4.0 * time_s * time_s),
+                value: 1e5,
+            };
+            run.histories = (0..=10).map(|i| row(0.1 * f64::from(i))).collect();
+            for time in [0.1, 0.35, 0.8] {
+                let found = arrival(&run, 0, row(time).x_m).unwrap();
+                assert!((found - time).abs() < 1e-3, "{time} {found}");
+            }
+            // the speed of the first and of the last tenth goes on
+            assert!((arrival(&run, 0, -sign * 1.96).unwrap() + 0.1).abs() < 1e-9);
+            assert!((arrival(&run, 0, sign * 17.24).unwrap() - 1.1).abs() < 1e-9);
+        }
+        assert_eq!(arrival(&run, 7, 0.0), None);
+    }
 }

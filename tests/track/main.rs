@@ -3,6 +3,8 @@
 
 mod modal;
 mod scenes;
+#[path = "../../benches/shared/wagon.rs"]
+mod wagon;
 
 mod bogie;
 mod bouncing;

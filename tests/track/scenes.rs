@@ -3,6 +3,8 @@
 use std::sync::Arc;
 use trackbed::solvers::track::*;
 
+pub use crate::wagon::wagon;
+
 pub const SPEED: f64 = 200.0 / 3.6;
 
 /// One kind of rail from end to end on seats; no gravity.
@@ -34,24 +36,6 @@ pub fn ballast(seats: usize) -> TrackModel {
         seats: (0..seats).map(seat).collect(),
         gravity: 9.81,
         ..beam([0.0, 0.6 * seats as f64], 6.4e6, 60.0, RailEnds::Clamped, 4)
-    }
-}
-
-/// A wagon of 20 t axles, over one rail.
-pub fn wagon() -> Vehicle {
-    Vehicle {
-        car_body_mass: 36_518.0,
-        car_body_inertia: 36_518.0 * 3.91 * 3.91,
-        bogie_mass: 400.0,
-        bogie_inertia: 365.0,
-        bogie_spacing: 6.77,
-        wheel_mass: 670.5,
-        wheelset_spacing: 1.78,
-        primary_stiffness: 15e6,
-        primary_damping: 35e3,
-        secondary_stiffness: 1.875e6,
-        secondary_damping: 5e3,
-        hertz: 100e9,
     }
 }
 
