@@ -131,7 +131,11 @@ pub const KINDS: &[Kind] = &[
         fields: &[
             required("stiffness", along(number("MN/m", 5.0, 3000.0)), "dynamic, of one pad"),
             way("damping", along(number("kN s/m", 0.0, 6000.0)), "of one pad"),
-            way("damping_time", number("ms", 0.0, 2.0), "damping / stiffness"),
+            way(
+                "damping_time",
+                number("ms", 0.0, 2.0),
+                "damping / stiffness; by default that of Ahmadi et al. (2026), 5 kN s/m on 40 MN/m",
+            ),
         ],
         alternatives: &[Alternative {
             ways: &[&["damping"], &["damping_time"]],
@@ -149,7 +153,7 @@ pub const KINDS: &[Kind] = &[
                 along(number("N/mm^3", 0.01, 1.0)),
                 "static, of pad on ballast; times the sleeper's base area it is a stiffness",
             ),
-            default("damping_time", number("ms", 0.0, 2.0), "0.2 ms", "damping / stiffness"),
+            default("damping_time", number("ms", 0.0, 2.0), "0.2 ms", "damping / stiffness; the default is unchecked"),
             default("thickness", number("mm", 3.0, 30.0), "10 mm", "for the drawing"),
         ],
         alternatives: &[],
@@ -188,7 +192,12 @@ pub const KINDS: &[Kind] = &[
             required("bending_stiffness", per("MN m^2", 1.0, 5000.0, &RAIL_OR_TRACK), "EI, vertical"),
             required("mass", per("kg/m", 200.0, 10000.0, &RAIL_OR_TRACK), "per metre of track"),
             required("foundation_stiffness", per("MN/m^2", 5.0, 5000.0, &RAIL_OR_TRACK), "per metre of track"),
-            default("foundation_damping_time", number("ms", 0.0, 5.0), "1 ms", "damping / stiffness of the foundation"),
+            default(
+                "foundation_damping_time",
+                number("ms", 0.0, 5.0),
+                "1 ms",
+                "damping / stiffness of the foundation; the default is that of ballast, unchecked",
+            ),
         ],
         alternatives: &[],
         planned: &[],
@@ -204,7 +213,11 @@ pub const KINDS: &[Kind] = &[
                 "of ballast and subgrade together",
             ),
             way("damping", along(per("kN s/m", 0.0, 5000.0, &SEAT_OR_SLEEPER)), ""),
-            way("damping_time", number("ms", 0.0, 5.0), "damping / stiffness"),
+            way(
+                "damping_time",
+                number("ms", 0.0, 5.0),
+                "damping / stiffness; track models take 0.2 .. 1.2 ms (railFE 1.18, Zhai 2004 0.4), Ahmadi et al. (2026) print none",
+            ),
             default(
                 "seating",
                 SEATING,
@@ -336,7 +349,12 @@ pub const KINDS: &[Kind] = &[
                 Form::Words(&[Word {
                     name: "hertz",
                     doc: "force = constant x indentation^1.5, no tension",
-                    arguments: &[default("constant", number("GN/m^1.5", 50.0, 200.0), "100 GN/m^1.5", "")],
+                    arguments: &[default(
+                        "constant",
+                        number("GN/m^1.5", 50.0, 200.0),
+                        "100 GN/m^1.5",
+                        "the default is that of railFE; Zhai's formulas give 86 (cone) and 115 (worn tread) for wheels of 0.46 m",
+                    )],
                     planned: false,
                 }]),
                 "hertz(100 GN/m^1.5)",
