@@ -64,6 +64,8 @@ pub struct Passage<'a> {
     pub(super) tick_length: f64,
     pub(super) ticks_per_step: u64,
     pub(super) ticks_per_longest: u64,
+    /// Of the last step, s; of the first one at the start.
+    pub(super) last_step: f64,
     planned_ticks: u64,
     /// How the length of a step is chosen; none where it is fixed.
     pub(super) choice: Option<Box<Choice<'a>>>,
@@ -192,6 +194,7 @@ impl<'a> Passage<'a> {
             tick_length: stepper.time_step(),
             ticks_per_step: 1,
             ticks_per_longest: 1,
+            last_step: stepper.time_step(),
             planned_ticks: 0,
             choice: None,
             displacement: start.state.unknowns,
@@ -270,6 +273,7 @@ impl<'a> Passage<'a> {
         self.move_freely();
         self.counters.steps += 1;
         self.tick += self.ticks_per_step;
+        self.last_step = self.stepper.time_step();
         self.move_wheels();
         self.place_supports();
         self.solve_contacts()?;

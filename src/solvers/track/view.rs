@@ -63,9 +63,9 @@ impl<'a> StepView<'a> {
         self.passage.time()
     }
 
-    /// s.
+    /// Of the step that has led here, s.
     pub fn time_step(&self) -> f64 {
-        self.passage.stepper.time_step()
+        self.passage.last_step
     }
 
     /// Chainage of each wheel, vehicle by vehicle, m.

@@ -4,10 +4,12 @@ use super::scenes::*;
 use crate::solvers::track::*;
 use std::sync::Arc;
 
-/// Wheel forces every 0.4 ms.
+/// Wheel forces every 0.4 ms; every step is as long as it says.
 fn forces(passage: &mut Passage, every: usize) -> (Vec<f64>, Counters) {
-    let mut forces = Vec::new();
+    let (mut forces, mut time) = (Vec::new(), 0.0);
     let mut look = |view: &StepView<'_>| {
+        time += if view.step() > 0 { view.time_step() } else { 0.0 };
+        assert!((time - view.time()).abs() < 1e-12, "{time} {}", view.time());
         if view.is_on_grid(every) {
             forces.extend_from_slice(view.wheel_forces());
         }
