@@ -92,7 +92,7 @@ fn text(chart: &Chart) -> String {
         out += &format!(
             "{mark} {:<24}{:>9} {:>4}  {:<11}{:>9}",
             v.method.to_string(),
-            number(v.time_step * 1e3),
+            v.tolerance.map_or_else(|| number(v.time_step * 1e3), |tolerance| format!("~{tolerance:e}")),
             v.elements_per_bay,
             v.beam.to_string(),
             format!("{:.4}", point.outcome.seconds())
@@ -109,7 +109,7 @@ fn text(chart: &Chart) -> String {
         }
         out.push('\n');
     }
-    out += "  * the scene's own, + nothing cheaper has a smaller error of the wheel force, = reference\n\n";
+    out += "  * the scene's own, + nothing cheaper has a smaller error of the wheel force, = reference, ~ steps vary within this tolerance\n\n";
     out += "order in the time step                    springs back   as built   settled\n";
     for order in &chart.orders {
         let shown = |order: Option<f64>| order.map_or("-".to_owned(), |o| format!("{o:.2}"));
@@ -144,9 +144,10 @@ fn text(chart: &Chart) -> String {
 /// As `solve` spells it.
 fn spelled(v: &Variant) -> String {
     format!(
-        "integrator = {}, time_step = {} s, elements_per_bay = {}",
+        "integrator = {}, time_step = {}, elements_per_bay = {}",
         v.method,
-        number(v.time_step),
+        v.tolerance
+            .map_or_else(|| format!("{} s", number(v.time_step)), |tolerance| format!("adaptive({tolerance:e})")),
         v.elements_per_bay
     )
 }

@@ -23,7 +23,7 @@ pub use listing::Listing;
 pub use profile::between;
 pub use step::Measured;
 pub use substructure::SubstructureState;
-pub use system::RUNAWAY;
+pub use system::{RUNAWAY, Steps};
 pub use track::{PassageOutcome, RailPlace, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
 
 use crate::scenario::{Beam, Direction, Integrator, Record, StaticLoad, Track, Train, Update};

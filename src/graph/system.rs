@@ -23,7 +23,7 @@ pub(super) struct TrackSystem<'a> {
 }
 
 /// The time steps of all passages, factored once.
-enum Steps {
+pub enum Steps {
     Even(Stepper),
     Chosen { ladder: Ladder, tolerance: f64 },
 }
@@ -38,7 +38,8 @@ impl Steps {
         })
     }
 
-    fn begin<'a>(&'a self, level: &'a TrackLevel, run: Run<'a>) -> Result<Passage<'a>, TrackError> {
+    /// A passage in these steps.
+    pub fn begin<'a>(&'a self, level: &'a TrackLevel, run: Run<'a>) -> Result<Passage<'a>, TrackError> {
         match self {
             Steps::Even(stepper) => Passage::new(stepper, level, run),
             Steps::Chosen { ladder, tolerance } => Passage::adaptive(ladder, level, run, *tolerance),

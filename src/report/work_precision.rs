@@ -88,6 +88,11 @@ impl<'a> Picture<'a> {
             svg.text("", (x + 30.0, y), Anchor::Start, &name);
             x += 44.0 + text_width(&name);
         }
+        if self.chart.points.iter().any(|p| p.sweep == Sweep::Tolerance) {
+            svg.line(&format!("line {VARYING}"), (x, y - 4.0), (x + 24.0, y - 4.0));
+            plus(svg, (x + 12.0, y - 4.0), "");
+            svg.text("", (x + 30.0, y), Anchor::Start, "steps that vary");
+        }
         let (mut x, y) = (16.0, 88.0);
         let other = if self.beam == Beam::Euler { Beam::Timoshenko } else { Beam::Euler };
         svg.line("other s0", (x, y - 4.0), (x + 24.0, y - 4.0));
@@ -130,6 +135,7 @@ impl<'a> Picture<'a> {
             }
             self.model(svg, &plane, error);
             self.lines(svg, &plane, error);
+            self.varying(svg, &plane, error);
             self.meshes(svg, &plane, error);
             self.own(svg, &plane, error);
         });
@@ -190,6 +196,19 @@ impl<'a> Picture<'a> {
         }
     }
 
+    /// Steps that vary, over their tolerance.
+    fn varying(&self, svg: &mut Svg, plane: &Plane, error: ReadError) {
+        let points = self.chart.points.iter().filter(|p| p.sweep == Sweep::Tolerance);
+        let done: Vec<(&Point, (f64, f64))> = points
+            .filter_map(|p| p.outcome.done().map(|(seconds, errors)| (p, plane.at(seconds, error(errors)))))
+            .collect();
+        let path: Vec<(f64, f64)> = done.iter().map(|(_, at)| *at).collect();
+        svg.path(&format!("line {VARYING}"), &path, false, "");
+        for (point, at) in done {
+            plus(svg, at, &title(point, error));
+        }
+    }
+
     fn meshes(&self, svg: &mut Svg, plane: &Plane, error: ReadError) {
         let meshes = self.chart.points.iter().filter(|p| p.sweep == Sweep::Elements && p.variant.beam == self.beam);
         for point in meshes {
@@ -210,8 +229,11 @@ impl<'a> Picture<'a> {
 
 fn title(point: &Point, error: ReadError) -> String {
     let v = &point.variant;
-    let head =
-        format!("{}, {} ms, {} elements a bay, {}", v.method, number(v.time_step * 1e3), v.elements_per_bay, v.beam);
+    let step = match v.tolerance {
+        Some(tolerance) => format!("up to {} ms with tolerance {tolerance:e}", number(v.time_step * 1e3)),
+        None => format!("{} ms", number(v.time_step * 1e3)),
+    };
+    let head = format!("{}, {step}, {} elements a bay, {}", v.method, v.elements_per_bay, v.beam);
     match &point.outcome {
         Outcome::Done { seconds, errors, .. } => {
             format!("{head}: {} % in {} s", significant(100.0 * error(errors), 3), significant(*seconds, 3))
@@ -235,6 +257,15 @@ fn marker(svg: &mut Svg, index: usize, (x, y): (f64, f64), title: &str) {
         3 => svg.path(&class, &polygon(&[(0.0, -4.6), (4.6, 0.0), (0.0, 4.6), (-4.6, 0.0)]), true, title),
         _ => svg.path(&class, &polygon(&[(0.0, 4.4), (4.0, -3.2), (-4.0, -3.2)]), true, title),
     }
+}
+
+/// The class of steps that vary.
+const VARYING: &str = "k1";
+
+fn plus(svg: &mut Svg, (x, y): (f64, f64), title: &str) {
+    let class = format!("cross {VARYING}");
+    svg.path(&class, &[(x - 5.0, y), (x + 5.0, y)], false, title);
+    svg.path(&class, &[(x, y - 5.0), (x, y + 5.0)], false, title);
 }
 
 fn cross(svg: &mut Svg, class: &str, (x, y): (f64, f64), title: &str) {

@@ -44,6 +44,8 @@ impl Level {
 #[serde(rename_all = "snake_case")]
 pub enum Sweep {
     TimeStep,
+    /// Steps that vary, over their tolerance.
+    Tolerance,
     Elements,
     Reference,
 }
@@ -52,6 +54,7 @@ impl Sweep {
     pub fn name(self) -> &'static str {
         match self {
             Sweep::TimeStep => "time_step",
+            Sweep::Tolerance => "tolerance",
             Sweep::Elements => "elements",
             Sweep::Reference => "reference",
         }
@@ -212,6 +215,9 @@ pub fn chart(
     })
 }
 
+/// Of steps that vary.
+const STEP_TOLERANCES: [f64; 5] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
+
 /// Every passage, references first.
 fn plan(own: Variant, case: &Case, request: Request) -> Vec<(Level, Sweep, Variant)> {
     let step = |halvings: i32| own.time_step * 0.5f64.powi(halvings);
@@ -243,6 +249,11 @@ fn plan(own: Variant, case: &Case, request: Request) -> Vec<(Level, Sweep, Varia
     }
     for halvings in coarsest(own.elements_per_bay)..finest {
         plan.push((Level::Settled, Sweep::TimeStep, Variant { beam: other, time_step: step(halvings), ..own }));
+    }
+    let longest = step(coarsest(4 * own.elements_per_bay).max(-2));
+    for tolerance in STEP_TOLERANCES {
+        let variant = Variant { time_step: longest, tolerance: Some(tolerance), ..own };
+        plan.push((Level::Settled, Sweep::Tolerance, variant));
     }
     let halvings = (finest - 1).max(0);
     let mut meshes = vec![1, 2, 4, 8, own.elements_per_bay];

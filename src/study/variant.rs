@@ -5,10 +5,10 @@
 
 use super::clock::Clock;
 use crate::graph::model::{level, model, motion, scheme, train};
-use crate::graph::{Blocks, Graph, TrackNode};
+use crate::graph::{Blocks, Graph, Steps, TrackNode};
 use crate::scenario::{Beam, Direction, Integrator, Train};
 use crate::solvers::track::{
-    Counters, Envelope, Passage, Run, Shear, StepView, Stepper, Track, TrackError, TrackLevel, TrackModel,
+    Counters, Envelope, Ladder, Passage, Run, Shear, StepView, Stepper, Track, TrackError, TrackLevel, TrackModel,
 };
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -32,8 +32,10 @@ fn as_word<T: fmt::Display, S: Serializer>(value: &T, serializer: S) -> Result<S
 pub struct Variant {
     #[serde(serialize_with = "as_word")]
     pub method: Integrator,
-    /// s.
+    /// s; the longest one where steps vary.
     pub time_step: f64,
+    /// Error of a step as part of the rail's largest deflection, where steps vary.
+    pub tolerance: Option<f64>,
     pub elements_per_bay: u32,
     #[serde(serialize_with = "as_word")]
     pub beam: Beam,
@@ -45,6 +47,7 @@ impl Variant {
         Variant {
             method: blocks.passage.integrator,
             time_step: blocks.passage.time_step,
+            tolerance: blocks.passage.adaptive.map(|steps| steps.tolerance),
             elements_per_bay: graph.track.elements_per_bay,
             beam: graph.track.beam,
         }
@@ -135,9 +138,12 @@ pub struct Failure {
     pub seconds: f64,
 }
 
+/// How often the longest step may be halved where steps vary.
+const HALVINGS: usize = 6;
+
 /// A time step factored for a track.
 pub struct Prepared {
-    stepper: Stepper,
+    steps: Steps,
     interval: f64,
     setup_s: f64,
 }
@@ -151,8 +157,12 @@ impl Prepared {
         let mut model = model(&node);
         set_beam(&mut model, variant.beam);
         let track = Arc::new(Track::new(model)?);
-        let stepper = Stepper::new(track, scheme(variant.method, variant.time_step)?)?;
-        Ok(Prepared { stepper, interval, setup_s: started.seconds() })
+        let scheme = scheme(variant.method, variant.time_step)?;
+        let steps = match variant.tolerance {
+            None => Steps::Even(Stepper::new(track, scheme)?),
+            Some(tolerance) => Steps::Chosen { ladder: Ladder::new(&track, scheme, HALVINGS)?, tolerance },
+        };
+        Ok(Prepared { steps, interval, setup_s: started.seconds() })
     }
 
     /// Runs a case on the track that was prepared.
@@ -169,27 +179,36 @@ impl Prepared {
         let level = level(&case.node, &case.settlement);
         let motion = motion(&case.train);
         let run = Run { train: &train, start, finish, motion: &motion };
-        let mut passage = Passage::new(&self.stepper, &level, run).map_err(failed)?;
+        let mut passage = self.steps.begin(&level, run).map_err(failed)?;
         let setup_s = self.setup_s + started.seconds();
 
         let running = Clock::start();
         let failed = |cause| Failure { cause, seconds: running.seconds() };
-        let every = (self.interval / self.stepper.time_step()).round().max(1.0) as usize;
+        let step = self.stepper().time_step();
+        let every = (self.interval / step).round().max(1.0) as usize;
         let mut envelope = Envelope::default();
         let mut forces = Vec::new();
         let mut trace = |view: &StepView<'_>| {
-            if view.step().is_multiple_of(every) {
+            if view.is_on_grid(every) {
                 forces.extend_from_slice(view.wheel_forces());
             }
         };
         let counters = passage.run(&mut (&mut envelope, &mut trace)).map_err(failed)?;
         let seconds = running.seconds();
-        let interval = every as f64 * self.stepper.time_step();
+        let interval = every as f64 * step;
         Ok(measured(&envelope, forces, interval, counters, (setup_s, seconds)))
     }
 
     pub fn track(&self) -> &Track {
-        self.stepper.track()
+        self.stepper().track()
+    }
+
+    /// The step, the longest one where steps vary.
+    fn stepper(&self) -> &Stepper {
+        match &self.steps {
+            Steps::Even(stepper) => stepper,
+            Steps::Chosen { ladder, .. } => ladder.longest(),
+        }
     }
 
     /// Deflection of the middle of the rail (m) after every interval of `steps` steps while the track springs back from a
@@ -203,7 +222,7 @@ impl Prepared {
         let pressed: Vec<(f64, f64)> = nodes.iter().map(|x| (*x, force * bell(*x) / whole)).collect();
         let held = crate::solvers::track::Loads { rail: &pressed, ..Default::default() };
         let state = crate::solvers::track::solve_static(self.track(), &level, &held)?;
-        let mut passage = Passage::released(&self.stepper, &level, state, steps * count)?;
+        let mut passage = Passage::released(self.stepper(), &level, state, steps * count)?;
         let mut deflections = Vec::with_capacity(count);
         for _ in 0..count {
             for _ in 0..steps {
@@ -221,8 +240,8 @@ impl Prepared {
         let held = crate::solvers::track::Loads { rail: pressed, ..Default::default() };
         let state = crate::solvers::track::solve_static(self.track(), &level, &held)?;
         let rest = crate::solvers::track::solve_static(self.track(), &level, &Default::default())?;
-        let lowest = Passage::released(&self.stepper, &level, rest, 0)?.energy();
-        let mut passage = Passage::released(&self.stepper, &level, state, steps)?;
+        let lowest = Passage::released(self.stepper(), &level, rest, 0)?.energy();
+        let mut passage = Passage::released(self.stepper(), &level, state, steps)?;
         let start = passage.energy() - lowest;
         let mut most: f64 = 0.0;
         for _ in 0..steps {
