@@ -86,7 +86,7 @@ impl<'a> Picture<'a> {
             svg.line(&format!("line {}", class(index)), (x, y - 4.0), (x + 24.0, y - 4.0));
             marker(svg, index, (x + 12.0, y - 4.0), "");
             svg.text("", (x + 30.0, y), Anchor::Start, &name);
-            x += 44.0 + text_width(&name);
+            x += 50.0 + text_width(&name);
         }
         if self.chart.points.iter().any(|p| p.sweep == Sweep::Tolerance) {
             svg.line(&format!("line {VARYING}"), (x, y - 4.0), (x + 24.0, y - 4.0));
