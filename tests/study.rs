@@ -78,6 +78,25 @@ fn a_chart_sets_error_against_time() {
     assert!(picture.contains("the scene&#39;s own numerics") && picture.contains("newmark"));
 }
 
+/// Steps that vary are set against even ones, whichever the scene has.
+#[test]
+fn a_scene_of_varying_steps_is_charted_against_even_ones() {
+    let dir = tempfile::tempdir().unwrap();
+    let (file, out) = (scene(dir.path(), SMALL), dir.path().join("out"));
+    let adaptive = "solve.time_step=adaptive(2e-5)";
+    let arguments = ["chart", file.to_str().unwrap(), "--after", "16", "--halvings", "1", "--set", adaptive];
+    let output = trackbed(&[&arguments[..], &["--out", out.to_str().unwrap()]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let rows = rows(&out.join("chart.csv"));
+    for row in &rows {
+        assert_eq!(row["tolerance"].is_empty(), row["sweep"] != "tolerance", "{row:?}");
+    }
+    let own: Vec<_> = rows.iter().filter(|r| r["default"] == "yes").collect();
+    assert_eq!(own.len(), 1);
+    assert_eq!((own[0]["sweep"].as_str(), own[0]["tolerance"].parse()), ("tolerance", Ok(2e-5)));
+    assert!(own[0]["wheel_force_error"].parse::<f64>().unwrap() < 0.02, "{:?}", own[0]);
+}
+
 #[test]
 fn nothing_is_silently_wrong() {
     let dir = tempfile::tempdir().unwrap();

@@ -108,6 +108,18 @@ pub struct PassagePlan {
     pub sample_every: u64,
 }
 
+impl PassagePlan {
+    /// The shortest step that a passage may take, s.
+    pub fn shortest_step(&self) -> f64 {
+        self.time_step * self.adaptive.map_or(1.0, |steps| 0.5f64.powi(steps.halvings as i32))
+    }
+
+    /// A step as it is on average, for estimates, s: where steps vary, a quarter of the longest.
+    pub fn usual_step(&self) -> f64 {
+        if self.adaptive.is_some() { self.time_step / 4.0 } else { self.time_step }
+    }
+}
+
 /// How the length of a time step is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AdaptiveSteps {

@@ -14,7 +14,7 @@ pub(super) fn estimate(node: &TrackNode, schedule: &Schedule) -> Estimate {
         Schedule::Blocks(b) => {
             let passages = passages(b);
             let run = b.passage.right - b.passage.left - b.train.wheel_base();
-            let steps = (run / *b.train.speed / b.passage.time_step).ceil() as u64 * passages;
+            let steps = (run / *b.train.speed / b.passage.usual_step()).ceil() as u64 * passages;
             let unknowns = unknowns + 10 * b.train.vehicles.len();
             Estimate { unknowns, passages, steps, seconds: steps as f64 * unknowns as f64 * SECONDS, bytes }
         }

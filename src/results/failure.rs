@@ -123,7 +123,7 @@ impl Scene<'_> {
     fn half_a_step(&self) -> String {
         match &self.graph.schedule {
             Schedule::Blocks(blocks) => {
-                format!("write `time_step = {} s` in `solve`", number(blocks.passage.time_step / 2.0))
+                format!("write `time_step = {} s` in `solve`", number(blocks.passage.shortest_step() / 2.0))
             }
             Schedule::Static { .. } => "change the loads".into(),
         }

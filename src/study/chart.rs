@@ -167,15 +167,17 @@ pub fn chart(
     request: Request,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Chart, TrackError> {
-    let own = Variant::of(graph, blocks);
+    let scene = Variant::of(graph, blocks);
+    let own = scene.even();
     let case = Case::of(graph, blocks, settled.settlement.clone());
-    let fresh = Case::of(graph, blocks, vec![0.0; settled.settlement.len()]);
-    let plan = plan(own, &case, request);
+    let seats = &graph.track.track.seats;
+    let fresh = Case::of(graph, blocks, seats.iter().map(|seat| seat.initial_settlement).collect());
+    let plan = plan(own, scene.tolerance, &case, request);
     let coarsest = plan.iter().map(|(_, _, v)| v.time_step).fold(0.0, f64::max);
     let (case, fresh) = (case.aligned(coarsest), fresh.aligned(coarsest));
     let all: f64 = plan.iter().map(|(_, _, v)| cost(v)).sum();
     let mut done = 0.0;
-    let mut bench = Bench { own, references: Vec::new(), traces: Vec::new(), points: Vec::new() };
+    let mut bench = Bench { scene, own, references: Vec::new(), traces: Vec::new(), points: Vec::new() };
     let mut model_error = None;
     for (level, sweep, variant) in plan {
         let case = if level == Level::Settled { &case } else { &fresh };
@@ -219,7 +221,7 @@ pub fn chart(
 const STEP_TOLERANCES: [f64; 5] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 
 /// Every passage, references first.
-fn plan(own: Variant, case: &Case, request: Request) -> Vec<(Level, Sweep, Variant)> {
+fn plan(own: Variant, tolerance: Option<f64>, case: &Case, request: Request) -> Vec<(Level, Sweep, Variant)> {
     let step = |halvings: i32| own.time_step * 0.5f64.powi(halvings);
     let finest = request.halvings as i32;
     let coarsest = |elements| {
@@ -251,7 +253,8 @@ fn plan(own: Variant, case: &Case, request: Request) -> Vec<(Level, Sweep, Varia
         plan.push((Level::Settled, Sweep::TimeStep, Variant { beam: other, time_step: step(halvings), ..own }));
     }
     let longest = step(coarsest(4 * own.elements_per_bay).max(-2));
-    for tolerance in STEP_TOLERANCES {
+    let known = STEP_TOLERANCES.into_iter();
+    for tolerance in known.chain(tolerance.filter(|own| !STEP_TOLERANCES.contains(own))) {
         let variant = Variant { time_step: longest, tolerance: Some(tolerance), ..own };
         plan.push((Level::Settled, Sweep::Tolerance, variant));
     }
@@ -277,6 +280,8 @@ fn cost(variant: &Variant) -> f64 {
 const SHORT: f64 = 0.4;
 
 struct Bench {
+    /// What the scene says, and the same in even steps.
+    scene: Variant,
     own: Variant,
     references: Vec<(Level, Beam, Measured)>,
     traces: Vec<(Level, Variant, Measured)>,
@@ -306,7 +311,8 @@ impl Bench {
         if let (Ok(measured), Outcome::Done { .. }) = (result, &outcome) {
             self.traces.push((level, variant, measured));
         }
-        let default = variant == self.own && sweep == Sweep::TimeStep && level == Level::Settled;
+        let swept = matches!(sweep, Sweep::TimeStep | Sweep::Tolerance);
+        let default = variant == self.scene && swept && level == Level::Settled;
         self.points.push(Point { level, sweep, variant, default, efficient: false, outcome });
         Ok(())
     }

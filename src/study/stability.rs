@@ -187,11 +187,11 @@ pub fn stability(
     };
     let map = map(scenario, graph, blocks, &mut tick)?;
     let stresses = stresses(scenario, &mut tick);
-    Ok(Stability { title: scenario.title.clone(), time_step: blocks.passage.time_step, map, stresses })
+    Ok(Stability { title: scenario.title.clone(), time_step: blocks.passage.usual_step(), map, stresses })
 }
 
 fn map(scenario: &Scenario, graph: &Graph, blocks: &Blocks, tick: &mut dyn FnMut()) -> Result<Map, TrackError> {
-    let own = Variant::of(graph, blocks);
+    let own = Variant::of(graph, blocks).even();
     let time_steps: Vec<f64> = STEPS.iter().map(|s| s * own.time_step).collect();
     let prepare = |variant| Prepared::new(&graph.track, variant, own.time_step);
     let reference = prepare(Variant { time_step: REFERENCE_STEP * own.time_step, ..own })?;

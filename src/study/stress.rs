@@ -202,7 +202,7 @@ fn passage(hard: &Hard) -> Stress {
         (case.left, case.right) = (case.node.track.start() + margin, case.node.track.end() - margin);
     }
     let case = case.aligned(blocks.passage.time_step);
-    let own = Variant::of(graph, blocks);
+    let own = Variant::of(graph, blocks).even();
     let own = Variant { method: hard.method.unwrap_or(own.method), ..own };
     let run = |time_step: f64| {
         let prepared = Prepared::new(&graph.track, Variant { time_step, ..own }, own.time_step)?;
@@ -230,7 +230,7 @@ fn free_vibration(scenario: &Scenario, method: Integrator, coarser: f64) -> Opti
     let graph = graph?;
     let blocks = blocks(&graph)?;
     let case = Case::of(&graph, blocks, Void { depth: 1e-3, sleepers: Some(3) }.settlement(&scenario.track));
-    let own = Variant::of(&graph, blocks);
+    let own = Variant::of(&graph, blocks).even();
     let time_step = coarser * own.time_step;
     scenario.solve.time_step = TimeStep::Fixed(Given::derived(time_step));
     let (_, foreseen, warnings) = check(&scenario);
