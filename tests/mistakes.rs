@@ -223,7 +223,7 @@ const PLANTED: &[Planted] = &[
     needs("f", below(-8, plant("an under sleeper pad under a slab", "  usp     = none", "", Code::E0407))),
     needs("f", below(-8, plant("a slab that has settled", "  settlement = 0 mm", "", Code::E0407))),
     needs("p", plant("a support that seats itself stiffly", "damping = 50 kN s/m per seat }", "damping = 50 kN s/m per seat, seating = { stiffness = 60 MN/m per seat, closure = 0.4 mm } }", Code::E0407)),
-    plant("a base larger than its sleeper", "length = 2.4 m }", "length = 2.4 m, base_area = 1.2 m^2 }", Code::E0407),
+    needs("p", plant("a base larger than its sleeper", "length = 2.4 m }", "length = 2.4 m, base_area = 1.2 m^2 }", Code::E0407)),
     plant("a thick bed of pads", "usps.stiff { damping_time", "usps.stiff { bedding_modulus = 3 N/mm^3, damping_time", Code::E0405),
     // places
     needs("p", plant("sleeper 0", "[-20, -5, -1, +1] sleepers", "[-20, -5, -1, 0] sleepers", Code::E0501)),
