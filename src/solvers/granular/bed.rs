@@ -1,0 +1,387 @@
+//! A bed of grains: what there is, and how to make it.
+
+use super::body::{Body, BodyId, Clump, SPHERE};
+use super::build::Build;
+use super::clump::Template;
+use super::contacts::Contacts;
+use super::domain::Domain;
+use super::energy::Ledger;
+use super::gravity::Gravity;
+use super::integrate::{Incidence, Tally, rotate, rotate_back};
+use super::lanes::Real;
+use super::law::{Law, Laws};
+use super::motion::{Felt, Motion, Pose};
+use super::record::Record;
+use super::rotation;
+use super::shape::Shape;
+use super::step::Timings;
+use super::vector::{Vec3, add, cross};
+use super::walls::{Wall, WallContacts, WallId};
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// Spheres and clumps, the walls round them, and their state.
+///
+/// `R` is the precision of forces, velocities and histories in contacts: `f32` for work, `f64` for reference. Positions,
+/// momenta and sums are `f64` in both. Lengths in m, forces in N, masses in kg, time in s.
+#[derive(Debug, Clone)]
+pub struct Bed<R: Real = f32> {
+    pub(super) domain: Domain,
+    pub(super) laws: Laws,
+    pub(super) gravity: Gravity,
+    pub(super) damping: f64,
+    pub(super) dt: f64,
+    /// Sorted by place, where the contacts are up to date.
+    pub(super) bodies: Vec<Body>,
+    /// Of the pebbles, body by body; two that touch nothing stand behind.
+    pub(super) records: Vec<R::Record>,
+    /// Body of each pebble.
+    pub(super) owner: Vec<u32>,
+    /// In the order of the bodies.
+    pub(super) clumps: Vec<Clump>,
+    /// Pebbles' places in the frames of their bodies.
+    pub(super) arms: Vec<Vec3>,
+    /// Place of each body, by the order of making.
+    pub(super) index: Vec<u32>,
+    pub(super) walls: Vec<Wall>,
+    pub(super) contacts: Contacts<R>,
+    pub(super) wall_contacts: WallContacts<R>,
+    pub(super) incidence: Incidence,
+    pub(super) build: Build,
+    pub(super) tally: Tally,
+    pub(super) ledger: Ledger,
+    pub(super) time: f64,
+    pub(super) steps: u64,
+    /// Whether velocities are still those of the start, not of a half step.
+    pub(super) fresh: bool,
+    pub(super) limits: super::watch::Limits,
+    pub(super) timings: Timings,
+}
+
+/// A sphere to put into a bed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sphere {
+    pub centre: [f64; 3],
+    pub radius: f64,
+    /// \[kg/m3\]
+    pub density: f64,
+    pub surface: u16,
+}
+
+/// A clump to put into a bed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Placed<'a> {
+    pub template: &'a Template,
+    /// Of the centroid \[m\].
+    pub centre: [f64; 3],
+    /// Principal frame of the template to world.
+    pub attitude: UnitQuaternion<f64>,
+    /// \[kg/m3\]
+    pub density: f64,
+    pub surface: u16,
+}
+
+/// What one can read of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyState {
+    pub id: BodyId,
+    /// Of the centroid, not wrapped into the period \[m\].
+    pub place: [f64; 3],
+    /// Of the last half step \[m/s\].
+    pub velocity: [f64; 3],
+    /// Of the last half step \[rad/s\].
+    pub spin: [f64; 3],
+    /// Unit quaternion w, x, y, z; the identity for a sphere, whose turning does not show.
+    pub attitude: [f64; 4],
+    /// With weight, without what mass scaling added \[kg\].
+    pub mass: f64,
+    pub surface: u16,
+    /// Number of pebbles.
+    pub pebbles: usize,
+}
+
+/// A pebble of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PebbleState {
+    pub body: BodyId,
+    /// Not wrapped into the period \[m\].
+    pub place: [f64; 3],
+    pub radius: f64,
+}
+
+impl<R: Real> Bed<R> {
+    /// An empty bed without gravity and damping.
+    pub fn new(domain: Domain, laws: Laws) -> Self {
+        Bed {
+            domain,
+            laws,
+            gravity: Gravity::default(),
+            damping: 0.0,
+            dt: 0.0,
+            bodies: Vec::new(),
+            records: Vec::new(),
+            owner: Vec::new(),
+            clumps: Vec::new(),
+            arms: Vec::new(),
+            index: Vec::new(),
+            walls: Vec::new(),
+            contacts: Contacts::default(),
+            wall_contacts: WallContacts::default(),
+            incidence: Incidence::default(),
+            build: Build::default(),
+            tally: Tally::default(),
+            ledger: Ledger::default(),
+            time: 0.0,
+            steps: 0,
+            fresh: true,
+            limits: super::watch::Limits::default(),
+            timings: Timings::default(),
+        }
+    }
+
+    /// Adds a sphere at rest.
+    pub fn add_sphere(&mut self, sphere: &Sphere) -> BodyId {
+        let &Sphere { centre, radius, density, surface } = sphere;
+        let mass = density * 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3);
+        let (cell, offset) = self.domain.split(centre);
+        let mut record = R::Record::new(radius, mass);
+        record.place(offset);
+        let body = Body { inverse_inertia: 1.0 / (0.4 * mass * radius * radius), ..self.body(mass, cell, 1, surface) };
+        self.put(body, [record])
+    }
+
+    /// Adds a clump at rest. A template of one pebble makes a sphere.
+    pub fn add_clump(&mut self, placed: &Placed) -> BodyId {
+        let &Placed { template, centre, attitude, density, surface } = placed;
+        if let [pebble] = template.pebbles[..] {
+            return self.add_sphere(&Sphere { centre, radius: pebble.radius, density, surface });
+        }
+        let mass = density * template.volume;
+        let (cell, centre) = self.domain.split(centre);
+        let turned = attitude.quaternion();
+        let clump = Clump {
+            centre,
+            attitude: [turned.w, turned.i, turned.j, turned.k],
+            turning: [0.0; 3],
+            inverse_inertia: template.inertia.map(|i| 1.0 / (density * i)).into(),
+            arms: self.arms.len() as u32,
+        };
+        let matrix = rotation::matrix(&clump.attitude);
+        let records: Vec<R::Record> = template
+            .pebbles
+            .iter()
+            .map(|pebble| {
+                let mut record = R::Record::new(pebble.radius, mass);
+                record.place(add(centre, rotate(&matrix, pebble.centre.into())));
+                record
+            })
+            .collect();
+        self.arms.extend(template.pebbles.iter().map(|p| <[f64; 3]>::from(p.centre)));
+        let body = Body { clump: self.clumps.len() as u32, ..self.body(mass, cell, records.len(), surface) };
+        self.clumps.push(clump);
+        self.put(body, records)
+    }
+
+    fn body(&self, mass: f64, cell: [i32; 3], pebbles: usize, surface: u16) -> Body {
+        assert!(usize::from(surface) < self.laws.surfaces(), "a body has a surface with laws");
+        let id = self.bodies.len() as u32;
+        Body {
+            velocity: [0.0; 3],
+            spin: [0.0; 3],
+            inverse_mass: 1.0 / mass,
+            inverse_inertia: 0.0,
+            mass,
+            cell,
+            id,
+            rank: id,
+            first: self.owner.len() as u32,
+            pebbles: pebbles as u16,
+            surface,
+            clump: SPHERE,
+        }
+    }
+
+    fn put(&mut self, body: Body, records: impl IntoIterator<Item = R::Record>) -> BodyId {
+        let place = self.bodies.len() as u32;
+        self.records.truncate(self.owner.len());
+        self.records.extend(records);
+        self.owner.resize(self.records.len(), place);
+        self.bodies.push(body);
+        self.index.push(place);
+        self.build.outdated = true;
+        BodyId(body.id)
+    }
+
+    /// Adds a wall. Its frame stands at `pose`.
+    pub fn add_wall(&mut self, shape: Shape, pose: Pose, surface: u16, motion: Motion) -> WallId {
+        assert!(usize::from(surface) < self.laws.surfaces(), "a wall has a surface with laws");
+        let (cell, position) = self.domain.split(pose.position.into());
+        self.walls.push(Wall {
+            shape,
+            pose: Pose { position: position.into(), ..pose },
+            cell,
+            surface,
+            motion: Motion::Fixed,
+            velocity: Vector3::zeros(),
+            spin: Vector3::zeros(),
+            felt: Felt::default(),
+            moment: [0.0; 3],
+        });
+        self.build.outdated = true;
+        let id = WallId(self.walls.len() as u32 - 1);
+        self.set_motion(id, motion);
+        id
+    }
+
+    /// Adds a fixed plane through `point` \[m\] with the solid behind its unit `normal`.
+    pub fn add_plane(&mut self, point: [f64; 3], normal: [f64; 3], surface: u16) -> WallId {
+        let pose = Pose { position: point.into(), ..Pose::default() };
+        self.add_wall(Shape::Plane { normal: normal.into() }, pose, surface, Motion::Fixed)
+    }
+
+    /// Moves a wall in another way from now on.
+    pub fn set_motion(&mut self, wall: WallId, motion: Motion) {
+        let wall = &mut self.walls[wall.0 as usize];
+        (wall.velocity, wall.spin) = match &motion {
+            // a servo waits for what it will feel
+            Motion::Servo { .. } => (Vector3::zeros(), Vector3::zeros()),
+            given => given.velocity(self.time, self.dt.max(f64::MIN_POSITIVE), &Felt::default()),
+        };
+        wall.motion = motion;
+    }
+
+    /// Sets velocity \[m/s\] and angular velocity \[rad/s\] of a body.
+    pub fn set_velocity(&mut self, id: BodyId, velocity: [f64; 3], spin: [f64; 3]) {
+        let body = &mut self.bodies[self.index[id.0 as usize] as usize];
+        body.velocity = velocity;
+        let range = body.first as usize..body.first as usize + usize::from(body.pebbles);
+        if body.clump == SPHERE {
+            body.spin = spin;
+            self.records[range.start].move_with(velocity.map(R::of), spin.map(R::of));
+            return;
+        }
+        let clump = &mut self.clumps[body.clump as usize];
+        let matrix = rotation::matrix(&clump.attitude);
+        let local = rotate_back(&matrix, spin);
+        body.spin = rotate(&matrix, [0, 1, 2].map(|c| local[c] / clump.inverse_inertia[c]));
+        clump.turning = spin;
+        for (record, arm) in self.records[range].iter_mut().zip(&self.arms[clump.arms as usize..]) {
+            let velocity = add(velocity, cross(spin, rotate(&matrix, *arm)));
+            record.move_with(velocity.map(R::of), spin.map(R::of));
+        }
+    }
+
+    /// A body that keeps its velocity and spin, whatever pushes.
+    pub fn fix(&mut self, id: BodyId) {
+        let body = &mut self.bodies[self.index[id.0 as usize] as usize];
+        (body.inverse_mass, body.inverse_inertia) = (0.0, 0.0);
+        if body.clump != SPHERE {
+            self.clumps[body.clump as usize].inverse_inertia = [0.0; 3];
+        }
+    }
+
+    /// A body that does not turn.
+    pub fn hold_rotation(&mut self, id: BodyId) {
+        let body = &mut self.bodies[self.index[id.0 as usize] as usize];
+        body.inverse_inertia = 0.0;
+        if body.clump != SPHERE {
+            self.clumps[body.clump as usize].inverse_inertia = [0.0; 3];
+        }
+    }
+
+    /// Time step \[s\].
+    pub fn set_time_step(&mut self, dt: f64) {
+        assert!(dt.is_finite() && dt > 0.0, "a time step is a positive time");
+        self.dt = dt;
+    }
+
+    pub fn set_gravity(&mut self, gravity: Gravity) {
+        self.gravity = gravity;
+    }
+
+    /// Local damping after Cundall, from 0 to below 1.
+    pub fn set_damping(&mut self, damping: f64) {
+        assert!((0.0..1.0).contains(&damping), "local damping is a share from 0 to below 1");
+        self.damping = damping;
+    }
+
+    /// Changes every contact law, friction for example.
+    pub fn change_laws(&mut self, change: impl FnMut(&mut Law)) {
+        self.laws.change(change);
+    }
+
+    pub fn laws(&self) -> &Laws {
+        &self.laws
+    }
+
+    pub fn domain(&self) -> &Domain {
+        &self.domain
+    }
+
+    /// Time since the start \[s\].
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    pub fn time_step(&self) -> f64 {
+        self.dt
+    }
+
+    /// Number of bodies.
+    pub fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
+    pub fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
+    pub fn wall(&self, id: WallId) -> &Wall {
+        &self.walls[id.0 as usize]
+    }
+
+    pub fn walls(&self) -> &[Wall] {
+        &self.walls
+    }
+
+    pub fn body_state(&self, id: BodyId) -> BodyState {
+        let body = &self.bodies[self.index[id.0 as usize] as usize];
+        let (offset, spin, attitude) = if body.clump == SPHERE {
+            (self.records[body.first as usize].position(), body.spin, [1.0, 0.0, 0.0, 0.0])
+        } else {
+            let clump = &self.clumps[body.clump as usize];
+            (clump.centre, clump.turning, clump.attitude)
+        };
+        BodyState {
+            id,
+            place: self.domain.place(body.cell, offset),
+            velocity: body.velocity,
+            spin,
+            attitude,
+            mass: body.mass,
+            surface: body.surface,
+            pebbles: usize::from(body.pebbles),
+        }
+    }
+
+    /// All bodies in the order of making.
+    pub fn states(&self) -> impl Iterator<Item = BodyState> + '_ {
+        (0..self.bodies.len() as u32).map(|id| self.body_state(BodyId(id)))
+    }
+
+    /// All pebbles, body by body in the order of making.
+    pub fn pebbles(&self) -> impl Iterator<Item = PebbleState> + '_ {
+        self.index.iter().flat_map(move |&place| {
+            let body = &self.bodies[place as usize];
+            let range = body.first as usize..body.first as usize + usize::from(body.pebbles);
+            self.records[range].iter().map(move |record| PebbleState {
+                body: BodyId(body.id),
+                place: self.domain.place(body.cell, record.position()),
+                radius: record.radius(),
+            })
+        })
+    }
+}

@@ -1,0 +1,393 @@
+//! Lists of what may touch: bodies sorted by place, pairs found, histories carried over.
+//!
+//! Nothing here changes a bit of the motion. The contacts of a pebble are summed in an order that depends on its
+//! neighbours only, so how often lists are made, and how far they reach, is a matter of speed.
+
+use super::bed::Bed;
+use super::body::SPHERE;
+use super::contacts::{BlockVector, Contacts};
+use super::domain::{mirrored, steps_of};
+use super::integrate::Incidence;
+use super::lanes::{BLOCK, Real};
+use super::motion::Pose;
+use super::record::Record;
+use super::search::{CellTooSmall, Grids, Pair, Seen};
+use super::vector::{Vec3, dot, sub};
+use super::walls::{Kept, WallContacts, moved};
+use rayon::prelude::*;
+
+/// Steps that lists should last, at least; their reach grows until they do.
+const LIFE: u64 = 400;
+/// What single precision may hide of a displacement \[m\].
+const SLACK: f64 = 1e-6;
+
+/// When lists were made, and for how long they are good.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Build {
+    /// Something was added.
+    pub outdated: bool,
+    /// How far pairs may be apart and still be listed \[m\].
+    pub skin: f64,
+    /// A reach that a user wants \[m\].
+    pub fixed_skin: Option<f64>,
+    /// Bound of what two bodies have come nearer since \[m\].
+    pub travel: f64,
+    pub step: u64,
+    /// Lists made.
+    pub count: u64,
+    /// Where pebbles, walls were \[m\].
+    reference: Vec<[f32; 3]>,
+    origin: Vec<Vec3>,
+    walls: Vec<Pose>,
+}
+
+/// A contact that goes on in a new list, of a lower and a higher body.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Carried<R> {
+    pub low: (u32, u16),
+    pub high: (u32, u16),
+    /// Force on the lower.
+    pub shear: [R; 3],
+    pub damping: [R; 3],
+}
+
+/// Histories by the lower of two bodies.
+struct Histories<R> {
+    start: Vec<u32>,
+    all: Vec<Carried<R>>,
+}
+
+impl<R: Real> Histories<R> {
+    fn new(mut all: Vec<Carried<R>>, bodies: usize) -> Self {
+        let mut start = vec![0u32; bodies + 1];
+        all.iter().for_each(|c| start[c.low.0 as usize + 1] += 1);
+        (0..bodies).for_each(|b| start[b + 1] += start[b]);
+        all.sort_unstable_by_key(|c| (c.low, c.high));
+        Histories { start, all }
+    }
+
+    fn find(&self, low: (u32, u16), high: (u32, u16)) -> Option<&Carried<R>> {
+        let range = self.start[low.0 as usize] as usize..self.start[low.0 as usize + 1] as usize;
+        self.all[range].iter().find(|c| c.low == low && c.high == high)
+    }
+}
+
+impl<R: Real> Bed<R> {
+    /// Makes the lists anew where they are no longer good.
+    pub(super) fn refresh(&mut self) -> Result<(), CellTooSmall> {
+        if self.build.outdated {
+            return self.rebuild();
+        }
+        if self.build.travel <= self.build.skin {
+            return Ok(());
+        }
+        // the bound is spent; what was really gone decides
+        self.build.travel = self.gone();
+        if self.build.travel <= self.build.skin { Ok(()) } else { self.rebuild() }
+    }
+
+    /// The most that two bodies, or a body and a wall, can have come nearer since the lists were made \[m\].
+    fn gone(&self) -> f64 {
+        let pebbles = self.owner.len();
+        let square = (0..pebbles)
+            .into_par_iter()
+            .with_min_len(4096)
+            .map(|p| {
+                let before = self.build.reference[p].map(f64::from);
+                let now = sub(self.records[p].position(), self.build.origin[p / BLOCK]);
+                dot(sub(now, before), sub(now, before))
+            })
+            .reduce(|| 0.0, f64::max);
+        let walls = self.walls.iter().zip(&self.build.walls).map(|(w, p)| moved(w, p)).fold(0.0, f64::max);
+        square.sqrt() + square.sqrt().max(walls)
+    }
+
+    fn rebuild(&mut self) -> Result<(), CellTooSmall> {
+        let carried = self.carried();
+        let kept = self.kept();
+        self.rebuild_with(carried, kept)
+    }
+
+    /// Histories of all contacts between pebbles.
+    pub(super) fn carried(&self) -> Vec<Carried<R>> {
+        let contacts = &self.contacts;
+        let mut carried = Vec::new();
+        for place in 0..contacts.len() {
+            let (block, lane) = (place / BLOCK, place % BLOCK);
+            let of = |vectors: &[BlockVector<R>]| [0, 1, 2].map(|c| vectors.get(block).map_or(R::default(), |v| v[c][lane]));
+            let (shear, damping) = (of(&contacts.shear), of(&contacts.damping));
+            if shear.iter().chain(&damping).all(|&s| s == R::default()) {
+                continue;
+            }
+            let (a, b) = (self.name(contacts.first[place]), self.name(contacts.second[place]));
+            let swap = |v: [R; 3]| if a < b { v } else { v.map(|c| -c) };
+            carried.push(Carried { low: a.min(b), high: a.max(b), shear: swap(shear), damping: swap(damping) });
+        }
+        carried
+    }
+
+    pub(super) fn kept(&self) -> Vec<Kept<R>> {
+        self.wall_contacts.keep(|pebble| self.name(pebble))
+    }
+
+    /// Body in the order of making, and pebble in the body.
+    pub(super) fn name(&self, pebble: u32) -> (u32, u16) {
+        let body = &self.bodies[self.owner[pebble as usize] as usize];
+        (body.id, (pebble - body.first) as u16)
+    }
+
+    pub(super) fn rebuild_with(&mut self, carried: Vec<Carried<R>>, kept: Vec<Kept<R>>) -> Result<(), CellTooSmall> {
+        self.choose_skin();
+        self.settle();
+        self.sort();
+        let histories = Histories::new(carried, self.bodies.len());
+        self.contacts = Contacts::default();
+        self.incidence = Incidence::default();
+        let seen = self.seen();
+        let domain = self.domain;
+        let skin = self.build.skin + SLACK;
+        let (pairs, wall_contacts) = {
+            let grids = Grids::new(&domain, &seen, skin);
+            let about = |pebble: u32| {
+                let (body, part) = self.name(pebble);
+                (body, part, self.bodies[self.owner[pebble as usize] as usize].surface)
+            };
+            let walls = WallContacts::find(&self.walls, &domain, &seen, &grids, skin, &self.laws, about, &kept);
+            (grids.pairs(skin)?, walls)
+        };
+        drop(seen);
+        self.wall_contacts = wall_contacts;
+        self.fill(pairs, &histories);
+        drop(histories);
+        self.connect();
+        self.remember();
+        Ok(())
+    }
+
+    /// Reach of the lists: so that they last, and no more.
+    fn choose_skin(&mut self) {
+        let largest = self.records[..self.owner.len()].iter().map(Record::radius).fold(0.0, f64::max);
+        let (least, most) = (1e-3 * largest, 0.2 * largest);
+        let build = &mut self.build;
+        build.skin = match build.fixed_skin {
+            Some(skin) => skin,
+            None if build.count == 0 || build.skin == 0.0 => {
+                // what the fastest would go in the life of a list
+                let speed = 2.0 * self.bodies.iter().map(|b| dot(b.velocity, b.velocity)).fold(0.0, f64::max).sqrt();
+                (speed * self.dt * LIFE as f64).max(8.0 * least).min(most)
+            }
+            None if build.outdated => build.skin,
+            None => {
+                let life = self.steps - build.step;
+                let factor = if life < LIFE { 1.5 } else if life > 8 * LIFE { 0.7 } else { 1.0 };
+                (build.skin * factor).clamp(least, most)
+            }
+        };
+        build.count += 1;
+        build.step = self.steps;
+        build.travel = 0.0;
+        build.outdated = false;
+    }
+
+    /// Brings offsets back into their cells.
+    fn settle(&mut self) {
+        for body in &mut self.bodies {
+            let records = &mut self.records[body.first as usize..body.first as usize + usize::from(body.pebbles)];
+            let centre = match body.clump {
+                SPHERE => records[0].position(),
+                clump => self.clumps[clump as usize].centre,
+            };
+            let (cell, offset) = self.domain.settle(body.cell, centre);
+            if cell == body.cell {
+                continue;
+            }
+            body.cell = cell;
+            let moved = sub(centre, offset);
+            for record in records {
+                record.place(sub(record.position(), moved));
+            }
+            match body.clump {
+                SPHERE => self.records[body.first as usize].place(offset),
+                clump => self.clumps[clump as usize].centre = offset,
+            }
+        }
+    }
+
+    /// Sorts bodies along a curve that fills space, so that neighbours are near in memory.
+    fn sort(&mut self) {
+        let largest = self.records[..self.owner.len()].iter().map(Record::radius).fold(0.0, f64::max);
+        let place = |body: &super::body::Body| {
+            let first = self.records[body.first as usize].position();
+            self.domain.place(self.domain.wrap(body.cell), first)
+        };
+        let least = self.bodies.iter().map(place).fold([f64::INFINITY; 3], |low, p| [0, 1, 2].map(|c| low[c].min(p[c])));
+        let mut order: Vec<(u64, u32)> = self
+            .bodies
+            .iter()
+            .enumerate()
+            .map(|(index, body)| (interleave(sub(place(body), least).map(|x| x / (2.0 * largest))), index as u32))
+            .collect();
+        order.sort_unstable_by_key(|&(key, index)| (key, self.bodies[index as usize].id));
+        if order.iter().enumerate().all(|(new, &(_, old))| new as u32 == old) {
+            self.records.truncate(self.owner.len());
+        } else {
+            self.permute(&order);
+        }
+        // a pair far apart, for the places that fill up a block
+        for x in [0.0, 1e3] {
+            let mut idle = R::Record::new(0.0, 1.0);
+            idle.place([x, 0.0, 0.0]);
+            self.records.push(idle);
+        }
+    }
+
+    fn permute(&mut self, order: &[(u64, u32)]) {
+        let mut records = Vec::with_capacity(self.owner.len() + 2);
+        let mut owner = Vec::with_capacity(self.owner.len());
+        let mut clumps = Vec::with_capacity(self.clumps.len());
+        let mut bodies = Vec::with_capacity(self.bodies.len());
+        for (new, &(_, old)) in order.iter().enumerate() {
+            let mut body = self.bodies[old as usize];
+            let range = body.first as usize..body.first as usize + usize::from(body.pebbles);
+            body.first = records.len() as u32;
+            records.extend_from_slice(&self.records[range]);
+            owner.resize(records.len(), new as u32);
+            if body.clump != SPHERE {
+                clumps.push(self.clumps[body.clump as usize]);
+                body.clump = clumps.len() as u32 - 1;
+            }
+            self.index[body.id as usize] = new as u32;
+            bodies.push(body);
+        }
+        (self.records, self.owner, self.clumps, self.bodies) = (records, owner, clumps, bodies);
+    }
+
+    fn seen(&self) -> Vec<Seen> {
+        let of = |(pebble, &body): (usize, &u32)| {
+            let record = &self.records[pebble];
+            let cell = self.bodies[body as usize].cell;
+            Seen { cell, offset: record.position(), radius: record.radius(), body }
+        };
+        self.owner.iter().enumerate().map(of).collect()
+    }
+
+    /// Puts pairs into blocks of one law, with their histories.
+    fn fill(&mut self, tasks: Vec<Vec<Pair>>, histories: &Histories<R>) {
+        let idle = self.owner.len() as u32;
+        let surface = |pebble: u32| self.bodies[self.owner[pebble as usize] as usize].surface;
+        let mut contacts = Contacts::default();
+        let total: usize = tasks.iter().map(|pairs| pairs.len() + BLOCK).sum();
+        contacts.first.reserve(total);
+        contacts.second.reserve(total);
+        contacts.image.reserve(total);
+        for mut pairs in tasks {
+            let class = |pair: &Pair| self.laws.class(surface(pair.first), surface(pair.second));
+            pairs.sort_by_key(class);
+            for run in pairs.chunk_by(|a, b| class(a) == class(b)) {
+                contacts.first.extend(run.iter().map(|p| p.first));
+                contacts.second.extend(run.iter().map(|p| p.second));
+                contacts.image.extend(run.iter().map(|p| p.image));
+                let padded = contacts.first.len().next_multiple_of(BLOCK);
+                contacts.first.resize(padded, idle);
+                contacts.second.resize(padded, idle + 1);
+                contacts.image.resize(padded, 0);
+                contacts.law.resize(padded / BLOCK, class(&run[0]));
+            }
+        }
+        let zero = [[R::default(); BLOCK]; 3];
+        contacts.shear = vec![zero; contacts.law.len()];
+        if self.ledger.watched {
+            contacts.damping = vec![zero; contacts.law.len()];
+        }
+        for place in 0..contacts.len() {
+            if contacts.first[place] == idle || histories.all.is_empty() {
+                continue;
+            }
+            let (a, b) = (self.name(contacts.first[place]), self.name(contacts.second[place]));
+            let Some(carried) = histories.find(a.min(b), a.max(b)) else { continue };
+            let sign = if a < b { R::of(1.0) } else { R::of(-1.0) };
+            let (block, lane) = (place / BLOCK, place % BLOCK);
+            for c in 0..3 {
+                contacts.shear[block][c][lane] = sign * carried.shear[c];
+                if let Some(damping) = contacts.damping.get_mut(block) {
+                    damping[c][lane] = sign * carried.damping[c];
+                }
+            }
+        }
+        contacts.outcomes = vec![[R::default(); 8]; contacts.len() + self.wall_contacts.slots.len()];
+        self.contacts = contacts;
+    }
+
+    /// Lists the contacts of each pebble, in an order that copies of a bay share.
+    fn connect(&mut self) {
+        let (pebbles, contacts) = (self.owner.len(), &self.contacts);
+        let idle = pebbles as u32;
+        let mut start = vec![0u32; pebbles + 1];
+        let real = || (0..contacts.len()).filter(|&place| contacts.first[place] != idle);
+        let mut count = |pebble: u32, by: u32| start[pebble as usize + 1] += by;
+        for place in real() {
+            count(contacts.first[place], 1);
+            count(contacts.second[place], 1);
+        }
+        self.wall_contacts.entries.iter().for_each(|e| count(e.pebble, e.slots.1 - e.slots.0));
+        (0..pebbles).for_each(|p| start[p + 1] += start[p]);
+        let mut entries = vec![0u32; start[pebbles] as usize];
+        let mut next = start.clone();
+        let mut put = |pebble: u32, entry: u32| {
+            entries[next[pebble as usize] as usize] = entry;
+            next[pebble as usize] += 1;
+        };
+        for place in real() {
+            put(contacts.first[place], 2 * place as u32);
+            put(contacts.second[place], 2 * place as u32 + 1);
+        }
+        let walls = contacts.len() as u32;
+        for entry in &self.wall_contacts.entries {
+            (entry.slots.0..entry.slots.1).for_each(|slot| put(entry.pebble, 2 * (walls + slot)));
+        }
+        let key = |entry: u32| self.order_of(entry);
+        let mut rest = &mut entries[..];
+        let mut lists = Vec::with_capacity(pebbles);
+        for p in 0..pebbles {
+            let (list, others) = rest.split_at_mut((start[p + 1] - start[p]) as usize);
+            lists.push(list);
+            rest = others;
+        }
+        lists.into_par_iter().with_min_len(1024).for_each(|list| list.sort_unstable_by_key(|&e| key(e)));
+        self.incidence = Incidence { start, entries };
+    }
+
+    /// Where a contact stands among those of its pebble: first the neighbours' cells as seen from here, then their ranks.
+    fn order_of(&self, entry: u32) -> (u8, u32, u32) {
+        let (place, second) = ((entry >> 1) as usize, entry & 1 == 1);
+        if place >= self.contacts.len() {
+            return (u8::MAX, 0, place as u32);
+        }
+        let (other, image) = match second {
+            false => (self.contacts.second[place], self.contacts.image[place]),
+            true => (self.contacts.first[place], mirrored(self.contacts.image[place])),
+        };
+        let [x, y, z] = steps_of(image).map(|s| (s + 1) as u8);
+        let body = &self.bodies[self.owner[other as usize] as usize];
+        (16 * x + 4 * y + z, body.rank, other - body.first)
+    }
+
+    /// Notes where everything is. Displacements are kept in single precision, from an origin that blocks of pebbles share.
+    fn remember(&mut self) {
+        let records = &self.records[..self.owner.len()];
+        self.build.origin = records.chunks(BLOCK).map(|block| block[0].position()).collect();
+        let origin = &self.build.origin;
+        self.build.reference =
+            records.iter().enumerate().map(|(p, r)| sub(r.position(), origin[p / BLOCK]).map(|x| x as f32)).collect();
+        self.build.walls = self.walls.iter().map(|w| w.pose).collect();
+    }
+}
+
+/// A place's cell as one number: the bits of its three coordinates in turn (Morton).
+fn interleave(place: Vec3) -> u64 {
+    let spread = |x: f64| {
+        let x = x.clamp(0.0, f64::from((1 << 21) - 1)) as u64;
+        (0..21).fold(0u64, |bits, b| bits | (x >> b & 1) << (3 * b))
+    };
+    spread(place[0]) | spread(place[1]) << 1 | spread(place[2]) << 2
+}

@@ -1,0 +1,190 @@
+//! Contacts between pebbles: sorted once, kept in blocks of lanes, each force computed once (methods 4.2, pass 1).
+
+use super::domain::{Domain, Image};
+use super::force::{Meeting, Outcome, Prepared, Rule, outcome};
+use super::lanes::{BLOCK, Fine, Lanes, Num, Real, Vector, Work};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+/// Blocks that one task works on. Fixed, so that threads change nothing.
+const CHUNK: usize = 64;
+
+/// A vector for each contact of a block.
+pub(super) type BlockVector<R> = [[R; BLOCK]; 3];
+
+/// Pairs near each other, in blocks of one law each.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Contacts<R> {
+    /// Pebbles; what fills up a block is a pair that is far apart.
+    pub first: Vec<u32>,
+    pub second: Vec<u32>,
+    /// What the first is shifted by.
+    pub image: Vec<Image>,
+    /// Law of each block.
+    pub law: Vec<u16>,
+    /// Force of the shear springs \[N\].
+    pub shear: Vec<BlockVector<R>>,
+    /// Force of the dashpots one step ago, where energy is watched \[N\].
+    pub damping: Vec<BlockVector<R>>,
+    /// What the contacts do to their bodies, one for each contact; those with walls come behind.
+    pub outcomes: Vec<Outcome<R>>,
+}
+
+/// Energy in contacts, and lost by them in one step \[J\].
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactEnergy {
+    pub strain: f64,
+    pub slip: f64,
+    pub dashpot: f64,
+}
+
+impl std::ops::AddAssign for ContactEnergy {
+    fn add_assign(&mut self, other: ContactEnergy) {
+        self.strain += other.strain;
+        self.slip += other.slip;
+        self.dashpot += other.dashpot;
+    }
+}
+
+/// What the pass reads beside the contacts.
+#[derive(Clone, Copy)]
+pub(super) struct Surroundings<'a, R: Real> {
+    pub records: &'a [R::Record],
+    pub laws: &'a [Prepared],
+    /// Shift of every image \[m\].
+    pub shifts: &'a [[f64; 3]; 64],
+    pub dt: f64,
+}
+
+/// Shift of every image \[m\].
+pub(super) fn shifts(domain: &Domain) -> [[f64; 3]; 64] {
+    std::array::from_fn(|image| domain.shift(image as Image))
+}
+
+impl<R: Real> Contacts<R> {
+    /// Number of places, those that fill up blocks included.
+    pub fn len(&self) -> usize {
+        self.first.len()
+    }
+
+    /// Computes every force from the state of the pebbles; energies only where `watched`.
+    pub fn evaluate(&mut self, around: Surroundings<R>, watched: bool) -> ContactEnergy {
+        let pairs = self.len();
+        if watched && self.damping.len() != self.shear.len() {
+            self.damping = vec![[[R::default(); BLOCK]; 3]; self.shear.len()];
+        }
+        // an empty slice where nothing is watched
+        let mut damping: Vec<&mut [BlockVector<R>]> = match watched {
+            true => self.damping.chunks_mut(CHUNK).collect(),
+            false => self.shear.chunks(CHUNK).map(|_| &mut [][..]).collect(),
+        };
+        let energies: Vec<ContactEnergy> = self
+            .shear
+            .par_chunks_mut(CHUNK)
+            .zip(self.outcomes[..pairs].par_chunks_mut(CHUNK * BLOCK))
+            .zip(damping.par_iter_mut())
+            .enumerate()
+            .map(|(chunk, ((shear, outcomes), damping))| {
+                let blocks = chunk * CHUNK..chunk * CHUNK + shear.len();
+                let places = blocks.start * BLOCK..blocks.end * BLOCK;
+                R::dispatch(Pass {
+                    around,
+                    first: &self.first[places.clone()],
+                    second: &self.second[places.clone()],
+                    image: &self.image[places],
+                    law: &self.law[blocks],
+                    shear,
+                    outcomes,
+                    damping,
+                })
+            })
+            .collect();
+        let mut total = ContactEnergy::default();
+        energies.into_iter().for_each(|energy| total += energy);
+        total
+    }
+}
+
+/// A chunk of contacts at work.
+struct Pass<'a, R: Real> {
+    around: Surroundings<'a, R>,
+    first: &'a [u32],
+    second: &'a [u32],
+    image: &'a [Image],
+    law: &'a [u16],
+    shear: &'a mut [BlockVector<R>],
+    outcomes: &'a mut [Outcome<R>],
+    damping: &'a mut [BlockVector<R>],
+}
+
+impl<R: Real> Work<R> for Pass<'_, R> {
+    type Output = ContactEnergy;
+
+    #[inline(always)]
+    fn run<L: Lanes<Real = R>>(mut self, lanes: L) -> ContactEnergy {
+        let mut sums = [[0.0; BLOCK]; 3];
+        for block in 0..self.shear.len() {
+            // no closures on this path: their bodies would lose the instructions of the lanes
+            match &self.around.laws[usize::from(self.law[block])] {
+                Prepared::Linear(rule) => self.block(lanes, block, rule, &mut sums),
+                Prepared::Hertz(rule) => self.block(lanes, block, rule, &mut sums),
+            }
+        }
+        let [strain, slip, dashpot] = sums.map(|lanes| lanes.iter().sum());
+        ContactEnergy { strain, slip, dashpot }
+    }
+}
+
+impl<R: Real> Pass<'_, R> {
+    #[inline(always)]
+    fn block<L: Lanes<Real = R>>(&mut self, lanes: L, block: usize, rule: &impl Rule, sums: &mut [[f64; BLOCK]; 3]) {
+        for at in (0..BLOCK).step_by(L::WIDTH) {
+            let places = block * BLOCK + at..block * BLOCK + at + L::WIDTH;
+            let a = lanes.gather(self.around.records, &self.first[places.clone()]);
+            let b = lanes.gather(self.around.records, &self.second[places.clone()]);
+            let meeting = Meeting::of(lanes, &a, &b, self.shift(lanes, places.clone()));
+            let shear = &mut self.shear[block];
+            let contact = rule.force(lanes, &meeting, Vector::load(lanes, shear, at));
+            contact.shear.store(shear, at);
+            lanes.scatter(outcome(&meeting, &contact), &mut self.outcomes[places]);
+            if let Some(before) = self.damping.get_mut(block) {
+                let half = Num::splat(lanes, -0.5 * self.around.dt);
+                let dashpot = (Vector::load(lanes, before, at) + contact.damping).dot(meeting.velocity) * half;
+                contact.damping.store(before, at);
+                for (sum, energy) in sums.iter_mut().zip([contact.strain, contact.slip, dashpot]) {
+                    add(&mut sum[at..at + L::WIDTH], energy);
+                }
+            }
+        }
+    }
+
+    /// Shift of the first pebbles; none where all are in the cell of the second.
+    #[inline(always)]
+    fn shift<L: Lanes<Real = R>>(&self, lanes: L, places: std::ops::Range<usize>) -> Option<[Fine<L>; 3]> {
+        let images = &self.image[places];
+        let mut any = 0;
+        for &image in images {
+            any |= image;
+        }
+        if any == 0 {
+            return None;
+        }
+        let mut columns = [[0.0; BLOCK]; 3];
+        for (l, &image) in images.iter().enumerate() {
+            for (column, shift) in columns.iter_mut().zip(self.around.shifts[usize::from(image)]) {
+                column[l] = shift;
+            }
+        }
+        let [x, y, z] = &columns;
+        Some([Fine::load(lanes, x), Fine::load(lanes, y), Fine::load(lanes, z)])
+    }
+}
+
+#[inline(always)]
+fn add<L: Lanes>(sums: &mut [f64], energy: Num<L>) {
+    let mut parts = [L::Real::default(); BLOCK];
+    energy.store(&mut parts[..L::WIDTH]);
+    for (sum, part) in sums.iter_mut().zip(parts) {
+        *sum += part.to_f64();
+    }
+}

@@ -1,0 +1,183 @@
+//! Where bodies may be: open or periodic in each direction, cut along x into bays.
+//!
+//! A position is a cell and an offset in it. Copies of a bay have equal offsets, so what happens between neighbours
+//! is the same arithmetic in every copy, bit by bit.
+
+use serde::{Deserialize, Serialize};
+
+/// Cells of the domain along each axis.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Domain {
+    /// Length of a cell \[m\]; none where the axis is one open cell.
+    lengths: [Option<f64>; 3],
+    /// Cells after which the axis comes back to itself; none where it goes on for ever.
+    counts: [Option<u32>; 3],
+}
+
+/// Relative cells of two bodies, of -1, 0 and 1 along each axis; 0 is the same cell.
+pub type Image = u8;
+
+impl Default for Domain {
+    fn default() -> Self {
+        Domain::open()
+    }
+}
+
+impl Domain {
+    /// Open in all directions.
+    pub fn open() -> Domain {
+        Domain { lengths: [None; 3], counts: [None; 3] }
+    }
+
+    /// Periodic along `axis` (0, 1, 2 for x, y, z) after `length` \[m\].
+    pub fn periodic(mut self, axis: usize, length: f64) -> Domain {
+        assert!(length.is_finite() && length > 0.0, "a period is a positive length");
+        (self.lengths[axis], self.counts[axis]) = (Some(length), Some(1));
+        self
+    }
+
+    /// `count` bays of `length` \[m\] along x, the last next to the first.
+    pub fn periodic_bays(mut self, length: f64, count: u32) -> Domain {
+        assert!(count > 0, "a domain has a bay");
+        self = self.periodic(0, length);
+        self.counts[0] = Some(count);
+        self
+    }
+
+    /// Bays of `length` \[m\] along an open x.
+    pub fn bays(mut self, length: f64) -> Domain {
+        assert!(length.is_finite() && length > 0.0, "a bay is a positive length");
+        (self.lengths[0], self.counts[0]) = (Some(length), None);
+        self
+    }
+
+    /// Period of an axis \[m\].
+    pub fn period(&self, axis: usize) -> Option<f64> {
+        self.counts[axis].and_then(|n| self.lengths[axis].map(|l| l * f64::from(n)))
+    }
+
+    /// Length of a cell \[m\].
+    pub fn cell_length(&self, axis: usize) -> Option<f64> {
+        self.lengths[axis]
+    }
+
+    /// Cells in a period.
+    pub fn cells(&self, axis: usize) -> Option<u32> {
+        self.counts[axis]
+    }
+
+    /// Cell and offset of a place \[m\].
+    pub fn split(&self, place: [f64; 3]) -> ([i32; 3], [f64; 3]) {
+        self.settle([0; 3], place)
+    }
+
+    /// Cell and offset once offsets are brought back into their cell.
+    pub(super) fn settle(&self, mut cell: [i32; 3], mut offset: [f64; 3]) -> ([i32; 3], [f64; 3]) {
+        for axis in 0..3 {
+            if let Some(length) = self.lengths[axis] {
+                let steps = (offset[axis] / length).floor();
+                if steps != 0.0 {
+                    cell[axis] += steps as i32;
+                    offset[axis] -= steps * length;
+                }
+            }
+        }
+        (cell, offset)
+    }
+
+    /// Where a cell's offset lies \[m\], not wrapped into the period.
+    pub fn place(&self, cell: [i32; 3], offset: [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| offset[axis] + self.lengths[axis].map_or(0.0, |l| l * f64::from(cell[axis])))
+    }
+
+    /// The cell within the period.
+    pub(super) fn wrap(&self, cell: [i32; 3]) -> [i32; 3] {
+        [0, 1, 2].map(|axis| self.counts[axis].map_or(cell[axis], |n| cell[axis].rem_euclid(n as i32)))
+    }
+
+    /// Cells from `b` to `a` along the shorter way round, given what their offsets differ by.
+    fn steps(&self, axis: usize, a: i32, b: i32, apart: f64) -> Option<i32> {
+        let Some(length) = self.lengths[axis] else { return Some(0) };
+        let steps = match self.counts[axis] {
+            None => a - b,
+            Some(n) => {
+                let period = length * f64::from(n);
+                let raw = a - b;
+                raw - ((f64::from(raw) * length + apart) / period).round() as i32 * n as i32
+            }
+        };
+        (-1..=1).contains(&steps).then_some(steps)
+    }
+
+    /// What to shift the first of two by when they meet; none where they are more than a cell apart.
+    pub(super) fn image(&self, a: ([i32; 3], [f64; 3]), b: ([i32; 3], [f64; 3])) -> Option<Image> {
+        let mut image = 0;
+        for axis in 0..3 {
+            let steps = self.steps(axis, a.0[axis], b.0[axis], a.1[axis] - b.1[axis])?;
+            image |= ((steps & 3) as u8) << (2 * axis);
+        }
+        Some(image)
+    }
+
+    /// Shift of an image \[m\].
+    pub(super) fn shift(&self, image: Image) -> [f64; 3] {
+        let steps = steps_of(image);
+        [0, 1, 2].map(|axis| self.lengths[axis].map_or(0.0, |l| l * f64::from(steps[axis])))
+    }
+
+    /// From `b` to `a` the shortest way \[m\].
+    pub(super) fn between(&self, a: ([i32; 3], [f64; 3]), b: ([i32; 3], [f64; 3])) -> [f64; 3] {
+        [0, 1, 2].map(|axis| {
+            let apart = a.1[axis] - b.1[axis];
+            let Some(length) = self.lengths[axis] else { return apart };
+            let mut steps = a.0[axis] - b.0[axis];
+            if let Some(n) = self.counts[axis] {
+                let period = length * f64::from(n);
+                steps -= ((f64::from(steps) * length + apart) / period).round() as i32 * n as i32;
+            }
+            apart + length * f64::from(steps)
+        })
+    }
+}
+
+/// Steps of an image along each axis.
+pub(super) fn steps_of(image: Image) -> [i32; 3] {
+    [0, 1, 2].map(|axis| match (image >> (2 * axis)) & 3 {
+        3 => -1,
+        steps => i32::from(steps),
+    })
+}
+
+/// The image seen from the other of the two.
+pub(super) fn mirrored(image: Image) -> Image {
+    steps_of(image).iter().enumerate().fold(0, |code, (axis, &s)| code | (((-s & 3) as u8) << (2 * axis)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn images_go_the_shorter_way_round() {
+        let domain = Domain::open().periodic_bays(0.6, 5).periodic(1, 1.2);
+        let (a, b) = (domain.split([0.01, 1.19, 7.0]), domain.split([2.99, 0.02, 6.0]));
+        let image = domain.image(a, b).unwrap();
+        assert_eq!(steps_of(image), [1, -1, 0]);
+        assert_eq!(steps_of(mirrored(image)), [-1, 1, 0]);
+        let shift = domain.shift(image);
+        let between = domain.between(a, b);
+        for axis in 0..3 {
+            assert!((a.1[axis] - b.1[axis] + shift[axis] - between[axis]).abs() < 1e-15);
+        }
+        assert!((between[0] - 0.02).abs() < 1e-12 && (between[1] + 0.03).abs() < 1e-12, "{between:?}");
+    }
+
+    #[test]
+    fn offsets_are_equal_in_every_bay() {
+        let domain = Domain::open().bays(0.6);
+        let (cell, offset) = domain.split([-0.25, 3.0, 0.0]);
+        assert_eq!((cell, offset[1]), ([-1, 0, 0], 3.0));
+        assert!((offset[0] - 0.35).abs() < 1e-15);
+        assert!((domain.place(cell, offset)[0] + 0.25).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,96 @@
+//! Where the work goes: a ledger of energies by kind.
+
+use super::contacts::ContactEnergy;
+use super::integrate::Tally;
+use super::walls::Wall;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// Energies at the start of the last step \[J\], and what was done and lost since the watch began.
+///
+/// Work is the trapezoidal rule of force over displacement, as the leapfrog has it; so what remains unaccounted
+/// shrinks with the square of the time step, or with the step itself where dashpots lag.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Energy {
+    /// Kinetic, of translation and of rotation.
+    pub translation: f64,
+    pub rotation: f64,
+    /// In the springs of contacts.
+    pub strain: f64,
+    /// Lost to slip, to dashpots and to local damping.
+    pub slip: f64,
+    pub dashpot: f64,
+    pub damping: f64,
+    /// Work done by gravity and by walls.
+    pub gravity: f64,
+    pub walls: f64,
+    /// Kinetic and strain energy when the watch began.
+    pub start: f64,
+}
+
+impl Energy {
+    /// Kinetic energy \[J\].
+    pub fn kinetic(&self) -> f64 {
+        self.translation + self.rotation
+    }
+
+    /// Lost since the watch began \[J\].
+    pub fn lost(&self) -> f64 {
+        self.slip + self.dashpot + self.damping
+    }
+
+    /// What is there and was lost, less what was there and was done: 0 but for the error of the scheme \[J\].
+    pub fn residual(&self) -> f64 {
+        self.kinetic() + self.strain + self.lost() - self.start - self.gravity - self.walls
+    }
+}
+
+/// The running account.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub(super) struct Ledger {
+    pub watched: bool,
+    /// Whether a step has been entered.
+    begun: bool,
+    pub now: Energy,
+    /// Second halves of what the last step did and lost: gravity, local damping.
+    pending: [f64; 2],
+    /// Forces and moments on walls one step ago.
+    walls: Vec<(Vector3<f64>, Vector3<f64>)>,
+}
+
+impl Ledger {
+    pub fn watch(&mut self, on: bool) {
+        *self = Ledger { watched: on, ..Ledger::default() };
+    }
+
+    /// Enters what the contacts of a step say, before the walls move on.
+    pub fn enter_contacts(&mut self, contacts: ContactEnergy, walls: &[Wall], dt: f64) {
+        let now = &mut self.now;
+        now.strain = contacts.strain;
+        let felt: Vec<_> = walls.iter().map(|w| (w.felt.force, Vector3::from(w.moment))).collect();
+        if self.begun {
+            now.slip += contacts.slip;
+            now.dashpot += contacts.dashpot;
+            for ((wall, (force, moment)), (f, m)) in walls.iter().zip(&felt).zip(&self.walls) {
+                // what the wall does to the grains is the opposite of what it feels
+                now.walls -= 0.5 * dt * ((force + f).dot(&wall.velocity) + (moment + m).dot(&wall.spin));
+            }
+        }
+        self.walls = felt;
+    }
+
+    /// Enters what the bodies of the same step say.
+    pub fn enter_bodies(&mut self, tally: &Tally) {
+        let now = &mut self.now;
+        (now.translation, now.rotation) = (tally.translation, tally.rotation);
+        let halves = [tally.gravity, tally.damping].map(|work| 0.5 * work);
+        if self.begun {
+            now.gravity += self.pending[0] + halves[0];
+            now.damping += self.pending[1] + halves[1];
+        } else {
+            now.start = now.kinetic() + now.strain;
+            self.begun = true;
+        }
+        self.pending = halves;
+    }
+}

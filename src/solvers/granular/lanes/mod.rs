@@ -1,0 +1,371 @@
+//! Numbers in lanes: the same arithmetic on many contacts at once.
+//!
+//! The physics of a contact is written once, over [`Num`] and [`Fine`]; a [`Lanes`] says how wide they are and with which
+//! instructions they work. Only operations that IEEE 754 rounds correctly are used (`+ - * /`, square root, fused
+//! multiply-add), so every kind of lane gives the same bits.
+
+mod plain;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+pub use plain::Plain;
+
+use super::record::Record;
+use bytemuck::Pod;
+use serde::{Serialize, de::DeserializeOwned};
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// Contacts that are stored together; a multiple of every width.
+pub const BLOCK: usize = 16;
+
+/// A precision that forces, velocities and histories of contacts may have. Positions and sums are always `f64`.
+pub trait Real:
+    Pod
+    + Send
+    + Sync
+    + PartialOrd
+    + Default
+    + std::fmt::Debug
+    + Serialize
+    + DeserializeOwned
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + 'static
+{
+    /// What a contact reads of a pebble.
+    type Record: Record<Self>;
+    /// The name of the precision, for tables.
+    const NAME: &'static str;
+
+    fn of(value: f64) -> Self;
+    fn to_f64(self) -> f64;
+    fn sqrt(self) -> Self;
+    fn fma(self, factor: Self, summand: Self) -> Self;
+
+    /// Runs `work` with the widest lanes of this machine.
+    fn dispatch<W: Work<Self>>(work: W) -> W::Output;
+}
+
+/// Something done in lanes.
+pub trait Work<R: Real> {
+    type Output;
+    fn run<L: Lanes<Real = R>>(self, lanes: L) -> Self::Output;
+}
+
+/// Columns of some pebbles' records, a pebble a lane.
+pub struct Columns<L: Lanes> {
+    pub position: [Fine<L>; 3],
+    pub radius: Fine<L>,
+    pub velocity: Vector<L>,
+    pub spin: Vector<L>,
+    pub mass: Num<L>,
+}
+
+/// A set of lanes, with the instructions that work on them.
+pub trait Lanes: Copy {
+    const WIDTH: usize;
+    type Real: Real;
+    /// A number of the contact's precision in each lane.
+    type Num: Copy;
+    /// An `f64` in each lane.
+    type Fine: Copy;
+    type Mask: Copy;
+
+    fn splat(self, value: Self::Real) -> Self::Num;
+    fn load(self, from: &[Self::Real]) -> Self::Num;
+    fn store(self, value: Self::Num, to: &mut [Self::Real]);
+    fn add(self, a: Self::Num, b: Self::Num) -> Self::Num;
+    fn sub(self, a: Self::Num, b: Self::Num) -> Self::Num;
+    fn mul(self, a: Self::Num, b: Self::Num) -> Self::Num;
+    fn div(self, a: Self::Num, b: Self::Num) -> Self::Num;
+    /// `a b + c`, rounded once.
+    fn fma(self, a: Self::Num, b: Self::Num, c: Self::Num) -> Self::Num;
+    fn sqrt(self, a: Self::Num) -> Self::Num;
+    fn min(self, a: Self::Num, b: Self::Num) -> Self::Num;
+    fn max(self, a: Self::Num, b: Self::Num) -> Self::Num;
+    fn less(self, a: Self::Num, b: Self::Num) -> Self::Mask;
+    /// `yes` where the mask holds, `no` elsewhere.
+    fn select(self, mask: Self::Mask, yes: Self::Num, no: Self::Num) -> Self::Num;
+    fn any(self, mask: Self::Mask) -> bool;
+
+    fn fine_splat(self, value: f64) -> Self::Fine;
+    fn fine_load(self, from: &[f64]) -> Self::Fine;
+    fn fine_add(self, a: Self::Fine, b: Self::Fine) -> Self::Fine;
+    fn fine_sub(self, a: Self::Fine, b: Self::Fine) -> Self::Fine;
+    fn fine_fma(self, a: Self::Fine, b: Self::Fine, c: Self::Fine) -> Self::Fine;
+    fn narrow(self, a: Self::Fine) -> Self::Num;
+    fn widen(self, a: Self::Num) -> Self::Fine;
+
+    /// The records at `index`, transposed.
+    fn gather(self, records: &[<Self::Real as Real>::Record], index: &[u32]) -> Columns<Self>;
+    /// Eight numbers a lane, written lane by lane.
+    fn scatter(self, columns: [Num<Self>; 8], to: &mut [[Self::Real; 8]]);
+}
+
+/// A number of the contact's precision in each lane.
+#[derive(Clone, Copy)]
+pub struct Num<L: Lanes> {
+    pub lanes: L,
+    pub value: L::Num,
+}
+
+/// An `f64` in each lane.
+#[derive(Clone, Copy)]
+pub struct Fine<L: Lanes> {
+    pub lanes: L,
+    pub value: L::Fine,
+}
+
+macro_rules! operator {
+    ($type:ident, $trait:ident, $name:ident, $call:ident) => {
+        impl<L: Lanes> $trait for $type<L> {
+            type Output = Self;
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                $type { lanes: self.lanes, value: self.lanes.$call(self.value, other.value) }
+            }
+        }
+    };
+}
+
+operator!(Num, Add, add, add);
+operator!(Num, Sub, sub, sub);
+operator!(Num, Mul, mul, mul);
+operator!(Num, Div, div, div);
+operator!(Fine, Add, add, fine_add);
+operator!(Fine, Sub, sub, fine_sub);
+
+impl<L: Lanes> Neg for Num<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.of(-L::Real::of(1.0)) * self
+    }
+}
+
+impl<L: Lanes> Num<L> {
+    #[inline(always)]
+    pub fn splat(lanes: L, value: f64) -> Self {
+        Num { lanes, value: lanes.splat(L::Real::of(value)) }
+    }
+
+    #[inline(always)]
+    pub fn load(lanes: L, from: &[L::Real]) -> Self {
+        Num { lanes, value: lanes.load(from) }
+    }
+
+    #[inline(always)]
+    pub fn store(self, to: &mut [L::Real]) {
+        self.lanes.store(self.value, to);
+    }
+
+    /// The same number in every lane.
+    #[inline(always)]
+    pub fn of(self, value: L::Real) -> Self {
+        Num { lanes: self.lanes, value: self.lanes.splat(value) }
+    }
+
+    /// `self factor + summand`, rounded once.
+    #[inline(always)]
+    pub fn fma(self, factor: Self, summand: Self) -> Self {
+        Num { lanes: self.lanes, value: self.lanes.fma(self.value, factor.value, summand.value) }
+    }
+
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        Num { lanes: self.lanes, value: self.lanes.sqrt(self.value) }
+    }
+
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        Num { lanes: self.lanes, value: self.lanes.min(self.value, other.value) }
+    }
+
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        Num { lanes: self.lanes, value: self.lanes.max(self.value, other.value) }
+    }
+
+    #[inline(always)]
+    pub fn less(self, other: Self) -> L::Mask {
+        self.lanes.less(self.value, other.value)
+    }
+
+    /// `self` where the mask holds, `other` elsewhere.
+    #[inline(always)]
+    pub fn where_or(self, mask: L::Mask, other: Self) -> Self {
+        Num { lanes: self.lanes, value: self.lanes.select(mask, self.value, other.value) }
+    }
+
+    #[inline(always)]
+    pub fn widen(self) -> Fine<L> {
+        Fine { lanes: self.lanes, value: self.lanes.widen(self.value) }
+    }
+}
+
+impl<L: Lanes> Fine<L> {
+    #[inline(always)]
+    pub fn splat(lanes: L, value: f64) -> Self {
+        Fine { lanes, value: lanes.fine_splat(value) }
+    }
+
+    #[inline(always)]
+    pub fn load(lanes: L, from: &[f64]) -> Self {
+        Fine { lanes, value: lanes.fine_load(from) }
+    }
+
+    /// `self factor + summand`, rounded once.
+    #[inline(always)]
+    pub fn fma(self, factor: Self, summand: Self) -> Self {
+        Fine { lanes: self.lanes, value: self.lanes.fine_fma(self.value, factor.value, summand.value) }
+    }
+
+    #[inline(always)]
+    pub fn narrow(self) -> Num<L> {
+        Num { lanes: self.lanes, value: self.lanes.narrow(self.value) }
+    }
+}
+
+/// A vector in each lane.
+#[derive(Clone, Copy)]
+pub struct Vector<L: Lanes>(pub [Num<L>; 3]);
+
+impl<L: Lanes> Vector<L> {
+    #[inline(always)]
+    pub fn dot(self, b: Self) -> Num<L> {
+        let (a, b) = (self.0, b.0);
+        a[2].fma(b[2], a[1].fma(b[1], a[0] * b[0]))
+    }
+
+    /// Both products of a component are rounded, so that swapped signs give exactly swapped signs.
+    #[inline(always)]
+    pub fn cross(self, b: Self) -> Self {
+        let (a, b) = (self.0, b.0);
+        Vector([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    }
+
+    #[inline(always)]
+    pub fn scale(self, factor: Num<L>) -> Self {
+        let [x, y, z] = self.0;
+        Vector([x * factor, y * factor, z * factor])
+    }
+
+    /// `self factor + summand`.
+    #[inline(always)]
+    pub fn fma(self, factor: Num<L>, summand: Self) -> Self {
+        let (a, b) = (self.0, summand.0);
+        Vector([a[0].fma(factor, b[0]), a[1].fma(factor, b[1]), a[2].fma(factor, b[2])])
+    }
+
+    /// `self` where the mask holds, 0 elsewhere.
+    #[inline(always)]
+    pub fn only(self, mask: L::Mask) -> Self {
+        let [x, y, z] = self.0;
+        let zero = Num::splat(x.lanes, 0.0);
+        Vector([x.where_or(mask, zero), y.where_or(mask, zero), z.where_or(mask, zero)])
+    }
+
+    #[inline(always)]
+    pub fn load(lanes: L, from: &[[L::Real; BLOCK]; 3], at: usize) -> Self {
+        let end = at + L::WIDTH;
+        Vector([
+            Num::load(lanes, &from[0][at..end]),
+            Num::load(lanes, &from[1][at..end]),
+            Num::load(lanes, &from[2][at..end]),
+        ])
+    }
+
+    #[inline(always)]
+    pub fn store(self, to: &mut [[L::Real; BLOCK]; 3], at: usize) {
+        for c in 0..3 {
+            self.0[c].store(&mut to[c][at..at + L::WIDTH]);
+        }
+    }
+}
+
+impl<L: Lanes> Add for Vector<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        Vector([self.0[0] + b.0[0], self.0[1] + b.0[1], self.0[2] + b.0[2]])
+    }
+}
+
+impl<L: Lanes> Sub for Vector<L> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        Vector([self.0[0] - b.0[0], self.0[1] - b.0[1], self.0[2] - b.0[2]])
+    }
+}
+
+impl Real for f32 {
+    type Record = super::record::Compact;
+    const NAME: &'static str = "mixed";
+
+    #[inline(always)]
+    fn of(value: f64) -> f32 {
+        value as f32
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        f64::from(self)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> f32 {
+        f32::sqrt(self)
+    }
+    #[inline(always)]
+    fn fma(self, factor: f32, summand: f32) -> f32 {
+        self.mul_add(factor, summand)
+    }
+
+    #[inline(always)]
+    fn dispatch<W: Work<f32>>(work: W) -> W::Output {
+        #[cfg(target_arch = "x86_64")]
+        {
+            if let Some(lanes) = x86::Wide::detect() {
+                return lanes.enter(work, lanes);
+            }
+            if let Some(lanes) = x86::Middle::detect() {
+                return lanes.enter(work, lanes);
+            }
+        }
+        work.run(Plain::<f32, 8>::new())
+    }
+}
+
+impl Real for f64 {
+    type Record = super::record::Full;
+    const NAME: &'static str = "f64";
+
+    #[inline(always)]
+    fn of(value: f64) -> f64 {
+        value
+    }
+    #[inline(always)]
+    fn to_f64(self) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn fma(self, factor: f64, summand: f64) -> f64 {
+        self.mul_add(factor, summand)
+    }
+
+    #[inline(always)]
+    fn dispatch<W: Work<f64>>(work: W) -> W::Output {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(lanes) = x86::Middle::detect() {
+            // the reference is plain code; only its fused products want the instructions
+            return lanes.enter(work, Plain::<f64, 8>::new());
+        }
+        work.run(Plain::<f64, 8>::new())
+    }
+}

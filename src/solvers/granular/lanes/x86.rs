@@ -1,0 +1,397 @@
+//! Sixteen lanes of AVX-512 and eight of AVX2, in mixed precision.
+//!
+//! Records come in by whole cache lines and are transposed in registers: a gather instruction would fetch each number
+//! of a line by itself. No closures here: their bodies would lose the instructions that their surroundings have.
+
+use super::{Columns, Fine, Lanes, Num, Plain, Vector, Work};
+use crate::solvers::granular::record::Compact;
+use bytemuck::{cast, cast_ref, must_cast};
+use pulp::NullaryFnOnce;
+use pulp::x86::{V3, V4};
+use std::arch::x86_64::{__m128, __m256, __m256d, __m512, __m512d, __m512i};
+
+/// Work with the lanes that it is to be done in. A closure would not do: the compiler may leave its body outside the
+/// function that has the instructions.
+struct Entered<W, L> {
+    work: W,
+    lanes: L,
+}
+
+impl<W: Work<L::Real>, L: Lanes> NullaryFnOnce for Entered<W, L> {
+    type Output = W::Output;
+    #[inline(always)]
+    fn call(self) -> W::Output {
+        self.work.run(self.lanes)
+    }
+}
+
+/// AVX-512.
+#[derive(Debug, Clone, Copy)]
+pub struct Wide(V4);
+
+impl Wide {
+    #[inline(always)]
+    pub fn detect() -> Option<Wide> {
+        V4::try_new().map(Wide)
+    }
+
+    /// Runs `work` compiled for these instructions, in `lanes`.
+    #[inline(always)]
+    pub fn enter<L: Lanes, W: Work<L::Real>>(self, work: W, lanes: L) -> W::Output {
+        self.0.vectorize(Entered { work, lanes })
+    }
+
+    /// Words of eight records, record by record, to eight words of one kind each.
+    #[inline(always)]
+    fn columns(self, records: &[Compact], index: &[u32]) -> [__m512d; 8] {
+        let mut rows = [self.0.avx512f._mm512_setzero_pd(); 8];
+        for l in 0..8 {
+            rows[l] = *cast_ref(&records[index[l] as usize]);
+        }
+        let mut columns = rows;
+        let s = self.0.avx512f;
+        for odd in 0..2 {
+            let mut pairs = [rows[0]; 4];
+            for p in 0..4 {
+                let (a, b) = (rows[2 * p], rows[2 * p + 1]);
+                pairs[p] = if odd == 0 { s._mm512_unpacklo_pd(a, b) } else { s._mm512_unpackhi_pd(a, b) };
+            }
+            let low = s._mm512_shuffle_f64x2::<0x88>(pairs[0], pairs[1]);
+            let high = s._mm512_shuffle_f64x2::<0x88>(pairs[2], pairs[3]);
+            columns[odd] = s._mm512_shuffle_f64x2::<0x88>(low, high);
+            columns[odd + 4] = s._mm512_shuffle_f64x2::<0xdd>(low, high);
+            let low = s._mm512_shuffle_f64x2::<0xdd>(pairs[0], pairs[1]);
+            let high = s._mm512_shuffle_f64x2::<0xdd>(pairs[2], pairs[3]);
+            columns[odd + 2] = s._mm512_shuffle_f64x2::<0x88>(low, high);
+            columns[odd + 6] = s._mm512_shuffle_f64x2::<0xdd>(low, high);
+        }
+        columns
+    }
+
+    /// The first (`ODD` 0) or second halves of sixteen pairs of numbers.
+    #[inline(always)]
+    fn halves<const ODD: i32>(self, low: __m512d, high: __m512d) -> Num<Self> {
+        let mut which = [ODD; 16];
+        for l in 0..16 {
+            which[l] += 2 * l as i32;
+        }
+        let value = self.0.avx512f._mm512_permutex2var_ps(cast(low), cast::<_, __m512i>(which), cast(high));
+        Num { lanes: self, value }
+    }
+
+    #[inline(always)]
+    fn fine(self, low: __m512d, high: __m512d) -> Fine<Self> {
+        Fine { lanes: self, value: [low, high] }
+    }
+
+    /// Numbers of two columns in turn, lower and upper halves of each four.
+    #[inline(always)]
+    fn pair(self, a: Num<Self>, b: Num<Self>) -> [__m512d; 2] {
+        let s = self.0.avx512f;
+        [cast(s._mm512_unpacklo_ps(a.value, b.value)), cast(s._mm512_unpackhi_ps(a.value, b.value))]
+    }
+
+    /// Four columns as quarter rows: group `g` of the `r`th holds row `4 g + r`.
+    #[inline(always)]
+    fn quads(self, columns: [Num<Self>; 4]) -> [__m512; 4] {
+        let s = self.0.avx512f;
+        let (a, b) = (self.pair(columns[0], columns[1]), self.pair(columns[2], columns[3]));
+        [
+            cast(s._mm512_unpacklo_pd(a[0], b[0])),
+            cast(s._mm512_unpackhi_pd(a[0], b[0])),
+            cast(s._mm512_unpacklo_pd(a[1], b[1])),
+            cast(s._mm512_unpackhi_pd(a[1], b[1])),
+        ]
+    }
+}
+
+impl Lanes for Wide {
+    const WIDTH: usize = 16;
+    type Real = f32;
+    type Num = __m512;
+    type Fine = [__m512d; 2];
+    type Mask = u16;
+
+    #[inline(always)]
+    fn splat(self, value: f32) -> __m512 {
+        self.0.avx512f._mm512_set1_ps(value)
+    }
+    #[inline(always)]
+    fn load(self, from: &[f32]) -> __m512 {
+        cast::<[f32; 16], _>(from[..16].try_into().expect("sixteen numbers"))
+    }
+    #[inline(always)]
+    fn store(self, value: __m512, to: &mut [f32]) {
+        to[..16].copy_from_slice(cast_ref::<_, [f32; 16]>(&value));
+    }
+    #[inline(always)]
+    fn add(self, a: __m512, b: __m512) -> __m512 {
+        self.0.avx512f._mm512_add_ps(a, b)
+    }
+    #[inline(always)]
+    fn sub(self, a: __m512, b: __m512) -> __m512 {
+        self.0.avx512f._mm512_sub_ps(a, b)
+    }
+    #[inline(always)]
+    fn mul(self, a: __m512, b: __m512) -> __m512 {
+        self.0.avx512f._mm512_mul_ps(a, b)
+    }
+    #[inline(always)]
+    fn div(self, a: __m512, b: __m512) -> __m512 {
+        self.0.avx512f._mm512_div_ps(a, b)
+    }
+    #[inline(always)]
+    fn fma(self, a: __m512, b: __m512, c: __m512) -> __m512 {
+        self.0.avx512f._mm512_fmadd_ps(a, b, c)
+    }
+    #[inline(always)]
+    fn sqrt(self, a: __m512) -> __m512 {
+        self.0.avx512f._mm512_sqrt_ps(a)
+    }
+    #[inline(always)]
+    fn min(self, a: __m512, b: __m512) -> __m512 {
+        self.0.avx512f._mm512_min_ps(a, b)
+    }
+    #[inline(always)]
+    fn max(self, a: __m512, b: __m512) -> __m512 {
+        self.0.avx512f._mm512_max_ps(a, b)
+    }
+    #[inline(always)]
+    fn less(self, a: __m512, b: __m512) -> u16 {
+        self.0.avx512f._mm512_cmp_ps_mask::<{ std::arch::x86_64::_CMP_LT_OQ }>(a, b)
+    }
+    #[inline(always)]
+    fn select(self, mask: u16, yes: __m512, no: __m512) -> __m512 {
+        self.0.avx512f._mm512_mask_blend_ps(mask, no, yes)
+    }
+    #[inline(always)]
+    fn any(self, mask: u16) -> bool {
+        mask != 0
+    }
+
+    #[inline(always)]
+    fn fine_splat(self, value: f64) -> [__m512d; 2] {
+        [self.0.avx512f._mm512_set1_pd(value); 2]
+    }
+    #[inline(always)]
+    fn fine_load(self, from: &[f64]) -> [__m512d; 2] {
+        let all: [f64; 16] = from[..16].try_into().expect("sixteen numbers");
+        must_cast(all)
+    }
+    #[inline(always)]
+    fn fine_add(self, a: [__m512d; 2], b: [__m512d; 2]) -> [__m512d; 2] {
+        [self.0.avx512f._mm512_add_pd(a[0], b[0]), self.0.avx512f._mm512_add_pd(a[1], b[1])]
+    }
+    #[inline(always)]
+    fn fine_sub(self, a: [__m512d; 2], b: [__m512d; 2]) -> [__m512d; 2] {
+        [self.0.avx512f._mm512_sub_pd(a[0], b[0]), self.0.avx512f._mm512_sub_pd(a[1], b[1])]
+    }
+    #[inline(always)]
+    fn fine_fma(self, a: [__m512d; 2], b: [__m512d; 2], c: [__m512d; 2]) -> [__m512d; 2] {
+        [self.0.avx512f._mm512_fmadd_pd(a[0], b[0], c[0]), self.0.avx512f._mm512_fmadd_pd(a[1], b[1], c[1])]
+    }
+    #[inline(always)]
+    fn narrow(self, a: [__m512d; 2]) -> __m512 {
+        let s = self.0.avx512f;
+        must_cast([s._mm512_cvtpd_ps(a[0]), s._mm512_cvtpd_ps(a[1])])
+    }
+    #[inline(always)]
+    fn widen(self, a: __m512) -> [__m512d; 2] {
+        let (s, [low, high]) = (self.0.avx512f, must_cast::<_, [__m256; 2]>(a));
+        [s._mm512_cvtps_pd(low), s._mm512_cvtps_pd(high)]
+    }
+
+    #[inline(always)]
+    fn gather(self, records: &[Compact], index: &[u32]) -> Columns<Self> {
+        let (low, high) = (self.columns(records, &index[..8]), self.columns(records, &index[8..16]));
+        Columns {
+            position: [self.fine(low[0], high[0]), self.fine(low[1], high[1]), self.fine(low[2], high[2])],
+            radius: self.fine(low[6], high[6]),
+            velocity: Vector([
+                self.halves::<0>(low[3], high[3]),
+                self.halves::<1>(low[3], high[3]),
+                self.halves::<0>(low[4], high[4]),
+            ]),
+            spin: Vector([
+                self.halves::<1>(low[4], high[4]),
+                self.halves::<0>(low[5], high[5]),
+                self.halves::<1>(low[5], high[5]),
+            ]),
+            mass: self.halves::<0>(low[7], high[7]),
+        }
+    }
+
+    #[inline(always)]
+    fn scatter(self, columns: [Num<Self>; 8], to: &mut [[f32; 8]]) {
+        let s = self.0.avx512f;
+        let [c0, c1, c2, c3, c4, c5, c6, c7] = columns;
+        let (front, back) = (self.quads([c0, c1, c2, c3]), self.quads([c4, c5, c6, c7]));
+        for r in [0, 2] {
+            let t = [
+                s._mm512_shuffle_f32x4::<0x44>(front[r], back[r]),
+                s._mm512_shuffle_f32x4::<0xee>(front[r], back[r]),
+                s._mm512_shuffle_f32x4::<0x44>(front[r + 1], back[r + 1]),
+                s._mm512_shuffle_f32x4::<0xee>(front[r + 1], back[r + 1]),
+            ];
+            let groups = [
+                s._mm512_shuffle_f32x4::<0x88>(t[0], t[2]),
+                s._mm512_shuffle_f32x4::<0xdd>(t[0], t[2]),
+                s._mm512_shuffle_f32x4::<0x88>(t[1], t[3]),
+                s._mm512_shuffle_f32x4::<0xdd>(t[1], t[3]),
+            ];
+            for g in 0..4 {
+                to[4 * g + r..4 * g + r + 2].copy_from_slice(&cast::<_, [[f32; 8]; 2]>(groups[g]));
+            }
+        }
+    }
+}
+
+/// AVX2 with fused products.
+#[derive(Debug, Clone, Copy)]
+pub struct Middle(V3);
+
+impl Middle {
+    #[inline(always)]
+    pub fn detect() -> Option<Middle> {
+        V3::try_new().map(Middle)
+    }
+
+    /// Runs `work` compiled for these instructions, in `lanes`.
+    #[inline(always)]
+    pub fn enter<L: Lanes, W: Work<L::Real>>(self, work: W, lanes: L) -> W::Output {
+        self.0.vectorize(Entered { work, lanes })
+    }
+}
+
+impl Middle {
+    #[inline(always)]
+    fn num(self, column: Num<Plain<f32, 8>>) -> Num<Self> {
+        Num { lanes: self, value: cast(column.value) }
+    }
+
+    #[inline(always)]
+    fn fine(self, column: Fine<Plain<f32, 8>>) -> Fine<Self> {
+        Fine { lanes: self, value: must_cast(column.value) }
+    }
+}
+
+impl Lanes for Middle {
+    const WIDTH: usize = 8;
+    type Real = f32;
+    type Num = __m256;
+    type Fine = [__m256d; 2];
+    type Mask = __m256;
+
+    #[inline(always)]
+    fn splat(self, value: f32) -> __m256 {
+        self.0.avx._mm256_set1_ps(value)
+    }
+    #[inline(always)]
+    fn load(self, from: &[f32]) -> __m256 {
+        cast::<[f32; 8], _>(from[..8].try_into().expect("eight numbers"))
+    }
+    #[inline(always)]
+    fn store(self, value: __m256, to: &mut [f32]) {
+        to[..8].copy_from_slice(cast_ref::<_, [f32; 8]>(&value));
+    }
+    #[inline(always)]
+    fn add(self, a: __m256, b: __m256) -> __m256 {
+        self.0.avx._mm256_add_ps(a, b)
+    }
+    #[inline(always)]
+    fn sub(self, a: __m256, b: __m256) -> __m256 {
+        self.0.avx._mm256_sub_ps(a, b)
+    }
+    #[inline(always)]
+    fn mul(self, a: __m256, b: __m256) -> __m256 {
+        self.0.avx._mm256_mul_ps(a, b)
+    }
+    #[inline(always)]
+    fn div(self, a: __m256, b: __m256) -> __m256 {
+        self.0.avx._mm256_div_ps(a, b)
+    }
+    #[inline(always)]
+    fn fma(self, a: __m256, b: __m256, c: __m256) -> __m256 {
+        self.0.fma._mm256_fmadd_ps(a, b, c)
+    }
+    #[inline(always)]
+    fn sqrt(self, a: __m256) -> __m256 {
+        self.0.avx._mm256_sqrt_ps(a)
+    }
+    #[inline(always)]
+    fn min(self, a: __m256, b: __m256) -> __m256 {
+        self.0.avx._mm256_min_ps(a, b)
+    }
+    #[inline(always)]
+    fn max(self, a: __m256, b: __m256) -> __m256 {
+        self.0.avx._mm256_max_ps(a, b)
+    }
+    #[inline(always)]
+    fn less(self, a: __m256, b: __m256) -> __m256 {
+        self.0.avx._mm256_cmp_ps::<{ std::arch::x86_64::_CMP_LT_OQ }>(a, b)
+    }
+    #[inline(always)]
+    fn select(self, mask: __m256, yes: __m256, no: __m256) -> __m256 {
+        self.0.avx._mm256_blendv_ps(no, yes, mask)
+    }
+    #[inline(always)]
+    fn any(self, mask: __m256) -> bool {
+        self.0.avx._mm256_movemask_ps(mask) != 0
+    }
+
+    #[inline(always)]
+    fn fine_splat(self, value: f64) -> [__m256d; 2] {
+        [self.0.avx._mm256_set1_pd(value); 2]
+    }
+    #[inline(always)]
+    fn fine_load(self, from: &[f64]) -> [__m256d; 2] {
+        let all: [f64; 8] = from[..8].try_into().expect("eight numbers");
+        must_cast(all)
+    }
+    #[inline(always)]
+    fn fine_add(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
+        [self.0.avx._mm256_add_pd(a[0], b[0]), self.0.avx._mm256_add_pd(a[1], b[1])]
+    }
+    #[inline(always)]
+    fn fine_sub(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
+        [self.0.avx._mm256_sub_pd(a[0], b[0]), self.0.avx._mm256_sub_pd(a[1], b[1])]
+    }
+    #[inline(always)]
+    fn fine_fma(self, a: [__m256d; 2], b: [__m256d; 2], c: [__m256d; 2]) -> [__m256d; 2] {
+        [self.0.fma._mm256_fmadd_pd(a[0], b[0], c[0]), self.0.fma._mm256_fmadd_pd(a[1], b[1], c[1])]
+    }
+    #[inline(always)]
+    fn narrow(self, a: [__m256d; 2]) -> __m256 {
+        let s = self.0.avx;
+        must_cast([s._mm256_cvtpd_ps(a[0]), s._mm256_cvtpd_ps(a[1])])
+    }
+    #[inline(always)]
+    fn widen(self, a: __m256) -> [__m256d; 2] {
+        let (s, [low, high]) = (self.0.avx, must_cast::<_, [__m128; 2]>(a));
+        [s._mm256_cvtps_pd(low), s._mm256_cvtps_pd(high)]
+    }
+
+    #[inline(always)]
+    fn gather(self, records: &[Compact], index: &[u32]) -> Columns<Self> {
+        let plain = Plain::<f32, 8>::new().gather(records, index);
+        let [x, y, z] = plain.position;
+        let ([u, v, w], [p, q, r]) = (plain.velocity.0, plain.spin.0);
+        Columns {
+            position: [self.fine(x), self.fine(y), self.fine(z)],
+            radius: self.fine(plain.radius),
+            velocity: Vector([self.num(u), self.num(v), self.num(w)]),
+            spin: Vector([self.num(p), self.num(q), self.num(r)]),
+            mass: self.num(plain.mass),
+        }
+    }
+
+    #[inline(always)]
+    fn scatter(self, columns: [Num<Self>; 8], to: &mut [[f32; 8]]) {
+        for c in 0..8 {
+            let column: [f32; 8] = cast(columns[c].value);
+            for l in 0..8 {
+                to[l][c] = column[l];
+            }
+        }
+    }
+}

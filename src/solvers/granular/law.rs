@@ -1,0 +1,250 @@
+//! Contact laws: how two surfaces push and rub on each other.
+//!
+//! Conventions are those of PFC's linear model (springs with dashpots beside them, no moment, shear by increments in the
+//! turning contact plane) and of Hertz and Mindlin without partial slip.
+
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// The law of one pair of surfaces.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Law {
+    Linear(Linear),
+    HertzMindlin(HertzMindlin),
+}
+
+/// Linear springs, Coulomb friction and dashpots in parallel.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Linear {
+    /// Of the contact, not of a body \[N/m\]; see [`in_series`].
+    pub normal_stiffness: f64,
+    /// \[N/m\]
+    pub shear_stiffness: f64,
+    /// Coefficient of friction.
+    pub friction: f64,
+    pub dashpot: Dashpot,
+    pub mode: DashpotMode,
+    pub limit: FrictionLimit,
+}
+
+/// Hertz's normal and Mindlin's no-slip shear stiffness, with Tsuji's dashpots.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct HertzMindlin {
+    /// `1 / E* = (1 - nu1^2) / E1 + (1 - nu2^2) / E2` \[Pa\].
+    pub effective_modulus: f64,
+    /// `1 / G* = (2 - nu1) / G1 + (2 - nu2) / G2` \[Pa\].
+    pub effective_shear_modulus: f64,
+    pub friction: f64,
+    /// Normal coefficient of restitution in (0, 1].
+    pub restitution: f64,
+    /// Whether the shear dashpot acts.
+    pub shear_dashpot: bool,
+    pub mode: DashpotMode,
+    pub limit: FrictionLimit,
+}
+
+/// Dashpots in normal and shear direction.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Dashpot {
+    /// Share of critical damping: `c = 2 beta sqrt(m k)` with `m = m1 m2 / (m1 + m2)`, `m1` against a wall.
+    Ratio { normal: f64, shear: f64 },
+    /// \[N s/m\]
+    Constant { normal: f64, shear: f64 },
+}
+
+/// What dashpots may do; PFC's `dp_mode` 0 to 3.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum DashpotMode {
+    /// They always act, and may pull.
+    Full,
+    /// The normal force as a whole does not pull.
+    NoTension,
+    /// The shear dashpot rests while the contact slips.
+    RestInSlip,
+    /// Neither pull nor resist slip: what ballast does.
+    #[default]
+    NoTensionRestInSlip,
+}
+
+impl DashpotMode {
+    pub fn pulls(self) -> bool {
+        matches!(self, DashpotMode::Full | DashpotMode::RestInSlip)
+    }
+
+    pub fn rests_in_slip(self) -> bool {
+        matches!(self, DashpotMode::RestInSlip | DashpotMode::NoTensionRestInSlip)
+    }
+}
+
+/// The normal force that friction is a share of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum FrictionLimit {
+    /// The spring's, as in PFC and YADE.
+    #[default]
+    Spring,
+    /// The magnitude of spring and dashpot together, as in LIGGGHTS and LAMMPS.
+    Total,
+}
+
+/// Springs of two bodies one behind the other: the stiffness of their contact (PFC's inheritance).
+pub fn in_series(first: f64, second: f64) -> f64 {
+    first * second / (first + second)
+}
+
+impl HertzMindlin {
+    /// The law between two elastic solids given by Young's modulus \[Pa\] and Poisson's ratio; `f64::INFINITY` is rigid.
+    pub fn between(first: (f64, f64), second: (f64, f64), friction: f64, restitution: f64) -> HertzMindlin {
+        let normal = |(young, poisson): (f64, f64)| (1.0 - poisson * poisson) / young;
+        let shear = |(young, poisson): (f64, f64)| 2.0 * (2.0 - poisson) * (1.0 + poisson) / young;
+        HertzMindlin {
+            effective_modulus: 1.0 / (normal(first) + normal(second)),
+            effective_shear_modulus: 1.0 / (shear(first) + shear(second)),
+            friction,
+            restitution,
+            shear_dashpot: false,
+            mode: DashpotMode::Full,
+            limit: FrictionLimit::Spring,
+        }
+    }
+
+    /// Share of critical damping that gives the restitution, for any speed (Tsuji 1992, as a linear oscillator).
+    pub fn damping_ratio(&self) -> f64 {
+        let log = self.restitution.ln();
+        -log / std::f64::consts::PI.hypot(log)
+    }
+}
+
+/// What bodies of one surface are made of; a pair's law follows from two of them.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Surface {
+    /// Of the body; two in series make a contact \[N/m\].
+    pub normal_stiffness: f64,
+    /// \[N/m\]
+    pub shear_stiffness: f64,
+    /// The smaller of two counts.
+    pub friction: f64,
+    /// Share of critical damping, normal and shear; the smaller of two counts.
+    pub damping: [f64; 2],
+    pub mode: DashpotMode,
+}
+
+impl Surface {
+    /// The linear law between two surfaces: stiffness in series, the smaller friction and damping.
+    pub fn meet(&self, other: &Surface) -> Law {
+        Law::Linear(Linear {
+            normal_stiffness: in_series(self.normal_stiffness, other.normal_stiffness),
+            shear_stiffness: in_series(self.shear_stiffness, other.shear_stiffness),
+            friction: self.friction.min(other.friction),
+            dashpot: Dashpot::Ratio {
+                normal: self.damping[0].min(other.damping[0]),
+                shear: self.damping[1].min(other.damping[1]),
+            },
+            mode: self.mode,
+            limit: FrictionLimit::Spring,
+        })
+    }
+}
+
+/// A number of a law that cannot be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LawError {
+    pub quantity: &'static str,
+    pub value: f64,
+    pub expected: &'static str,
+}
+
+impl fmt::Display for LawError {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} is {}, expected {}", self.quantity, self.value, self.expected)
+    }
+}
+
+impl std::error::Error for LawError {}
+
+impl Law {
+    /// Every number that cannot be, in the order of the fields.
+    pub fn faults(&self) -> Vec<LawError> {
+        const POSITIVE: &str = "a number above 0";
+        const NOT_NEGATIVE: &str = "a number from 0";
+        let mut faults = Vec::new();
+        let mut want = |quantity, value: f64, fine: bool, expected| {
+            if !(value.is_finite() && fine) {
+                faults.push(LawError { quantity, value, expected });
+            }
+        };
+        match self {
+            Law::Linear(law) => {
+                want("normal stiffness", law.normal_stiffness, law.normal_stiffness > 0.0, POSITIVE);
+                want("shear stiffness", law.shear_stiffness, law.shear_stiffness >= 0.0, NOT_NEGATIVE);
+                want("friction", law.friction, law.friction >= 0.0, NOT_NEGATIVE);
+                let (Dashpot::Ratio { normal, shear } | Dashpot::Constant { normal, shear }) = law.dashpot;
+                want("normal dashpot", normal, normal >= 0.0, NOT_NEGATIVE);
+                want("shear dashpot", shear, shear >= 0.0, NOT_NEGATIVE);
+            }
+            Law::HertzMindlin(law) => {
+                want("effective modulus", law.effective_modulus, law.effective_modulus > 0.0, POSITIVE);
+                want("effective shear modulus", law.effective_shear_modulus, law.effective_shear_modulus > 0.0, POSITIVE);
+                want("friction", law.friction, law.friction >= 0.0, NOT_NEGATIVE);
+                let restitution = law.restitution;
+                want("restitution", restitution, restitution > 0.0 && restitution <= 1.0, "a number above 0, up to 1");
+            }
+        }
+        faults
+    }
+}
+
+/// The law of every pair of surfaces.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Laws {
+    surfaces: usize,
+    /// Row by row, `surfaces` squared, symmetric.
+    pairs: Vec<Law>,
+}
+
+impl Laws {
+    /// One law for everything; surface 0 is all there is.
+    pub fn single(law: Law) -> Laws {
+        Laws { surfaces: 1, pairs: vec![law] }
+    }
+
+    /// Laws of all pairs, by inheritance.
+    pub fn of(surfaces: &[Surface]) -> Laws {
+        let pairs = surfaces.iter().flat_map(|a| surfaces.iter().map(|b| a.meet(b))).collect();
+        Laws { surfaces: surfaces.len(), pairs }
+    }
+
+    /// The same law for all pairs of `surfaces` surfaces; [`Laws::set`] changes some.
+    pub fn uniform(surfaces: usize, law: Law) -> Laws {
+        Laws { surfaces, pairs: vec![law; surfaces * surfaces] }
+    }
+
+    /// Number of surfaces.
+    pub fn surfaces(&self) -> usize {
+        self.surfaces
+    }
+
+    pub fn set(&mut self, first: u16, second: u16, law: Law) {
+        for (a, b) in [(first, second), (second, first)] {
+            self.pairs[usize::from(a) * self.surfaces + usize::from(b)] = law;
+        }
+    }
+
+    pub fn get(&self, first: u16, second: u16) -> &Law {
+        &self.pairs[self.class(first, second) as usize]
+    }
+
+    /// Changes every law in place: friction off and on again, dashpots for packing.
+    pub fn change(&mut self, change: impl FnMut(&mut Law)) {
+        self.pairs.iter_mut().for_each(change);
+    }
+
+    /// Number of a pair in [`Laws::all`], the same for both orders.
+    pub(super) fn class(&self, first: u16, second: u16) -> u16 {
+        let (a, b) = (first.min(second) as usize, first.max(second) as usize);
+        (a * self.surfaces + b) as u16
+    }
+
+    pub(super) fn all(&self) -> &[Law] {
+        &self.pairs
+    }
+}
