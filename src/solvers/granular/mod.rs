@@ -1,0 +1,3 @@
+//! Rigid spheres and clumps of spheres, in three dimensions.
+
+pub mod rotation;
