@@ -1,3 +1,5 @@
 //! Rigid spheres and clumps of spheres, in three dimensions.
 
+pub mod clump;
 pub mod rotation;
+mod union;
