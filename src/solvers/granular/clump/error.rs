@@ -5,7 +5,7 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq)]
 pub enum TemplateError {
     NoPebbles,
-    /// A radius (m) that is not a positive number.
+    /// A radius (m) that is no number above 0, or so far from 1 m that its fifth power is none.
     Radius {
         pebble: usize,
         radius: f64,
@@ -30,7 +30,7 @@ impl fmt::Display for TemplateError {
         match self {
             TemplateError::NoPebbles => write!(f, "a clump needs a pebble"),
             TemplateError::Radius { pebble, radius } => {
-                write!(f, "expected a radius above 0 m, found {radius} m at pebble {pebble}")
+                write!(f, "expected a radius above 0 m and of a size that exists, found {radius} m at pebble {pebble}")
             }
             TemplateError::Centre { pebble } => write!(f, "the centre of pebble {pebble} is not a number"),
             TemplateError::Swallowed { pebble, inside } => {

@@ -20,6 +20,9 @@ use std::f64::consts::PI;
 /// Pebbles whose centres are this much farther apart than their radii, as a share, still touch: the rounding of a file.
 const TOUCH: f64 = 1e-9;
 
+/// The fifth power of a radius (m) must be a number; from here to its inverse it is.
+const SMALLEST: f64 = 1e-50;
+
 /// One sphere of a clump.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Pebble {
@@ -86,7 +89,7 @@ impl Template {
         }
     }
 
-    /// The same shape, larger by `factor` (> 0) about the origin of the frame as given.
+    /// The same shape, larger by a `factor` above 0 about the origin of the frame as given.
     pub fn scaled(&self, factor: f64) -> Self {
         let larger = |p: &Pebble| Pebble { centre: p.centre * factor, radius: p.radius * factor };
         Self {
@@ -114,7 +117,7 @@ fn check(pebbles: &[Pebble]) -> Result<(), TemplateError> {
         return Err(TemplateError::NoPebbles);
     }
     for (pebble, p) in pebbles.iter().enumerate() {
-        if !(p.radius > 0.0 && p.radius.is_finite()) {
+        if !(SMALLEST..=1.0 / SMALLEST).contains(&p.radius) {
             return Err(TemplateError::Radius { pebble, radius: p.radius });
         }
         if !p.centre.iter().all(|c| c.is_finite()) {

@@ -35,7 +35,7 @@ impl Arcs {
     }
 
     /// Covers the angles within `half` (0 to π) of `centre` (-π to π).
-    pub fn cover(&mut self, centre: f64, half: f64) {
+    fn cover(&mut self, centre: f64, half: f64) {
         let start = centre - half;
         let start = if start < 0.0 { start + TAU } else { start };
         let end = start + 2.0 * half;
@@ -44,6 +44,15 @@ impl Arcs {
             self.covered.push((0.0, end - TAU));
         } else {
             self.covered.push((start, end));
+        }
+    }
+
+    /// Covers the angles φ with `cos(φ - centre) > cosine`.
+    pub fn cover_beyond(&mut self, centre: f64, cosine: f64) {
+        if cosine <= -1.0 {
+            self.cover_all();
+        } else if cosine < 1.0 {
+            self.cover(centre, cosine.acos());
         }
     }
 
@@ -74,6 +83,22 @@ impl Arcs {
 impl Trig {
     pub const CIRCLE: Self =
         Self { c: 0.0, cc: PI, ccc: 0.0, cccc: 0.75 * PI, cs: 0.0, ccs: 0.0, cccs: 0.0, css: 0.0, ccss: 0.25 * PI };
+
+    /// The integrals over the rest of the circle.
+    pub fn rest(&self) -> Self {
+        let all = Self::CIRCLE;
+        Self {
+            c: all.c - self.c,
+            cc: all.cc - self.cc,
+            ccc: all.ccc - self.ccc,
+            cccc: all.cccc - self.cccc,
+            cs: all.cs - self.cs,
+            ccs: all.ccs - self.ccs,
+            cccs: all.cccs - self.cccs,
+            css: all.css - self.css,
+            ccss: all.ccss - self.ccss,
+        }
+    }
 
     fn add_arc(&mut self, from: f64, to: f64) {
         self.add_primitive(to, 1.0);

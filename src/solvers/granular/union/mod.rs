@@ -10,4 +10,6 @@ mod moments;
 mod patch;
 mod quadrature;
 
+pub use arcs::{Arcs, Trig};
 pub use moments::moments;
+pub use patch::{Cap, Patch};

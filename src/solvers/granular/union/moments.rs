@@ -5,7 +5,7 @@ use crate::solvers::granular::clump::Pebble;
 use nalgebra::{Matrix3, Vector3};
 
 /// Tolerance of a piece of the integral along z, in units of the largest pebble and of their reach from the origin. Rounding
-/// in the flux grows with the same power of the reach, and stays a hundred times below.
+/// in the flux grows with the same power of the reach, and stays ten times below.
 const TOLERANCE: f64 = 1e-14;
 
 /// `∫ dV`, `∫ x dV`, `∫ x xᵀ dV` about the origin, in m³, m⁴, m⁵.

@@ -26,29 +26,49 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// What shows of pebble `i` of a union, in radii about its centre.
+    /// What shows of pebble `i` of a union.
     pub fn of(pebbles: &[Pebble], i: usize) -> Self {
         let mut patch = Self::default();
-        let own = &pebbles[i];
         for (_, other) in pebbles.iter().enumerate().filter(|(j, _)| *j != i) {
-            patch.cut_by(own, other);
+            patch.cut_by(&pebbles[i], other);
         }
         patch
     }
 
+    /// What shows of a ball beside pebbles.
+    pub fn of_ball(ball: &Pebble, pebbles: &[Pebble]) -> Self {
+        let mut patch = Self::default();
+        pebbles.iter().for_each(|other| patch.cut_by(ball, other));
+        patch
+    }
+
     /// Cuts off what lies in another ball.
-    pub fn cut_by(&mut self, own: &Pebble, other: &Pebble) {
+    fn cut_by(&mut self, own: &Pebble, other: &Pebble) {
         let apart = other.centre - own.centre;
         let distance = apart.norm();
         if distance + own.radius <= other.radius {
             self.empty = true;
         } else if distance > 0.0 && distance < own.radius + other.radius {
-            // (r_i² + d² - r_j²)/(2 d r_i), without the difference of squares.
-            let gap = (own.radius - other.radius) * (own.radius + other.radius);
-            self.cut(Cap { normal: apart / distance, offset: (gap / distance + distance) / (2.0 * own.radius) });
+            self.cut(common_circle(own, other, &apart, distance));
         }
     }
 
+    /// Cuts off what lies outside another ball.
+    pub fn keep_within(&mut self, own: &Pebble, other: &Pebble) {
+        let apart = other.centre - own.centre;
+        let distance = apart.norm();
+        if distance + own.radius <= other.radius {
+            return;
+        }
+        if distance == 0.0 || distance >= own.radius + other.radius {
+            self.empty = true;
+            return;
+        }
+        let Cap { normal, offset } = common_circle(own, other, &apart, distance);
+        self.cut(Cap { normal: -normal, offset: -offset });
+    }
+
+    /// Cuts off a cap, in radii about the centre.
     pub fn cut(&mut self, cap: Cap) {
         if cap.offset <= -1.0 {
             self.empty = true;
@@ -77,18 +97,27 @@ impl Patch {
         total
     }
 
+    /// The same over what is cut off.
+    pub fn integrate_covered<const N: usize>(
+        &self,
+        tolerance: &[f64; N],
+        f: impl Fn(f64, f64, &Trig) -> [f64; N],
+    ) -> [f64; N] {
+        let covered = |height: f64, radius: f64, open: &Trig| f(height, radius, &open.rest());
+        if self.empty { Self::default().integrate(tolerance, f) } else { self.integrate(tolerance, covered) }
+    }
+
     fn open_arcs(&self, height: f64, radius: f64, arcs: &mut Arcs) {
         arcs.clear();
         for Cap { normal, offset } in &self.caps {
-            // Covered where radius·across·cos(φ - φ_normal) > left.
+            // Covered where across·cos(φ - φ_normal) > left.
             let across = normal.x.hypot(normal.y) * radius;
             let left = offset - normal.z * height;
-            if left <= -across {
+            if left.abs() < across {
+                arcs.cover_beyond(normal.y.atan2(normal.x), left / across);
+            } else if left < 0.0 {
                 arcs.cover_all();
                 return;
-            }
-            if left < across {
-                arcs.cover(normal.y.atan2(normal.x), (left / across).acos());
             }
         }
     }
@@ -115,6 +144,12 @@ impl Patch {
         let mut others = self.caps.iter().enumerate().filter(|(m, _)| *m != k && *m != l);
         others.all(|(_, cap)| cap.normal.dot(n) <= cap.offset + COVERED)
     }
+}
+
+/// What lies of `own` in `other`, where their surfaces cross: the offset is (r² + d² - r_other²)/(2 d r).
+fn common_circle(own: &Pebble, other: &Pebble, apart: &Vector3<f64>, distance: f64) -> Cap {
+    let gap = (own.radius - other.radius) * (own.radius + other.radius);
+    Cap { normal: apart / distance, offset: (gap / distance + distance) / (2.0 * own.radius) }
 }
 
 /// The points of the unit sphere on the rims of both caps: `α u + β v ± γ u×v`.
