@@ -17,6 +17,7 @@ mod gravity;
 mod integrate;
 mod lanes;
 mod law;
+pub mod measure;
 pub mod motion;
 mod record;
 pub mod rotation;

@@ -1,0 +1,44 @@
+//! Why pebbles make no clump.
+
+use std::fmt;
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum TemplateError {
+    NoPebbles,
+    /// A radius (m) that is no number above 0, or so far from 1 m that its fifth power is none.
+    Radius {
+        pebble: usize,
+        radius: f64,
+    },
+    /// A centre that is no number.
+    Centre {
+        pebble: usize,
+    },
+    /// A pebble that lies in another one: it adds nothing and touches nothing.
+    Swallowed {
+        pebble: usize,
+        inside: usize,
+    },
+    /// A pebble that no chain of touching pebbles joins to the first one.
+    Apart {
+        pebble: usize,
+    },
+}
+
+impl fmt::Display for TemplateError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            TemplateError::NoPebbles => write!(f, "a clump needs a pebble"),
+            TemplateError::Radius { pebble, radius } => {
+                write!(f, "expected a radius above 0 m and of a size that exists, found {radius} m at pebble {pebble}")
+            }
+            TemplateError::Centre { pebble } => write!(f, "the centre of pebble {pebble} is not a number"),
+            TemplateError::Swallowed { pebble, inside } => {
+                write!(f, "pebble {pebble} lies inside pebble {inside}")
+            }
+            TemplateError::Apart { pebble } => write!(f, "pebble {pebble} does not hang together with pebble 0"),
+        }
+    }
+}
+
+impl std::error::Error for TemplateError {}

@@ -1,0 +1,62 @@
+//! Coordination and stress, from the contacts of a bed.
+
+use super::Region;
+use nalgebra::{Matrix3, Vector3};
+
+/// How many others a body touches.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coordination {
+    /// Neighbours a body, over all bodies.
+    pub mean: f64,
+    /// Neighbours a body, over bodies that are no rattlers: the mechanical coordination number of Thornton (2000),
+    /// Géotechnique 50, 43-53, `(2 C - N₁)/(N - N₀ - N₁)`. 0 where all are rattlers.
+    pub without_rattlers: f64,
+    /// Bodies with fewer than two neighbours.
+    pub rattlers: usize,
+    /// Pairs of bodies in contact, each once.
+    pub pairs: usize,
+}
+
+/// Coordination of `bodies` bodies whose touching pairs are given, in any order and as often as their pebbles touch. A body is not
+/// its own neighbour, and neither is a wall: pairs that name a body beyond the last are left out. 0 where there are no bodies.
+pub fn coordination(bodies: usize, pairs: &[(u32, u32)]) -> Coordination {
+    let inside = |(i, j): &(u32, u32)| i != j && (*i as usize) < bodies && (*j as usize) < bodies;
+    let mut distinct: Vec<_> = pairs.iter().filter(|p| inside(p)).map(|(i, j)| (*i.min(j), *i.max(j))).collect();
+    distinct.sort_unstable();
+    distinct.dedup();
+    let mut neighbours = vec![0u32; bodies];
+    for (i, j) in &distinct {
+        neighbours[*i as usize] += 1;
+        neighbours[*j as usize] += 1;
+    }
+    let held: Vec<_> = neighbours.iter().filter(|n| **n >= 2).collect();
+    let links: u64 = held.iter().map(|n| u64::from(**n)).sum();
+    Coordination {
+        mean: 2.0 * distinct.len() as f64 / bodies.max(1) as f64,
+        without_rattlers: links as f64 / held.len().max(1) as f64,
+        rattlers: bodies - held.len(),
+        pairs: distinct.len(),
+    }
+}
+
+/// A contact of body i with body j or with a wall.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// On body i, N.
+    pub force: [f64; 3],
+    /// To the centroid of i from that of j, or from the contact point at a wall, m.
+    pub branch: [f64; 3],
+    /// m.
+    pub point: [f64; 3],
+}
+
+/// Mean stress of a region, Pa, tension positive: `σ = -(1/V) Σ F ⊗ L` with F on body i and L from j to i, over the contacts whose
+/// point lies inside (Christoffersen, Mehrabadi, Nemat-Nasser 1981, J. Appl. Mech. 48, 339-344). Row: component of the force.
+///
+/// It is exact for a region that holds whole bodies in equilibrium and the contacts between them; a border that cuts through bodies
+/// takes all or nothing of a contact.
+pub fn stress(region: &Region, contacts: impl IntoIterator<Item = Contact>) -> Matrix3<f64> {
+    let inside = contacts.into_iter().filter(|c| region.holds(&c.point));
+    let sum: Matrix3<f64> = inside.map(|c| Vector3::from(c.force) * Vector3::from(c.branch).transpose()).sum();
+    sum / -region.volume()
+}

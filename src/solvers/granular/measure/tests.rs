@@ -1,0 +1,226 @@
+//! Porosity of lattices, pieces that add up to the whole, coordination and stress in closed form.
+
+use super::*;
+use crate::solvers::granular::clump::{Pebble, Template};
+use nalgebra::{Matrix3, Vector3};
+use proptest::prelude::*;
+
+/// Porosity of a lattice of spheres (m) in one cell, wherever the cell begins: spheres at `sites` and their images.
+fn lattice(cell: [f64; 3], sites: &[[f64; 3]], radius: f64, start: [f64; 3]) -> f64 {
+    let region = Region::block(start, std::array::from_fn(|k| start[k] + cell[k])).unwrap();
+    let images = (0..125).map(|n| [n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2]);
+    let spheres = images.flat_map(|image| {
+        sites.iter().map(move |site| (std::array::from_fn(|k| site[k] + f64::from(image[k]) * cell[k]), radius))
+    });
+    region.porosity(spheres.map(|s| region.share_of_sphere(s)))
+}
+
+#[test]
+fn lattices_have_the_porosity_of_the_books() {
+    let root = f64::sqrt;
+    let cubic = [[0.0; 3]];
+    let body = [[0.0; 3], [0.5; 3]];
+    let face = [[0.0; 3], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5]];
+    let (wide, high) = (root(3.0), root(8.0 / 3.0));
+    let hexagonal =
+        [[0.0; 3], [0.5, 0.5 * wide, 0.0], [0.5, wide / 6.0, 0.5 * high], [0.0, wide * 2.0 / 3.0, 0.5 * high]];
+    let densest = 1.0 - PI / root(18.0);
+    for start in [[0.0; 3], [0.31, -0.17, 0.44], [-0.5, -0.5, -0.25]] {
+        let simple = lattice([1.0; 3], &cubic, 0.5, start);
+        assert!((simple - (1.0 - PI / 6.0)).abs() < 1e-14 && (simple - 0.4764).abs() < 5e-5);
+        let error = lattice([1.0; 3], &body, 0.25 * wide, start) - (1.0 - PI * wide / 8.0);
+        assert!(error.abs() < 1e-14, "{error}");
+        let error = lattice([1.0; 3], &face, root(0.125), start) - densest;
+        assert!(error.abs() < 1e-14, "{error}");
+        let close = lattice([1.0, wide, high], &hexagonal, 0.5, start);
+        assert!((close - densest).abs() < 1e-14 && (close - 0.2595).abs() < 5e-5);
+    }
+}
+
+#[test]
+fn a_large_measurement_sphere_sees_the_lattice() {
+    // What is left is the count of spheres at the border: it shrinks with the radius to the power of about -2.
+    let region = Region::sphere([0.1, 0.2, 0.3], 12.0).unwrap();
+    let places = (0..27 * 27 * 27).map(|n| [n % 27 - 13, n / 27 % 27 - 13, n / 729 - 13]);
+    let shares = places.map(|p| region.share_of_sphere((p.map(f64::from), 0.5)));
+    assert!((region.porosity(shares) - (1.0 - PI / 6.0)).abs() < 1e-3);
+}
+
+#[test]
+fn a_lens_is_its_two_caps() {
+    let region = Region::sphere([0.0; 3], 1.3).unwrap();
+    for (distance, radius) in [(1.0_f64, 0.8_f64), (1.9, 0.7), (0.61, 0.7), (1.0, 1.2)] {
+        let plane = (1.3 * 1.3 - radius * radius + distance * distance) / (2.0 * distance);
+        let cap = |r: f64, height: f64| PI * height * height * (r - height / 3.0);
+        let lens = cap(1.3, 1.3 - plane) + cap(radius, radius - (distance - plane));
+        let found = region.share_of_sphere(([0.6 * distance, 0.0, -0.8 * distance], radius));
+        assert!((found - lens).abs() < 1e-14, "{found} {lens}");
+    }
+    let whole = 4.0 / 3.0 * PI;
+    assert_eq!(region.share_of_sphere(([0.0, 0.3, 0.0], 1.0)), whole);
+    assert_eq!(region.share_of_sphere(([0.0, 2.3, 0.0], 1.0)), 0.0);
+    assert_eq!(region.share_of_sphere(([0.0, 0.1, 0.0], 9.0)), region.volume());
+}
+
+/// The boxes between cuts along every axis, the outermost far away.
+fn boxes(cuts: &[[f64; 2]; 3]) -> Vec<Region> {
+    let edges = cuts.map(|[a, b]| [-50.0, a.min(b), a.max(b) + 1e-3, 50.0]);
+    let corner = |cell: [usize; 3]| std::array::from_fn(|k| edges[k][cell[k]]);
+    let cells = (0..27).map(|n| [n % 3, n / 3 % 3, n / 9]);
+    cells.map(|cell| Region::block(corner(cell), corner(cell.map(|c| c + 1))).unwrap()).collect()
+}
+
+fn cuts() -> impl Strategy<Value = [[f64; 2]; 3]> {
+    prop::array::uniform3(prop::array::uniform2(-1.5..1.5f64))
+}
+
+/// A clump of three pebbles that all share a part, and its volume.
+fn clump(shift: [f64; 3]) -> (Vec<Ball>, f64) {
+    let balls = [([0.0, 0.0, 0.0], 1.0), ([0.8, 0.3, -0.1], 0.8), ([0.2, 0.7, 0.4], 0.9)];
+    let pebbles = balls.map(|(c, radius)| Pebble { centre: Vector3::from(c), radius });
+    let moved = balls.map(|(c, r)| (std::array::from_fn(|k| c[k] + shift[k]), r));
+    (moved.to_vec(), Template::of(&pebbles).unwrap().volume)
+}
+
+fn place() -> impl Strategy<Value = [f64; 3]> {
+    prop::array::uniform3(-1.2..1.2f64)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+    #[test]
+    fn pieces_of_a_sphere_add_up(cuts in cuts(), centre in place(), radius in 0.2..2.0f64) {
+        let total: f64 = boxes(&cuts).iter().map(|b| b.share_of_sphere((centre, radius))).sum();
+        let whole = 4.0 / 3.0 * PI * radius.powi(3);
+        prop_assert!((total - whole).abs() < 1e-13 * whole, "{}", total / whole - 1.0);
+    }
+
+    #[test]
+    fn the_closed_form_of_a_sphere_is_its_integral(cuts in cuts(), centre in place(), radius in 0.2..2.0f64) {
+        for region in boxes(&cuts) {
+            let integral = clump::union_in(&region.0, &[(centre, radius)]);
+            prop_assert!((region.share_of_sphere((centre, radius)) - integral).abs() < 1e-9 * radius.powi(3));
+        }
+        let region = Region::sphere([0.3, 0.2, 0.1], 1.0).unwrap();
+        let integral = clump::union_in(&region.0, &[(centre, radius)]);
+        prop_assert!((region.share_of_sphere((centre, radius)) - integral).abs() < 1e-9 * radius.powi(3));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn pieces_of_a_clump_add_up(cuts in cuts(), shift in place()) {
+        let (pebbles, volume) = clump(shift);
+        let total: f64 = boxes(&cuts).iter().map(|b| b.share_of_clump(&pebbles, volume)).sum();
+        prop_assert!((total - volume).abs() < 1e-9, "{}", total - volume);
+    }
+
+    /// The volume of clump and region together follows from the template of all balls.
+    #[test]
+    fn a_clump_in_a_measurement_sphere_is_what_the_union_lacks(shift in place(), radius in 0.9..3.0f64) {
+        let (pebbles, volume) = clump(shift);
+        let region = Region::sphere([0.0; 3], radius).unwrap();
+        let mut all: Vec<_> = pebbles.iter().map(|(c, r)| Pebble { centre: Vector3::from(*c), radius: *r }).collect();
+        all.push(Pebble { centre: Vector3::zeros(), radius });
+        if let Ok(together) = Template::of(&all) {
+            let expected = volume + region.volume() - together.volume;
+            prop_assert!((region.share_of_clump(&pebbles, volume) - expected).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn a_clump_inside_is_whole_and_one_outside_is_nothing() {
+    let (pebbles, volume) = clump([0.0; 3]);
+    for region in [Region::sphere([0.0; 3], 3.0), Region::block([-3.0; 3], [3.0; 3])] {
+        let region = region.unwrap();
+        assert_eq!(region.share_of_clump(&pebbles, volume), volume);
+        assert!((clump::union_in(&region.0, &pebbles) - volume).abs() < 1e-9);
+        let (away, volume) = clump([9.0, 0.0, 0.0]);
+        assert_eq!(region.share_of_clump(&away, volume), 0.0);
+        assert!(clump::union_in(&region.0, &away).abs() < 1e-9);
+    }
+    // A region inside a clump is full.
+    for region in [Region::sphere([0.3, 0.3, 0.0], 0.2), Region::block([0.1; 3], [0.4; 3])] {
+        let region = region.unwrap();
+        assert!(region.porosity([region.share_of_clump(&pebbles, volume)]).abs() < 1e-8);
+    }
+}
+
+#[test]
+fn regions_without_volume_are_refused() {
+    assert_eq!(Region::block([0.0; 3], [1.0, 0.0, 1.0]), Err(NoRegion));
+    assert_eq!(Region::block([0.0; 3], [1.0, f64::NAN, 1.0]), Err(NoRegion));
+    assert_eq!(Region::block([0.0; 3], [1.0, f64::INFINITY, 1.0]), Err(NoRegion));
+    assert_eq!(Region::sphere([0.0; 3], 0.0), Err(NoRegion));
+    assert_eq!(Region::sphere([f64::NAN, 0.0, 0.0], 1.0), Err(NoRegion));
+}
+
+#[test]
+fn a_cubic_lattice_has_six_neighbours_a_sphere() {
+    let index = |p: [u32; 3]| p[0] % 4 + 4 * (p[1] % 4) + 16 * (p[2] % 4);
+    let sites = (0..64).map(|n| [n % 4, n / 4 % 4, n / 16]);
+    let pairs = sites.flat_map(|p| (0..3).map(move |k| (p, k))).map(|(p, k)| {
+        let mut next = p;
+        next[k] += 1;
+        (index(p), index(next))
+    });
+    let found = coordination(64, &pairs.collect::<Vec<_>>());
+    assert_eq!(found, Coordination { mean: 6.0, without_rattlers: 6.0, rattlers: 0, pairs: 192 });
+}
+
+#[test]
+fn pebbles_that_touch_twice_are_one_pair_and_loose_bodies_are_rattlers() {
+    // A triangle, one body that leans on it, one that touches nothing; 9 is a wall.
+    let pairs = [(0, 1), (1, 2), (2, 0), (0, 2), (2, 0), (3, 1), (3, 3), (4, 9)];
+    let found = coordination(5, &pairs);
+    assert_eq!(found, Coordination { mean: 8.0 / 5.0, without_rattlers: 7.0 / 3.0, rattlers: 2, pairs: 4 });
+    assert_eq!(coordination(0, &[]).mean, 0.0);
+}
+
+#[test]
+fn a_column_carries_the_mean_of_its_weight() {
+    let (count, radius, weight, area) = (7, 0.5, 3.0, 4.0);
+    let contact = |k: usize| {
+        let arm = if k == 0 { radius } else { 2.0 * radius };
+        let force = [0.0, 0.0, weight * (count - k) as f64];
+        Contact { force, branch: [0.0, 0.0, arm], point: [0.0, 0.0, 2.0 * radius * k as f64] }
+    };
+    let height = 2.0 * radius * count as f64;
+    let region = Region::block([-1.0, -1.0, 0.0], [1.0, 1.0, height]).unwrap();
+    let expected = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, -0.5 * count as f64 * weight / area));
+    assert!((stress(&region, (0..count).map(contact)) - expected).norm() < 1e-14);
+    // Over the column and as much again that holds nothing, it is half of that.
+    let region = Region::block([-1.0, -1.0, 0.0], [1.0, 1.0, 2.0 * height]).unwrap();
+    assert!((stress(&region, (0..count).map(contact)) - expected * 0.5).norm() < 1e-14);
+}
+
+/// Contacts of a lattice whose spheres all press on their neighbours with the force (N), halves of every pair, as seen from i.
+fn pressed(sites: &[[f64; 3]], neighbours: &[[f64; 3]], force: f64) -> Vec<Contact> {
+    let images = (0..125).map(|n| [n % 5 - 2, n / 5 % 5 - 2, n / 25 - 2].map(f64::from));
+    let centres = images.flat_map(|i| sites.iter().map(move |s| Vector3::from(*s) + Vector3::from(i)));
+    let contacts = centres.flat_map(|centre| {
+        neighbours.iter().map(move |n| {
+            let branch = -Vector3::from(*n);
+            let point = centre - 0.5 * branch;
+            Contact { force: (branch.normalize() * force).into(), branch: branch.into(), point: point.into() }
+        })
+    });
+    contacts.collect()
+}
+
+#[test]
+fn a_pressed_lattice_has_the_pressure_of_the_closed_form() {
+    let region = Region::block([0.01; 3], [1.01; 3]).unwrap();
+    // Simple cubic, r = 1/2: one contact across every face of the cell, p = F/(4 r²).
+    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let found = stress(&region, pressed(&[[0.0; 3]], &axes, 5.0));
+    assert!((found + Matrix3::identity() * 5.0).norm() < 1e-14);
+    // Face-centred, r = 1/√8: p = F/(√2 r²) = 8 F/√2.
+    let sites = [[0.0; 3], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5]];
+    let half =
+        [[0.5, 0.5, 0.0], [0.5, -0.5, 0.0], [0.5, 0.0, 0.5], [0.5, 0.0, -0.5], [0.0, 0.5, 0.5], [0.0, 0.5, -0.5]];
+    let found = stress(&region, pressed(&sites, &half, 5.0));
+    assert!((found + Matrix3::identity() * (8.0 * 5.0 / 2.0_f64.sqrt())).norm() < 1e-13);
+}
