@@ -1,4 +1,5 @@
 //! Solvers: SI numbers in, SI numbers out.
 
+pub mod granular;
 pub mod settlement;
 pub mod track;
