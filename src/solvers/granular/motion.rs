@@ -18,7 +18,7 @@ pub struct Pose {
 }
 
 /// What contacts did to a wall at the start of a step.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Felt {
     /// Sum of the contact forces on the wall, N.
     pub force: Vector3<f64>,
@@ -108,7 +108,7 @@ impl Motion {
         }
     }
 
-    /// Velocity (m/s) and angular velocity (rad/s) of the step from `time` (s) over `dt` (s).
+    /// Velocity (m/s) and angular velocity (rad/s) of the step from `time` (s) over `dt` (s, above 0).
     pub fn velocity(&self, time: f64, dt: f64, felt: &Felt) -> (Vector3<f64>, Vector3<f64>) {
         let linear = match self {
             Motion::Fixed => Vector3::zeros(),

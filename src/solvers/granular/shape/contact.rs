@@ -14,9 +14,14 @@ const SLACK: f64 = 1e-12;
 /// Centres nearer than this, in slacks, lie on the surface: the direction from it to them is only round-off.
 const ON_SURFACE: f64 = 1e3;
 
-/// Contacts whose normals turn by less than this (cosine, 2.6 degrees) are one. Across a valley of so small a turn a, a
-/// second face would come into touch with all its overlap d at once, since a < sqrt(2 d/r) for the stiffest bed in use.
+/// Contacts whose normals turn by less than this (cosine, 2.6 degrees) are one. In a valley that turns by a, the second
+/// face comes into touch with the overlap d - r a^2/2 at once, d that of the first: a jump if a < sqrt(2 d/r), which is
+/// this angle for d = r/1000.
 const ONE_DIRECTION: f64 = 0.999;
+
+/// How far apart two borders may run and still join, as a part of the largest coordinate: above the rounding of files
+/// in single precision.
+const JOINED: f64 = 1e-6;
 
 impl Mesh {
     pub(super) fn near(&self, centre: &Vector3<f64>, reach: f64, facets: &mut Vec<u32>) -> bool {
@@ -74,9 +79,13 @@ impl Mesh {
                 let minimum = edge.inward.iter().all(|t| from_first.dot(t) <= slack);
                 let feature = self.surface.edge_feature(edge_number);
                 let known = || has(out, feature) || edge.facets.iter().any(|f| has(out, *f));
-                if between && minimum && !known() {
-                    let away = from_first - edge.direction * along;
-                    out.extend(self.sharp(away, reach, &edge.normal, edge.facets[1] == NONE, feature));
+                if !between || !minimum || known() {
+                    continue;
+                }
+                let away = from_first - edge.direction * along;
+                let border = edge.facets[1] == NONE;
+                if !(border && self.goes_on(centre, &away, facets)) {
+                    out.extend(self.sharp(away, reach, &edge.normal, border, feature));
                 }
             }
         }
@@ -103,11 +112,22 @@ impl Mesh {
                         has(out, self.surface.edge_feature(spoke.edge)) || beside.iter().any(|f| has(out, *f))
                     })
                 };
-                if minimum && !known() {
+                if minimum && !known() && !(corner.border && self.goes_on(centre, &away, facets)) {
                     out.extend(self.sharp(away, reach, &corner.normal, corner.border, feature));
                 }
             }
         }
+    }
+
+    /// Whether the surface goes on from a place of its border, `away` from the centre, to places nearer to the centre:
+    /// by a facet that does not share its corners there, but divides the common line in another way.
+    fn goes_on(&self, centre: &Vector3<f64>, away: &Vector3<f64>, facets: &[u32]) -> bool {
+        let (place, joined) = (centre - away, JOINED * self.extent);
+        let nearer = away.norm_squared() - self.slack(centre).powi(2);
+        facets
+            .iter()
+            .map(|facet| &self.surface.facets[*facet as usize])
+            .any(|facet| distance_squared(facet, &place) <= joined * joined && distance_squared(facet, centre) < nearer)
     }
 
     /// Contact with an edge or corner from which the centre lies `away`.

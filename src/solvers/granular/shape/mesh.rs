@@ -10,7 +10,8 @@ use std::collections::HashMap;
 /// What a surface of triangles bounds. Normals follow the right hand along a triangle's corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum MeshKind {
-    /// A closed body, normals outward; spheres touch it from outside.
+    /// A closed body, normals outward; spheres touch it from outside. Several bodies may make one mesh as long as they do
+    /// not cut each other.
     Solid,
     /// A closed cavity, normals inward; spheres live in it.
     Container,
@@ -20,7 +21,8 @@ pub enum MeshKind {
     TwoSided,
 }
 
-/// Triangles without faults. A facet keeps the number of its triangle.
+/// Triangles without faults. A facet keeps the number of its triangle. Sheets need not share vertices where they join:
+/// borders closer than a millionth of the largest coordinate are taken for joined.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Parts", into = "Parts")]
 pub struct Mesh {

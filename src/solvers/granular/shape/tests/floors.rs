@@ -2,12 +2,12 @@
 
 use super::*;
 
-/// A floor in z = 0 of uneven quadrilaterals, each halved at random, with a fan of triangles as well where rows meet.
+/// A floor in z = 0 of uneven quadrilaterals, each halved at random along one of its diagonals.
 fn floor(cells: u32, kind: MeshKind, random: &mut Random) -> Mesh {
     let size = 1.0 / f64::from(cells);
     let mut vertices = Vec::new();
     for (j, i) in (0..=cells).flat_map(|j| (0..=cells).map(move |i| (j, i))) {
-        let mut jitter = |k: u32| if k == 0 || k == cells { 0.0 } else { random.between(-0.35, 0.35) };
+        let mut jitter = |k: u32| if k == 0 || k == cells { 0.0 } else { random.between(-0.2, 0.2) };
         let (x, y) = (f64::from(i) + jitter(i), f64::from(j) + jitter(j));
         vertices.push(Vector3::new(x * size - 0.5, y * size - 0.5, 0.0));
     }
@@ -53,6 +53,36 @@ fn a_floor_of_triangles_is_a_plane_at_every_place() {
     }
     println!("floor of triangles against plane: {:.1e}, tilted {:.1e}", worst[0], worst[1]);
     assert!(worst[0] == 0.0 && worst[1] < 1e-13, "{worst:?}");
+}
+
+/// Every triangle with corners of its own, moved.
+fn loose(mesh: &Mesh, place: impl Fn(usize, &Vector3<f64>) -> Vector3<f64>) -> Vec<Vector3<f64>> {
+    let corners = |(k, t): (usize, &[u32; 3])| t.map(|v| place(k, &mesh.vertices()[v as usize]));
+    mesh.triangles().iter().enumerate().flat_map(corners).collect()
+}
+
+#[test]
+fn a_floor_whose_triangles_do_not_share_vertices_is_a_plane_too() {
+    let mut random = Random::new(11);
+    let fine = floor(12, MeshKind::OneSided, &mut random);
+    let coarse = floor(5, MeshKind::OneSided, &mut random);
+    // as a file of single precision lists it whose corners do not quite meet
+    let skew = Vector3::new(1e-8, -1e-8, 0.0);
+    let apart = loose(&fine, |k, p| (p + skew * (k % 7) as f64).map(|x| f64::from(x as f32)));
+    // two floors that divide the line between them in different ways
+    let mut side = loose(&fine, |_, p| *p);
+    side.extend(loose(&coarse, |_, p| p + Vector3::x()));
+    for (vertices, joint) in [(apart, 0.0), (side, 0.5)] {
+        let triangles = (0..vertices.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let shape = Shape::Mesh(Mesh::new(vertices, triangles, MeshKind::OneSided).unwrap());
+        for _ in 0..5000 {
+            let (x, y) = (joint + random.between(-0.3, 0.3), random.between(-0.42, 0.42));
+            let centre = Vector3::new(x, y, random.between(0.01, 0.069));
+            let found = touches(&shape, &centre, 0.07);
+            assert_eq!(found.len(), 1, "{found:?} at {centre}");
+            assert!((found[0].distance - centre.z).abs() < 1e-12 && (found[0].normal - Vector3::z()).norm() < 1e-5);
+        }
+    }
 }
 
 #[test]
@@ -126,6 +156,24 @@ fn a_sphere_slides_over_triangles_as_over_a_plane() {
             }
         }
         println!("path over triangles against plane: {worst:.1e} m over {:.2} m", (end - start).norm());
+        assert!(worst < 1e-12, "{worst}");
+    }
+}
+
+#[test]
+fn a_sphere_slides_off_a_meshed_block_as_off_a_block() {
+    let half = Vector3::new(0.3, 0.2, 0.1);
+    let (block, mesh) = (Shape::block(half).unwrap(), Shape::Mesh(Mesh::block(half).unwrap()));
+    let start = Vector3::new(0.22, 0.12, 0.1 + 0.0699);
+    // over a long edge, over a short one, and over a corner
+    for velocity in [Vector3::new(0.1, 0.9, 0.0), Vector3::new(0.9, 0.1, 0.0), Vector3::new(0.8, 0.8, 0.0)] {
+        let straight = UnitQuaternion::identity();
+        let expected = slide(&block, start, velocity, &straight);
+        let end = expected.last().unwrap();
+        assert!(end.z < 0.0 && (end.x > 0.3 || end.y > 0.2), "{end}");
+        let path = slide(&mesh, start, velocity, &straight);
+        let worst = path.iter().zip(&expected).fold(0.0f64, |m, (a, b)| m.max((a - b).norm()));
+        println!("path off a meshed block against a block: {worst:.1e} m");
         assert!(worst < 1e-12, "{worst}");
     }
 }
