@@ -114,7 +114,8 @@ impl<R: Real> Bed<R> {
         let mut carried = Vec::new();
         for place in 0..contacts.len() {
             let (block, lane) = (place / BLOCK, place % BLOCK);
-            let of = |vectors: &[BlockVector<R>]| [0, 1, 2].map(|c| vectors.get(block).map_or(R::default(), |v| v[c][lane]));
+            let of =
+                |vectors: &[BlockVector<R>]| [0, 1, 2].map(|c| vectors.get(block).map_or(R::default(), |v| v[c][lane]));
             let (shear, damping) = (of(&contacts.shear), of(&contacts.damping));
             if shear.iter().chain(&damping).all(|&s| s == R::default()) {
                 continue;
@@ -179,7 +180,13 @@ impl<R: Real> Bed<R> {
             None if build.outdated => build.skin,
             None => {
                 let life = self.steps - build.step;
-                let factor = if life < LIFE { 1.5 } else if life > 8 * LIFE { 0.7 } else { 1.0 };
+                let factor = if life < LIFE {
+                    1.5
+                } else if life > 8 * LIFE {
+                    0.7
+                } else {
+                    1.0
+                };
                 (build.skin * factor).clamp(least, most)
             }
         };
@@ -220,7 +227,8 @@ impl<R: Real> Bed<R> {
             let first = self.records[body.first as usize].position();
             self.domain.place(self.domain.wrap(body.cell), first)
         };
-        let least = self.bodies.iter().map(place).fold([f64::INFINITY; 3], |low, p| [0, 1, 2].map(|c| low[c].min(p[c])));
+        let least =
+            self.bodies.iter().map(place).fold([f64::INFINITY; 3], |low, p| [0, 1, 2].map(|c| low[c].min(p[c])));
         let mut order: Vec<(u64, u32)> = self
             .bodies
             .iter()

@@ -178,7 +178,11 @@ impl Rule for HertzStep {
             normal: Num::splat(lanes, 2.0 / 3.0) * tangent * meeting.overlap,
             shear_stiffness,
             normal_dashpot: scale * (tangent * meeting.mass).sqrt(),
-            shear_dashpot: if law.shear_dashpot { scale * (shear_stiffness * meeting.mass).sqrt() } else { Num::splat(lanes, 0.0) },
+            shear_dashpot: if law.shear_dashpot {
+                scale * (shear_stiffness * meeting.mass).sqrt()
+            } else {
+                Num::splat(lanes, 0.0)
+            },
             friction: Num::splat(lanes, law.friction),
             pulls: law.mode.pulls(),
             rests_in_slip: law.mode.rests_in_slip(),

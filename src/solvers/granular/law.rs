@@ -183,7 +183,12 @@ impl Law {
             }
             Law::HertzMindlin(law) => {
                 want("effective modulus", law.effective_modulus, law.effective_modulus > 0.0, POSITIVE);
-                want("effective shear modulus", law.effective_shear_modulus, law.effective_shear_modulus > 0.0, POSITIVE);
+                want(
+                    "effective shear modulus",
+                    law.effective_shear_modulus,
+                    law.effective_shear_modulus > 0.0,
+                    POSITIVE,
+                );
                 want("friction", law.friction, law.friction >= 0.0, NOT_NEGATIVE);
                 let restitution = law.restitution;
                 want("restitution", restitution, restitution > 0.0 && restitution <= 1.0, "a number above 0, up to 1");

@@ -57,8 +57,14 @@ impl<R: Real> Bed<R> {
             watched,
         };
         let contacts = (&self.incidence, &self.contacts.outcomes[..]);
-        self.tally =
-            integrate::advance::<R>(&mut self.bodies, &mut self.records, &mut self.clumps, &self.arms, contacts, &drive);
+        self.tally = integrate::advance::<R>(
+            &mut self.bodies,
+            &mut self.records,
+            &mut self.clumps,
+            &self.arms,
+            contacts,
+            &drive,
+        );
         if watched {
             self.ledger.enter_bodies(&self.tally);
         }

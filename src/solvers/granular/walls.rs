@@ -192,7 +192,9 @@ impl<R: Real> WallContacts<R> {
                     facets: (facet, all.facets.len() as u32),
                     slots: (slot, slot + room),
                 });
-                let mine = kept.iter().skip(kept.partition_point(|k| (k.wall, k.body, k.pebble) < (number as u32, body, part)));
+                let mine = kept
+                    .iter()
+                    .skip(kept.partition_point(|k| (k.wall, k.body, k.pebble) < (number as u32, body, part)));
                 let mine = mine.take_while(|k| (k.wall, k.body, k.pebble) == (number as u32, body, part));
                 for (slot, k) in all.slots[slot as usize..].iter_mut().zip(mine) {
                     *slot = Slot { feature: k.feature, normal: k.normal, shear: k.shear, damping: k.damping, ..*slot };
@@ -241,7 +243,8 @@ impl<R: Real> WallContacts<R> {
             tasks.push((entries, some, here));
             (slots, places) = (rest, others);
         }
-        let done: Vec<_> = tasks.into_par_iter().map(|(entries, slots, places)| work.run(entries, slots, places)).collect();
+        let done: Vec<_> =
+            tasks.into_par_iter().map(|(entries, slots, places)| work.run(entries, slots, places)).collect();
         for wall in walls.iter_mut() {
             (wall.felt, wall.moment) = (Felt::default(), [0.0; 3]);
         }
@@ -326,7 +329,8 @@ impl<R: Real> Work<'_, R> {
     ) -> ContactEnergy {
         let wall = &self.walls[entry.wall as usize];
         let record = &self.around.records[entry.pebble as usize];
-        let away = wall.to(self.domain, (self.pebbles.cell)(self.pebbles.owner[entry.pebble as usize]), record.position());
+        let away =
+            wall.to(self.domain, (self.pebbles.cell)(self.pebbles.owner[entry.pebble as usize]), record.position());
         let facets = &self.facets[entry.facets.0 as usize..entry.facets.1 as usize];
         wall.shape.touches(&wall.turned_back(away), record.radius(), facets, &mut scratch.touches);
         for touch in &mut scratch.touches {
@@ -338,7 +342,8 @@ impl<R: Real> Work<'_, R> {
         let mut energy = ContactEnergy::default();
         for (k, touch) in scratch.touches.iter().enumerate().take(slots.len()) {
             let history = scratch.heirs[k].map(|old| scratch.before[old]);
-            let (shear, damping) = history.map_or(([R::default(); 3], [R::default(); 3]), |h: Slot<R>| (h.shear, h.damping));
+            let (shear, damping) =
+                history.map_or(([R::default(); 3], [R::default(); 3]), |h: Slot<R>| (h.shear, h.damping));
             let (meeting, point) = self.meet(wall, record, away, touch);
             let lanes = One::<R>::new();
             let law: &Prepared = &self.around.laws[usize::from(entry.law)];

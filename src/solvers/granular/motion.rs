@@ -1,0 +1,262 @@
+//! How a wall moves: at rest, at a given velocity, along a table, to and fro, or after a force that it should feel.
+//!
+//! Velocities belong to a whole step, from `time` to `time + dt`, as a leapfrog scheme takes them: x += v dt. For given
+//! motions they are the mean over the step, so that the wall stands where it should after every step, whatever dt is.
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use std::fmt;
+
+/// Where a wall stands and how it is turned against its own frame.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Pose {
+    /// Of the frame's origin, m.
+    pub position: Vector3<f64>,
+    /// Unit quaternion w, x, y, z that turns the frame's axes into those of space.
+    pub orientation: [f64; 4],
+}
+
+/// What contacts did to a wall at the start of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Felt {
+    /// Sum of the contact forces on the wall, N.
+    pub force: Vector3<f64>,
+    /// Sum of the normal stiffnesses of its contacts, N/m.
+    pub stiffness: f64,
+    /// How many there are.
+    pub contacts: usize,
+}
+
+/// The rule by which a wall moves.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub enum Motion {
+    #[default]
+    Fixed,
+    /// Constant velocity (m/s) of the frame's origin and angular velocity (rad/s) about it, in the axes of space.
+    Velocity { linear: Vector3<f64>, angular: Vector3<f64> },
+    /// Velocity (m/s) straight between times (s, growing); the first value holds before, the last one after.
+    Table { times: Vec<f64>, velocities: Vec<Vector3<f64>> },
+    /// To and fro: amplitude sin(2 pi frequency t + phase) along the unit axis, from where the wall stands at t = 0.
+    Harmonic {
+        axis: Vector3<f64>,
+        /// m.
+        amplitude: f64,
+        /// Hz.
+        frequency: f64,
+        /// rad.
+        phase: f64,
+    },
+    /// Moves along the unit axis until the contact force on the wall along it is `force`.
+    ///
+    /// v = gain (F - force)/(k dt), k the normal stiffness of all contacts: F relaxes by the factor 1 - gain a step
+    /// on springs without mass. So it approaches from one side for gains up to 1, overshoots above and grows above 2.
+    /// Bodies with mass follow later than springs: 0.5 is the usual gain, less is safer. After PFC's servo control.
+    Servo {
+        axis: Vector3<f64>,
+        /// N; above 0 where contacts push the wall along the axis.
+        force: f64,
+        /// m/s. Also the speed of a wall without contact, towards where the force will come from.
+        speed_limit: f64,
+        #[serde(default = "usual_gain")]
+        gain: f64,
+    },
+}
+
+/// A number of a motion that is out of its range.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionError {
+    pub name: &'static str,
+    pub value: f64,
+    pub expected: &'static str,
+}
+
+fn usual_gain() -> f64 {
+    0.5
+}
+
+impl Motion {
+    /// A servo with the usual gain of 0.5.
+    pub fn servo(axis: Vector3<f64>, force: f64, speed_limit: f64) -> Self {
+        Motion::Servo { axis, force, speed_limit, gain: usual_gain() }
+    }
+
+    /// The first number that is out of its range.
+    pub fn check(&self) -> Result<(), MotionError> {
+        match self {
+            Motion::Fixed => Ok(()),
+            Motion::Velocity { linear, angular } => {
+                finite("velocity of a wall", linear)?;
+                finite("angular velocity of a wall", angular)
+            }
+            Motion::Table { times, velocities } => check_table(times, velocities),
+            Motion::Harmonic { axis, amplitude, frequency, phase } => {
+                unit("axis of a harmonic motion", axis)?;
+                let number = |name, value: f64| require(value.is_finite(), name, value, "a finite number");
+                number("amplitude of a harmonic motion", *amplitude)?;
+                number("phase of a harmonic motion", *phase)?;
+                let fine = frequency.is_finite() && *frequency >= 0.0;
+                require(fine, "frequency of a harmonic motion", *frequency, "of 0 Hz or more")
+            }
+            Motion::Servo { axis, force, speed_limit, gain } => {
+                unit("axis of a servo", axis)?;
+                require(force.is_finite(), "force of a servo", *force, "a finite number")?;
+                let fine = speed_limit.is_finite() && *speed_limit > 0.0;
+                require(fine, "speed limit of a servo", *speed_limit, "above 0 m/s")?;
+                require(*gain > 0.0 && *gain <= 1.0, "gain of a servo", *gain, "above 0 and up to 1")
+            }
+        }
+    }
+
+    /// Velocity (m/s) and angular velocity (rad/s) of the step from `time` (s) over `dt` (s, above 0).
+    pub fn velocity(&self, time: f64, dt: f64, felt: &Felt) -> (Vector3<f64>, Vector3<f64>) {
+        let linear = match self {
+            Motion::Fixed => Vector3::zeros(),
+            Motion::Velocity { linear, angular } => return (*linear, *angular),
+            Motion::Table { times, velocities } => mean_of_table(times, velocities, time, dt),
+            Motion::Harmonic { axis, amplitude, frequency, phase } => {
+                // sin b - sin a = 2 cos((a + b)/2) sin((b - a)/2) keeps its digits where a and b are close
+                let half = TAU * frequency * dt / 2.0;
+                axis * (amplitude * 2.0 * (TAU * frequency * time + phase + half).cos() * half.sin() / dt)
+            }
+            Motion::Servo { axis, force, speed_limit, gain } => {
+                let excess = felt.force.dot(axis) - force;
+                let speed = if felt.contacts > 0 && felt.stiffness > 0.0 {
+                    (gain * excess / (felt.stiffness * dt)).clamp(-speed_limit, *speed_limit)
+                } else if excess == 0.0 {
+                    0.0
+                } else {
+                    speed_limit.copysign(excess)
+                };
+                axis * speed
+            }
+        };
+        (linear, Vector3::zeros())
+    }
+}
+
+/// Mean over the step of a velocity that is straight between times.
+fn mean_of_table(times: &[f64], velocities: &[Vector3<f64>], time: f64, dt: f64) -> Vector3<f64> {
+    let end = time + dt;
+    let after = times.partition_point(|t| *t <= time);
+    let inner = times[after..].iter().copied().take_while(|t| *t < end);
+    let mut way = Vector3::zeros();
+    let mut from = time;
+    for to in inner.chain([end]) {
+        way += (at(times, velocities, from) + at(times, velocities, to)) * ((to - from) / 2.0);
+        from = to;
+    }
+    way / (end - time)
+}
+
+fn at(times: &[f64], velocities: &[Vector3<f64>], time: f64) -> Vector3<f64> {
+    let right = times.partition_point(|t| *t <= time);
+    if right == 0 {
+        return velocities[0];
+    }
+    if right == times.len() {
+        return velocities[right - 1];
+    }
+    let share = (time - times[right - 1]) / (times[right] - times[right - 1]);
+    velocities[right - 1].lerp(&velocities[right], share)
+}
+
+fn check_table(times: &[f64], velocities: &[Vector3<f64>]) -> Result<(), MotionError> {
+    let name = "times of a table of velocities";
+    require(!times.is_empty(), name, 0.0, "of 1 or more")?;
+    let same = times.len() == velocities.len();
+    require(same, "number of velocities of a table", velocities.len() as f64, "as many as there are times")?;
+    times.iter().try_for_each(|t| require(t.is_finite(), name, *t, "finite numbers"))?;
+    times.windows(2).try_for_each(|pair| require(pair[1] > pair[0], name, pair[1], "each after the one before"))?;
+    velocities.iter().try_for_each(|v| finite("velocities of a table", v))
+}
+
+fn require(fine: bool, name: &'static str, value: f64, expected: &'static str) -> Result<(), MotionError> {
+    if fine { Ok(()) } else { Err(MotionError { name, value, expected }) }
+}
+
+fn finite(name: &'static str, vector: &Vector3<f64>) -> Result<(), MotionError> {
+    vector.iter().try_for_each(|value| require(value.is_finite(), name, *value, "finite numbers"))
+}
+
+fn unit(name: &'static str, axis: &Vector3<f64>) -> Result<(), MotionError> {
+    require((axis.norm() - 1.0).abs() <= 1e-12, name, axis.norm(), "of length 1")
+}
+
+impl Default for Pose {
+    fn default() -> Self {
+        Self { position: Vector3::zeros(), orientation: [1.0, 0.0, 0.0, 0.0] }
+    }
+}
+
+impl Pose {
+    /// Fails where the position is not finite or the quaternion not of length 1.
+    pub fn check(&self) -> Result<(), MotionError> {
+        finite("position of a wall", &self.position)?;
+        let length = self.orientation.iter().map(|q| q * q).sum::<f64>().sqrt();
+        require((length - 1.0).abs() <= 1e-12, "quaternion of a wall", length, "of length 1")
+    }
+
+    /// Moves and turns over a step of `dt` (s), exactly for velocities (m/s, rad/s, axes of space) that stay the same.
+    pub fn advance(&mut self, linear: &Vector3<f64>, angular: &Vector3<f64>, dt: f64) {
+        self.position += linear * dt;
+        let angle = angular.norm() * dt;
+        // a wall that does not turn keeps its bits
+        if angle == 0.0 {
+            return;
+        }
+        let axis = angular * ((angle / 2.0).sin() * dt / angle);
+        let turned = product([(angle / 2.0).cos(), axis.x, axis.y, axis.z], self.orientation);
+        let length = turned.iter().map(|q| q * q).sum::<f64>().sqrt();
+        self.orientation = turned.map(|q| q / length);
+    }
+
+    /// A point of space, m, in the wall's frame.
+    pub fn to_frame(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        let [w, x, y, z] = self.orientation;
+        turn([w, -x, -y, -z], &(point - self.position))
+    }
+
+    /// A point of the wall's frame, m, in space.
+    pub fn to_space(&self, point: &Vector3<f64>) -> Vector3<f64> {
+        self.position + self.direction_to_space(point)
+    }
+
+    /// A direction of the wall's frame in space.
+    pub fn direction_to_space(&self, direction: &Vector3<f64>) -> Vector3<f64> {
+        turn(self.orientation, direction)
+    }
+
+    /// Velocity (m/s) of the wall's material at a point of space, with the velocities of the wall.
+    pub fn velocity_at(&self, point: &Vector3<f64>, linear: &Vector3<f64>, angular: &Vector3<f64>) -> Vector3<f64> {
+        linear + angular.cross(&(point - self.position))
+    }
+}
+
+/// Hamilton's product of quaternions w, x, y, z.
+fn product([aw, ax, ay, az]: [f64; 4], [bw, bx, by, bz]: [f64; 4]) -> [f64; 4] {
+    [
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    ]
+}
+
+/// v + 2 w (q x v) + 2 q x (q x v).
+fn turn([w, x, y, z]: [f64; 4], v: &Vector3<f64>) -> Vector3<f64> {
+    let q = Vector3::new(x, y, z);
+    let t = 2.0 * q.cross(v);
+    v + w * t + q.cross(&t)
+}
+
+impl fmt::Display for MotionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "expected {} {}, found {}", self.name, self.expected, self.value)
+    }
+}
+
+impl std::error::Error for MotionError {}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,85 @@
+//! Whether a point lies inside a closed mesh: how often its surface winds round the point.
+
+use super::{Mesh, MeshKind};
+use nalgebra::Vector3;
+use std::f64::consts::PI;
+
+/// Directions in which a ray is sent, none along an axis or a common diagonal.
+const DIRECTIONS: [[f64; 3]; 4] =
+    [[0.8017, 0.2672, 0.5345], [-0.2113, 0.7731, 0.5981], [0.3713, -0.5571, 0.7428], [-0.6247, -0.4685, -0.6247]];
+
+/// A ray that passes an edge, or starts in front of a facet, this close in facets' sizes says nothing certain.
+const CERTAIN: f64 = 1e-9;
+
+/// Nor does one that runs along a facet, by the sine of the angle between them.
+const ALONG: f64 = 1e-6;
+
+impl Mesh {
+    pub(super) fn contains(&self, point: &Vector3<f64>) -> bool {
+        match self.kind {
+            MeshKind::OneSided | MeshKind::TwoSided => false,
+            MeshKind::Solid => self.winding(point) > 0,
+            MeshKind::Container => self.winding(point) >= 0,
+        }
+    }
+
+    /// 1 in a solid, -1 in the cavity of a container, 0 outside; more where bodies of one mesh overlap.
+    fn winding(&self, point: &Vector3<f64>) -> i64 {
+        let [low, high] = self.bounds();
+        if (0..3).any(|k| point[k] < low[k] || point[k] > high[k]) {
+            return 0;
+        }
+        let by_ray = DIRECTIONS.iter().find_map(|d| self.crossings(point, &Vector3::from(*d)));
+        by_ray.unwrap_or_else(|| winding(&self.vertices, self.triangles.iter(), point))
+    }
+
+    /// How often a ray leaves the surface less how often it enters; `None` where that is not certain.
+    fn crossings(&self, point: &Vector3<f64>, direction: &Vector3<f64>) -> Option<i64> {
+        let inverse = direction.map(f64::recip);
+        let enter = |low: &Vector3<f64>, high: &Vector3<f64>| {
+            let (a, b) = ((low - point).component_mul(&inverse), (high - point).component_mul(&inverse));
+            a.inf(&b).max().max(0.0) <= a.sup(&b).min() * (1.0 + CERTAIN)
+        };
+        let mut sum = Some(0);
+        self.tree.search(enter, |facet| {
+            let facet = &self.surface.facets[facet as usize];
+            sum = sum.and_then(|sum| Some(sum + crossing(&facet.places, point, direction)?));
+        });
+        sum
+    }
+}
+
+/// 1 where the ray leaves through the triangle, -1 where it enters, 0 where it passes it by (Moeller and Trumbore 1997).
+fn crossing(places: &[Vector3<f64>; 3], point: &Vector3<f64>, direction: &Vector3<f64>) -> Option<i64> {
+    let (first, second, from) = (places[1] - places[0], places[2] - places[0], point - places[0]);
+    let normal = first.cross(&second);
+    let across = direction.dot(&normal);
+    if across.abs() <= ALONG * normal.norm() {
+        return None;
+    }
+    let turn = from.cross(direction);
+    let u = -second.dot(&turn) / across;
+    let v = first.dot(&turn) / across;
+    let ahead = -from.dot(&normal) / across;
+    let scale = (first.norm() + second.norm()).max(from.norm());
+    let least = u.min(v).min(1.0 - u - v);
+    if least < -CERTAIN || ahead < -CERTAIN * scale {
+        return Some(0);
+    }
+    (least > CERTAIN && ahead > CERTAIN * scale).then_some(if across > 0.0 { 1 } else { -1 })
+}
+
+/// The same from all solid angles, which is slower but always certain off the surface (van Oosterom and Strackee 1983,
+/// equation 8).
+pub(super) fn winding<'a>(
+    vertices: &[Vector3<f64>],
+    triangles: impl Iterator<Item = &'a [u32; 3]>,
+    point: &Vector3<f64>,
+) -> i64 {
+    let half_angle = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|v| vertices[v as usize] - point);
+        let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
+        a.dot(&b.cross(&c)).atan2(la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb)
+    };
+    (triangles.map(half_angle).sum::<f64>() / (2.0 * PI)).round() as i64
+}

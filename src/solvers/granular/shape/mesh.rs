@@ -1,0 +1,133 @@
+//! A surface of triangles: checked once, with its edges, corners and search tree built once.
+
+use super::check::{self, MeshError};
+use super::topology::Surface;
+use super::tree::Tree;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use std::collections::HashMap;
+
+/// What a surface of triangles bounds. Normals follow the right hand along a triangle's corners.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MeshKind {
+    /// A closed body, normals outward; spheres touch it from outside. Several bodies may make one mesh as long as they do
+    /// not cut each other.
+    Solid,
+    /// A closed cavity, normals inward; spheres live in it.
+    Container,
+    /// An open sheet with solid behind its normals. Its border is touched from all sides.
+    OneSided,
+    /// An open sheet without thickness, touched from both sides.
+    TwoSided,
+}
+
+/// Triangles without faults. A facet keeps the number of its triangle. Sheets need not share vertices where they join:
+/// borders closer than a millionth of the largest coordinate are taken for joined.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Parts", into = "Parts")]
+pub struct Mesh {
+    pub(super) kind: MeshKind,
+    pub(super) vertices: Vec<Vector3<f64>>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    pub(super) surface: Surface,
+    pub(super) tree: Tree,
+    /// The largest coordinate, m: round-off is measured by it.
+    pub(super) extent: f64,
+}
+
+/// A mesh as it is stored.
+#[derive(Serialize, Deserialize)]
+struct Parts {
+    kind: MeshKind,
+    vertices: Vec<Vector3<f64>>,
+    triangles: Vec<[u32; 3]>,
+}
+
+impl From<Mesh> for Parts {
+    fn from(mesh: Mesh) -> Self {
+        Self { kind: mesh.kind, vertices: mesh.vertices, triangles: mesh.triangles }
+    }
+}
+
+impl TryFrom<Parts> for Mesh {
+    type Error = MeshError;
+
+    fn try_from(parts: Parts) -> Result<Self, MeshError> {
+        Mesh::new(parts.vertices, parts.triangles, parts.kind)
+    }
+}
+
+impl Mesh {
+    /// A mesh of vertices (m) and of triangles of three vertices each. Vertices at the same place become one, and those
+    /// that no triangle uses are left out. Fails with all faults at once.
+    pub fn new(vertices: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>, kind: MeshKind) -> Result<Self, MeshError> {
+        let places = weld(&vertices);
+        check::check(&vertices, &triangles, &places, kind)?;
+        let mut number = vec![u32::MAX; vertices.len()];
+        for corner in triangles.iter().flatten() {
+            number[places[*corner as usize] as usize] = 0;
+        }
+        let mut used = Vec::new();
+        for (vertex, number) in vertices.iter().zip(&mut number).filter(|(_, number)| **number == 0) {
+            *number = used.len() as u32;
+            used.push(*vertex);
+        }
+        let renumbered = triangles.iter().map(|t| t.map(|v| number[places[v as usize] as usize])).collect();
+        Ok(Self::build(used, renumbered, kind))
+    }
+
+    /// From parts without faults.
+    fn build(vertices: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>, kind: MeshKind) -> Self {
+        let surface = Surface::new(&vertices, &triangles);
+        let tree = Tree::new(&vertices, &triangles);
+        let extent = vertices.iter().fold(0.0, |m: f64, v| m.max(v.amax()));
+        Self { kind, vertices, triangles, surface, tree, extent }
+    }
+
+    pub fn kind(&self) -> MeshKind {
+        self.kind
+    }
+
+    /// Places of the corners, m.
+    pub fn vertices(&self) -> &[Vector3<f64>] {
+        &self.vertices
+    }
+
+    /// Three vertices a facet.
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// The same triangles with the other side in front: a solid becomes a container and a container a solid.
+    pub fn flipped(&self) -> Self {
+        let kind = match self.kind {
+            MeshKind::Solid => MeshKind::Container,
+            MeshKind::Container => MeshKind::Solid,
+            sheet => sheet,
+        };
+        let triangles = self.triangles.iter().map(|[a, b, c]| [*a, *c, *b]).collect();
+        Self::build(self.vertices.clone(), triangles, kind)
+    }
+
+    /// Lowest and highest corner of the bounding box, m.
+    pub fn bounds(&self) -> [Vector3<f64>; 2] {
+        self.tree.bounds()
+    }
+
+    /// Area of the facets, m2, one side of a sheet.
+    pub fn area(&self) -> f64 {
+        self.triangles.iter().map(|t| check::area_vector(&self.vertices, t).norm()).sum()
+    }
+
+    /// Volume that the facets enclose, m3: positive for a solid, negative for a container, without meaning for a sheet.
+    pub fn volume(&self) -> f64 {
+        check::volume(&self.vertices, self.triangles.iter())
+    }
+}
+
+/// For every vertex the first one at the same place.
+fn weld(vertices: &[Vector3<f64>]) -> Vec<u32> {
+    let mut first = HashMap::new();
+    let place = |v: &Vector3<f64>| [v.x, v.y, v.z].map(|x| (x + 0.0).to_bits());
+    vertices.iter().enumerate().map(|(i, v)| *first.entry(place(v)).or_insert(i as u32)).collect()
+}

@@ -1,0 +1,159 @@
+//! Surfaces that a sphere can touch, each in the frame of its own wall: a plane, a block, a mesh of triangles. Lengths in m.
+//!
+//! A contact is a local minimum of the distance from the sphere's centre to the surface. So a face touches where the centre
+//! projects into it, an edge where no face beside it comes closer, a corner where nothing around it does. Two faces of a
+//! valley are two contacts; a flat face is one, however it is cut into triangles.
+
+mod block;
+mod check;
+mod contact;
+mod generate;
+mod history;
+mod inside;
+mod mesh;
+mod plane;
+mod topology;
+mod tree;
+
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+pub use check::{Fault, FaultKind, MeshError, Place};
+pub use history::inherit;
+pub use mesh::{Mesh, MeshKind};
+
+#[cfg(test)]
+mod tests;
+
+/// The surface of a wall in the wall's own frame.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Shape {
+    /// A plane through the origin; the solid lies behind its unit normal.
+    Plane { normal: Vector3<f64> },
+    /// A solid block round the origin with half lengths (m) along the axes.
+    Block { half: Vector3<f64> },
+    /// Triangles: a solid, a container, or an open sheet.
+    Mesh(Mesh),
+}
+
+/// One contact of a sphere with a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch {
+    /// Unit, from the surface to the sphere's centre; out of the solid where the centre lies inside it.
+    pub normal: Vector3<f64>,
+    /// From the surface to the centre along the normal, m; negative where the centre lies behind the surface. A sphere of
+    /// radius r overlaps by r - distance.
+    pub distance: f64,
+    /// The face, edge or corner that is touched: the same number for the same place of the same shape.
+    pub feature: u32,
+}
+
+/// A plane or a block whose numbers describe none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ShapeError {
+    /// The normal of a plane has no direction, or is not a unit vector where one is needed.
+    Normal { normal: Vector3<f64> },
+    /// A half length (m) of a block is not a positive number.
+    HalfLength { half: Vector3<f64> },
+}
+
+impl Shape {
+    /// The plane with a normal of any length.
+    pub fn plane(normal: Vector3<f64>) -> Result<Self, ShapeError> {
+        // by the largest component first, so that neither large nor small vectors leave the range of numbers
+        let scaled = normal / normal.amax();
+        let shape = Shape::Plane { normal: scaled / scaled.norm() };
+        shape.check().map(|()| shape).map_err(|_| ShapeError::Normal { normal })
+    }
+
+    /// The block with these half lengths (m).
+    pub fn block(half: Vector3<f64>) -> Result<Self, ShapeError> {
+        let shape = Shape::Block { half };
+        shape.check().map(|()| shape)
+    }
+
+    /// Whether the numbers describe a shape; a mesh was checked when it was made.
+    pub fn check(&self) -> Result<(), ShapeError> {
+        match self {
+            Shape::Plane { normal } => {
+                let unit = (normal.norm() - 1.0).abs() <= 1e-12;
+                if unit { Ok(()) } else { Err(ShapeError::Normal { normal: *normal }) }
+            }
+            Shape::Block { half } => {
+                let solid = half.iter().all(|h| *h > 0.0 && h.is_finite());
+                if solid { Ok(()) } else { Err(ShapeError::HalfLength { half: *half }) }
+            }
+            Shape::Mesh(_) => Ok(()),
+        }
+    }
+
+    /// Every distinct contact of a sphere of radius `reach` (m) whose centre is there, into `out`, which is emptied first:
+    /// nearest first, in an order that does not depend on that of `facets`.
+    ///
+    /// Of a mesh, `facets` must hold all that `near` finds with this reach, and may hold more; a plane and a block need
+    /// none. A centre inside gets one contact, the way out: at any depth of a plane or a block, to a depth of `reach` of a
+    /// mesh or a one-sided sheet.
+    pub fn touches(&self, centre: &Vector3<f64>, reach: f64, facets: &[u32], out: &mut Vec<Touch>) {
+        out.clear();
+        match self {
+            Shape::Plane { normal } => out.extend(plane::touch(normal, centre, reach)),
+            Shape::Block { half } => out.extend(block::touch(half, centre, reach)),
+            Shape::Mesh(mesh) => mesh.touches(centre, reach, facets, out),
+        }
+    }
+
+    /// Whether the surface comes within `reach` (m) of the centre, or the centre lies behind a plane or in a block; of a
+    /// mesh, `facets` then holds those that do. It is emptied first.
+    pub fn near(&self, centre: &Vector3<f64>, reach: f64, facets: &mut Vec<u32>) -> bool {
+        facets.clear();
+        match self {
+            Shape::Plane { normal } => plane::touch(normal, centre, reach).is_some(),
+            Shape::Block { half } => block::touch(half, centre, reach).is_some(),
+            Shape::Mesh(mesh) => mesh.near(centre, reach, facets),
+        }
+    }
+
+    /// Whether a point lies in what is solid: behind a plane, in a block or a closed mesh, outside the cavity of a
+    /// container. Nothing lies in a sheet.
+    pub fn contains(&self, point: &Vector3<f64>) -> bool {
+        match self {
+            Shape::Plane { normal } => normal.dot(point) < 0.0,
+            Shape::Block { half } => block::contains(half, point),
+            Shape::Mesh(mesh) => mesh.contains(point),
+        }
+    }
+
+    /// Lowest and highest corner of the surface's bounding box, m; `None` for a plane, which has no end.
+    pub fn bounds(&self) -> Option<[Vector3<f64>; 2]> {
+        match self {
+            Shape::Plane { .. } => None,
+            Shape::Block { half } => Some([-half, *half]),
+            Shape::Mesh(mesh) => Some(mesh.bounds()),
+        }
+    }
+
+    /// Area of the surface, m2, one side of a sheet; infinite for a plane.
+    pub fn area(&self) -> f64 {
+        match self {
+            Shape::Plane { .. } => f64::INFINITY,
+            Shape::Block { half } => 8.0 * (half.x * half.y + half.y * half.z + half.z * half.x),
+            Shape::Mesh(mesh) => mesh.area(),
+        }
+    }
+}
+
+impl fmt::Display for ShapeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            ShapeError::Normal { normal: n } => {
+                write!(f, "expected a unit vector as the normal of a plane, found ({}, {}, {})", n.x, n.y, n.z)
+            }
+            ShapeError::HalfLength { half: h } => {
+                write!(f, "expected half lengths of a block above 0 m, found ({}, {}, {})", h.x, h.y, h.z)
+            }
+        }
+    }
+}
+
+impl std::error::Error for ShapeError {}
