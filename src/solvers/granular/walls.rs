@@ -102,14 +102,12 @@ pub(super) struct Slot<R> {
     pub normal: Vec3,
     pub shear: [R; 3],
     damping: [R; 3],
-    /// From the wall's origin to the contact point \[m\].
-    pub point: Vec3,
     pub overlap: f64,
 }
 
 impl<R: Real> Slot<R> {
     const fn empty(zero: R) -> Self {
-        Slot { feature: NONE, normal: [0.0; 3], shear: [zero; 3], damping: [zero; 3], point: [0.0; 3], overlap: 0.0 }
+        Slot { feature: NONE, normal: [0.0; 3], shear: [zero; 3], damping: [zero; 3], overlap: 0.0 }
     }
 
     pub fn touches(&self) -> bool {
@@ -355,7 +353,6 @@ impl<R: Real> Work<'_, R> {
                 normal: touch.normal.into(),
                 shear: contact.shear.0.map(|n| n.value[0]),
                 damping: contact.damping.0.map(|n| n.value[0]),
-                point,
                 overlap: record.radius() - touch.distance,
             };
             load.add(values, point, self.stiffness(entry, record, slots[k].overlap));

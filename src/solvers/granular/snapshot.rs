@@ -1,0 +1,173 @@
+//! The bed at an instant: every contact that touches, and kinetic energy at the same time as positions.
+
+use super::bed::Bed;
+use super::body::{BodyId, SPHERE};
+use super::force::force_of;
+use super::integrate::{self, Drive};
+use super::lanes::{BLOCK, Real};
+use super::record::Record;
+use super::vector::{Vec3, add, norm, scale, sub};
+use super::walls::WallId;
+use super::watch::Failure;
+
+/// Who takes part in a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Party {
+    /// A body, and which of its pebbles.
+    Body(BodyId, u16),
+    Wall(WallId),
+}
+
+impl Party {
+    pub fn body(&self) -> Option<BodyId> {
+        match self {
+            Party::Body(id, _) => Some(*id),
+            Party::Wall(_) => None,
+        }
+    }
+}
+
+/// A contact that carries a force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactState {
+    /// A body always comes first.
+    pub first: Party,
+    pub second: Party,
+    /// On the first \[N\].
+    pub force: [f64; 3],
+    /// Unit vector from the second to the first.
+    pub normal: [f64; 3],
+    /// \[m\]
+    pub overlap: f64,
+    /// Where it is, beside the first \[m\].
+    pub point: [f64; 3],
+    /// From the centroid of the second body, or from the contact point of a wall, to the centroid of the first \[m\].
+    pub branch: [f64; 3],
+}
+
+/// The bed at an instant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Snapshot {
+    /// \[s\]
+    pub time: f64,
+    /// Kinetic energy of translation and of rotation \[J\].
+    pub translation: f64,
+    pub rotation: f64,
+    /// Contacts between pebbles, then those with walls.
+    pub contacts: Vec<ContactState>,
+}
+
+impl Snapshot {
+    /// Mean number of contacts between pebbles that a body has: twice their count over the bodies.
+    pub fn coordination(&self, bodies: usize) -> f64 {
+        let pairs = self.contacts.iter().filter(|c| c.second.body().is_some()).count();
+        2.0 * pairs as f64 / bodies.max(1) as f64
+    }
+
+    /// Largest force \[N\].
+    pub fn largest_force(&self) -> f64 {
+        self.contacts.iter().map(|c| norm(c.force)).fold(0.0, f64::max)
+    }
+}
+
+impl<R: Real> Bed<R> {
+    /// Takes a snapshot. The motion goes on afterwards as if nobody had looked, bit by bit.
+    pub fn snapshot(&mut self) -> Result<Snapshot, Failure> {
+        if self.dt <= 0.0 {
+            return Err(Failure::NoTimeStep);
+        }
+        self.refresh()?;
+        let histories = (self.contacts.shear.clone(), self.contacts.damping.clone(), self.wall_contacts.slots.clone());
+        let felt: Vec<_> = self.walls.iter().map(|w| (w.felt, w.moment)).collect();
+        let watched = std::mem::replace(&mut self.ledger.watched, false);
+        self.forces();
+        let contacts = self.contact_states();
+        let tally = self.half_kick();
+        (self.contacts.shear, self.contacts.damping, self.wall_contacts.slots) = histories;
+        for (wall, felt) in self.walls.iter_mut().zip(felt) {
+            (wall.felt, wall.moment) = felt;
+        }
+        self.ledger.watched = watched;
+        Ok(Snapshot { time: self.time, translation: tally.translation, rotation: tally.rotation, contacts })
+    }
+
+    /// What half a kick under the present forces would give, without moving anything.
+    fn half_kick(&self) -> integrate::Tally {
+        let drive = Drive {
+            kick: if self.fresh { 0.0 } else { 0.5 * self.dt },
+            dt: 0.0,
+            gravity: self.gravity.at(self.time),
+            damping: self.damping,
+            watched: true,
+        };
+        let (mut bodies, mut records, mut clumps) = (self.bodies.clone(), self.records.clone(), self.clumps.clone());
+        let contacts = (&self.incidence, &self.contacts.outcomes[..]);
+        integrate::advance::<R>(&mut bodies, &mut records, &mut clumps, &self.arms, contacts, &drive)
+    }
+
+    fn contact_states(&self) -> Vec<ContactState> {
+        let mut states = Vec::new();
+        for place in 0..self.contacts.len() {
+            let Some(overlap) = self.overlap(place) else { continue };
+            let (a, b) = (self.contacts.first[place], self.contacts.second[place]);
+            let image = self.domain.shift(self.contacts.image[place]);
+            let apart = add(sub(self.offset(a), self.offset(b)), image);
+            let normal = scale(apart, 1.0 / norm(apart));
+            let arm = self.contacts.outcomes[place][6].to_f64();
+            states.push(ContactState {
+                first: self.party(a),
+                second: self.party(b),
+                force: force_of(&self.contacts.outcomes[place]),
+                normal,
+                overlap,
+                point: sub(self.place_of(a), scale(normal, arm)),
+                branch: add(sub(self.centre(a), self.centre(b)), image),
+            });
+        }
+        let pairs = self.contacts.len();
+        for entry in &self.wall_contacts.entries {
+            for (k, slot) in self.wall_contacts.slots(entry).iter().enumerate().filter(|(_, s)| s.touches()) {
+                let place = self.place_of(entry.pebble);
+                let radius = self.records[entry.pebble as usize].radius();
+                let point = sub(place, scale(slot.normal, radius - 0.5 * slot.overlap));
+                let centre = add(place, sub(self.centre(entry.pebble), self.offset(entry.pebble)));
+                states.push(ContactState {
+                    first: self.party(entry.pebble),
+                    second: Party::Wall(WallId(entry.wall)),
+                    force: force_of(&self.contacts.outcomes[pairs + entry.slots.0 as usize + k]),
+                    normal: slot.normal,
+                    overlap: slot.overlap,
+                    point,
+                    branch: sub(centre, point),
+                });
+            }
+        }
+        states
+    }
+
+    fn party(&self, pebble: u32) -> Party {
+        let (body, part) = self.name(pebble);
+        Party::Body(BodyId(body), part)
+    }
+
+    fn offset(&self, pebble: u32) -> Vec3 {
+        self.records[pebble as usize].position()
+    }
+
+    /// Centroid of a pebble's body, in the body's cell \[m\].
+    fn centre(&self, pebble: u32) -> Vec3 {
+        let body = &self.bodies[self.owner[pebble as usize] as usize];
+        if body.clump == SPHERE { self.offset(pebble) } else { self.clumps[body.clump as usize].centre }
+    }
+
+    fn place_of(&self, pebble: u32) -> Vec3 {
+        let body = &self.bodies[self.owner[pebble as usize] as usize];
+        self.domain.place(body.cell, self.offset(pebble))
+    }
+
+    /// Number of contacts listed, those that fill up blocks included: what a step computes.
+    pub fn listed_contacts(&self) -> usize {
+        debug_assert_eq!(self.contacts.len() % BLOCK, 0);
+        self.contacts.len()
+    }
+}
