@@ -9,6 +9,7 @@ mod frame;
 #[cfg(test)]
 mod tests;
 
+pub use super::union::Pebble;
 pub use error::TemplateError;
 
 use super::union::moments;
@@ -22,15 +23,6 @@ const TOUCH: f64 = 1e-9;
 
 /// The fifth power of a radius (m) must be a number; from here to its inverse it is.
 const SMALLEST: f64 = 1e-50;
-
-/// One sphere of a clump.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Pebble {
-    /// m.
-    pub centre: Vector3<f64>,
-    /// m.
-    pub radius: f64,
-}
 
 /// A shape of clumps, in its principal frame.
 ///
