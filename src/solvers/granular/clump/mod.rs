@@ -2,7 +2,8 @@
 //!
 //! Volume, centroid and inertia are those of the union, each part counted once however many pebbles hold it (PFC's "accounting
 //! for overlap"). They are integrated, not sampled: the error is below 1e-11 of the value, against closed forms of two and three
-//! spheres. A pebble that only others together hide adds nothing, and touches nothing.
+//! spheres. Sines come from the platform, so the last digits of a template may differ between machines. A pebble that only
+//! others together hide adds nothing, and touches nothing.
 
 mod error;
 mod frame;

@@ -23,7 +23,8 @@ pub fn union_in(shape: &Shape, balls: &[Ball]) -> f64 {
             union_in_ball(&pebbles, &Pebble { centre: place(centre), radius: radius / unit })
         }
     };
-    share.max(0.0) * unit * unit * unit
+    let share = if share < 0.0 { 0.0 } else { share }; // by rounding; what is no number stays none
+    share * unit * unit * unit
 }
 
 /// `∮ x dy dz/dζ` over arcs of a sphere.

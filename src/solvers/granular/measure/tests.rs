@@ -169,6 +169,14 @@ fn symmetry_planes_cut_a_clump_in_equal_parts() {
 }
 
 #[test]
+fn a_body_that_is_nowhere_gives_no_number() {
+    let region = Region::block([-1.0; 3], [1.0; 3]).unwrap();
+    let lost = ([f64::NAN, 0.0, 0.0], 1.0);
+    assert!(region.share_of_sphere(lost).is_nan());
+    assert!(region.share_of_clump(&[lost, ([0.5, 0.0, 0.0], 1.0)], 5.0).is_nan());
+}
+
+#[test]
 fn regions_without_volume_are_refused() {
     assert_eq!(Region::block([0.0; 3], [1.0, 0.0, 1.0]), Err(NoRegion));
     assert_eq!(Region::block([0.0; 3], [1.0, f64::NAN, 1.0]), Err(NoRegion));
