@@ -13,7 +13,7 @@ use super::motion::Pose;
 use super::record::Record;
 use super::search::{CellTooSmall, Grids, Pair, Seen};
 use super::vector::{Vec3, dot, sub};
-use super::walls::{Kept, WallContacts, moved};
+use super::walls::{Kept, Near, WallContacts, moved};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -157,7 +157,8 @@ impl<R: Real> Bed<R> {
                 let (body, part) = self.name(pebble);
                 (body, part, self.bodies[self.owner[pebble as usize] as usize].surface)
             };
-            let walls = WallContacts::find(&self.walls, &domain, &seen, &grids, skin, &self.laws, about, &kept);
+            let near = Near { domain: &domain, seen: &seen, grids: &grids, skin };
+            let walls = WallContacts::find(&self.walls, near, &self.laws, about, &kept);
             (grids.pairs(skin)?, walls)
         };
         drop(seen);
@@ -203,7 +204,7 @@ impl<R: Real> Bed<R> {
     /// Brings bodies that have left their cells well behind back into the cells where they are. That rounds their offsets, so it is
     /// done at fixed steps, never when lists happen to be made.
     pub(super) fn settle(&mut self) {
-        if self.steps % SETTLE != 0 {
+        if !self.steps.is_multiple_of(SETTLE) {
             return;
         }
         for body in &mut self.bodies {

@@ -26,8 +26,7 @@ pub struct Checkpoint<R: Real> {
     damping: f64,
     dt: f64,
     bodies: Vec<Body>,
-    /// Place, velocity, spin, radius and mass of each pebble.
-    pebbles: Vec<(Vec3, [R; 3], [R; 3], f64, R)>,
+    pebbles: Vec<Grain<R>>,
     clumps: Vec<Clump>,
     arms: Vec<Vec3>,
     walls: Vec<Wall>,
@@ -41,6 +40,17 @@ pub struct Checkpoint<R: Real> {
     limits: Limits,
     skin: f64,
     fixed_skin: Option<f64>,
+}
+
+/// A pebble's record.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(bound = "")]
+struct Grain<R: Real> {
+    place: Vec3,
+    velocity: [R; 3],
+    spin: [R; 3],
+    radius: f64,
+    mass: R,
 }
 
 /// Layout of a checkpoint; another one is refused.
@@ -74,7 +84,13 @@ impl std::error::Error for RestoreError {}
 impl<R: Real> Bed<R> {
     /// The state as data. A bed restored from it goes on bit by bit as this one does.
     pub fn checkpoint(&self) -> Checkpoint<R> {
-        let pebble = |r: &R::Record| (r.position(), r.velocity(), r.spin(), r.radius(), r.mass());
+        let pebble = |r: &R::Record| Grain {
+            place: r.position(),
+            velocity: r.velocity(),
+            spin: r.spin(),
+            radius: r.radius(),
+            mass: r.mass(),
+        };
         Checkpoint {
             version: VERSION,
             domain: self.domain,
@@ -113,10 +129,10 @@ impl<R: Real> Bed<R> {
         bed.records = from
             .pebbles
             .into_iter()
-            .map(|(place, velocity, spin, radius, mass)| {
-                let mut record = R::Record::new(radius, mass.to_f64());
-                record.place(place);
-                record.move_with(velocity, spin);
+            .map(|grain| {
+                let mut record = R::Record::new(grain.radius, grain.mass.to_f64());
+                record.place(grain.place);
+                record.move_with(grain.velocity, grain.spin);
                 record
             })
             .collect();

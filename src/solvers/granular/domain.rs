@@ -131,6 +131,7 @@ impl Domain {
     }
 
     /// From `b` to `a` the shortest way \[m\].
+    #[inline(always)]
     pub(super) fn between(&self, a: ([i32; 3], [f64; 3]), b: ([i32; 3], [f64; 3])) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
             let apart = a.1[axis] - b.1[axis];

@@ -113,10 +113,10 @@ impl<R: Real> Bed<R> {
         let around = Surroundings { records: &self.records, laws, shifts, dt: self.dt };
         let bodies = &self.bodies;
         let cell = |body: u32| bodies[body as usize].cell;
-        let pebbles = Pebbles { owner: &self.owner, cell: &cell };
+        let pebbles = Pebbles { domain: &self.domain, owner: &self.owner, cell: &cell };
         let outcomes = &mut self.contacts.outcomes[self.contacts.first.len()..];
-        let (walls, domain, watched) = (&mut self.walls, &self.domain, self.ledger.watched);
-        let energy = self.wall_contacts.evaluate(walls, domain, &self.laws, pebbles, around, outcomes, watched);
+        let (walls, watched) = (&mut self.walls, self.ledger.watched);
+        let energy = self.wall_contacts.evaluate(walls, &self.laws, pebbles, around, outcomes, watched);
         self.timings.walls += start.elapsed();
         energy
     }
