@@ -1,0 +1,8 @@
+//! The grain kernel against closed forms, an independent plain solver, and what must hold of every bed.
+
+mod scenes;
+
+mod impact;
+mod modes;
+mod sliding;
+mod stability;
