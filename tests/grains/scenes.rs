@@ -1,7 +1,7 @@
 //! Beds that several tests share, and what reads them.
 
 use trackbed::solvers::granular::{
-    Bed, BodyId, Dashpot, DashpotMode, Domain, FrictionLimit, Law, Laws, Linear, Sphere,
+    Bed, BodyId, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Law, Laws, Linear, Sphere,
 };
 
 pub type Vec3 = [f64; 3];
@@ -89,4 +89,54 @@ pub fn norm(a: Vec3) -> f64 {
 /// Errors in two digits.
 pub fn shown(errors: &[f64]) -> String {
     errors.iter().map(|e| format!("{e:.1e}")).collect::<Vec<_>>().join(", ")
+}
+
+/// A number in -1..1 from a seed that it moves on.
+pub fn random(seed: &mut u64) -> f64 {
+    *seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+    (*seed >> 33) as f64 / f64::from(1u32 << 30) - 1.0
+}
+
+/// Inward planes of a box without a lid: points and normals.
+pub fn walls(side: f64) -> [(Vec3, Vec3); 5] {
+    [
+        ([0.0; 3], [0.0, 0.0, 1.0]),
+        ([0.0; 3], [1.0, 0.0, 0.0]),
+        ([side, 0.0, 0.0], [-1.0, 0.0, 0.0]),
+        ([0.0; 3], [0.0, 1.0, 0.0]),
+        ([0.0, side, 0.0], [0.0, -1.0, 0.0]),
+    ]
+}
+
+/// Spheres of 28 to 56 mm at rest in a box, `across` squared in a layer before they fall, packed without friction.
+/// Gives the spheres and the side of the box.
+pub fn packed(across: usize, layers: usize) -> (Vec<Sphere>, f64) {
+    let (pitch, mut seed) = (0.05, 3);
+    let side = pitch * across as f64;
+    let mut bed = open(springs(1e7, 0.0));
+    let mut spheres = Vec::new();
+    for k in 0..across * across * layers {
+        let cell = [k % across, k / across % across, k / (across * across)];
+        let lean = 1e-3 * random(&mut seed);
+        let centre = [lean, -lean, 2.0 * lean];
+        let centre = [0, 1, 2].map(|c| centre[c] + pitch * (0.5 + cell[c] as f64));
+        let radius = 0.0195 + 0.0055 * random(&mut seed);
+        spheres.push(Sphere { centre, radius, ..sphere(centre) });
+        bed.add_sphere(spheres.last().unwrap());
+    }
+    for (point, normal) in walls(side) {
+        bed.add_plane(point, normal, 0);
+    }
+    bed.set_damping(0.7);
+    bed.set_time_step(1.5e-5);
+    alone(|| {
+        for (weights, steps) in [(100.0, 6000), (10.0, 2000), (1.0, 5000)] {
+            bed.set_gravity(Gravity::Constant([0.0, 0.0, -weights * GRAVITY]));
+            bed.run(steps).unwrap();
+        }
+    });
+    for (sphere, state) in spheres.iter_mut().zip(bed.states()) {
+        sphere.centre = state.place;
+    }
+    (spheres, side)
 }
