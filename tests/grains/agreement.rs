@@ -27,7 +27,7 @@ struct Scene {
 }
 
 fn scene() -> Scene {
-    let (spheres, side) = packed(5, 8);
+    let (spheres, side) = packed();
     let mut seed = 11;
     let mut vector = |size: f64| [0, 1, 2].map(|_| size * random(&mut seed));
     let spheres = spheres

@@ -9,3 +9,4 @@ mod impact;
 mod modes;
 mod sliding;
 mod stability;
+mod statics;

@@ -1,5 +1,6 @@
 //! Beds that several tests share, and what reads them.
 
+use std::sync::OnceLock;
 use trackbed::solvers::granular::{
     Bed, BodyId, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Law, Laws, Linear, Sphere,
 };
@@ -108,10 +109,14 @@ pub fn walls(side: f64) -> [(Vec3, Vec3); 5] {
     ]
 }
 
-/// Spheres of 28 to 56 mm at rest in a box, `across` squared in a layer before they fall, packed without friction.
-/// Gives the spheres and the side of the box.
-pub fn packed(across: usize, layers: usize) -> (Vec<Sphere>, f64) {
-    let (pitch, mut seed) = (0.05, 3);
+/// 200 spheres of 28 to 50 mm at rest in a box, packed without friction and settled with it, and the side of the box.
+pub fn packed() -> (Vec<Sphere>, f64) {
+    static PACKED: OnceLock<(Vec<Sphere>, f64)> = OnceLock::new();
+    PACKED.get_or_init(pack).clone()
+}
+
+fn pack() -> (Vec<Sphere>, f64) {
+    let (across, layers, pitch, mut seed) = (5, 8, 0.05, 3);
     let side = pitch * across as f64;
     let mut bed = open(springs(1e7, 0.0));
     let mut spheres = Vec::new();
@@ -130,11 +135,20 @@ pub fn packed(across: usize, layers: usize) -> (Vec<Sphere>, f64) {
     bed.set_damping(0.7);
     bed.set_time_step(1.5e-5);
     alone(|| {
-        for (weights, steps) in [(100.0, 6000), (10.0, 2000), (1.0, 5000)] {
+        for (weights, steps, rough) in [(100.0, 6000, 0.0), (10.0, 3000, 0.5), (1.0, 8000, 0.5)] {
+            bed.change_laws(|law| {
+                if let Law::Linear(law) = law {
+                    (law.friction, law.shear_stiffness) = (rough, 2e7 * rough);
+                }
+            });
             bed.set_gravity(Gravity::Constant([0.0, 0.0, -weights * GRAVITY]));
             bed.run(steps).unwrap();
         }
     });
+    let mut fast: Vec<_> = bed.states().map(|s| (norm(s.velocity), s.place, s.velocity)).collect();
+    fast.sort_by(|a, b| b.0.total_cmp(&a.0));
+    println!("{:?}", &fast[..6]);
+    println!("packed: {:?}", bed.snapshot().map(|s| (s.contacts.len(), s.translation)));
     for (sphere, state) in spheres.iter_mut().zip(bed.states()) {
         sphere.centre = state.place;
     }
