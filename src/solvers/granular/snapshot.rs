@@ -138,18 +138,22 @@ impl<R: Real> Bed<R> {
     fn contact_states(&self) -> Vec<ContactState> {
         let mut states = Vec::new();
         for place in 0..self.contacts.len() {
-            let Some(overlap) = self.overlap(place) else { continue };
+            if self.overlap(place).is_none() {
+                continue;
+            }
             let (a, b) = (self.contacts.first[place], self.contacts.second[place]);
             let image = self.domain.shift(self.contacts.image[place]);
             let apart = add(sub(self.offset(a), self.offset(b)), image);
-            let normal = scale(apart, 1.0 / norm(apart));
+            let distance = norm(apart);
+            let normal = scale(apart, 1.0 / distance);
             let arm = self.contacts.outcomes[place][6].to_f64();
             states.push(ContactState {
                 first: self.party(a),
                 second: self.party(b),
                 force: force_of(&self.contacts.outcomes[place]),
                 normal,
-                overlap,
+                // from places: an arm in single precision knows a hundredth of a small overlap
+                overlap: self.records[a as usize].radius() + self.records[b as usize].radius() - distance,
                 point: sub(self.place_of(a), scale(normal, arm)),
                 branch: add(sub(self.centre(a), self.centre(b)), image),
             });

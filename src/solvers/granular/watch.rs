@@ -141,7 +141,7 @@ impl<R: Real> Bed<R> {
         deepest
     }
 
-    /// Overlap of a contact when its force was computed \[m\], to the precision of a force; none where it does not touch.
+    /// Overlap of a contact when its force was computed \[m\], to the precision of an arm; none where it does not touch.
     pub(super) fn overlap(&self, place: usize) -> Option<f64> {
         let outcome = &self.contacts.outcomes[place];
         let radius = self.records[self.contacts.first[place] as usize].radius();
