@@ -73,7 +73,7 @@ impl Snapshot {
 impl<R: Real> Bed<R> {
     /// Takes a snapshot. The motion goes on afterwards as if nobody had looked, bit by bit.
     pub fn snapshot(&mut self) -> Result<Snapshot, Failure> {
-        if self.dt <= 0.0 {
+        if self.dt == 0.0 {
             return Err(Failure::NoTimeStep);
         }
         self.refresh()?;
