@@ -99,15 +99,20 @@ fn bodies_that_come_later_leave_contacts_as_they_are() {
     let start = || {
         let mut bed: Bed<f64> = bed(Law::Linear(damped(1e6, 0.5, 0.1)), 1e-5);
         bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
+        for (x, side) in [(-0.021, 1.0), (0.107, -1.0)] {
+            bed.add_plane([x, 0.0, 0.0], [side, 0.0, 0.0], 0);
+            bed.add_plane([0.0, x - 0.004, 0.0], [0.0, side, 0.0], 0);
+        }
         bed.set_gravity(Gravity::Constant(DOWN.map(|c| 9.81 * c)));
         pile(&mut bed, 0..27);
-        bed.run(4000).unwrap();
+        bed.run(12_000).unwrap();
         bed
     };
     let (mut alone, mut joined) = (start(), start());
-    assert!(alone.snapshot().unwrap().contacts.len() >= 27);
-    // far off: nothing else may change, history included
-    let far = joined.add_sphere(&sphere([5.0, 5.0, 1.0], 0.03, 2700.0));
+    let touching = alone.snapshot().unwrap().contacts.len();
+    assert!(touching > 20, "{touching}");
+    // far above: nothing else may change, history included
+    let far = joined.add_sphere(&sphere([0.04, 0.04, 3.0], 0.03, 2700.0));
     alone.run(1000).unwrap();
     joined.run(1000).unwrap();
     for (a, b) in alone.states().zip(joined.states()) {
