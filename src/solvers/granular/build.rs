@@ -7,18 +7,21 @@ use super::bed::Bed;
 use super::body::SPHERE;
 use super::contacts::{BlockVector, Contacts};
 use super::domain::{mirrored, steps_of};
-use super::integrate::Incidence;
+use super::integrate::{Incidence, TASK, Task};
 use super::lanes::{BLOCK, Real};
 use super::motion::Pose;
 use super::record::Record;
 use super::search::{CellTooSmall, Grids, Pair, Seen};
 use super::vector::{Vec3, dot, sub};
-use super::walls::{Kept, WallContacts, moved};
+use super::walls::{Kept, Near, WallContacts, moved};
 use super::watch::Failure;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// Steps that lists should last, at least; their reach grows until they do.
 const LIFE: u64 = 400;
+/// Steps between looks whether bodies have left their cells.
+const SETTLE: u64 = 128;
 /// What single precision may hide of a displacement \[m\].
 const SLACK: f64 = 1e-6;
 
@@ -36,6 +39,8 @@ pub(super) struct Build {
     pub step: u64,
     /// Lists made.
     pub count: u64,
+    /// Where tasks begin, and one more.
+    pub tasks: Vec<Task>,
     /// Where pebbles, walls were \[m\].
     reference: Vec<[f32; 3]>,
     origin: Vec<Vec3>,
@@ -43,7 +48,7 @@ pub(super) struct Build {
 }
 
 /// A contact that goes on in a new list, of a lower and a higher body.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub(super) struct Carried<R> {
     pub low: (u32, u16),
     pub high: (u32, u16),
@@ -144,7 +149,6 @@ impl<R: Real> Bed<R> {
 
     pub(super) fn rebuild_with(&mut self, carried: Vec<Carried<R>>, kept: Vec<Kept<R>>) -> Result<(), CellTooSmall> {
         self.choose_skin();
-        self.settle();
         self.sort();
         let histories = Histories::new(carried, self.bodies.len());
         self.contacts = Contacts::default();
@@ -158,7 +162,8 @@ impl<R: Real> Bed<R> {
                 let (body, part) = self.name(pebble);
                 (body, part, self.bodies[self.owner[pebble as usize] as usize].surface)
             };
-            let walls = WallContacts::find(&self.walls, &domain, &seen, &grids, skin, &self.laws, about, &kept);
+            let near = Near { domain: &domain, seen: &seen, grids: &grids, skin };
+            let walls = WallContacts::find(&self.walls, near, &self.laws, about, &kept);
             (grids.pairs(skin)?, walls)
         };
         drop(seen);
@@ -201,19 +206,24 @@ impl<R: Real> Bed<R> {
         build.outdated = false;
     }
 
-    /// Brings offsets back into their cells.
-    fn settle(&mut self) {
+    /// Brings bodies that have left their cells well behind back into the cells where they are. That rounds their offsets, so it is
+    /// done at fixed steps, never when lists happen to be made.
+    pub(super) fn settle(&mut self) {
+        if !self.steps.is_multiple_of(SETTLE) {
+            return;
+        }
         for body in &mut self.bodies {
             let records = &mut self.records[body.first as usize..body.first as usize + usize::from(body.pebbles)];
             let centre = match body.clump {
                 SPHERE => records[0].position(),
                 clump => self.clumps[clump as usize].centre,
             };
-            let (cell, offset) = self.domain.settle(body.cell, centre);
-            if cell == body.cell {
+            if self.domain.near_cell(centre) {
                 continue;
             }
+            let (cell, offset) = self.domain.settle(body.cell, centre);
             body.cell = cell;
+            self.build.outdated = true;
             let moved = sub(centre, offset);
             for record in records {
                 record.place(sub(record.position(), moved));
@@ -284,17 +294,23 @@ impl<R: Real> Bed<R> {
         self.owner.iter().enumerate().map(of).collect()
     }
 
-    /// Puts pairs into blocks of one law, with their histories.
-    fn fill(&mut self, tasks: Vec<Vec<Pair>>, histories: &Histories<R>) {
+    /// Puts pairs into blocks of one law, task by task, with their histories.
+    fn fill(&mut self, pairs: Vec<Vec<Pair>>, histories: &Histories<R>) {
         let idle = self.owner.len() as u32;
-        let surface = |pebble: u32| self.bodies[self.owner[pebble as usize] as usize].surface;
         let mut contacts = Contacts::default();
-        let total: usize = tasks.iter().map(|pairs| pairs.len() + BLOCK).sum();
-        contacts.first.reserve(total);
-        contacts.second.reserve(total);
-        contacts.image.reserve(total);
-        for mut pairs in tasks {
-            let class = |pair: &Pair| self.laws.class(surface(pair.first), surface(pair.second));
+        let mut tasks = self.tasks();
+        let count: usize = pairs.iter().map(Vec::len).sum();
+        let room = count + BLOCK * tasks.len();
+        contacts.first.reserve(room);
+        contacts.second.reserve(room);
+        contacts.image.reserve(room);
+        let class = |pair: &Pair| {
+            let surface = |pebble: u32| self.bodies[self.owner[pebble as usize] as usize].surface;
+            self.laws.class(surface(pair.first), surface(pair.second))
+        };
+        let sorted = self.by_task(pairs, tasks.len() - 1);
+        for (task, mut pairs) in sorted.into_iter().enumerate() {
+            tasks[task].block = contacts.law.len() as u32;
             pairs.sort_by_key(class);
             for run in pairs.chunk_by(|a, b| class(a) == class(b)) {
                 contacts.first.extend(run.iter().map(|p| p.first));
@@ -307,6 +323,8 @@ impl<R: Real> Bed<R> {
                 contacts.law.resize(padded / BLOCK, class(&run[0]));
             }
         }
+        tasks.last_mut().expect("an end").block = contacts.law.len() as u32;
+        self.build.tasks = tasks;
         let zero = [[R::default(); BLOCK]; 3];
         contacts.shear = vec![zero; contacts.law.len()];
         if self.ledger.watched {
@@ -329,6 +347,33 @@ impl<R: Real> Bed<R> {
         }
         contacts.outcomes = vec![[R::default(); 8]; contacts.len() + self.wall_contacts.slots.len()];
         self.contacts = contacts;
+    }
+
+    /// Where tasks begin; blocks are not known yet.
+    fn tasks(&self) -> Vec<Task> {
+        let mut tasks = Vec::new();
+        let mut clump = 0;
+        for (place, body) in self.bodies.iter().enumerate() {
+            if place % TASK == 0 {
+                tasks.push(Task { body: place as u32, pebble: body.first, clump, block: 0 });
+            }
+            clump += u32::from(body.clump != SPHERE);
+        }
+        tasks.push(Task { body: self.bodies.len() as u32, pebble: self.owner.len() as u32, clump, block: 0 });
+        tasks
+    }
+
+    /// Pairs by the task of the earlier of their bodies; most are found in it.
+    fn by_task(&self, pairs: Vec<Vec<Pair>>, tasks: usize) -> Vec<Vec<Pair>> {
+        let task = |pair: &Pair| self.owner[pair.first as usize].min(self.owner[pair.second as usize]) as usize / TASK;
+        let mut counts = vec![0; tasks];
+        pairs.iter().flatten().for_each(|pair| counts[task(pair)] += 1);
+        let mut sorted: Vec<Vec<Pair>> = counts.into_iter().map(Vec::with_capacity).collect();
+        // what is done is given back at once
+        for found in pairs {
+            found.iter().for_each(|pair| sorted[task(pair)].push(*pair));
+        }
+        sorted
     }
 
     /// Lists the contacts of each pebble, in an order that copies of a bay share.

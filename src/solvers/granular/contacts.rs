@@ -2,12 +2,10 @@
 
 use super::domain::{Domain, Image};
 use super::force::{Meeting, Outcome, Prepared, Rule, outcome};
+use super::integrate::Task;
 use super::lanes::{BLOCK, Fine, Lanes, Num, Real, Vector, Work};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-
-/// Blocks that one task works on. Fixed, so that threads change nothing.
-const CHUNK: usize = 64;
 
 /// A vector for each contact of a block.
 pub(super) type BlockVector<R> = [[R; BLOCK]; 3];
@@ -67,45 +65,46 @@ impl<R: Real> Contacts<R> {
         self.first.len()
     }
 
-    /// Computes every force from the state of the pebbles; energies only where `watched`.
-    pub fn evaluate(&mut self, around: Surroundings<R>, watched: bool) -> ContactEnergy {
-        let pairs = self.len();
-        if watched && self.damping.len() != self.shear.len() {
-            self.damping = vec![[[R::default(); BLOCK]; 3]; self.shear.len()];
+    /// Makes room for what watching energy needs, or gives it back.
+    pub fn watch(&mut self, on: bool) {
+        let blocks = if on { self.shear.len() } else { 0 };
+        self.damping.resize(blocks, [[R::default(); BLOCK]; 3]);
+    }
+
+    /// Computes the forces of `tasks` from the state of the pebbles; energies only where they are watched.
+    pub fn evaluate(&mut self, tasks: &[Task], around: Surroundings<R>) -> ContactEnergy {
+        let start = tasks[0].block as usize;
+        let mut shear = &mut self.shear[start..];
+        let mut outcomes = &mut self.outcomes[start * BLOCK..];
+        let watched = !self.damping.is_empty();
+        let mut damping = if watched { &mut self.damping[start..] } else { &mut self.damping[..] };
+        let mut passes = Vec::with_capacity(tasks.len());
+        for (task, next) in tasks.iter().zip(&tasks[1..]) {
+            let blocks = task.block as usize..next.block as usize;
+            let places = blocks.start * BLOCK..blocks.end * BLOCK;
+            let (some_shear, rest_shear) = shear.split_at_mut(blocks.len());
+            let (some_outcomes, rest_outcomes) = outcomes.split_at_mut(places.len());
+            let (some_damping, rest_damping) = damping.split_at_mut(if watched { blocks.len() } else { 0 });
+            passes.push(Pass {
+                around,
+                first: &self.first[places.clone()],
+                second: &self.second[places.clone()],
+                image: &self.image[places],
+                law: &self.law[blocks],
+                shear: some_shear,
+                outcomes: some_outcomes,
+                damping: some_damping,
+            });
+            (shear, outcomes, damping) = (rest_shear, rest_outcomes, rest_damping);
         }
-        // an empty slice where nothing is watched
-        let mut damping: Vec<&mut [BlockVector<R>]> = match watched {
-            true => self.damping.chunks_mut(CHUNK).collect(),
-            false => self.shear.chunks(CHUNK).map(|_| &mut [][..]).collect(),
-        };
-        let energies: Vec<ContactEnergy> = self
-            .shear
-            .par_chunks_mut(CHUNK)
-            .zip(self.outcomes[..pairs].par_chunks_mut(CHUNK * BLOCK))
-            .zip(damping.par_iter_mut())
-            .enumerate()
-            .map(|(chunk, ((shear, outcomes), damping))| {
-                let blocks = chunk * CHUNK..chunk * CHUNK + shear.len();
-                let places = blocks.start * BLOCK..blocks.end * BLOCK;
-                R::dispatch(Pass {
-                    around,
-                    first: &self.first[places.clone()],
-                    second: &self.second[places.clone()],
-                    image: &self.image[places],
-                    law: &self.law[blocks],
-                    shear,
-                    outcomes,
-                    damping,
-                })
-            })
-            .collect();
+        let energies: Vec<ContactEnergy> = passes.into_par_iter().map(R::dispatch).collect();
         let mut total = ContactEnergy::default();
         energies.into_iter().for_each(|energy| total += energy);
         total
     }
 }
 
-/// A chunk of contacts at work.
+/// The contacts of a task at work.
 struct Pass<'a, R: Real> {
     around: Surroundings<'a, R>,
     first: &'a [u32],

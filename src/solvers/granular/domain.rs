@@ -82,6 +82,11 @@ impl Domain {
         (cell, offset)
     }
 
+    /// Whether an offset is in its cell, or out of it by less than a quarter of its length.
+    pub(super) fn near_cell(&self, offset: [f64; 3]) -> bool {
+        (0..3).all(|axis| self.lengths[axis].is_none_or(|l| (-0.25 * l..1.25 * l).contains(&offset[axis])))
+    }
+
     /// Where a cell's offset lies \[m\], not wrapped into the period.
     pub fn place(&self, cell: [i32; 3], offset: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|axis| offset[axis] + self.lengths[axis].map_or(0.0, |l| l * f64::from(cell[axis])))
@@ -123,6 +128,7 @@ impl Domain {
     }
 
     /// From `b` to `a` the shortest way \[m\].
+    #[inline(always)]
     pub(super) fn between(&self, a: ([i32; 3], [f64; 3]), b: ([i32; 3], [f64; 3])) -> [f64; 3] {
         [0, 1, 2].map(|axis| {
             let apart = a.1[axis] - b.1[axis];

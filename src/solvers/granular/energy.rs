@@ -63,8 +63,13 @@ impl Ledger {
         *self = Ledger { watched: on, ..Ledger::default() };
     }
 
-    /// Enters what the contacts of a step say, before the walls move on.
-    pub fn enter_contacts(&mut self, contacts: ContactEnergy, walls: &[Wall], dt: f64) {
+    /// Enters what a step says, before the walls move on.
+    pub fn enter(&mut self, contacts: ContactEnergy, tally: &Tally, walls: &[Wall], dt: f64) {
+        self.enter_contacts(contacts, walls, dt);
+        self.enter_bodies(tally);
+    }
+
+    fn enter_contacts(&mut self, contacts: ContactEnergy, walls: &[Wall], dt: f64) {
         let now = &mut self.now;
         now.strain = contacts.strain;
         let felt: Vec<_> = walls.iter().map(|w| (w.felt.force, Vector3::from(w.moment))).collect();
@@ -79,8 +84,7 @@ impl Ledger {
         self.walls = felt;
     }
 
-    /// Enters what the bodies of the same step say.
-    pub fn enter_bodies(&mut self, tally: &Tally) {
+    fn enter_bodies(&mut self, tally: &Tally) {
         let now = &mut self.now;
         (now.translation, now.rotation) = (tally.translation, tally.rotation);
         let halves = [tally.gravity, tally.damping].map(|work| 0.5 * work);

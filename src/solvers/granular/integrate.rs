@@ -2,15 +2,24 @@
 
 use super::body::{Body, Clump, SPHERE};
 use super::force::Outcome;
-use super::lanes::Real;
+use super::lanes::{Lanes, Real, Work};
 use super::record::Record;
 use super::rotation;
 use super::vector::{Vec3, add, cross, dot, scale, sub};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// Bodies that one task works on. Fixed, so that threads change nothing.
-const CHUNK: usize = 512;
+/// Bodies of one task. Fixed, so that threads change nothing.
+pub(super) const TASK: usize = 512;
+
+/// Where a task begins: among bodies, pebbles, clumps and blocks of contacts.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Task {
+    pub body: u32,
+    pub pebble: u32,
+    pub clump: u32,
+    pub block: u32,
+}
 
 /// Contacts of each pebble, in an order that depends on who the neighbours are and on nothing else.
 #[derive(Debug, Clone, Default)]
@@ -51,7 +60,7 @@ pub(super) struct Tally {
 }
 
 impl Tally {
-    fn and(mut self, other: Tally) -> Tally {
+    pub fn and(mut self, other: Tally) -> Tally {
         if other.fastest.0 > self.fastest.0 {
             self.fastest = other.fastest;
         }
@@ -64,6 +73,14 @@ impl Tally {
     }
 }
 
+/// What the bodies of some tasks have, from the first of them on.
+pub(super) struct Moving<'a, R: Real> {
+    pub bodies: &'a mut [Body],
+    pub records: &'a mut [R::Record],
+    pub clumps: &'a mut [Clump],
+    pub arms: &'a [Vec3],
+}
+
 /// Bodies and pebbles of one task.
 struct Share<'a, R: Real> {
     at: u32,
@@ -71,60 +88,56 @@ struct Share<'a, R: Real> {
     first_pebble: u32,
     records: &'a mut [R::Record],
     clumps: &'a mut [Clump],
+    arms: &'a [Vec3],
+    contacts: (&'a Incidence, &'a [Outcome<R>]),
+    drive: &'a Drive,
 }
 
-/// Moves all bodies by one step under the forces of `outcomes`.
+/// Moves the bodies of `tasks` by one step under the forces of `outcomes`.
 pub(super) fn advance<R: Real>(
-    bodies: &mut [Body],
-    records: &mut [R::Record],
-    clumps: &mut [Clump],
-    arms: &[Vec3],
+    moving: Moving<R>,
+    tasks: &[Task],
     contacts: (&Incidence, &[Outcome<R>]),
     drive: &Drive,
 ) -> Tally {
-    let mut shares = split::<R>(bodies, records, clumps);
-    let tallies: Vec<Tally> = shares.par_iter_mut().map(|share| share.advance(arms, contacts, drive)).collect();
+    let Moving { mut bodies, mut records, mut clumps, arms } = moving;
+    let mut shares = Vec::with_capacity(tasks.len());
+    for (task, next) in tasks.iter().zip(&tasks[1..]) {
+        let (some_bodies, rest_bodies) = bodies.split_at_mut((next.body - task.body) as usize);
+        let (some_records, rest_records) = records.split_at_mut((next.pebble - task.pebble) as usize);
+        let (some_clumps, rest_clumps) = clumps.split_at_mut((next.clump - task.clump) as usize);
+        shares.push(Share {
+            at: task.body,
+            bodies: some_bodies,
+            first_pebble: task.pebble,
+            records: some_records,
+            clumps: some_clumps,
+            arms,
+            contacts,
+            drive,
+        });
+        (bodies, records, clumps) = (rest_bodies, rest_records, rest_clumps);
+    }
+    let tallies: Vec<Tally> = shares.into_par_iter().map(R::dispatch).collect();
     tallies.into_iter().fold(Tally::default(), Tally::and)
 }
 
-/// Cuts the bed into tasks.
-fn split<'a, R: Real>(
-    mut bodies: &'a mut [Body],
-    mut records: &'a mut [R::Record],
-    mut clumps: &'a mut [Clump],
-) -> Vec<Share<'a, R>> {
-    let (mut at, mut first_pebble) = (0, 0);
-    let mut shares = Vec::with_capacity(bodies.len().div_ceil(CHUNK));
-    while !bodies.is_empty() {
-        let (here, rest) = bodies.split_at_mut(CHUNK.min(bodies.len()));
-        let pebbles = here.iter().map(|b| usize::from(b.pebbles)).sum::<usize>();
-        let composed = here.iter().filter(|b| b.clump != SPHERE).count();
-        let (some_records, rest_records) = records.split_at_mut(pebbles);
-        let (some_clumps, rest_clumps) = clumps.split_at_mut(composed);
-        let count = here.len() as u32;
-        shares.push(Share { at, bodies: here, first_pebble, records: some_records, clumps: some_clumps });
-        (bodies, records, clumps) = (rest, rest_records, rest_clumps);
-        (at, first_pebble) = (at + count, first_pebble + pebbles as u32);
-    }
-    shares
-}
-
-/// Force and moment about its centre on a pebble.
+/// Force and moment about its centre on a pebble: the first six of eight numbers.
 #[inline(always)]
 fn sum<R: Real>(pebble: usize, (incidence, outcomes): (&Incidence, &[Outcome<R>])) -> (Vec3, Vec3) {
-    let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+    let mut sums = [0.0; 8];
     let range = incidence.start[pebble] as usize..incidence.start[pebble + 1] as usize;
     for &entry in &incidence.entries[range] {
         let outcome = &outcomes[(entry >> 1) as usize];
-        let second = entry & 1;
-        let sign = 1.0 - 2.0 * f64::from(second);
-        let arm = (if second == 0 { outcome[6] } else { outcome[7] }).to_f64();
-        for c in 0..3 {
-            force[c] += sign * outcome[c].to_f64();
-            moment[c] -= arm * outcome[3 + c].to_f64();
+        // the second of two feels the opposite force; the moments of both have the same sign
+        let (sign, arm) = if entry & 1 == 0 { (1.0, outcome[6]) } else { (-1.0, outcome[7]) };
+        let arm = -arm.to_f64();
+        let factors = [sign, sign, sign, arm, arm, arm, 0.0, 0.0];
+        for k in 0..8 {
+            sums[k] += factors[k] * outcome[k].to_f64();
         }
     }
-    (force, moment)
+    ([sums[0], sums[1], sums[2]], [sums[3], sums[4], sums[5]])
 }
 
 /// Cundall's local damping: each component is smaller where it drives the motion and larger where it brakes.
@@ -137,22 +150,24 @@ fn damp(acting: Vec3, velocity: Vec3, per_inertia: f64, drive: &Drive) -> Vec3 {
     })
 }
 
-impl<R: Real> Share<'_, R> {
-    fn advance(&mut self, arms: &[Vec3], contacts: (&Incidence, &[Outcome<R>]), drive: &Drive) -> Tally {
+impl<R: Real> Work<R> for Share<'_, R> {
+    type Output = Tally;
+
+    #[inline(always)]
+    fn run<L: Lanes<Real = R>>(self, _: L) -> Tally {
+        let Share { arms, contacts, drive, .. } = self;
+        let first = self.first_pebble as usize;
         let mut tally = Tally::default();
         let (mut pebble, mut composed) = (0, 0);
-        for index in 0..self.bodies.len() {
-            let body = &mut self.bodies[index];
+        for (index, body) in self.bodies.iter_mut().enumerate() {
             let place = self.at + index as u32;
             let speed = if body.clump == SPHERE {
-                let record = &mut self.records[pebble];
-                sphere(body, record, sum(self.first_pebble as usize + pebble, contacts), drive, &mut tally)
+                sphere(body, &mut self.records[pebble], sum(first + pebble, contacts), drive, &mut tally)
             } else {
                 let records = &mut self.records[pebble..pebble + usize::from(body.pebbles)];
                 let clump = &mut self.clumps[composed];
                 composed += 1;
-                let first = self.first_pebble as usize + pebble;
-                clump_step::<R>(body, clump, records, arms, |p| sum(first + p, contacts), drive, &mut tally)
+                clump_step(body, clump, records, arms, (first + pebble, contacts), drive, &mut tally)
             };
             if !speed.is_finite() {
                 tally.lost = tally.lost.or(Some(place));
@@ -213,12 +228,13 @@ fn sphere<R: Real, T: Record<R>>(
     dot(body.velocity, body.velocity)
 }
 
+#[inline(always)]
 fn clump_step<R: Real>(
     body: &mut Body,
     clump: &mut Clump,
     records: &mut [R::Record],
     arms: &[Vec3],
-    sum: impl Fn(usize) -> (Vec3, Vec3),
+    (first, contacts): (usize, (&Incidence, &[Outcome<R>])),
     drive: &Drive,
     tally: &mut Tally,
 ) -> f64 {
@@ -226,7 +242,7 @@ fn clump_step<R: Real>(
     let turned = rotation::matrix(&clump.attitude);
     let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
     for (p, arm) in arms.iter().enumerate() {
-        let (f, m) = sum(p);
+        let (f, m) = sum(first + p, contacts);
         force = add(force, f);
         moment = add(moment, add(m, cross(rotate(&turned, *arm), f)));
     }

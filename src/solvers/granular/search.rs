@@ -169,10 +169,10 @@ impl Grid {
         while extent.iter().map(|e| (e / side).floor().max(0.0) + 1.0).product::<f64>() > enough {
             side *= 1.26;
         }
-        for axis in 0..3 {
-            let n = (extent[axis] / side).floor().max(1.0);
+        for (axis, extent) in extent.into_iter().enumerate() {
+            let n = (extent / side).floor().max(1.0);
             grid.dims[axis] = n as i64;
-            grid.size[axis] = if grid.periodic[axis] { extent[axis] / n } else { side };
+            grid.size[axis] = if grid.periodic[axis] { extent / n } else { side };
             if !grid.periodic[axis] {
                 grid.dims[axis] += 1;
             }

@@ -3,7 +3,7 @@
 use super::bed::Bed;
 use super::body::{BodyId, SPHERE};
 use super::force::force_of;
-use super::integrate::{self, Drive};
+use super::integrate::{self, Drive, Moving};
 use super::lanes::{BLOCK, Real};
 use super::record::Record;
 use super::vector::{Vec3, add, norm, scale, sub};
@@ -73,26 +73,46 @@ impl Snapshot {
 impl<R: Real> Bed<R> {
     /// Takes a snapshot. The motion goes on afterwards as if nobody had looked, bit by bit.
     pub fn snapshot(&mut self) -> Result<Snapshot, Failure> {
+        self.with_forces(|bed| {
+            let tally = bed.half_kick();
+            let contacts = bed.contact_states();
+            Snapshot { time: bed.time, translation: tally.translation, rotation: tally.rotation, contacts }
+        })
+    }
+
+    /// Kinetic energy of translation and of rotation at the time of the positions \[J\].
+    pub fn kinetic_energy(&mut self) -> Result<(f64, f64), Failure> {
+        let tally = self.with_forces(Self::half_kick)?;
+        Ok((tally.translation, tally.rotation))
+    }
+
+    /// How many contacts carry a force now: between pebbles, and with walls.
+    pub fn touching(&mut self) -> Result<(usize, usize), Failure> {
+        self.with_forces(|bed| {
+            let pairs = (0..bed.contacts.len()).filter(|&place| bed.overlap(place).is_some()).count();
+            (pairs, bed.wall_contacts.slots.iter().filter(|slot| slot.touches()).count())
+        })
+    }
+
+    /// Computes the forces of the present state, looks, and puts back what that changed.
+    fn with_forces<T>(&mut self, look: impl FnOnce(&mut Self) -> T) -> Result<T, Failure> {
         if self.dt == 0.0 {
             return Err(Failure::NoTimeStep);
         }
         self.refresh()?;
         let histories = (self.contacts.shear.clone(), self.contacts.damping.clone(), self.wall_contacts.slots.clone());
         let felt: Vec<_> = self.walls.iter().map(|w| (w.felt, w.moment)).collect();
-        let watched = std::mem::replace(&mut self.ledger.watched, false);
-        self.forces();
-        let contacts = self.contact_states();
-        let tally = self.half_kick();
+        self.sweep(None);
+        let seen = look(self);
         (self.contacts.shear, self.contacts.damping, self.wall_contacts.slots) = histories;
         for (wall, felt) in self.walls.iter_mut().zip(felt) {
             (wall.felt, wall.moment) = felt;
         }
-        self.ledger.watched = watched;
-        Ok(Snapshot { time: self.time, translation: tally.translation, rotation: tally.rotation, contacts })
+        Ok(seen)
     }
 
     /// What half a kick under the present forces would give, without moving anything.
-    fn half_kick(&self) -> integrate::Tally {
+    fn half_kick(&mut self) -> integrate::Tally {
         let drive = Drive {
             kick: if self.fresh { 0.0 } else { 0.5 * self.dt },
             dt: 0.0,
@@ -100,9 +120,19 @@ impl<R: Real> Bed<R> {
             damping: self.damping,
             watched: true,
         };
-        let (mut bodies, mut records, mut clumps) = (self.bodies.clone(), self.records.clone(), self.clumps.clone());
         let contacts = (&self.incidence, &self.contacts.outcomes[..]);
-        integrate::advance::<R>(&mut bodies, &mut records, &mut clumps, &self.arms, contacts, &drive)
+        let mut tally = integrate::Tally::default();
+        for pair in self.build.tasks.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            let moving = Moving {
+                bodies: &mut self.bodies[from.body as usize..to.body as usize].to_vec(),
+                records: &mut self.records[from.pebble as usize..to.pebble as usize].to_vec(),
+                clumps: &mut self.clumps[from.clump as usize..to.clump as usize].to_vec(),
+                arms: &self.arms,
+            };
+            tally = tally.and(integrate::advance::<R>(moving, pair, contacts, &drive));
+        }
+        tally
     }
 
     fn contact_states(&self) -> Vec<ContactState> {

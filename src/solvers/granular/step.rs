@@ -4,7 +4,7 @@ use super::bed::Bed;
 use super::contacts::{ContactEnergy, Surroundings, shifts};
 use super::fault::Fault;
 use super::force::Prepared;
-use super::integrate::{self, Drive};
+use super::integrate::{self, Drive, Moving, Tally};
 use super::lanes::Real;
 use super::search::CellTooSmall;
 use super::walls::{Pebbles, approach};
@@ -16,12 +16,18 @@ use std::time::{Duration, Instant};
 pub struct Timings {
     /// Making lists.
     pub search: Duration,
-    /// Forces, those at walls among them.
+    /// Forces between bodies.
     pub forces: Duration,
+    /// Forces at walls.
     pub walls: Duration,
     /// Sums, bodies and walls in motion.
     pub motion: Duration,
 }
+
+/// Tasks that one thread does before it moves their bodies: what fits into its own cache.
+const ALONE: usize = 3;
+/// Tasks a thread that several do: threads wait for each other twice a window.
+const TOGETHER: usize = 16;
 
 impl From<Fault> for Failure {
     fn from(fault: Fault) -> Failure {
@@ -49,60 +55,75 @@ impl<R: Real> Bed<R> {
         }
         let start = Instant::now();
         self.refresh()?;
-        let listed = Instant::now();
-        let energy = self.forces();
-        let forced = Instant::now();
-        let watched = self.ledger.watched;
-        if watched {
-            self.ledger.enter_contacts(energy, &self.walls, self.dt);
-        }
+        self.timings.search += start.elapsed();
         let drive = Drive {
             kick: if self.fresh { 0.5 * self.dt } else { self.dt },
             dt: self.dt,
             gravity: self.gravity.at(self.time),
             damping: self.damping,
-            watched,
+            watched: self.ledger.watched,
         };
-        let contacts = (&self.incidence, &self.contacts.outcomes[..]);
-        self.tally = integrate::advance::<R>(
-            &mut self.bodies,
-            &mut self.records,
-            &mut self.clumps,
-            &self.arms,
-            contacts,
-            &drive,
-        );
-        if watched {
-            self.ledger.enter_bodies(&self.tally);
+        let energy = self.sweep(Some(&drive));
+        if drive.watched {
+            self.ledger.enter(energy, &self.tally, &self.walls, self.dt);
         }
         self.move_walls();
         self.build.travel += 2.0 * self.tally.fastest.0.sqrt() * self.dt + approach(&self.walls, self.dt);
         self.fresh = false;
         self.steps += 1;
         self.time += self.dt;
-        self.timings.search += listed - start;
-        self.timings.forces += forced - listed;
-        self.timings.motion += forced.elapsed();
+        self.settle();
         self.look()
     }
 
-    /// Computes the force of every contact from the present state.
-    pub(super) fn forces(&mut self) -> ContactEnergy {
+    /// Computes every force, and moves the bodies where there is a drive.
+    ///
+    /// Contacts belong to the task of the earlier of their two bodies. So once the contacts of some tasks are done, so are
+    /// those of their bodies, and nothing later reads what these bodies were: they move while all of it is in the cache.
+    pub(super) fn sweep(&mut self, drive: Option<&Drive>) -> ContactEnergy {
         let laws: Vec<Prepared> = self.laws.all().iter().map(|law| Prepared::new(law, self.dt)).collect();
         let shifts = shifts(&self.domain);
-        let around = Surroundings { records: &self.records, laws: &laws, shifts: &shifts, dt: self.dt };
-        let watched = self.ledger.watched;
-        let mut energy = self.contacts.evaluate(around, watched);
-        let start = Instant::now();
-        if !self.walls.is_empty() {
-            let bodies = &self.bodies;
-            let cell = |body: u32| bodies[body as usize].cell;
-            let pebbles = Pebbles { owner: &self.owner, cell: &cell };
-            let pairs = self.contacts.len();
-            let outcomes = &mut self.contacts.outcomes[pairs..];
-            let (walls, domain) = (&mut self.walls, &self.domain);
-            energy += self.wall_contacts.evaluate(walls, domain, &self.laws, pebbles, around, outcomes, watched);
+        let mut energy = self.wall_forces(&laws, &shifts);
+        let mut tally = Tally::default();
+        let window = if rayon::current_num_threads() == 1 { ALONE } else { TOGETHER * rayon::current_num_threads() };
+        let last = self.build.tasks.len().saturating_sub(1);
+        for begin in (0..last).step_by(window) {
+            let tasks = &self.build.tasks[begin..=(begin + window).min(last)];
+            let start = Instant::now();
+            let around = Surroundings { records: &self.records, laws: &laws, shifts: &shifts, dt: self.dt };
+            energy += self.contacts.evaluate(tasks, around);
+            let forced = Instant::now();
+            if let Some(drive) = drive {
+                let moving = Moving {
+                    bodies: &mut self.bodies[tasks[0].body as usize..],
+                    records: &mut self.records[tasks[0].pebble as usize..],
+                    clumps: &mut self.clumps[tasks[0].clump as usize..],
+                    arms: &self.arms,
+                };
+                let contacts = (&self.incidence, &self.contacts.outcomes[..]);
+                tally = tally.and(integrate::advance::<R>(moving, tasks, contacts, drive));
+            }
+            self.timings.forces += forced - start;
+            self.timings.motion += forced.elapsed();
         }
+        if drive.is_some() {
+            self.tally = tally;
+        }
+        energy
+    }
+
+    fn wall_forces(&mut self, laws: &[Prepared], shifts: &[[f64; 3]; 64]) -> ContactEnergy {
+        if self.walls.is_empty() {
+            return ContactEnergy::default();
+        }
+        let start = Instant::now();
+        let around = Surroundings { records: &self.records, laws, shifts, dt: self.dt };
+        let bodies = &self.bodies;
+        let cell = |body: u32| bodies[body as usize].cell;
+        let pebbles = Pebbles { domain: &self.domain, owner: &self.owner, cell: &cell };
+        let outcomes = &mut self.contacts.outcomes[self.contacts.first.len()..];
+        let (walls, watched) = (&mut self.walls, self.ledger.watched);
+        let energy = self.wall_contacts.evaluate(walls, &self.laws, pebbles, around, outcomes, watched);
         self.timings.walls += start.elapsed();
         energy
     }
@@ -128,7 +149,7 @@ impl<R: Real> Bed<R> {
     /// Counts energies by kind from now on, or stops doing so. Costs about a quarter of the speed.
     pub fn watch_energy(&mut self, on: bool) {
         self.ledger.watch(on);
-        self.contacts.damping.clear();
+        self.contacts.watch(on);
     }
 
     /// Energies at the start of the last step; all zero where nobody watched.

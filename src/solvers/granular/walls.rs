@@ -2,8 +2,8 @@
 
 use super::contacts::{ContactEnergy, Surroundings};
 use super::domain::Domain;
-use super::force::{Contact, Meeting, Outcome, Prepared, Tangent, outcome};
-use super::lanes::{Lanes, Num, Plain, Real, Vector};
+use super::force::{Contact, Meeting, Outcome, Tangent, force_of, outcome};
+use super::lanes::{Lanes, Num, Plain, Real, Vector, Work};
 use super::law::Laws;
 use super::motion::{Felt, Motion, Pose};
 use super::record::Record;
@@ -80,6 +80,7 @@ impl Wall {
     }
 
     /// From the wall's origin to a pebble \[m\].
+    #[inline(always)]
     fn to(&self, domain: &Domain, cell: [i32; 3], offset: Vec3) -> Vec3 {
         domain.between((cell, offset), (self.cell, self.pose.position.into()))
     }
@@ -102,12 +103,14 @@ pub(super) struct Slot<R> {
     pub normal: Vec3,
     pub shear: [R; 3],
     damping: [R; 3],
+    /// From the wall's origin to the contact point \[m\].
+    point: Vec3,
     pub overlap: f64,
 }
 
 impl<R: Real> Slot<R> {
     const fn empty(zero: R) -> Self {
-        Slot { feature: NONE, normal: [0.0; 3], shear: [zero; 3], damping: [zero; 3], overlap: 0.0 }
+        Slot { feature: NONE, normal: [0.0; 3], shear: [zero; 3], damping: [zero; 3], point: [0.0; 3], overlap: 0.0 }
     }
 
     pub fn touches(&self) -> bool {
@@ -135,19 +138,19 @@ pub(super) struct Kept<R> {
     pub damping: [R; 3],
 }
 
-/// Sums over the contacts of a wall.
-#[derive(Debug, Clone, Copy)]
-struct Load {
-    wall: u32,
-    force: Vec3,
-    moment: Vec3,
-    stiffness: f64,
-    contacts: usize,
+/// Pebbles in their grids, for contacts up to `skin` \[m\] apart.
+#[derive(Clone, Copy)]
+pub(super) struct Near<'a> {
+    pub domain: &'a Domain,
+    pub seen: &'a [Seen],
+    pub grids: &'a Grids<'a>,
+    pub skin: f64,
 }
 
 /// The pebbles, as walls need to know them.
 #[derive(Clone, Copy)]
 pub(super) struct Pebbles<'a> {
+    pub domain: &'a Domain,
     /// Body of each pebble.
     pub owner: &'a [u32],
     /// Cell of each body.
@@ -158,18 +161,16 @@ impl<R: Real> WallContacts<R> {
     /// Lists what is within `skin` of a wall; `name` gives body and pebble, and `surface` what a pebble is made of.
     pub fn find(
         walls: &[Wall],
-        domain: &Domain,
-        seen: &[Seen],
-        grids: &Grids,
-        skin: f64,
+        around: Near,
         laws: &Laws,
         about: impl Fn(u32) -> (u32, u16, u16),
         kept: &[Kept<R>],
     ) -> Self {
+        let Near { domain, seen, skin, .. } = around;
         let mut all = WallContacts::default();
         let mut near = Vec::new();
         for (number, wall) in walls.iter().enumerate() {
-            let mut candidates = wall.candidates(domain, seen, grids, skin);
+            let mut candidates = wall.candidates(around);
             candidates.sort_unstable_by_key(|&p| about(p));
             candidates.dedup();
             for pebble in candidates {
@@ -224,46 +225,52 @@ impl<R: Real> WallContacts<R> {
     pub fn evaluate(
         &mut self,
         walls: &mut [Wall],
-        domain: &Domain,
         laws: &Laws,
         pebbles: Pebbles,
         around: Surroundings<R>,
         outcomes: &mut [Outcome<R>],
         watched: bool,
     ) -> ContactEnergy {
-        let work = Work { walls, domain, laws, pebbles, around, facets: &self.facets, watched };
-        let mut tasks = Vec::with_capacity(self.entries.len().div_ceil(CHUNK));
-        let (mut slots, mut places) = (&mut self.slots[..], outcomes);
+        let shared = Shared { walls, pebbles, around, facets: &self.facets, watched };
+        let mut passes = Vec::with_capacity(self.entries.len().div_ceil(CHUNK));
+        let (mut slots, mut places) = (&mut self.slots[..], &mut *outcomes);
         for entries in self.entries.chunks(CHUNK) {
             let count = (entries[entries.len() - 1].slots.1 - entries[0].slots.0) as usize;
-            let (some, rest) = slots.split_at_mut(count);
-            let (here, others) = places.split_at_mut(count);
-            tasks.push((entries, some, here));
-            (slots, places) = (rest, others);
+            let (some_slots, rest_slots) = slots.split_at_mut(count);
+            let (some_places, rest_places) = places.split_at_mut(count);
+            passes.push(Pass { shared, entries, slots: some_slots, places: some_places });
+            (slots, places) = (rest_slots, rest_places);
         }
-        let done: Vec<_> =
-            tasks.into_par_iter().map(|(entries, slots, places)| work.run(entries, slots, places)).collect();
+        let energies: Vec<ContactEnergy> = passes.into_par_iter().map(R::dispatch).collect();
+        self.load(walls, laws, around.records, outcomes);
+        let mut total = ContactEnergy::default();
+        energies.into_iter().for_each(|energy| total += energy);
+        total
+    }
+
+    /// Sums what each wall feels: contact by contact, so that what is merely listed leaves no trace.
+    fn load(&self, walls: &mut [Wall], laws: &Laws, records: &[R::Record], outcomes: &[Outcome<R>]) {
         for wall in walls.iter_mut() {
             (wall.felt, wall.moment) = (Felt::default(), [0.0; 3]);
         }
-        let mut energy = ContactEnergy::default();
-        for (lost, loads) in done {
-            energy += lost;
-            for load in loads {
-                let wall = &mut walls[load.wall as usize];
-                wall.felt.force += Vector3::from(load.force);
-                wall.felt.stiffness += load.stiffness;
-                wall.felt.contacts += load.contacts;
-                wall.moment = add(wall.moment, load.moment);
+        for entry in &self.entries {
+            let range = entry.slots.0 as usize..entry.slots.1 as usize;
+            for (slot, outcome) in self.slots[range.clone()].iter().zip(&outcomes[range]).filter(|(s, _)| s.touches()) {
+                let wall = &mut walls[entry.wall as usize];
+                let (force, record) = (force_of(outcome), &records[entry.pebble as usize]);
+                let law = &laws.all()[usize::from(entry.law)];
+                wall.felt.force -= Vector3::from(force);
+                wall.felt.stiffness += Tangent::of(law, slot.overlap, record.mass().to_f64(), record.radius()).normal;
+                wall.felt.contacts += 1;
+                wall.moment = sub(wall.moment, cross(slot.point, force));
             }
         }
-        energy
     }
 }
 
 impl Wall {
     /// Pebbles that may be within `skin`.
-    fn candidates(&self, domain: &Domain, seen: &[Seen], grids: &Grids, skin: f64) -> Vec<u32> {
+    fn candidates(&self, Near { domain, seen, grids, skin }: Near) -> Vec<u32> {
         let Some([low, high]) = self.shape.bounds() else {
             return (0..seen.len() as u32).collect();
         };
@@ -287,132 +294,132 @@ impl Wall {
 }
 
 /// What tasks share.
-struct Work<'a, R: Real> {
+#[derive(Clone, Copy)]
+struct Shared<'a, R: Real> {
     walls: &'a [Wall],
-    domain: &'a Domain,
-    laws: &'a Laws,
     pebbles: Pebbles<'a>,
     around: Surroundings<'a, R>,
     facets: &'a [u32],
     watched: bool,
 }
 
-/// One lane: contacts with walls are few.
+/// The entries of a task at work.
+struct Pass<'a, R: Real> {
+    shared: Shared<'a, R>,
+    entries: &'a [Entry],
+    slots: &'a mut [Slot<R>],
+    places: &'a mut [Outcome<R>],
+}
+
+/// One lane: a shape's contacts differ too much to be worked on together.
 type One<R> = Plain<R, 1>;
 
-impl<R: Real> Work<'_, R> {
-    fn run(&self, entries: &[Entry], slots: &mut [Slot<R>], places: &mut [Outcome<R>]) -> (ContactEnergy, Vec<Load>) {
-        let (mut energy, mut loads): (_, Vec<Load>) = (ContactEnergy::default(), Vec::new());
-        let mut scratch = Scratch::default();
-        let base = entries[0].slots.0;
-        for entry in entries {
-            let range = (entry.slots.0 - base) as usize..(entry.slots.1 - base) as usize;
-            if loads.last().is_none_or(|load| load.wall != entry.wall) {
-                loads.push(Load { wall: entry.wall, force: [0.0; 3], moment: [0.0; 3], stiffness: 0.0, contacts: 0 });
-            }
-            let load = loads.last_mut().expect("just put there");
-            energy += self.entry(entry, &mut slots[range.clone()], &mut places[range], load, &mut scratch);
-        }
-        (energy, loads)
-    }
+impl<R: Real> Work<R> for Pass<'_, R> {
+    type Output = ContactEnergy;
 
+    #[inline(always)]
+    fn run<L: Lanes<Real = R>>(self, _: L) -> ContactEnergy {
+        let mut energy = ContactEnergy::default();
+        let mut scratch = Scratch::default();
+        let base = self.entries[0].slots.0;
+        for entry in self.entries {
+            let range = (entry.slots.0 - base) as usize..(entry.slots.1 - base) as usize;
+            let (slots, places) = (&mut self.slots[range.clone()], &mut self.places[range]);
+            self.shared.entry(entry, slots, places, &mut scratch, &mut energy);
+        }
+        energy
+    }
+}
+
+impl<R: Real> Shared<'_, R> {
     /// All contacts of a pebble with a wall.
+    #[inline(always)]
     fn entry(
         &self,
         entry: &Entry,
         slots: &mut [Slot<R>],
         places: &mut [Outcome<R>],
-        load: &mut Load,
         scratch: &mut Scratch<R>,
-    ) -> ContactEnergy {
+        energy: &mut ContactEnergy,
+    ) {
         let wall = &self.walls[entry.wall as usize];
         let record = &self.around.records[entry.pebble as usize];
-        let away =
-            wall.to(self.domain, (self.pebbles.cell)(self.pebbles.owner[entry.pebble as usize]), record.position());
+        let cell = (self.pebbles.cell)(self.pebbles.owner[entry.pebble as usize]);
+        let away = wall.to(self.pebbles.domain, cell, record.position());
         let facets = &self.facets[entry.facets.0 as usize..entry.facets.1 as usize];
         wall.shape.touches(&wall.turned_back(away), record.radius(), facets, &mut scratch.touches);
+        if scratch.touches.is_empty() && slots.iter().all(|slot| !slot.touches()) {
+            // it was near and still is no more than that
+            return;
+        }
         for touch in &mut scratch.touches {
             touch.normal = wall.pose.direction_to_space(&touch.normal);
         }
         scratch.remember(slots);
         slots.fill(Slot::empty(R::default()));
         places.fill([R::default(); 8]);
-        let mut energy = ContactEnergy::default();
+        let law = &self.around.laws[usize::from(entry.law)];
         for (k, touch) in scratch.touches.iter().enumerate().take(slots.len()) {
-            let history = scratch.heirs[k].map(|old| scratch.before[old]);
-            let (shear, damping) =
-                history.map_or(([R::default(); 3], [R::default(); 3]), |h: Slot<R>| (h.shear, h.damping));
-            let (meeting, point) = self.meet(wall, record, away, touch);
+            let (meeting, point) = meet(wall, record, away, touch);
+            let history = scratch.heirs[k].map_or(Slot::empty(R::default()), |old| scratch.before[old]);
             let lanes = One::<R>::new();
-            let law: &Prepared = &self.around.laws[usize::from(entry.law)];
-            let contact = law.force(lanes, &meeting, Vector(shear.map(|s| Num { lanes, value: [s] })));
-            let values = outcome(&meeting, &contact).map(|n| n.value[0]);
-            places[k] = values;
+            let [x, y, z] = history.shear;
+            let num = |value: R| Num { lanes, value: [value] };
+            let contact = law.force(lanes, &meeting, Vector([num(x), num(y), num(z)]));
+            places[k] = outcome(&meeting, &contact).map(|n| n.value[0]);
             slots[k] = Slot {
                 feature: touch.feature,
                 normal: touch.normal.into(),
-                shear: contact.shear.0.map(|n| n.value[0]),
-                damping: contact.damping.0.map(|n| n.value[0]),
+                shear: numbers(contact.shear),
+                damping: numbers(contact.damping),
+                point,
                 overlap: record.radius() - touch.distance,
             };
-            load.add(values, point, self.stiffness(entry, record, slots[k].overlap));
             if self.watched {
-                energy += self.energy(&meeting, &contact, damping);
+                *energy += spent(&meeting, &contact, history.damping, self.around.dt);
             }
-        }
-        energy
-    }
-
-    fn stiffness(&self, entry: &Entry, record: &R::Record, overlap: f64) -> f64 {
-        let law = &self.laws.all()[usize::from(entry.law)];
-        Tangent::of(law, overlap, record.mass().to_f64(), record.radius()).normal
-    }
-
-    /// How a pebble meets a wall, and where \[m from the wall's origin\].
-    fn meet(&self, wall: &Wall, record: &R::Record, away: Vec3, touch: &Touch) -> (Meeting<One<R>>, Vec3) {
-        let normal: Vec3 = touch.normal.into();
-        let overlap = record.radius() - touch.distance;
-        let arm = record.radius() - 0.5 * overlap;
-        let point = sub(away, scale(normal, arm));
-        let f64s = |v: [R; 3]| v.map(R::to_f64);
-        let (velocity, spin) = (f64s(record.velocity()), f64s(record.spin()));
-        let own = sub(velocity, scale(cross(spin, normal), arm));
-        let (wall_velocity, wall_spin): (Vec3, Vec3) = (wall.velocity.into(), wall.spin.into());
-        let other = add(wall_velocity, cross(wall_spin, point));
-        let lanes = One::<R>::new();
-        let num = |value: f64| Num { lanes, value: lanes.splat(R::of(value)) };
-        let meeting = Meeting {
-            overlap: num(overlap),
-            normal: Vector(normal.map(num)),
-            arms: [num(arm), num(0.0)],
-            velocity: Vector(sub(own, other).map(num)),
-            twist: num(0.5 * dot(add(spin, wall_spin), normal)),
-            mass: Num { lanes, value: [record.mass()] },
-            curvature_radius: num(record.radius()),
-        };
-        (meeting, point)
-    }
-
-    fn energy(&self, meeting: &Meeting<One<R>>, contact: &Contact<One<R>>, before: [R; 3]) -> ContactEnergy {
-        let before = before.map(R::to_f64);
-        let f64s = |v: Vector<One<R>>| v.0.map(|n| n.value[0].to_f64());
-        let mean = scale(add(before, f64s(contact.damping)), 0.5);
-        ContactEnergy {
-            strain: contact.strain.value[0].to_f64(),
-            slip: contact.slip.value[0].to_f64(),
-            dashpot: -dot(mean, f64s(meeting.velocity)) * self.around.dt,
         }
     }
 }
 
-impl Load {
-    /// Adds the reaction of a contact.
-    fn add<R: Real>(&mut self, outcome: Outcome<R>, point: Vec3, stiffness: f64) {
-        let force = super::force::force_of(&outcome);
-        self.force = sub(self.force, force);
-        self.moment = sub(self.moment, cross(point, force));
-        self.stiffness += stiffness;
-        self.contacts += 1;
+#[inline(always)]
+fn numbers<R: Real>(v: Vector<One<R>>) -> [R; 3] {
+    [v.0[0].value[0], v.0[1].value[0], v.0[2].value[0]]
+}
+
+/// How a pebble meets a wall, and where \[m from the wall's origin\].
+#[inline(always)]
+fn meet<R: Real>(wall: &Wall, record: &R::Record, away: Vec3, touch: &Touch) -> (Meeting<One<R>>, Vec3) {
+    let normal: Vec3 = touch.normal.into();
+    let overlap = record.radius() - touch.distance;
+    let arm = record.radius() - 0.5 * overlap;
+    let point = sub(away, scale(normal, arm));
+    let (velocity, spin) = (record.velocity().map(R::to_f64), record.spin().map(R::to_f64));
+    let own = sub(velocity, scale(cross(spin, normal), arm));
+    let (wall_velocity, wall_spin): (Vec3, Vec3) = (wall.velocity.into(), wall.spin.into());
+    let [u, v, w] = sub(own, add(wall_velocity, cross(wall_spin, point)));
+    let lanes = One::<R>::new();
+    let num = |value: f64| Num { lanes, value: [R::of(value)] };
+    let meeting = Meeting {
+        overlap: num(overlap),
+        normal: Vector([num(normal[0]), num(normal[1]), num(normal[2])]),
+        arms: [num(arm), num(0.0)],
+        velocity: Vector([num(u), num(v), num(w)]),
+        twist: num(0.5 * dot(add(spin, wall_spin), normal)),
+        mass: Num { lanes, value: [record.mass()] },
+        curvature_radius: num(record.radius()),
+    };
+    (meeting, point)
+}
+
+/// Energy in a contact, and what it lost in a step.
+fn spent<R: Real>(meeting: &Meeting<One<R>>, contact: &Contact<One<R>>, before: [R; 3], dt: f64) -> ContactEnergy {
+    let f64s = |v: [R; 3]| v.map(R::to_f64);
+    let mean = scale(add(f64s(before), f64s(numbers(contact.damping))), 0.5);
+    ContactEnergy {
+        strain: contact.strain.value[0].to_f64(),
+        slip: contact.slip.value[0].to_f64(),
+        dashpot: -dot(mean, f64s(numbers(meeting.velocity))) * dt,
     }
 }
 
@@ -437,7 +444,15 @@ impl<R: Real> Scratch<R> {
         self.before.extend(slots.iter().filter(|s| s.touches()));
         self.names.clear();
         self.names.extend(self.before.iter().map(|s| (s.feature, Vector3::from(s.normal))));
-        inherit(&self.names, &self.touches, &mut self.heirs);
+        if let ([(feature, _)], [touch]) = (&self.names[..], &self.touches[..])
+            && *feature == touch.feature
+        {
+            // the usual case, without a search
+            self.heirs.clear();
+            self.heirs.push(Some(0));
+        } else {
+            inherit(&self.names, &self.touches, &mut self.heirs);
+        }
     }
 }
 

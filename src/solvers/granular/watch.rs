@@ -114,7 +114,7 @@ impl<R: Real> Bed<R> {
                 return Err(Failure::Stride { culprit: self.culprit(place), share });
             }
         }
-        if self.steps % self.limits.every == 0 {
+        if self.steps.is_multiple_of(self.limits.every) {
             let (share, pebble) = self.deepest();
             if share > self.limits.overlap {
                 return Err(Failure::Overlap { culprit: self.culprit(self.owner[pebble as usize]), share });

@@ -2,13 +2,15 @@
 //!
 //! Volume, centroid and inertia are those of the union, each part counted once however many pebbles hold it (PFC's "accounting
 //! for overlap"). They are integrated, not sampled: the error is below 1e-11 of the value, against closed forms of two and three
-//! spheres. A pebble that only others together hide adds nothing, and touches nothing.
+//! spheres. Sines come from the platform, so the last digits of a template may differ between machines. A pebble that only
+//! others together hide adds nothing, and touches nothing.
 
 mod error;
 mod frame;
 #[cfg(test)]
 mod tests;
 
+pub use super::union::Pebble;
 pub use error::TemplateError;
 
 use super::union::moments;
@@ -22,15 +24,6 @@ const TOUCH: f64 = 1e-9;
 
 /// The fifth power of a radius (m) must be a number; from here to its inverse it is.
 const SMALLEST: f64 = 1e-50;
-
-/// One sphere of a clump.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Pebble {
-    /// m.
-    pub centre: Vector3<f64>,
-    /// m.
-    pub radius: f64,
-}
 
 /// A shape of clumps, in its principal frame.
 ///

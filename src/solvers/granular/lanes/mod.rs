@@ -4,6 +4,9 @@
 //! instructions they work. Only operations that IEEE 754 rounds correctly are used (`+ - * /`, square root, fused
 //! multiply-add), so every kind of lane gives the same bits.
 
+// loops run over the lanes of several arrays at once
+#![allow(clippy::needless_range_loop)]
+
 mod plain;
 #[cfg(target_arch = "x86_64")]
 mod x86;

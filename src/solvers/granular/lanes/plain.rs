@@ -27,11 +27,7 @@ impl<R: Real, const W: usize> Lanes for Plain<R, W> {
     }
     #[inline(always)]
     fn load(self, from: &[R]) -> [R; W] {
-        let mut out = [R::default(); W];
-        for l in 0..W {
-            out[l] = from[l];
-        }
-        out
+        from[..W].try_into().expect("a number for each lane")
     }
     #[inline(always)]
     fn store(self, value: [R; W], to: &mut [R]) {
@@ -128,11 +124,7 @@ impl<R: Real, const W: usize> Lanes for Plain<R, W> {
     }
     #[inline(always)]
     fn fine_load(self, from: &[f64]) -> [f64; W] {
-        let mut out = [0.0; W];
-        for l in 0..W {
-            out[l] = from[l];
-        }
-        out
+        from[..W].try_into().expect("a number for each lane")
     }
     #[inline(always)]
     fn fine_add(self, a: [f64; W], b: [f64; W]) -> [f64; W] {

@@ -32,12 +32,13 @@ pub fn unit_ball_in_box(lower: &[f64; 3], upper: &[f64; 3]) -> f64 {
         return (0..3).map(|k| upper[k] - lower[k]).product();
     }
     let mut total = 0.0;
-    for vertex in 0..8 {
+    for vertex in 0..8u32 {
         let at = |k: usize| if vertex >> k & 1 == 0 { lower[k] } else { upper[k] };
-        let sign = if (vertex as u32).count_ones() % 2 == 0 { 1.0 } else { -1.0 };
+        let lower_sides = 3 - vertex.count_ones();
+        let sign = if lower_sides & 1 == 1 { 1.0 } else { -1.0 };
         total += sign * corner(at(0), at(1), at(2));
     }
-    total.max(0.0)
+    if total < 0.0 { 0.0 } else { total } // by rounding; what is no number stays none
 }
 
 /// Volume of the unit ball in {x > a, y > b, z > c}.

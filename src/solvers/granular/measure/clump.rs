@@ -4,12 +4,11 @@
 //! the union. On a sphere every face of a box, the border of a ball and every other pebble cut off a cap.
 
 use super::{Ball, Shape};
-use crate::solvers::granular::clump::Pebble;
-use crate::solvers::granular::union::{Arcs, Cap, Patch, Trig};
+use crate::solvers::granular::union::{Arcs, Cap, Patch, Pebble, Trig};
 use nalgebra::{Vector2, Vector3};
 
 /// Tolerance of a piece of the integral, in units of the largest pebble.
-const TOLERANCE: [f64; 1] = [1e-11];
+const TOLERANCE: [f64; 1] = [1e-13];
 
 /// m³.
 pub fn union_in(shape: &Shape, balls: &[Ball]) -> f64 {
@@ -24,7 +23,8 @@ pub fn union_in(shape: &Shape, balls: &[Ball]) -> f64 {
             union_in_ball(&pebbles, &Pebble { centre: place(centre), radius: radius / unit })
         }
     };
-    share.max(0.0) * unit * unit * unit
+    let share = if share < 0.0 { 0.0 } else { share }; // by rounding; what is no number stays none
+    share * unit * unit * unit
 }
 
 /// `∮ x dy dz/dζ` over arcs of a sphere.

@@ -88,7 +88,7 @@ impl Region {
     }
 
     /// Volume of a clump inside the region, m³: what several pebbles hold counts once. `volume` (m³) is that of the clump. The
-    /// error is below 1e-9 of the largest pebble.
+    /// error is below 1e-10 of the cube of the largest radius.
     pub fn share_of_clump(&self, pebbles: &[Ball], volume: f64) -> f64 {
         match pebbles {
             [] => 0.0,

@@ -1,7 +1,7 @@
 //! Volume, first and second moments of a union of balls.
 
+use super::Pebble;
 use super::patch::Patch;
-use crate::solvers::granular::clump::Pebble;
 use nalgebra::{Matrix3, Vector3};
 
 /// Tolerance of a piece of the integral along z, in units of the largest pebble and of their reach from the origin. Rounding

@@ -1,8 +1,8 @@
 //! The part of a unit sphere that is left when caps are cut off, and integrals over it by circles of height.
 
+use super::Pebble;
 use super::arcs::{Arcs, Trig};
 use super::quadrature;
-use crate::solvers::granular::clump::Pebble;
 use nalgebra::Vector3;
 
 /// Heights nearer to each other than this (radii) are one.
@@ -57,15 +57,14 @@ impl Patch {
     pub fn keep_within(&mut self, own: &Pebble, other: &Pebble) {
         let apart = other.centre - own.centre;
         let distance = apart.norm();
-        if distance + own.radius <= other.radius {
-            return;
-        }
-        if distance == 0.0 || distance >= own.radius + other.radius {
+        let within = distance + own.radius <= other.radius;
+        // Of two spheres in one place, the border is the one that counts.
+        if distance + other.radius <= own.radius || distance >= own.radius + other.radius {
             self.empty = true;
-            return;
+        } else if !within {
+            let Cap { normal, offset } = common_circle(own, other, &apart, distance);
+            self.cut(Cap { normal: -normal, offset: -offset });
         }
-        let Cap { normal, offset } = common_circle(own, other, &apart, distance);
-        self.cut(Cap { normal: -normal, offset: -offset });
     }
 
     /// Cuts off a cap, in radii about the centre.

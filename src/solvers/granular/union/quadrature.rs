@@ -56,8 +56,9 @@ fn refine<const N: usize>(
     let middle = from + 0.5 * (to - from);
     let (left, right) = (panel(f, from, middle), panel(f, middle, to));
     let halves = sum(left, right);
-    let close = (0..N).all(|k| (halves[k] - whole[k]).abs() <= tolerance[k]);
-    if close || depth == 0 {
+    // What is no number is no reason to go on.
+    let apart = (0..N).any(|k| (halves[k] - whole[k]).abs() > tolerance[k]);
+    if !apart || depth == 0 {
         return halves;
     }
     let left = refine(f, from, middle, left, tolerance, depth - 1);

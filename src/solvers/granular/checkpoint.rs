@@ -1,0 +1,189 @@
+//! The whole state of a bed as data, and back, bit by bit.
+
+use super::bed::Bed;
+use super::body::{Body, Clump};
+use super::build::Carried;
+use super::domain::Domain;
+use super::energy::Ledger;
+use super::gravity::Gravity;
+use super::integrate::Tally;
+use super::lanes::Real;
+use super::law::Laws;
+use super::record::Record;
+use super::vector::Vec3;
+use super::walls::{Kept, Wall};
+use super::watch::{Failure, Limits};
+use serde::{Deserialize, Serialize};
+
+/// Everything that the future of a bed depends on; serialise it with a format that keeps every bit of a number.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct Checkpoint<R: Real> {
+    version: u32,
+    domain: Domain,
+    laws: Laws,
+    gravity: Gravity,
+    damping: f64,
+    dt: f64,
+    bodies: Vec<Body>,
+    pebbles: Vec<Grain<R>>,
+    clumps: Vec<Clump>,
+    arms: Vec<Vec3>,
+    walls: Vec<Wall>,
+    shear: Vec<Carried<R>>,
+    kept: Vec<Kept<R>>,
+    tally: Tally,
+    ledger: Ledger,
+    time: f64,
+    steps: u64,
+    fresh: bool,
+    limits: Limits,
+    skin: f64,
+    fixed_skin: Option<f64>,
+}
+
+/// A pebble's record.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(bound = "")]
+struct Grain<R: Real> {
+    place: Vec3,
+    velocity: [R; 3],
+    spin: [R; 3],
+    radius: f64,
+    mass: R,
+}
+
+/// Layout of a checkpoint; another one is refused.
+const VERSION: u32 = 1;
+
+/// A checkpoint that cannot be restored.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RestoreError {
+    /// Made by another version of this program.
+    Version { found: u32 },
+    /// Its parts do not belong together.
+    Inconsistent(&'static str),
+    /// Its lists cannot be made.
+    Failure(Failure),
+}
+
+impl std::fmt::Display for RestoreError {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        match self {
+            RestoreError::Version { found } => {
+                write!(f, "the checkpoint has layout {found}, this program reads layout {VERSION}; run from the start")
+            }
+            RestoreError::Inconsistent(what) => write!(f, "the checkpoint is damaged: {what}; run from the start"),
+            RestoreError::Failure(failure) => failure.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for RestoreError {}
+
+impl<R: Real> Bed<R> {
+    /// The state as data. A bed restored from it goes on bit by bit as this one does.
+    pub fn checkpoint(&self) -> Checkpoint<R> {
+        let pebble = |r: &R::Record| Grain {
+            place: r.position(),
+            velocity: r.velocity(),
+            spin: r.spin(),
+            radius: r.radius(),
+            mass: r.mass(),
+        };
+        Checkpoint {
+            version: VERSION,
+            domain: self.domain,
+            laws: self.laws.clone(),
+            gravity: self.gravity.clone(),
+            damping: self.damping,
+            dt: self.dt,
+            bodies: self.bodies.clone(),
+            pebbles: self.records[..self.owner.len()].iter().map(pebble).collect(),
+            clumps: self.clumps.clone(),
+            arms: self.arms.clone(),
+            walls: self.walls.clone(),
+            shear: self.carried(),
+            kept: self.kept(),
+            tally: self.tally,
+            ledger: self.ledger.clone(),
+            time: self.time,
+            steps: self.steps,
+            fresh: self.fresh,
+            limits: self.limits,
+            skin: self.build.skin,
+            fixed_skin: self.build.fixed_skin,
+        }
+    }
+
+    /// The bed of a checkpoint.
+    pub fn restore(from: Checkpoint<R>) -> Result<Bed<R>, RestoreError> {
+        from.check()?;
+        let mut bed = Bed::new(from.domain, from.laws);
+        (bed.gravity, bed.damping, bed.dt) = (from.gravity, from.damping, from.dt);
+        bed.index = vec![0; from.bodies.len()];
+        for (place, body) in from.bodies.iter().enumerate() {
+            bed.owner.resize(bed.owner.len() + usize::from(body.pebbles), place as u32);
+            bed.index[body.id as usize] = place as u32;
+        }
+        bed.records = from
+            .pebbles
+            .into_iter()
+            .map(|grain| {
+                let mut record = R::Record::new(grain.radius, grain.mass.to_f64());
+                record.place(grain.place);
+                record.move_with(grain.velocity, grain.spin);
+                record
+            })
+            .collect();
+        (bed.bodies, bed.clumps, bed.arms, bed.walls) = (from.bodies, from.clumps, from.arms, from.walls);
+        (bed.tally, bed.ledger, bed.limits) = (from.tally, from.ledger, from.limits);
+        (bed.time, bed.steps, bed.fresh) = (from.time, from.steps, from.fresh);
+        (bed.build.skin, bed.build.fixed_skin, bed.build.outdated) = (from.skin, from.fixed_skin, true);
+        bed.check().map_err(|fault| RestoreError::Failure(fault.into()))?;
+        bed.rebuild_with(from.shear, from.kept).map_err(|e| RestoreError::Failure(e.into()))?;
+        Ok(bed)
+    }
+}
+
+impl<R: Real> Checkpoint<R> {
+    /// Whether all parts belong together.
+    fn check(&self) -> Result<(), RestoreError> {
+        use RestoreError::Inconsistent;
+        if self.version != VERSION {
+            return Err(RestoreError::Version { found: self.version });
+        }
+        let mut named = vec![false; self.bodies.len()];
+        let (mut pebbles, mut clumps) = (0, 0);
+        for body in &self.bodies {
+            match named.get_mut(body.id as usize) {
+                Some(name) if !*name => *name = true,
+                _ => return Err(Inconsistent("bodies are not numbered one by one")),
+            }
+            if body.first != pebbles {
+                return Err(Inconsistent("pebbles do not follow their bodies"));
+            }
+            pebbles += u32::from(body.pebbles);
+            if body.clump != super::body::SPHERE {
+                let arms = self.clumps.get(body.clump as usize).map(|c| c.arms as usize + usize::from(body.pebbles));
+                if body.clump != clumps || arms.is_none_or(|end| end > self.arms.len()) {
+                    return Err(Inconsistent("clumps do not follow their bodies"));
+                }
+                clumps += 1;
+            }
+            if usize::from(body.surface) >= self.laws.surfaces() {
+                return Err(Inconsistent("a body has a surface without laws"));
+            }
+        }
+        let bodies = self.bodies.len() as u32;
+        let known = |c: &Carried<R>| c.low.0 < bodies && c.high.0 < bodies;
+        if pebbles as usize != self.pebbles.len() || clumps as usize != self.clumps.len() {
+            return Err(Inconsistent("pebbles or clumps are missing"));
+        }
+        if !self.shear.iter().all(known) || self.walls.iter().any(|w| usize::from(w.surface()) >= self.laws.surfaces())
+        {
+            return Err(Inconsistent("a contact or a wall belongs to nothing"));
+        }
+        Ok(())
+    }
+}
