@@ -23,6 +23,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 ///
 /// `R` is the precision of forces, velocities and histories in contacts: `f32` for work, `f64` for reference. Positions,
 /// momenta and sums are `f64` in both. Lengths in m, forces in N, masses in kg, time in s.
+///
+/// Numbers that cannot be are told by the next step, before it moves anything, or by [`Bed::check`].
 #[derive(Debug, Clone)]
 pub struct Bed<R: Real = f32> {
     pub(super) domain: Domain,
@@ -53,6 +55,8 @@ pub struct Bed<R: Real = f32> {
     pub(super) steps: u64,
     /// Whether velocities are still those of the start, not of a half step.
     pub(super) fresh: bool,
+    /// Whether something was added or set that nobody has checked.
+    pub(super) unchecked: bool,
     pub(super) limits: super::watch::Limits,
     pub(super) timings: Timings,
 }
@@ -133,6 +137,7 @@ impl<R: Real> Bed<R> {
             time: 0.0,
             steps: 0,
             fresh: true,
+            unchecked: true,
             limits: super::watch::Limits::default(),
             timings: Timings::default(),
         }
@@ -182,7 +187,6 @@ impl<R: Real> Bed<R> {
     }
 
     fn body(&self, mass: f64, cell: [i32; 3], pebbles: usize, surface: u16) -> Body {
-        assert!(usize::from(surface) < self.laws.surfaces(), "a body has a surface with laws");
         let id = self.bodies.len() as u32;
         Body {
             velocity: [0.0; 3],
@@ -194,7 +198,8 @@ impl<R: Real> Bed<R> {
             id,
             rank: id,
             first: self.owner.len() as u32,
-            pebbles: pebbles as u16,
+            // too many are none, which the check finds
+            pebbles: u16::try_from(pebbles).unwrap_or(0),
             surface,
             clump: SPHERE,
         }
@@ -208,12 +213,12 @@ impl<R: Real> Bed<R> {
         self.bodies.push(body);
         self.index.push(place);
         self.build.outdated = true;
+        self.unchecked = true;
         BodyId(body.id)
     }
 
     /// Adds a wall. Its frame stands at `pose`.
     pub fn add_wall(&mut self, shape: Shape, pose: Pose, surface: u16, motion: Motion) -> WallId {
-        assert!(usize::from(surface) < self.laws.surfaces(), "a wall has a surface with laws");
         let (cell, position) = self.domain.split(pose.position.into());
         self.walls.push(Wall {
             shape,
@@ -244,13 +249,16 @@ impl<R: Real> Bed<R> {
         (wall.velocity, wall.spin) = match &motion {
             // a servo waits for what it will feel
             Motion::Servo { .. } => (Vector3::zeros(), Vector3::zeros()),
+            faulty if faulty.check().is_err() => (Vector3::zeros(), Vector3::zeros()),
             given => given.velocity(self.time, self.dt.max(f64::MIN_POSITIVE), &Felt::default()),
         };
         wall.motion = motion;
+        self.unchecked = true;
     }
 
     /// Sets velocity \[m/s\] and angular velocity \[rad/s\] of a body.
     pub fn set_velocity(&mut self, id: BodyId, velocity: [f64; 3], spin: [f64; 3]) {
+        self.unchecked = true;
         let body = &mut self.bodies[self.index[id.0 as usize] as usize];
         body.velocity = velocity;
         let range = body.first as usize..body.first as usize + usize::from(body.pebbles);
@@ -288,20 +296,21 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    /// Time step \[s\].
+    /// Time step, above 0 \[s\].
     pub fn set_time_step(&mut self, dt: f64) {
-        assert!(dt.is_finite() && dt > 0.0, "a time step is a positive time");
         self.dt = dt;
+        self.unchecked = true;
     }
 
     pub fn set_gravity(&mut self, gravity: Gravity) {
         self.gravity = gravity;
+        self.unchecked = true;
     }
 
     /// Local damping after Cundall, from 0 to below 1.
     pub fn set_damping(&mut self, damping: f64) {
-        assert!((0.0..1.0).contains(&damping), "local damping is a share from 0 to below 1");
         self.damping = damping;
+        self.unchecked = true;
     }
 
     /// Lists what is up to `skin` apart \[m\]; by default a bed chooses so that lists last. Changes no bit of the motion.
@@ -318,6 +327,7 @@ impl<R: Real> Bed<R> {
     /// Changes every contact law, friction for example.
     pub fn change_laws(&mut self, change: impl FnMut(&mut Law)) {
         self.laws.change(change);
+        self.unchecked = true;
     }
 
     pub fn laws(&self) -> &Laws {

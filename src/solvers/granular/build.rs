@@ -14,6 +14,7 @@ use super::record::Record;
 use super::search::{CellTooSmall, Grids, Pair, Seen};
 use super::vector::{Vec3, dot, sub};
 use super::walls::{Kept, Near, WallContacts, moved};
+use super::watch::Failure;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -78,17 +79,21 @@ impl<R: Real> Histories<R> {
 }
 
 impl<R: Real> Bed<R> {
-    /// Makes the lists anew where they are no longer good.
-    pub(super) fn refresh(&mut self) -> Result<(), CellTooSmall> {
+    /// Checks what is new, and makes the lists anew where they are no longer good.
+    pub(super) fn refresh(&mut self) -> Result<(), Failure> {
+        if self.unchecked {
+            self.check()?;
+            self.unchecked = false;
+        }
         if self.build.outdated {
-            return self.rebuild();
+            return Ok(self.rebuild()?);
         }
         if self.build.travel <= self.build.skin {
             return Ok(());
         }
         // the bound is spent; what was really gone decides
         self.build.travel = self.gone();
-        if self.build.travel <= self.build.skin { Ok(()) } else { self.rebuild() }
+        if self.build.travel <= self.build.skin { Ok(()) } else { Ok(self.rebuild()?) }
     }
 
     /// The most that two bodies, or a body and a wall, can have come nearer since the lists were made \[m\].

@@ -140,6 +140,7 @@ impl<R: Real> Bed<R> {
         (bed.tally, bed.ledger, bed.limits) = (from.tally, from.ledger, from.limits);
         (bed.time, bed.steps, bed.fresh) = (from.time, from.steps, from.fresh);
         (bed.build.skin, bed.build.fixed_skin, bed.build.outdated) = (from.skin, from.fixed_skin, true);
+        bed.check().map_err(|fault| RestoreError::Failure(fault.into()))?;
         bed.rebuild_with(from.shear, from.kept).map_err(|e| RestoreError::Failure(e.into()))?;
         Ok(bed)
     }

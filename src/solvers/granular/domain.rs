@@ -29,16 +29,14 @@ impl Domain {
         Domain { lengths: [None; 3], counts: [None; 3] }
     }
 
-    /// Periodic along `axis` (0, 1, 2 for x, y, z) after `length` \[m\].
+    /// Periodic along `axis` (0, 1, 2 for x, y, z) after `length` \[m\], which a bed checks.
     pub fn periodic(mut self, axis: usize, length: f64) -> Domain {
-        assert!(length.is_finite() && length > 0.0, "a period is a positive length");
         (self.lengths[axis], self.counts[axis]) = (Some(length), Some(1));
         self
     }
 
     /// `count` bays of `length` \[m\] along x, the last next to the first.
     pub fn periodic_bays(mut self, length: f64, count: u32) -> Domain {
-        assert!(count > 0, "a domain has a bay");
         self = self.periodic(0, length);
         self.counts[0] = Some(count);
         self
@@ -46,7 +44,6 @@ impl Domain {
 
     /// Bays of `length` \[m\] along an open x.
     pub fn bays(mut self, length: f64) -> Domain {
-        assert!(length.is_finite() && length > 0.0, "a bay is a positive length");
         (self.lengths[0], self.counts[0]) = (Some(length), None);
         self
     }

@@ -107,11 +107,40 @@ impl HertzMindlin {
         }
     }
 
-    /// Share of critical damping that gives the restitution, for any speed (Tsuji 1992, as a linear oscillator).
+    /// Share of critical damping that gives the restitution, for any speed.
+    ///
+    /// With Tsuji's dashpot and y = d^(5/4) in place of the overlap d, speed against y is that of a linear oscillator of the
+    /// same ratio z, and y + 2 z v = 0 where spring and dashpot together push no more (Antypov and Elliott 2011, EPL 94,
+    /// 50004). So the linear closed forms hold: to the end of the overlap `e = exp(-pi z / sqrt(1 - z^2))`; to the end of the
+    /// push, where dashpots do not pull, `e = exp(-2 z acos(z) / sqrt(1 - z^2))` (Schwager and Pöschel 2007, Granular
+    /// Matter 9, 465-469, written shorter; z may be above 1 there).
     pub fn damping_ratio(&self) -> f64 {
-        let log = self.restitution.ln();
-        -log / std::f64::consts::PI.hypot(log)
+        let lost = -self.restitution.ln();
+        let pulling = lost / std::f64::consts::PI.hypot(lost);
+        if self.mode.pulls() { pulling } else { ratio_without_tension(lost, pulling) }
     }
+}
+
+/// Solves `2 z acos(z) / sqrt(1 - z^2) = lost` for z. The left side grows and bends down, so that Newton's steps from
+/// `below` never go beyond the root.
+fn ratio_without_tension(lost: f64, below: f64) -> f64 {
+    let mut z = below;
+    for _ in 0..60 {
+        let (x, square) = (1.0 - z, 1.0 - z * z);
+        // acos(z) / sqrt(1 - z^2) and its slope; the first terms of the series where both are 0
+        let (angle, slope) = if x.abs() < 1e-4 {
+            (1.0 + x / 3.0 + 2.0 * x * x / 15.0, -1.0 / 3.0 - 4.0 * x / 15.0)
+        } else {
+            let angle = if z < 1.0 { z.acos() / square.sqrt() } else { z.acosh() / (-square).sqrt() };
+            (angle, (z * angle - 1.0) / square)
+        };
+        let step = (lost - 2.0 * z * angle) / (2.0 * (angle + z * slope));
+        z += step;
+        if step.abs() <= 1e-15 * z {
+            break;
+        }
+    }
+    z
 }
 
 /// What bodies of one surface are made of; a pair's law follows from two of them.

@@ -31,7 +31,7 @@ pub(super) struct Pair {
     pub image: Image,
 }
 
-/// Two pebbles near each other, more than a cell of the domain apart.
+/// Two pebbles near each other that are more than a cell of the domain apart, or near each other both ways round a period.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CellTooSmall;
 
@@ -116,7 +116,13 @@ impl<'a> Grids<'a> {
                 if dot(apart, apart) >= reach * reach {
                     return;
                 }
+                let both_ways = |axis: usize| {
+                    let Some(period) = self.domain.period(axis) else { return false };
+                    let round = period - apart[axis].abs();
+                    dot(apart, apart) + round * round - apart[axis] * apart[axis] < reach * reach
+                };
                 match self.domain.image((me.cell, me.offset), (it.cell, it.offset)) {
+                    _ if (0..3).any(both_ways) => fine = Err(CellTooSmall),
                     Some(image) => found.push(Pair { first: pebble as u32, second: other, image }),
                     None => fine = Err(CellTooSmall),
                 }

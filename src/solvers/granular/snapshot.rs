@@ -96,7 +96,7 @@ impl<R: Real> Bed<R> {
 
     /// Computes the forces of the present state, looks, and puts back what that changed.
     fn with_forces<T>(&mut self, look: impl FnOnce(&mut Self) -> T) -> Result<T, Failure> {
-        if self.dt <= 0.0 {
+        if self.dt == 0.0 {
             return Err(Failure::NoTimeStep);
         }
         self.refresh()?;

@@ -2,6 +2,7 @@
 
 use super::bed::Bed;
 use super::contacts::{ContactEnergy, Surroundings, shifts};
+use super::fault::Fault;
 use super::force::Prepared;
 use super::integrate::{self, Drive, Moving, Tally};
 use super::lanes::Real;
@@ -28,6 +29,12 @@ const ALONE: usize = 3;
 /// Tasks a thread that several do: threads wait for each other twice a window.
 const TOGETHER: usize = 16;
 
+impl From<Fault> for Failure {
+    fn from(fault: Fault) -> Failure {
+        Failure::Fault(fault)
+    }
+}
+
 impl From<CellTooSmall> for Failure {
     fn from(_: CellTooSmall) -> Failure {
         Failure::CellTooSmall
@@ -43,7 +50,7 @@ impl<R: Real> Bed<R> {
     /// Does one step of the leapfrog: `v += F/m dt`, `x += v dt`. The first kick is half a step long, so that velocities
     /// stand half a step before positions from then on.
     pub fn step(&mut self) -> Result<(), Failure> {
-        if self.dt <= 0.0 {
+        if self.dt == 0.0 {
             return Err(Failure::NoTimeStep);
         }
         let start = Instant::now();

@@ -2,6 +2,7 @@
 
 use super::bed::Bed;
 use super::body::BodyId;
+use super::fault::Fault;
 use super::lanes::Real;
 use super::record::Record;
 use serde::{Deserialize, Serialize};
@@ -29,6 +30,8 @@ impl Default for Limits {
 pub enum Failure {
     /// No time step has been set.
     NoTimeStep,
+    /// Something in the bed cannot be; nothing was moved.
+    Fault(Fault),
     /// The state of a body is no number any more.
     Lost(Culprit),
     /// A body goes too far in a step.
@@ -56,6 +59,7 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Failure::NoTimeStep => write!(f, "no time step has been set"),
+            Failure::Fault(fault) => fault.fmt(f),
             Failure::CellTooSmall => {
                 write!(f, "a period or bay is shorter than its bodies reach; make it longer than twice the largest")
             }
@@ -94,6 +98,7 @@ impl<R: Real> Bed<R> {
     /// Changes the bounds that stop a run.
     pub fn set_limits(&mut self, limits: Limits) {
         self.limits = limits;
+        self.unchecked = true;
     }
 
     /// Looks at what the last step did.
