@@ -17,7 +17,7 @@ pub trait Record<R>: Pod + Send + Sync {
     fn spin(&self) -> [R; 3];
     /// \[m\]
     fn radius(&self) -> f64;
-    /// Inertial mass of the body that the pebble belongs to \[kg\].
+    /// Mass of the body that the pebble belongs to, without what mass scaling added: ratios of damping refer to it \[kg\].
     fn mass(&self) -> R;
     fn set_mass(&mut self, mass: R);
 }

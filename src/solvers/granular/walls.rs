@@ -75,13 +75,13 @@ impl Wall {
     }
 
     /// A vector of space in the wall's frame.
-    fn turned_back(&self, v: Vec3) -> Vector3<f64> {
+    pub(super) fn turned_back(&self, v: Vec3) -> Vector3<f64> {
         Pose { position: Vector3::zeros(), ..self.pose }.to_frame(&v.into())
     }
 
     /// From the wall's origin to a pebble \[m\].
     #[inline(always)]
-    fn to(&self, domain: &Domain, cell: [i32; 3], offset: Vec3) -> Vec3 {
+    pub(super) fn to(&self, domain: &Domain, cell: [i32; 3], offset: Vec3) -> Vec3 {
         domain.between((cell, offset), (self.cell, self.pose.position.into()))
     }
 }
@@ -91,8 +91,8 @@ impl Wall {
 pub(super) struct Entry {
     pub wall: u32,
     pub pebble: u32,
-    law: u16,
-    facets: (u32, u32),
+    pub law: u16,
+    pub facets: (u32, u32),
     pub slots: (u32, u32),
 }
 
@@ -122,7 +122,7 @@ impl<R: Real> Slot<R> {
 #[derive(Debug, Clone, Default)]
 pub(super) struct WallContacts<R> {
     pub entries: Vec<Entry>,
-    facets: Vec<u32>,
+    pub facets: Vec<u32>,
     pub slots: Vec<Slot<R>>,
 }
 

@@ -1,0 +1,190 @@
+//! The contacts that count, as springs and dashpots between rigid bodies.
+
+use super::super::bed::Bed;
+use super::super::body::{Body, SPHERE};
+use super::super::force::Tangent;
+use super::super::lanes::{BLOCK, Real};
+use super::super::record::Record;
+use super::super::rotation;
+use super::super::vector::{Vec3, add, cross, dot, norm, scale, sub};
+use super::super::watch::Failure;
+use nalgebra::{Matrix3, Vector3};
+
+/// Instead of a second body: a wall.
+pub const GROUND: u32 = u32::MAX;
+
+/// A spring and a dashpot between two bodies, or a body and the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Link {
+    /// Places in the bed.
+    pub bodies: [u32; 2],
+    /// From the second to the first.
+    pub normal: Vec3,
+    /// From the centroids to the contact point \[m\].
+    pub arms: [Vec3; 2],
+    pub tangent: Tangent,
+    /// Mass that ratios of damping refer to \[kg\].
+    pub mass: f64,
+}
+
+impl Link {
+    /// The two ends that are bodies, with their number in the link.
+    pub fn ends(&self) -> impl Iterator<Item = (usize, u32)> {
+        self.bodies.into_iter().enumerate().filter(|&(_, body)| body != GROUND)
+    }
+
+    /// Velocity of the first against the second at the contact point.
+    pub fn apart(&self, motions: &[[f64; 6]]) -> Vec3 {
+        let at = |end: usize| {
+            let [x, y, z, p, q, r] = motions[self.bodies[end] as usize];
+            add([x, y, z], cross([p, q, r], self.arms[end]))
+        };
+        if self.bodies[1] == GROUND { at(0) } else { sub(at(0), at(1)) }
+    }
+
+    /// Adds force and moment of `force` on the first to both.
+    pub fn push(&self, force: Vec3, forces: &mut [[f64; 6]]) {
+        for (end, body) in self.ends() {
+            let force = if end == 0 { force } else { scale(force, -1.0) };
+            let moment = cross(self.arms[end], force);
+            let sum = &mut forces[body as usize];
+            for c in 0..3 {
+                sum[c] += force[c];
+                sum[3 + c] += moment[c];
+            }
+        }
+    }
+
+    /// `along` times the normal part of a vector and `across` times the rest.
+    pub fn stretch(&self, v: Vec3, along: f64, across: f64) -> Vec3 {
+        add(scale(v, across), scale(self.normal, (along - across) * dot(v, self.normal)))
+    }
+}
+
+/// Roots of the inverse inertia of a body, which scale its motions: u = root y.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Roots {
+    /// \[kg^-1/2\]
+    pub translation: f64,
+    /// Symmetric, in the world \[kg^-1/2 / m\].
+    pub rotation: Matrix3<f64>,
+}
+
+impl Roots {
+    /// Of a body with `factor` times the inertia.
+    pub fn heavier(&self, factor: f64) -> Roots {
+        let share = factor.sqrt().recip();
+        Roots { translation: self.translation * share, rotation: self.rotation * share }
+    }
+
+    pub fn apply(&self, [x, y, z, p, q, r]: [f64; 6]) -> [f64; 6] {
+        let turned = self.rotation * Vector3::new(p, q, r);
+        let w = self.translation;
+        [w * x, w * y, w * z, turned.x, turned.y, turned.z]
+    }
+}
+
+/// m1 m2 / (m1 + m2).
+pub fn reduced(first: f64, second: f64) -> f64 {
+    first * second / (first + second)
+}
+
+impl<R: Real> Bed<R> {
+    /// Contacts of pairs up to `gap` \[m\] apart now, in the order of the lists.
+    pub(in super::super) fn links(&mut self, gap: f64) -> Result<Vec<Link>, Failure> {
+        self.reach(gap)?;
+        let mut links = Vec::new();
+        for place in 0..self.contacts.len() {
+            links.extend(self.pair(place, gap));
+        }
+        let mut touches = Vec::new();
+        for entry in &self.wall_contacts.entries {
+            let wall = &self.walls[entry.wall as usize];
+            let record = &self.records[entry.pebble as usize];
+            let body = self.owner[entry.pebble as usize];
+            let away = wall.to(&self.domain, self.bodies[body as usize].cell, record.position());
+            let facets = &self.wall_contacts.facets[entry.facets.0 as usize..entry.facets.1 as usize];
+            wall.shape.touches(&wall.turned_back(away), record.radius() + gap, facets, &mut touches);
+            let (mass, law) = (record.mass().to_f64(), &self.laws.all()[usize::from(entry.law)]);
+            for touch in &touches {
+                let normal: Vec3 = wall.pose.direction_to_space(&touch.normal).into();
+                let overlap = record.radius() - touch.distance;
+                links.push(Link {
+                    bodies: [body, GROUND],
+                    normal,
+                    arms: [self.arm(entry.pebble, scale(normal, -(record.radius() - 0.5 * overlap))), [0.0; 3]],
+                    tangent: Tangent::of(law, overlap, mass, record.radius()),
+                    mass,
+                });
+            }
+        }
+        Ok(links)
+    }
+
+    /// Makes lists that hold all pairs up to `gap` apart.
+    fn reach(&mut self, gap: f64) -> Result<(), Failure> {
+        self.refresh()?;
+        // lists are good for their skin less what was gone since
+        if gap + self.build.travel <= self.build.skin {
+            return Ok(());
+        }
+        let fixed = self.build.fixed_skin.replace((gap + self.build.travel).max(self.build.skin));
+        self.build.outdated = true;
+        let made = self.refresh();
+        self.build.fixed_skin = fixed;
+        Ok(made?)
+    }
+
+    fn pair(&self, place: usize, gap: f64) -> Option<Link> {
+        let (a, b) = (self.contacts.first[place], self.contacts.second[place]);
+        if a as usize == self.owner.len() {
+            return None;
+        }
+        let (one, other) = (&self.records[a as usize], &self.records[b as usize]);
+        let apart = add(sub(one.position(), other.position()), self.domain.shift(self.contacts.image[place]));
+        let distance = norm(apart);
+        let overlap = one.radius() + other.radius() - distance;
+        if overlap <= 0.0 && overlap <= -gap {
+            return None;
+        }
+        let normal = scale(apart, 1.0 / distance);
+        let mass = reduced(one.mass().to_f64(), other.mass().to_f64());
+        let law = &self.laws.all()[usize::from(self.contacts.law[place / BLOCK])];
+        Some(Link {
+            bodies: [a, b].map(|pebble| self.owner[pebble as usize]),
+            normal,
+            arms: [
+                self.arm(a, scale(normal, -(one.radius() - 0.5 * overlap))),
+                self.arm(b, scale(normal, other.radius() - 0.5 * overlap)),
+            ],
+            tangent: Tangent::of(law, overlap, mass, reduced(one.radius(), other.radius())),
+            mass,
+        })
+    }
+
+    /// From the centroid of a pebble's body to a point given from the pebble's centre.
+    fn arm(&self, pebble: u32, from_centre: Vec3) -> Vec3 {
+        let body = &self.bodies[self.owner[pebble as usize] as usize];
+        match body.clump {
+            SPHERE => from_centre,
+            clump => {
+                let centre = self.clumps[clump as usize].centre;
+                add(sub(self.records[pebble as usize].position(), centre), from_centre)
+            }
+        }
+    }
+
+    /// Roots of the inverse inertia of all bodies.
+    pub(in super::super) fn roots(&self) -> Vec<Roots> {
+        let rotation = |body: &Body| match body.clump {
+            SPHERE => Matrix3::from_diagonal_element(body.inverse_inertia.sqrt()),
+            clump => {
+                let clump = &self.clumps[clump as usize];
+                let axes = Matrix3::from(rotation::matrix(&clump.attitude)).transpose();
+                let roots = Vector3::from(clump.inverse_inertia).map(f64::sqrt);
+                axes * Matrix3::from_diagonal(&roots) * axes.transpose()
+            }
+        };
+        self.bodies.iter().map(|b| Roots { translation: b.inverse_mass.sqrt(), rotation: rotation(b) }).collect()
+    }
+}

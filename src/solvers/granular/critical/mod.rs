@@ -1,0 +1,151 @@
+//! How long a time step may be: methods 1.4.
+//!
+//! The leapfrog with dashpots that see the velocity of half a step before is, for contacts that stay as they are,
+//!
+//! ```text
+//! M (x[n+1] - 2 x[n] + x[n-1]) / dt^2 + C (x[n] - x[n-1]) / dt + K x[n] = 0.
+//! ```
+//!
+//! Put x[n] = z^n u: with a = u'Ku and b = u'Cu for u'Mu = 1, z^2 + (a dt^2 + b dt - 2) z + 1 - b dt = 0, and both roots stay
+//! in the unit circle exactly while a dt^2 + 2 b dt < 4. So a step is stable where 4 M - dt^2 K - 2 dt C is positive
+//! definite, and at the limit a mode turns round in every step (z = -1). For one oscillator of frequency w and damping ratio
+//! xi this is dt < (2/w) (sqrt(1 + xi^2) - xi).
+//!
+//! K and C are those of the contacts as they are: springs and dashpots at full stiffness whether they slip or not, arms of
+//! clumps, inertia with what mass scaling added, walls and fixed bodies at rest. Left out is how forces turn with their
+//! contacts, a share of about overlap over radius.
+
+mod limit;
+mod links;
+mod local;
+mod network;
+#[cfg(test)]
+mod tests;
+
+pub(super) use local::{Around, Weight, bound, pencil};
+pub(super) use network::Network;
+
+use super::bed::Bed;
+use super::body::BodyId;
+use super::force::Tangent;
+use super::lanes::{BLOCK, Real};
+use super::record::Record;
+use super::watch::Failure;
+
+/// Where a limit comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Seat {
+    pub body: BodyId,
+    /// \[m\]
+    pub place: [f64; 3],
+    pub surface: u16,
+    /// Contacts of the body that count.
+    pub contacts: usize,
+}
+
+/// A largest time step, and the body that sets it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// \[s\]; infinite where nothing touches.
+    pub step: f64,
+    pub seat: Option<Seat>,
+}
+
+/// How long a time step may be, by three rules.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CriticalStep {
+    /// PFC's rule without its safety factor of 0.8: the least sqrt(m / k) over bodies and axes, stiffness over
+    /// (sqrt(1 + beta^2) - beta)^2. Neither a bound nor exact: half of what is stable for a lone body without dashpots, too
+    /// long for some beds with them.
+    pub estimate: Limit,
+    /// By the contacts of one body at a time, coupled with its rotation and weighed against its neighbours. Never too long.
+    pub bound: Limit,
+    /// By the whole network of contacts; too short by [`CriticalStep::residual`] at most.
+    pub network: Limit,
+    /// Relative uncertainty of the network's limit, already taken off.
+    pub residual: f64,
+    /// Contacts that count.
+    pub contacts: usize,
+    /// What the network's limit has cost, in sweeps over all contacts.
+    pub sweeps: usize,
+}
+
+/// Relative uncertainty that the network's limit is iterated to.
+const TOLERANCE: f64 = 2e-3;
+
+impl<R: Real> Bed<R> {
+    /// How long a step may be with the contacts of now; those of pairs up to `gap` \[m\] apart count too, so that a step may be
+    /// chosen before they close.
+    ///
+    /// Springs after Hertz count with the stiffness of their present overlap. The motion goes on as if nobody had asked, bit
+    /// by bit. Fails only where lists of neighbours cannot be made.
+    pub fn critical_step(&mut self, gap: f64) -> Result<CriticalStep, Failure> {
+        let links = self.links(gap)?;
+        let roots = self.roots();
+        let around = Around::new(&links, roots.len());
+        let estimate = local::estimate(&links, &roots, &around);
+        let bound = local::bound(&links, &roots, &around);
+        let network = Network::new(&links, &roots).limit(&around, bound.0, TOLERANCE);
+        let limit = |(step, body): (f64, Option<u32>)| Limit { step, seat: body.map(|b| self.seat(b, &around)) };
+        Ok(CriticalStep {
+            estimate: limit(estimate),
+            bound: limit(bound),
+            network: limit((network.step, network.body)),
+            residual: network.residual,
+            contacts: links.len(),
+            sweeps: network.sweeps,
+        })
+    }
+
+    fn seat(&self, place: u32, around: &Around) -> Seat {
+        let state = self.body_state(BodyId(self.bodies[place as usize].id));
+        let contacts = around.of(place as usize).len();
+        Seat { body: state.id, place: state.place, surface: state.surface, contacts }
+    }
+
+    /// A stable time step by the contacts of the last step, body by body and cheaply \[s\]; infinite without contacts.
+    ///
+    /// Shorter than [`CriticalStep::bound`]: each contact counts with its stiffer direction.
+    pub fn body_time_step(&self) -> f64 {
+        let mut sums = vec![[0.0; 2]; self.bodies.len()];
+        let mut count = |pebble: u32, tangent: &Tangent, shared: f64| {
+            let place = self.owner[pebble as usize];
+            let (normal, shear) = self.mobility(place, pebble);
+            let stiffest = |n: f64, s: f64| shared * (n * normal).max(s * shear);
+            let sum = &mut sums[place as usize];
+            sum[0] += stiffest(tangent.normal, tangent.shear);
+            sum[1] += stiffest(tangent.normal_dashpot, tangent.shear_dashpot);
+        };
+        for place in 0..self.contacts.len() {
+            let Some(overlap) = self.overlap(place) else { continue };
+            let (a, b) = (self.contacts.first[place], self.contacts.second[place]);
+            let (one, other) = (&self.records[a as usize], &self.records[b as usize]);
+            let law = &self.laws.all()[usize::from(self.contacts.law[place / BLOCK])];
+            let mass = links::reduced(one.mass().to_f64(), other.mass().to_f64());
+            let tangent = Tangent::of(law, overlap, mass, links::reduced(one.radius(), other.radius()));
+            count(a, &tangent, 2.0);
+            count(b, &tangent, 2.0);
+        }
+        for entry in &self.wall_contacts.entries {
+            let record = &self.records[entry.pebble as usize];
+            let law = &self.laws.all()[usize::from(entry.law)];
+            for slot in self.wall_contacts.slots(entry).iter().filter(|s| s.touches()) {
+                count(entry.pebble, &Tangent::of(law, slot.overlap, record.mass().to_f64(), record.radius()), 1.0);
+            }
+        }
+        sums.iter().map(|&[a, b]| limit::step(a, b)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Most that a unit force at a pebble's surface moves it, along and across \[1/kg\].
+    fn mobility(&self, place: u32, pebble: u32) -> (f64, f64) {
+        let body = &self.bodies[place as usize];
+        let radius = self.records[pebble as usize].radius();
+        if body.clump == super::body::SPHERE {
+            return (body.inverse_mass, body.inverse_mass + radius * radius * body.inverse_inertia);
+        }
+        let clump = &self.clumps[body.clump as usize];
+        let arm = radius + super::vector::norm(self.arms[(clump.arms + pebble - body.first) as usize]);
+        let most = body.inverse_mass + arm * arm * clump.inverse_inertia.into_iter().fold(0.0, f64::max);
+        (most, most)
+    }
+}

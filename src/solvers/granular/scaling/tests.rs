@@ -1,0 +1,145 @@
+use crate::solvers::granular::clump::{Pebble, Template};
+use crate::solvers::granular::{
+    Bed, BodyId, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Law, Laws, Linear, Placed, Sphere,
+};
+use nalgebra::Vector3;
+
+const STIFFNESS: f64 = 1e6;
+
+fn law(ratio: f64) -> Law {
+    Law::Linear(Linear {
+        normal_stiffness: STIFFNESS,
+        shear_stiffness: STIFFNESS,
+        friction: 0.5,
+        dashpot: Dashpot::Ratio { normal: ratio, shear: ratio },
+        mode: DashpotMode::NoTensionRestInSlip,
+        limit: FrictionLimit::Spring,
+    })
+}
+
+/// Spheres of two sizes and clumps over a floor, walled in by periods, that fall and come to rest.
+fn mixed() -> Bed<f64> {
+    let length = 0.2;
+    let mut bed = Bed::new(Domain::open().periodic(0, length).periodic(1, length), Laws::uniform(1, law(0.3)));
+    bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
+    bed.set_gravity(Gravity::EARTH);
+    let pebble = |x: f64| Pebble { centre: Vector3::new(x, 0.0, 0.0), radius: 0.015 };
+    let template = Template::of(&[pebble(-0.01), pebble(0.01)]).unwrap();
+    for k in 0..4 * 4 * 4 {
+        let [i, j, l] = [k % 4, k / 4 % 4, k / 16];
+        let centre =
+            [0.05 * i as f64 + 0.003 * (j + l) as f64, 0.05 * j as f64 + 0.004 * l as f64, 0.03 + 0.05 * l as f64];
+        if k % 3 == 0 {
+            bed.add_clump(&Placed {
+                template: &template,
+                centre,
+                attitude: template.axes,
+                density: 2700.0,
+                surface: 0,
+            });
+        } else {
+            let radius = if k % 3 == 1 { 0.02 } else { 0.01 };
+            bed.add_sphere(&Sphere { centre, radius, density: 2700.0, surface: 0 });
+        }
+    }
+    bed.set_damping(0.5);
+    bed.set_time_step(2e-5);
+    bed.run(60_000).unwrap();
+    bed
+}
+
+fn weight(bed: &Bed<f64>) -> f64 {
+    9.81 * bed.states().map(|s| s.mass).sum::<f64>()
+}
+
+#[test]
+fn a_lone_sphere_gets_just_the_inertia_that_it_needs() {
+    let mut bed = Bed::<f64>::new(Domain::open(), Laws::uniform(1, law(0.0)));
+    bed.change_laws(|l| {
+        if let Law::Linear(l) = l {
+            l.shear_stiffness = 0.0
+        }
+    });
+    let id = bed.add_sphere(&Sphere { centre: [0.0, 0.0, 0.01 - 1e-9], radius: 0.01, density: 2700.0, surface: 0 });
+    bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
+    let mass = bed.body_state(id).mass;
+    let limit = 2.0 / (STIFFNESS / mass).sqrt();
+    let scaling = bed.scale_masses(2.0 * limit, 0.0).unwrap();
+    // the limit goes with the root of inertia
+    assert!((scaling.largest.unwrap().1 / 4.0 - 1.0).abs() < 0.01, "{scaling:?}");
+    assert!((scaling.added_share - 3.0).abs() < 0.04 && (scaling.added_mass / mass - 3.0).abs() < 0.04);
+    assert!(bed.critical_step(0.0).unwrap().network.step >= 2.0 * limit);
+    assert_eq!(bed.body_state(id).mass, mass, "its weight is as before");
+    // below the limit nothing is added, and all is taken back
+    let scaling = bed.scale_masses(0.9 * limit, 0.0).unwrap();
+    assert_eq!((scaling.bodies, scaling.added_mass, scaling.largest), (0, 0.0, None));
+    assert!((bed.critical_step(0.0).unwrap().network.step / limit - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn a_scaled_sphere_falls_as_any_other() {
+    let mut bed = Bed::<f64>::new(Domain::open(), Laws::uniform(1, law(0.0)));
+    let add = |bed: &mut Bed<f64>, x: f64| {
+        bed.add_sphere(&Sphere { centre: [x, 0.0, 0.01], radius: 0.01, density: 2700.0, surface: 0 })
+    };
+    let (one, _) = (add(&mut bed, 0.0), add(&mut bed, 0.02 - 1e-9));
+    let limit = bed.critical_step(0.0).unwrap().network.step;
+    let scaling = bed.scale_masses(1.5 * limit, 0.0).unwrap();
+    assert_eq!(scaling.bodies, 2);
+    bed.change_laws(|l| {
+        if let Law::Linear(l) = l {
+            l.normal_stiffness = 1e-6
+        }
+    });
+    bed.set_gravity(Gravity::EARTH);
+    bed.set_time_step(1e-4);
+    bed.run(1000).unwrap();
+    let speed = bed.body_state(one).velocity[2];
+    // its weight now moves more inertia: free fall is slower by the factor, which is why only what rests may be scaled
+    let factor = scaling.largest.unwrap().1;
+    assert!((speed / (-9.81 * 0.1 / factor) - 1.0).abs() < 1e-3, "{speed} {factor}");
+}
+
+#[test]
+fn a_scaled_bed_is_stable_at_the_target_and_weighs_the_same() {
+    let mut bed = mixed();
+    let floor = crate::solvers::granular::WallId(0);
+    let step = bed.critical_step(0.0).unwrap();
+    assert!((bed.wall(floor).felt().force.z / -weight(&bed) - 1.0).abs() < 0.02);
+    let forces = bed.snapshot().unwrap().contacts;
+    let target = 1.4 * step.network.step;
+    let scaling = bed.scale_masses(target, 1e-5).unwrap();
+    println!("{step:?}\n{scaling:?}");
+    assert!(scaling.bodies > 0 && scaling.bodies < bed.len() && scaling.limit >= target);
+    assert!(bed.critical_step(1e-5).unwrap().network.step >= target);
+    // forces at rest stay as they are
+    bed.set_time_step(target);
+    bed.run(5000).unwrap();
+    assert!((bed.wall(floor).felt().force.z / -weight(&bed) - 1.0).abs() < 1e-3, "{}", bed.wall(floor).felt().force.z);
+    let after = bed.snapshot().unwrap().contacts;
+    let load =
+        |contacts: &[crate::solvers::granular::ContactState]| contacts.iter().map(|c| c.force[2].abs()).sum::<f64>();
+    assert!((load(&after) / load(&forces) - 1.0).abs() < 0.02, "{} {}", load(&after), load(&forces));
+    let held = bed.energy_of_scaled();
+    assert!(held.scaled <= held.all && held.added < held.scaled);
+}
+
+#[test]
+fn scaling_and_back_changes_nothing() {
+    let mut bed = mixed();
+    for id in 0..bed.len() as u32 {
+        bed.set_velocity(BodyId(id), [0.01, 0.0, 0.0], [1.0, 2.0, 3.0]);
+    }
+    let limit = bed.critical_step(0.0).unwrap().network.step;
+    let before: Vec<_> = bed.states().collect();
+    let inertia: Vec<_> = bed.bodies.iter().map(|b| (b.inverse_mass, b.inverse_inertia)).collect();
+    let momentum: Vec<_> = bed.bodies.iter().map(|b| b.spin).collect();
+    assert!(bed.scale_masses(3.0 * limit, 0.0).unwrap().bodies > bed.len() / 2);
+    assert_eq!(bed.states().collect::<Vec<_>>(), before, "velocities stay");
+    bed.unscale_masses();
+    assert_eq!(bed.states().collect::<Vec<_>>(), before);
+    assert_eq!(bed.bodies.iter().map(|b| (b.inverse_mass, b.inverse_inertia)).collect::<Vec<_>>(), inertia);
+    for (after, before) in bed.bodies.iter().zip(&momentum) {
+        (0..3).for_each(|c| assert!((after.spin[c] - before[c]).abs() <= 4e-16 * before[c].abs()));
+    }
+}
