@@ -9,6 +9,7 @@ mod body;
 mod build;
 pub mod clump;
 mod contacts;
+mod cost;
 mod critical;
 mod domain;
 mod energy;
