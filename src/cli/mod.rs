@@ -2,6 +2,7 @@
 //!
 //! Exit codes: 0 all is well, 1 the scene or its run has errors, 2 the command was used wrongly.
 
+mod bench;
 mod calibrate;
 mod chart;
 mod check;
@@ -38,6 +39,7 @@ enum Command {
     Report(report::Arguments),
     Chart(chart::Arguments),
     Stability(stability::Arguments),
+    Bench(bench::Arguments),
     Fmt(fmt::Arguments),
     Explain(explain::Arguments),
     Docs(docs::Arguments),
@@ -79,6 +81,7 @@ pub fn main() -> ExitCode {
         Command::Report(arguments) => report::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),
         Command::Stability(arguments) => stability::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
         Command::Fmt(arguments) => fmt::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Docs(arguments) => docs::run(&arguments),

@@ -2,7 +2,7 @@
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// A bar that knows how much is left.
 pub(super) fn bar() -> ProgressBar {
@@ -31,4 +31,37 @@ pub(super) fn share() -> ProgressBar {
 pub(super) fn at(bar: &ProgressBar, done: u64, all: u64) {
     bar.set_length(all);
     bar.set_position(done);
+}
+
+/// A bar that waits until the work has taken two seconds; what is quick needs none.
+pub(super) struct Patient {
+    message: &'static str,
+    start: Instant,
+    bar: Option<ProgressBar>,
+}
+
+impl Patient {
+    pub(super) fn new(message: &'static str) -> Patient {
+        Patient { message, start: Instant::now(), bar: None }
+    }
+
+    pub(super) fn at(&mut self, done: u64, all: u64) {
+        if self.start.elapsed() < Duration::from_secs(2) {
+            return;
+        }
+        let bar = self.bar.get_or_insert_with(|| {
+            let bar = share();
+            bar.set_message(self.message);
+            bar
+        });
+        at(bar, done, all);
+    }
+}
+
+impl Drop for Patient {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
 }

@@ -2,9 +2,11 @@
 //!
 //! [`chart`] runs one passage over the settled track with many numerics and sets error against time; [`stability`] tries
 //! numerics, contacts and voids that no scene should have, and a list of hard scenes, and says of each how it ends.
+//! [`grains`] measures what steps of a bed of grains cost.
 
 pub mod chart;
 mod clock;
+pub mod grains;
 mod settled;
 pub mod stability;
 mod stress;

@@ -10,6 +10,7 @@ mod build;
 mod checkpoint;
 pub mod clump;
 mod contacts;
+mod cost;
 mod critical;
 mod domain;
 mod energy;

@@ -1,0 +1,225 @@
+//! `trackbed bench`: how fast the solvers are on this machine. `grains` is the first of its kind.
+
+use super::{Format, Outcome, progress, study, terminal};
+use crate::solvers::granular::Real;
+use crate::study::grains::{self, Measured, Pile, PileError, Request, Share};
+use crate::units::{Dimension, parse_unit};
+use std::fs::File;
+use std::io::BufReader;
+use std::path::PathBuf;
+
+/// Measure the speed of a solver on this machine
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(clap::Subcommand)]
+enum What {
+    Grains(Grains),
+}
+
+/// Steps of a bed of spheres or clumps under shaken gravity, and where their time goes
+///
+/// Linear springs of 13 MN/m, friction 0.7, a normal dashpot of 829 N s/m that may pull, 2700 kg/m3, steps of 10 us.
+#[derive(clap::Args)]
+struct Grains {
+    /// A line of `x y z r` for each sphere, or `clump x y z r` for each pebble, in m. The first line says where the bed
+    /// ends: `# periodic x 1.2 m, y 1.2 m; rigid floor z = 0`.
+    #[arg(long, value_name = "FILE")]
+    bed: PathBuf,
+    /// Steps that are timed.
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    steps: u64,
+    /// Steps before those that are timed.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
+    warm: u64,
+    /// Do all of it so often, each time from the file, and tell the run of middle length.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    repeat: u32,
+    /// Copies of the bed along x and y, as `5x2`.
+    #[arg(long, value_name = "NXxNY", default_value = "1x1", value_parser = copies)]
+    copies: [u32; 2],
+    /// Threads; all cores where it is not given. The motion does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// `mixed`: forces in single, places and sums in double precision. `f64`: the reference, all in double.
+    #[arg(long, value_enum, default_value = "mixed")]
+    precision: Precision,
+    /// Reach of the neighbour lists, as `2 mm`; the bed chooses it by how long its lists last where it is not given.
+    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    skin: Option<f64>,
+    #[arg(long, value_enum, default_value = "human")]
+    format: Format,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Precision {
+    Mixed,
+    F64,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Outcome {
+    let What::Grains(grains) = &arguments.what;
+    let name = grains.bed.display();
+    let pile = match File::open(&grains.bed).map_err(PileError::from).and_then(|file| Pile::read(BufReader::new(file)))
+    {
+        Ok(pile) => pile,
+        Err(PileError::Unreadable(cause)) => {
+            terminal::error(&format!("cannot read `{name}`: {cause}"));
+            return Outcome::Usage;
+        }
+        Err(error) => {
+            terminal::error(&format!("`{name}`, {error}"));
+            return Outcome::Failed;
+        }
+    };
+    if let Err(mistake) = grains.check(&pile) {
+        terminal::error(&mistake);
+        return Outcome::Usage;
+    }
+    let mut pool = rayon::ThreadPoolBuilder::new();
+    if let Some(threads) = grains.threads {
+        pool = pool.num_threads(threads.into());
+    }
+    match pool.build() {
+        Ok(pool) => pool.install(|| match grains.precision {
+            Precision::Mixed => grains.measure::<f32>(&pile),
+            Precision::F64 => grains.measure::<f64>(&pile),
+        }),
+        Err(error) => {
+            terminal::error(&format!("cannot start the threads: {error}"));
+            Outcome::Failed
+        }
+    }
+}
+
+/// `5x2`.
+fn copies(text: &str) -> Result<[u32; 2], String> {
+    let numbers = text.split_once('x').and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
+    match numbers {
+        Some(copies) if copies.iter().all(|n| (1..=1000).contains(n)) => Ok(copies),
+        _ => Err(format!("expected copies along x and y from 1 to 1000, such as `5x2`, found `{text}`")),
+    }
+}
+
+/// `2 mm`, in m.
+fn length(text: &str) -> Result<f64, String> {
+    let expected = || format!("expected a length such as `2 mm`, found `{text}`");
+    let end = text.find(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E')).ok_or_else(expected)?;
+    let (value, unit) = text.split_at(end);
+    let value: f64 = value.trim().parse().map_err(|_| expected())?;
+    match parse_unit(unit.trim()) {
+        Ok(unit) if unit.dimension == Dimension::LENGTH && value > 0.0 && value.is_finite() => Ok(value * unit.factor),
+        Ok(unit) if unit.dimension == Dimension::LENGTH => Err("the length must be above 0".into()),
+        _ => Err(expected()),
+    }
+}
+
+impl Grains {
+    /// What does not fit the bed.
+    fn check(&self, pile: &Pile) -> Result<(), String> {
+        for (axis, name) in ["x", "y"].into_iter().enumerate() {
+            if self.copies[axis] > 1 && !pile.repeats(axis) {
+                let bed = self.bed.display();
+                return Err(format!("`{bed}` is not periodic along {name}, so copies cannot stand side by side there"));
+            }
+        }
+        let pebbles = pile.pebbles() * self.copies.iter().map(|&n| u64::from(n)).product::<u64>();
+        if pebbles > grains::MOST {
+            return Err(format!("{pebbles} pebbles are too many; at most {} fit a bed", grains::MOST));
+        }
+        match self.skin {
+            Some(skin) if skin > pile.largest() => {
+                Err(format!("a skin of {skin} m is more than the largest radius, {} m", pile.largest()))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn measure<R: Real>(&self, pile: &Pile) -> Outcome {
+        let &Grains { copies, skin, warm, steps, repeat, .. } = self;
+        let mut bar = progress::Patient::new("steps");
+        let finished =
+            grains::measure::<R>(pile, &Request { copies, skin, warm, steps, repeat }, |done, all| bar.at(done, all));
+        drop(bar);
+        let finished = match finished {
+            Ok(finished) => finished,
+            Err(failure) => {
+                terminal::error(&failure.to_string());
+                return Outcome::Failed;
+            }
+        };
+        let (mut measured, moved) = (finished.measured, finished.bed.bytes_per_step());
+        drop((finished.bed, finished.snapshot));
+        measured.set_against(grains::triad(), moved);
+        match self.format {
+            Format::Human => {
+                terminal::out(&self.text(&measured));
+                Outcome::Fine
+            }
+            Format::Json => study::json(&measured),
+        }
+    }
+
+    fn text(&self, m: &Measured) -> String {
+        let name = self.bed.file_name().unwrap_or_default().to_string_lossy();
+        let mut out = match m.clump_steps_per_second {
+            None => format!("{name}: {} spheres", m.bodies),
+            Some(_) => format!("{name}: {} bodies of {} pebbles", m.bodies, m.pebbles),
+        };
+        out += &format!(", {} contacts, {:.2} a body\n", m.contacts, m.contacts_per_body);
+        let of = if m.repeats > 1 { format!(", the middle of {} runs", m.repeats) } else { String::new() };
+        out += &format!(
+            "{} steps in {:.3} s{of}; {}, {} precision\n\n",
+            m.steps,
+            m.seconds,
+            counted(m.threads, "thread"),
+            m.precision
+        );
+        let mut row = |label: &str, text: String| out += &format!("  {label:<18}{text}\n");
+        let million = |value: f64| format!("{:.2} million", value / 1e6);
+        if let Some(clumps) = m.clump_steps_per_second {
+            row("clump-steps", format!("{} a second", million(clumps)));
+        }
+        row("sphere-steps", format!("{} a second", million(m.sphere_steps_per_second)));
+        row("contact updates", format!("{} a second", million(m.contact_updates_per_second)));
+        row(
+            "kinetic energy",
+            format!("{:.6} J of translation, {:.6} J of rotation", m.kinetic_energy, m.rotational_energy),
+        );
+        row(
+            "lists",
+            format!(
+                "made {}, {} pairs within {:.2} mm",
+                counted(m.lists_made, "time"),
+                m.listed_contacts,
+                1e3 * m.skin_m
+            ),
+        );
+        if let (Some(peak), Some(each)) = (m.peak_memory_bytes, m.bytes_per_sphere) {
+            row("memory", format!("{:.1} MB, {each:.0} bytes a sphere", peak as f64 / 1e6));
+        }
+        if let Some(b) = &m.bandwidth {
+            let (used, can) = (b.used_bytes_per_second / 1e9, b.measured_bytes_per_second / 1e9);
+            row("bandwidth", format!("{used:.2} GB/s of {can:.2} GB/s by a triad, {:.0} %", 100.0 * b.share));
+        }
+        out += "\n  where the time goes   share   ns a body and step\n";
+        let time = &m.time;
+        for (label, Share { share, ns_per_body_step }) in [
+            ("search", time.search),
+            ("forces", time.forces),
+            ("walls", time.walls),
+            ("motion", time.motion),
+            ("other", time.other),
+        ] {
+            out += &format!("  {label:<18}{:>7.1} %{ns_per_body_step:>21.1}\n", 100.0 * share);
+        }
+        out
+    }
+}
+
+fn counted(count: u64, thing: &str) -> String {
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
+}

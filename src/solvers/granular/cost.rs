@@ -1,0 +1,59 @@
+//! What steps cost: how far the lists reach, how often they were made, what a step moves through memory.
+
+use super::bed::Bed;
+use super::body::{Body, Clump};
+use super::contacts::BlockVector;
+use super::domain::Image;
+use super::force::Outcome;
+use super::lanes::{BLOCK, Real};
+use super::vector::Vec3;
+use super::walls::{Entry, Slot};
+use super::watch::Failure;
+
+impl<R: Real> Bed<R> {
+    /// How far apart pairs may be and still be listed \[m\]; `None` lets the bed choose from how long its lists last.
+    /// A matter of speed: the motion is the same, bit by bit.
+    pub fn set_skin(&mut self, skin: Option<f64>) {
+        assert!(skin.is_none_or(|s| s.is_finite() && s > 0.0), "a skin is a positive length");
+        self.build.fixed_skin = skin;
+        self.build.outdated = true;
+    }
+
+    /// How far apart pairs may be and still be listed at present \[m\].
+    pub fn skin(&self) -> f64 {
+        self.build.skin
+    }
+
+    /// Number of times that lists were made.
+    pub fn lists_made(&self) -> u64 {
+        self.build.count
+    }
+
+    /// Makes the lists where they are not good for the next step, which then need not do so.
+    pub fn make_lists(&mut self) -> Result<(), Failure> {
+        if self.dt <= 0.0 {
+            return Err(Failure::NoTimeStep);
+        }
+        Ok(self.refresh()?)
+    }
+
+    /// Bytes that a step moves if every array comes from memory once for each pass over it, and goes back once where it
+    /// changes. What stays in a cache between passes is counted nevertheless.
+    pub fn bytes_per_step(&self) -> u64 {
+        let bytes = |count: usize, each: usize| (count * each) as u64;
+        let (places, pebbles, walls) = (self.contacts.len(), self.owner.len(), self.wall_contacts.slots.len());
+        let outcome = size_of::<Outcome<R>>();
+        let contacts = bytes(places, 2 * size_of::<u32>() + size_of::<Image>() + outcome)
+            + bytes(places / BLOCK, size_of::<u16>() + 2 * size_of::<BlockVector<R>>())
+            + bytes(pebbles, size_of::<R::Record>());
+        let walls = bytes(walls, 2 * size_of::<Slot<R>>() + 2 * outcome)
+            + bytes(self.wall_contacts.entries.len(), size_of::<Entry>());
+        let motion = bytes(places, outcome)
+            + bytes(self.incidence.entries.len() + self.incidence.start.len(), size_of::<u32>())
+            + bytes(self.bodies.len(), 2 * size_of::<Body>())
+            + bytes(self.clumps.len(), 2 * size_of::<Clump>())
+            + bytes(self.arms.len(), size_of::<Vec3>())
+            + bytes(pebbles, 2 * size_of::<R::Record>());
+        contacts + walls + motion
+    }
+}
