@@ -1,8 +1,6 @@
 //! Beds at rest: columns, floor pressure, lattices, and the stress that their contacts carry.
 
-use crate::scenes::{
-    DENSITY, GRAVITY, RADIUS, alone, close, mass, norm, packed, random, sphere, springs, sub, walls,
-};
+use crate::scenes::{DENSITY, GRAVITY, RADIUS, alone, close, mass, norm, packed, random, sphere, springs, sub, walls};
 use std::f64::consts::PI;
 use trackbed::solvers::granular::measure::{Contact, Region, coordination, stress};
 use trackbed::solvers::granular::{

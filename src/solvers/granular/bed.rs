@@ -313,17 +313,6 @@ impl<R: Real> Bed<R> {
         self.unchecked = true;
     }
 
-    /// Lists what is up to `skin` apart \[m\]; by default a bed chooses so that lists last. Changes no bit of the motion.
-    pub fn set_skin(&mut self, skin: Option<f64>) {
-        self.build.fixed_skin = skin;
-        self.build.outdated = true;
-    }
-
-    /// Reach of the present lists \[m\], and how many have been made.
-    pub fn lists(&self) -> (f64, u64) {
-        (self.build.skin, self.build.count)
-    }
-
     /// Changes every contact law, friction for example.
     pub fn change_laws(&mut self, change: impl FnMut(&mut Law)) {
         self.laws.change(change);

@@ -14,9 +14,9 @@ impl<R: Real> Bed<R> {
     /// How far apart pairs may be and still be listed \[m\]; `None` lets the bed choose from how long its lists last.
     /// A matter of speed: the motion is the same, bit by bit.
     pub fn set_skin(&mut self, skin: Option<f64>) {
-        assert!(skin.is_none_or(|s| s.is_finite() && s > 0.0), "a skin is a positive length");
         self.build.fixed_skin = skin;
         self.build.outdated = true;
+        self.unchecked = true;
     }
 
     /// How far apart pairs may be and still be listed at present \[m\].
@@ -34,7 +34,7 @@ impl<R: Real> Bed<R> {
         if self.dt <= 0.0 {
             return Err(Failure::NoTimeStep);
         }
-        Ok(self.refresh()?)
+        self.refresh()
     }
 
     /// Bytes that a step moves if every array comes from memory once for each pass over it, and goes back once where it

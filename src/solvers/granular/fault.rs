@@ -109,6 +109,9 @@ impl<R: Real> Bed<R> {
         // no step set yet is for a step to tell
         bed.want(self.dt.is_finite() && self.dt >= 0.0, "time step", self.dt, POSITIVE)?;
         bed.want((0.0..1.0).contains(&self.damping), "local damping", self.damping, "a share from 0 to below 1")?;
+        if let Some(skin) = self.build.fixed_skin {
+            bed.positive("reach of the lists", skin)?;
+        }
         bed.want(self.limits.every > 0, "steps between looks at overlaps", 0.0, POSITIVE)?;
         for (quantity, limit) in [("limit of overlap", self.limits.overlap), ("limit of stride", self.limits.stride)] {
             bed.want(limit >= 0.0, quantity, limit, NOT_NEGATIVE)?;
