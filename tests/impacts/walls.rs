@@ -210,18 +210,14 @@ fn a_servo_presses_a_bed_holds_it_and_lets_it_go() {
     for pressure in [20e3, 40e3, 2e3] {
         let force = pressure * area;
         bed.set_motion(plate, Motion::servo(V::z(), force, 0.3));
-        for _ in 0..20 {
-            bed.run(300).unwrap();
-            let w = bed.wall(plate);
-            println!("{} {:?} {} {:?}", bed.steps(), w.felt(), w.pose(bed.domain()).position.z, w.velocity().0[2]);
-        }
+        bed.run(6000).unwrap();
         let mut worst: f64 = 0.0;
         for _ in 0..500 {
             bed.step().unwrap();
             worst = worst.max((bed.wall(plate).felt().force.z / force - 1.0).abs());
         }
         println!("servo: {pressure} Pa held within {worst:.1e} at step {}", bed.steps());
-        assert!(worst < 1e-2, "{worst} at {pressure} Pa");
+        assert!(worst < 2e-3, "{worst} at {pressure} Pa");
         heights.push(bed.wall(plate).pose(bed.domain()).position.z);
     }
     println!("heights: {heights:?}");

@@ -251,7 +251,7 @@ impl<R: Real> WallContacts<R> {
     /// Sums what each wall feels: contact by contact, so that what is merely listed leaves no trace.
     fn load(&self, walls: &mut [Wall], laws: &Laws, records: &[R::Record], outcomes: &[Outcome<R>]) {
         for wall in walls.iter_mut() {
-            (wall.felt, wall.moment) = (Felt::default(), [0.0; 3]);
+            (wall.felt, wall.moment) = (Felt { velocity: wall.velocity, ..Felt::default() }, [0.0; 3]);
         }
         for entry in &self.entries {
             let range = entry.slots.0 as usize..entry.slots.1 as usize;
@@ -260,7 +260,9 @@ impl<R: Real> WallContacts<R> {
                 let (force, record) = (force_of(outcome), &records[entry.pebble as usize]);
                 let law = &laws.all()[usize::from(entry.law)];
                 wall.felt.force -= Vector3::from(force);
-                wall.felt.stiffness += Tangent::of(law, slot.overlap, record.mass().to_f64(), record.radius()).normal;
+                let tangent = Tangent::of(law, slot.overlap, record.mass().to_f64(), record.radius());
+                wall.felt.stiffness += tangent.normal;
+                wall.felt.dashpot += tangent.normal_dashpot;
                 wall.felt.contacts += 1;
                 wall.moment = sub(wall.moment, cross(slot.point, force));
             }
