@@ -170,6 +170,38 @@ fn a_moving_plate_gives_twice_its_speed_and_accounts_for_it() {
     }
 }
 
+#[test]
+fn a_floor_of_triangles_goes_on_round_a_period() {
+    // the origin of its frame at a corner, at the middle, and somewhere
+    let run = |shift: Option<V>| {
+        let mut bed = Bed::<f64>::new(
+            Domain::open().periodic(0, 0.4).periodic(1, 0.3),
+            Laws::single(Law::Linear(damped(1e6, 0.4, 0.1))),
+        );
+        let corners = [[0.0, 0.0], [0.4, 0.0], [0.4, 0.3], [0.0, 0.3]];
+        let shape = match shift {
+            None => Shape::Plane { normal: V::z() },
+            Some(shift) => {
+                let vertices = corners.iter().map(|[x, y]| V::new(*x, *y, 0.0) - shift).collect();
+                Shape::Mesh(Mesh::new(vertices, vec![[0, 1, 2], [0, 2, 3]], MeshKind::OneSided).unwrap())
+            }
+        };
+        let place = shift.unwrap_or_default();
+        bed.add_wall(shape, at(place.x, place.y, place.z), 0, Motion::Fixed);
+        bed.set_gravity(Gravity::EARTH);
+        bed.set_time_step(1e-5);
+        let id = put(&mut bed, ball(0.05, 0.02, RADIUS), [3.0, 2.0, 0.0], [0.0; 3]);
+        bed.run(40_000).unwrap();
+        bed.body_state(id).place
+    };
+    let plane = run(None);
+    for shift in [V::zeros(), V::new(0.2, 0.15, 0.0), V::new(0.33, -0.07, 0.0)] {
+        let apart = norm(crate::scene::sub(plane, run(Some(shift))));
+        println!("round a period: {apart:.1e} m after {:.3} m", plane[0]);
+        assert!(plane[0] > 0.8 && apart < 1e-9, "{apart} {shift:?}");
+    }
+}
+
 /// 500 spheres in a periodic box, on a floor, under a plate above them.
 fn heap() -> (Bed<f32>, WallId) {
     let domain = Domain::open().periodic(0, 0.3).periodic(1, 0.3);
