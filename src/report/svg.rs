@@ -116,6 +116,12 @@ impl Svg {
         let _ = write!(self.body, r#"<rect fill="{fill}" x="{x}" y="{y}" width="{width}" height="{height}"/>"#);
     }
 
+    /// An area of a paint of its own.
+    pub fn polygon(&mut self, fill: &str, corners: &[(f64, f64)]) {
+        let corners: Vec<String> = corners.iter().map(|(x, y)| format!("{},{}", px(*x), px(*y))).collect();
+        let _ = write!(self.body, r#"<polygon fill="{fill}" points="{}"/>"#, corners.join(" "));
+    }
+
     /// A line of a width of its own; the colour is that of the group.
     pub fn stroke(&mut self, from: (f64, f64), to: (f64, f64), width: f64) {
         let (x1, y1, x2, y2, width) = (px(from.0), px(from.1), px(to.0), px(to.1), fine(width));
