@@ -118,7 +118,7 @@ impl Parameters {
             ("seating speed", self.seat_speed),
             ("speed of the plate", self.speed),
             ("lower pressure", self.low),
-            ("rows: steps between them", self.interval as f64),
+            ("number of steps between rows", self.interval as f64),
         ];
         let wrong = positive.into_iter().find(|(_, value)| !(value.is_finite() && *value > 0.0));
         if let Some((name, value)) = wrong {
