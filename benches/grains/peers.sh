@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The grain kernel beside other programs on the same beds under the same law, in turns, on the same machine.
 #
-#   benches/grains/peers.sh [--out TABLE.csv] [--steps N] [--repeat N] [--cores '1 2'] [--cases 'spheres clumps'] [--only NAMES]
+#   benches/grains/peers.sh [--out TABLE.csv] [--steps N] [--repeat N] [--cores '1 2'] [--cases 'spheres clumps']
+#                           [--only 'liggghts lammps-A lammps-B yade'] [--warm N]; TRACKBED=PROGRAM takes one that is built, SKIN=M another skin
 #
 # Cases: `spheres` is bed10k.xyzr copied 5 x 2 (100,000 spheres), `small` the bed itself, `clumps` clumps10k.txt. Programs:
 # liggghts, lmp (twice, see peers/lammps.in) and yade, where they are installed (Debian: liggghts lammps yade openmpi-bin).
@@ -62,7 +63,7 @@ prepare() {
         }' "$work/$1.xyzr" > "$work/$1.data"
 }
 
-# One run; prints steps, seconds and, of spheres, kinetic energy in J.
+# One run (LIGGGHTS leaves a log where it stands); prints steps, seconds and, of spheres, kinetic energy in J.
 once() {
     local program=$1 case=$2 n=$3 launch=()
     read -r file nx ny lx ly <<< "$(bed "$case")"
@@ -75,7 +76,7 @@ once() {
         trackbed)
             "$TRACKBED" bench grains --bed "$file" --copies "${nx}x$ny" --warm "$warm" --steps "$steps" --threads "$n" --format json |
                 awk -v steps="$steps" -F '[:,]' '/^  "seconds"/ { s = $2 } /^  "kinetic_energy"/ { e = $2 } END { print steps, s, e }' ;;
-        liggghts) "${launch[@]}" liggghts -in "$here/peers/liggghts.in" "${input[@]}" | awk -v steps="$steps" "$told" ;;
+        liggghts) (cd "$work" && "${launch[@]}" liggghts -in "$here/peers/liggghts.in" "${input[@]}") | awk -v steps="$steps" "$told" ;;
         lammps-*) "${launch[@]}" lmp -in "$here/peers/lammps.in" -var kind "$kind" -var law "${program#lammps-}" "${input[@]}" |
             awk -v steps="$steps" "$told" ;;
         yade)

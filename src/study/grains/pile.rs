@@ -167,9 +167,9 @@ impl Pile {
     /// each other, in the order of the file.
     pub fn bed<R: Real>(&self, copies: [u32; 2], laws: Laws, density: f64) -> Bed<R> {
         let mut domain = Domain::open();
-        for axis in 0..2 {
-            if let Some(period) = self.periods[axis] {
-                domain = domain.periodic(axis, period * f64::from(copies[axis]));
+        for (axis, (period, copies)) in self.periods.into_iter().zip(copies).enumerate() {
+            if let Some(period) = period {
+                domain = domain.periodic(axis, period * f64::from(copies));
             }
         }
         let mut bed = Bed::new(domain, laws);
