@@ -171,3 +171,34 @@ fn mistakes_are_named() {
     assert!(code == 2 && said.contains("not periodic along x"), "{said}");
     assert_eq!(number(&measured(&floor_only, &["--steps", "3"]), "contacts"), 1.0);
 }
+
+#[test]
+fn a_bed_is_drawn_and_written_for_others() {
+    let dir = tempfile::tempdir().unwrap();
+    let bed = spheres(dir.path());
+    let (picture, folder) = (dir.path().join("bed.svg"), dir.path().join("vtk"));
+    let (drawn, written) = (picture.to_str().unwrap(), folder.to_str().unwrap());
+    for color in ["displacement", "speed", "force"] {
+        measured(&bed, &["--steps", "20", "--picture", drawn, "--color", color, "--chains", "--vtk", written]);
+        let text = fs::read_to_string(&picture).unwrap();
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let circles = document.descendants().filter(|n| n.has_tag_name("circle")).count();
+        // the front row hides most of the ten behind it
+        assert!((30..300).contains(&circles), "{circles} of 300 spheres are drawn");
+        assert!(text.contains("layers.xyzr after 20 steps, 0.20 ms") && text.contains(color), "{color}");
+    }
+    let pieces = ["bodies.vtp", "contacts.vtp"].map(|name| {
+        let text = fs::read_to_string(folder.join(name)).unwrap();
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let piece = document.descendants().find(|n| n.has_tag_name("Piece")).unwrap();
+        ["NumberOfVerts", "NumberOfLines"].map(|n| piece.attribute(n).unwrap().parse::<f64>().unwrap())
+    });
+    let json = measured(&bed, &["--steps", "20"]);
+    assert_eq!(pieces, [[300.0, 0.0], [0.0, number(&json, "contacts")]]);
+    // what cannot be written is said
+    let (code, said) =
+        refused(&bed, &["--steps", "2", "--picture", dir.path().join("no/such/bed.svg").to_str().unwrap()]);
+    assert!(code == 1 && said.contains("cannot write"), "{said}");
+    let (code, said) = refused(&bed, &["--steps", "2", "--vtk", bed.to_str().unwrap()]);
+    assert!(code == 1 && said.contains("cannot make the directory"), "{said}");
+}

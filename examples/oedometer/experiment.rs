@@ -230,7 +230,7 @@ impl<R: Real> Oedometer<R> {
     pub fn settle(&mut self, mut tell: impl FnMut(u64)) -> Result<Row, Trouble> {
         for _ in 0..self.parameters.settle_steps {
             self.bed.step()?;
-            if self.steps() % self.parameters.interval == 0 {
+            if self.steps().is_multiple_of(self.parameters.interval) {
                 tell(self.steps());
             }
         }
@@ -246,14 +246,14 @@ impl<R: Real> Oedometer<R> {
         let mut rows = Vec::new();
         loop {
             let step = self.steps();
-            if step % self.parameters.interval == 0 {
+            if step.is_multiple_of(self.parameters.interval) {
                 rows.push(self.row(&phase.name)?);
                 tell(step);
             }
             self.bed.step()?;
             let pressure = self.pressure(self.plate);
             let met = if phase.loads { pressure >= phase.target } else { pressure <= phase.target };
-            if step % LOOK == 0 && met {
+            if step.is_multiple_of(LOOK) && met {
                 break;
             }
             if step >= last {

@@ -41,6 +41,7 @@ use std::time::Instant;
 
 /// Compresses a bed of spheres under a plate, load cycle by load cycle.
 #[derive(Parser)]
+#[command(allow_negative_numbers = true)]
 struct Arguments {
     /// Spheres: a line `x y z r` each, in m
     particles: PathBuf,

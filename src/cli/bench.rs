@@ -1,12 +1,14 @@
 //! `trackbed bench`: how fast the solvers are on this machine. `grains` is the first of its kind.
 
 use super::{Format, Outcome, progress, study, terminal};
+use crate::report::{self, BedView, Colour, Side};
+use crate::results;
 use crate::solvers::granular::Real;
-use crate::study::grains::{self, Measured, Pile, PileError, Request, Share};
+use crate::study::grains::{self, Finished, Measured, Pile, PileError, Request, Share};
 use crate::units::{Dimension, parse_unit};
 use std::fs::File;
 use std::io::BufReader;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Measure the speed of a solver on this machine
 #[derive(clap::Args)]
@@ -50,8 +52,36 @@ struct Grains {
     /// Reach of the neighbour lists, as `2 mm`; the bed chooses it by how long its lists last where it is not given.
     #[arg(long, value_name = "LENGTH", value_parser = length)]
     skin: Option<f64>,
+    /// Draw the bed after the last step, from the side, as SVG.
+    #[arg(long, value_name = "FILE")]
+    picture: Option<PathBuf>,
+    /// What the colours of the picture say.
+    #[arg(long, value_enum, default_value = "displacement")]
+    color: Color,
+    /// The edge of the bed along which the picture runs.
+    #[arg(long, value_enum, default_value = "x")]
+    side: SideName,
+    /// Draw the forces of the grains that are seen as lines between their centres.
+    #[arg(long)]
+    chains: bool,
+    /// Write pebbles and contacts after the last step as `bodies.vtp` and `contacts.vtp`, for ParaView.
+    #[arg(long, value_name = "DIR")]
+    vtk: Option<PathBuf>,
     #[arg(long, value_enum, default_value = "human")]
     format: Format,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Color {
+    Displacement,
+    Speed,
+    Force,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum SideName {
+    X,
+    Y,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -151,6 +181,10 @@ impl Grains {
                 return Outcome::Failed;
             }
         };
+        if let Err(mistake) = self.show(pile, &finished) {
+            terminal::error(&mistake);
+            return Outcome::Failed;
+        }
         let (mut measured, moved) = (finished.measured, finished.bed.bytes_per_step());
         drop((finished.bed, finished.snapshot));
         measured.set_against(grains::triad(), moved);
@@ -163,8 +197,56 @@ impl Grains {
         }
     }
 
+    /// Writes the picture and the VTK files that are wanted.
+    fn show<R: Real>(&self, pile: &Pile, finished: &Finished<R>) -> Result<(), String> {
+        if self.picture.is_none() && self.vtk.is_none() {
+            return Ok(());
+        }
+        let Finished { bed, snapshot, measured } = finished;
+        let start = results::places(&grains::bed::<R>(pile, self.copies, self.skin));
+        let rows = results::grains(bed, snapshot, Some(&start));
+        let links = results::links(bed, snapshot);
+        let write = |path: &Path, bytes: &[u8]| results::write_atomically(path, bytes).map_err(|e| e.to_string());
+        if let Some(directory) = &self.vtk {
+            std::fs::create_dir_all(directory)
+                .map_err(|e| format!("cannot make the directory `{}`: {e}", directory.display()))?;
+            let (mut bodies, mut contacts) = (Vec::new(), Vec::new());
+            let made = results::bodies_vtk(&rows, &mut bodies).and(results::contacts_vtk(&links, &mut contacts));
+            made.map_err(|e| e.to_string())?;
+            write(&directory.join("bodies.vtp"), &bodies)?;
+            write(&directory.join("contacts.vtp"), &contacts)?;
+        }
+        if let Some(path) = &self.picture {
+            let milliseconds = 1e3 * bed.time();
+            let title =
+                format!("{} after {} steps, {milliseconds:.2} ms", self.name(), measured.warm_steps + measured.steps);
+            let view = BedView {
+                title: &title,
+                grains: &rows,
+                chains: if self.chains { &links } else { &[] },
+                walls: bed.walls(),
+                domain: bed.domain(),
+                side: match self.side {
+                    SideName::X => Side::X,
+                    SideName::Y => Side::Y,
+                },
+                colour: match self.color {
+                    Color::Displacement => Colour::Displacement,
+                    Color::Speed => Colour::Speed,
+                    Color::Force => Colour::Force,
+                },
+            };
+            write(path, report::bed_svg(&view).as_bytes())?;
+        }
+        Ok(())
+    }
+
+    fn name(&self) -> String {
+        self.bed.file_name().unwrap_or_default().to_string_lossy().into_owned()
+    }
+
     fn text(&self, m: &Measured) -> String {
-        let name = self.bed.file_name().unwrap_or_default().to_string_lossy();
+        let name = self.name();
         let mut out = match m.clump_steps_per_second {
             None => format!("{name}: {} spheres", m.bodies),
             Some(_) => format!("{name}: {} bodies of {} pebbles", m.bodies, m.pebbles),

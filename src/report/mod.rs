@@ -5,8 +5,10 @@
 //! numbers are those of the run's tables.
 
 mod along;
+mod bed;
 mod blocks;
 mod chart;
+mod colour_map;
 mod counts;
 mod exchanges;
 mod hanging;
@@ -31,6 +33,7 @@ mod vehicle;
 mod wheels;
 mod work_precision;
 
+pub use bed::{BedView, Colour, Side, bed_svg};
 pub use page::page;
 pub use scene::scene_svg;
 pub use stability::stability_svg;

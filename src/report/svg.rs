@@ -92,6 +92,42 @@ impl Svg {
         self.body += "</g>";
     }
 
+    /// Gradients and the like, as XML.
+    pub fn define(&mut self, xml: &str) {
+        self.body += xml;
+    }
+
+    /// What `draw` draws shares `attributes`.
+    pub fn group(&mut self, attributes: &str, draw: impl FnOnce(&mut Svg)) {
+        let _ = write!(self.body, "<g {attributes}>");
+        draw(self);
+        self.body += "</g>";
+    }
+
+    /// A circle of a paint of its own.
+    pub fn ball(&mut self, fill: &str, centre: (f64, f64), radius: f64) {
+        let (x, y, r) = (px(centre.0), px(centre.1), fine(radius));
+        let _ = write!(self.body, r#"<circle fill="{fill}" cx="{x}" cy="{y}" r="{r}"/>"#);
+    }
+
+    /// A rectangle of a paint of its own.
+    pub fn swatch(&mut self, fill: &str, frame: Frame) {
+        let (x, y, width, height) = (px(frame.x), px(frame.y), px(frame.width), px(frame.height));
+        let _ = write!(self.body, r#"<rect fill="{fill}" x="{x}" y="{y}" width="{width}" height="{height}"/>"#);
+    }
+
+    /// An area of a paint of its own.
+    pub fn polygon(&mut self, fill: &str, corners: &[(f64, f64)]) {
+        let corners: Vec<String> = corners.iter().map(|(x, y)| format!("{},{}", px(*x), px(*y))).collect();
+        let _ = write!(self.body, r#"<polygon fill="{fill}" points="{}"/>"#, corners.join(" "));
+    }
+
+    /// A line of a width of its own; the colour is that of the group.
+    pub fn stroke(&mut self, from: (f64, f64), to: (f64, f64), width: f64) {
+        let (x1, y1, x2, y2, width) = (px(from.0), px(from.1), px(to.0), px(to.1), fine(width));
+        let _ = write!(self.body, r#"<line x1="{x1}" y1="{y1}" x2="{x2}" y2="{y2}" stroke-width="{width}"/>"#);
+    }
+
     /// The whole picture, valid on its own.
     pub fn finish(self, width: f64, height: f64, name: &str) -> String {
         let (width, height, name, body) = (px(width), px(height), escape(name), self.body);
@@ -136,6 +172,12 @@ pub fn text_width(text: &str) -> f64 {
 fn px(value: f64) -> String {
     let rounded = (value * 10.0).round() / 10.0;
     if rounded == 0.0 || !rounded.is_finite() { "0".to_owned() } else { rounded.to_string() }
+}
+
+/// Sizes to a hundredth of a pixel, for what is small.
+fn fine(value: f64) -> String {
+    let rounded = (value * 100.0).round() / 100.0;
+    if rounded.is_finite() { rounded.to_string() } else { "0".to_owned() }
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ mod error;
 mod evaluate;
 mod failure;
 mod files;
+mod grains;
 mod histories;
 mod laws;
 mod level;
@@ -16,6 +17,7 @@ mod recorder;
 mod summarise;
 mod summary;
 mod tables;
+mod vtk;
 
 #[cfg(test)]
 pub(crate) mod example;
@@ -25,12 +27,14 @@ pub use error::ResultsError;
 pub use evaluate::{Tables, contact_pressures, evaluate, verdicts};
 pub use failure::diagnose;
 pub use files::{read, read_timings, write, write_timings};
+pub use grains::{Grain, Link, grains, links, places};
 pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};
 pub use level::{LongitudinalLevel, longitudinal_level};
 pub use recorder::{RunRecorder, RunTables, Store};
 pub use summarise::{RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise};
 pub use summary::{Provenance, Scalar, Summary, Verdict};
 pub use tables::{BlockRow, HistoryRow, RailRow, Row, SleeperRow};
+pub use vtk::{bodies_vtk, contacts_vtk};
 
 use crate::scenario::Scenario;
 use serde::{Deserialize, Serialize};

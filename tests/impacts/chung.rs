@@ -254,7 +254,7 @@ fn without_dashpots_sliding_is_that_of_the_closed_form() {
         let law = ALUMINIUM.pair(0.4, 1.0);
         let found =
             Impact { law, material: ALUMINIUM, radius: 0.1, speed: [0.2, 0.0], spin: -10.0 * surface }.run(STEPS);
-        near(found.along, 0.4 * 2.0 * 0.2 * -1.0, 1e-5);
+        near(found.along, -(0.4 * 2.0 * 0.2), 1e-5);
         near(found.spin + 10.0 * surface, 2.5 * 0.4 * 2.0 * 0.2 / 0.1, 5e-4);
     }
 }

@@ -6,7 +6,7 @@ use trackbed::solvers::granular::clump::{Pebble, Template};
 use trackbed::solvers::granular::measure::coordination;
 use trackbed::solvers::granular::shape::{Mesh, Shape};
 use trackbed::solvers::granular::{
-    Bed, BodyId, BodyState, Gravity, Law, Linear, Motion, Placed, Pose, Snapshot, WallId,
+    Bed, BodyId, BodyState, Domain, Gravity, Law, Laws, Linear, Motion, Placed, Pose, Snapshot, WallId,
 };
 
 type V = Vector3<f64>;
@@ -435,4 +435,30 @@ fn a_symmetric_clump_falls_straight() {
     let state = bed.body_state(id);
     println!("falls straight: {state:?}");
     assert!(norm(state.spin) < 1e-9 && state.place[0].abs() + state.place[1].abs() < 1e-12, "{state:?}");
+}
+
+#[test]
+fn clumps_meet_across_a_period_as_anywhere() {
+    let run = |x: f64| {
+        let mut bed =
+            Bed::<f64>::new(Domain::open().periodic(0, 0.5), Laws::single(Law::Linear(damped(1e6, 0.5, 0.1))));
+        bed.set_time_step(4e-6);
+        let template = stone();
+        let ids = [(-0.03, 1.0), (0.03, -1.0)].map(|(side, speed)| {
+            let attitude = UnitQuaternion::from_euler_angles(0.3 * side, 20.0 * side, 1.1);
+            let id = add(&mut bed, &template, V::new(x + side, 0.1, 10.0 * side * side), attitude);
+            bed.set_velocity(id, [speed, 0.1 * speed, 0.0], [3.0, 2.0, 1.0]);
+            id
+        });
+        bed.run(10_000).unwrap();
+        let [a, b] = ids.map(|id| bed.body_state(id));
+        (sub(a.place, b.place), sub(a.velocity, b.velocity), a.spin)
+    };
+    let (middle, border) = (run(0.25), run(0.5));
+    println!("across: {middle:?} {border:?}");
+    // an impact multiplies the rounding of places by a few hundred
+    for (a, b) in [(middle.0, border.0), (middle.1, border.1), (middle.2, border.2)] {
+        assert!(norm(sub(a, b)) < 1e-8, "{a:?} {b:?}");
+    }
+    assert!((middle.1[0] - 2.0).abs() > 0.5, "they met");
 }

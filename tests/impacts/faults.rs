@@ -202,6 +202,20 @@ fn domains_that_cannot_be_are_told() {
 }
 
 #[test]
+fn a_period_that_is_too_short_for_two_is_told() {
+    let step = |period: f64| {
+        let mut bed = Bed::<f64>::new(Domain::open().periodic(1, period), Laws::single(Law::Linear(law())));
+        bed.add_sphere(&ball());
+        bed.add_sphere(&Sphere { centre: [0.1, 0.2 + 0.039, 0.3], ..ball() });
+        bed.set_time_step(1e-5);
+        bed.step()
+    };
+    // they would touch on both sides, and a contact knows one
+    assert_eq!(step(0.078), Err(Failure::CellTooSmall));
+    assert_eq!(step(0.12), Ok(()));
+}
+
+#[test]
 fn a_bed_mended_goes_on() {
     let mut bed = sound();
     bed.set_time_step(f64::NAN);

@@ -170,6 +170,38 @@ fn a_moving_plate_gives_twice_its_speed_and_accounts_for_it() {
     }
 }
 
+#[test]
+fn a_floor_of_triangles_goes_on_round_a_period() {
+    // the origin of its frame at a corner, at the middle, and somewhere
+    let run = |shift: Option<V>| {
+        let mut bed = Bed::<f64>::new(
+            Domain::open().periodic(0, 0.4).periodic(1, 0.3),
+            Laws::single(Law::Linear(damped(1e6, 0.4, 0.1))),
+        );
+        let corners = [[0.0, 0.0], [0.4, 0.0], [0.4, 0.3], [0.0, 0.3]];
+        let shape = match shift {
+            None => Shape::Plane { normal: V::z() },
+            Some(shift) => {
+                let vertices = corners.iter().map(|[x, y]| V::new(*x, *y, 0.0) - shift).collect();
+                Shape::Mesh(Mesh::new(vertices, vec![[0, 1, 2], [0, 2, 3]], MeshKind::OneSided).unwrap())
+            }
+        };
+        let place = shift.unwrap_or_default();
+        bed.add_wall(shape, at(place.x, place.y, place.z), 0, Motion::Fixed);
+        bed.set_gravity(Gravity::EARTH);
+        bed.set_time_step(1e-5);
+        let id = put(&mut bed, ball(0.05, 0.02, RADIUS), [3.0, 2.0, 0.0], [0.0; 3]);
+        bed.run(40_000).unwrap();
+        bed.body_state(id).place
+    };
+    let plane = run(None);
+    for shift in [V::zeros(), V::new(0.2, 0.15, 0.0), V::new(0.33, -0.07, 0.0)] {
+        let apart = norm(crate::scene::sub(plane, run(Some(shift))));
+        println!("round a period: {apart:.1e} m after {:.3} m", plane[0]);
+        assert!(plane[0] > 0.8 && apart < 1e-9, "{apart} {shift:?}");
+    }
+}
+
 /// 500 spheres in a periodic box, on a floor, under a plate above them.
 fn heap() -> (Bed<f32>, WallId) {
     let domain = Domain::open().periodic(0, 0.3).periodic(1, 0.3);
@@ -210,18 +242,14 @@ fn a_servo_presses_a_bed_holds_it_and_lets_it_go() {
     for pressure in [20e3, 40e3, 2e3] {
         let force = pressure * area;
         bed.set_motion(plate, Motion::servo(V::z(), force, 0.3));
-        for _ in 0..20 {
-            bed.run(300).unwrap();
-            let w = bed.wall(plate);
-            println!("{} {:?} {} {:?}", bed.steps(), w.felt(), w.pose(bed.domain()).position.z, w.velocity().0[2]);
-        }
+        bed.run(6000).unwrap();
         let mut worst: f64 = 0.0;
         for _ in 0..500 {
             bed.step().unwrap();
             worst = worst.max((bed.wall(plate).felt().force.z / force - 1.0).abs());
         }
         println!("servo: {pressure} Pa held within {worst:.1e} at step {}", bed.steps());
-        assert!(worst < 1e-2, "{worst} at {pressure} Pa");
+        assert!(worst < 2e-3, "{worst} at {pressure} Pa");
         heights.push(bed.wall(plate).pose(bed.domain()).position.z);
     }
     println!("heights: {heights:?}");

@@ -3,6 +3,29 @@
 //! A [`Bed`] holds bodies and walls. Each [`Bed::step`] computes every contact once, in lanes, and then sums for every
 //! body the forces on it, in a fixed order: the same bits for any number of threads, any width of lanes and any reach of
 //! the neighbour lists.
+//!
+//! ```
+//! use trackbed::solvers::granular::*;
+//!
+//! let law = Law::Linear(Linear {
+//!     normal_stiffness: 1.3e7,
+//!     shear_stiffness: 1.3e7,
+//!     friction: 0.7,
+//!     dashpot: Dashpot::Ratio { normal: 0.3, shear: 0.3 },
+//!     mode: DashpotMode::default(),
+//!     limit: FrictionLimit::default(),
+//! });
+//! let mut bed: Bed = Bed::new(Domain::open(), Laws::single(law));
+//! let grain = bed.add_sphere(&Sphere { centre: [0.0, 0.0, 0.031], radius: 0.03, density: 2700.0, surface: 0 });
+//! let floor = bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
+//! bed.set_gravity(Gravity::EARTH);
+//! bed.set_time_step(2e-5);
+//! bed.run(20_000)?;
+//!
+//! let weight = bed.body_state(grain).mass * 9.81;
+//! assert!((bed.wall(floor).felt().force.z / -weight - 1.0).abs() < 1e-3);
+//! # Ok::<(), Failure>(())
+//! ```
 
 mod bed;
 mod body;

@@ -24,6 +24,10 @@ pub struct Felt {
     pub force: Vector3<f64>,
     /// Sum of the normal stiffnesses of its contacts, N/m.
     pub stiffness: f64,
+    /// Sum of their normal dashpots, N s/m.
+    pub dashpot: f64,
+    /// Of the wall in the step before, which the dashpots have felt, m/s.
+    pub velocity: Vector3<f64>,
     /// How many there are.
     pub contacts: usize,
 }
@@ -49,9 +53,11 @@ pub enum Motion {
     },
     /// Moves along the unit axis until the contact force on the wall along it is `force`.
     ///
-    /// v = gain (F - force)/(k dt), k the normal stiffness of all contacts: F relaxes by the factor 1 - gain a step
-    /// on springs without mass. So it approaches from one side for gains up to 1, overshoots above and grows above 2.
-    /// Bodies with mass follow later than springs: 0.5 is the usual gain, less is safer. After PFC's servo control.
+    /// v = (gain (F - force) + c v')/(k dt + c), k and c the normal stiffness and dashpots of all contacts, v' the speed of
+    /// the step before: F relaxes by the factor 1 - gain a step on springs and dashpots without mass. So it approaches
+    /// from one side for gains up to 1, overshoots above and grows above 2. Bodies with mass follow later than springs:
+    /// 0.5 is the usual gain, less is safer. After PFC's servo control, which has c = 0: where c is above k dt, the plate
+    /// then throws its own dashpots to and fro.
     Servo {
         axis: Vector3<f64>,
         /// N; above 0 where contacts push the wall along the axis.
@@ -122,7 +128,8 @@ impl Motion {
             Motion::Servo { axis, force, speed_limit, gain } => {
                 let excess = felt.force.dot(axis) - force;
                 let speed = if felt.contacts > 0 && felt.stiffness > 0.0 {
-                    (gain * excess / (felt.stiffness * dt)).clamp(-speed_limit, *speed_limit)
+                    let drive = gain * excess + felt.dashpot * felt.velocity.dot(axis);
+                    (drive / (felt.stiffness * dt + felt.dashpot)).clamp(-speed_limit, *speed_limit)
                 } else if excess == 0.0 {
                     0.0
                 } else {

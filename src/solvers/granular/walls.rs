@@ -86,7 +86,15 @@ impl Wall {
     /// From the wall's origin to a pebble \[m\].
     #[inline(always)]
     pub(super) fn to(&self, domain: &Domain, cell: [i32; 3], offset: Vec3) -> Vec3 {
-        domain.between((cell, offset), (self.cell, self.pose.position.into()))
+        let origin = self.pose.position.into();
+        let middle = match self.shape.bounds() {
+            // the shorter way round is that to the middle of the surface, wherever its frame has the origin
+            Some([low, high]) if low != -high && (0..3).any(|axis| domain.period(axis).is_some()) => {
+                self.pose.direction_to_space(&((low + high) / 2.0)).into()
+            }
+            _ => return domain.between((cell, offset), (self.cell, origin)),
+        };
+        add(domain.between((cell, offset), (self.cell, add(origin, middle))), middle)
     }
 }
 
@@ -179,8 +187,8 @@ impl<R: Real> WallContacts<R> {
             candidates.dedup();
             for pebble in candidates {
                 let me = &seen[pebble as usize];
-                let centre = wall.turned_back(wall.to(domain, me.cell, me.offset));
-                if !wall.shape.near(&centre, me.radius + skin, &mut near) {
+                let away = wall.to(domain, me.cell, me.offset);
+                if !wall.near(domain, away, me.radius + skin, &mut near) {
                     continue;
                 }
                 let (body, part, surface) = about(pebble);
@@ -255,7 +263,7 @@ impl<R: Real> WallContacts<R> {
     /// Sums what each wall feels: contact by contact, so that what is merely listed leaves no trace.
     fn load(&self, walls: &mut [Wall], laws: &Laws, records: &[R::Record], outcomes: &[Outcome<R>]) {
         for wall in walls.iter_mut() {
-            (wall.felt, wall.moment) = (Felt::default(), [0.0; 3]);
+            (wall.felt, wall.moment) = (Felt { velocity: wall.velocity, ..Felt::default() }, [0.0; 3]);
         }
         for entry in &self.entries {
             let range = entry.slots.0 as usize..entry.slots.1 as usize;
@@ -264,7 +272,9 @@ impl<R: Real> WallContacts<R> {
                 let (force, record) = (force_of(outcome), &records[entry.pebble as usize]);
                 let law = &laws.all()[usize::from(entry.law)];
                 wall.felt.force -= Vector3::from(force);
-                wall.felt.stiffness += Tangent::of(law, slot.overlap, record.mass().to_f64(), record.radius()).normal;
+                let tangent = Tangent::of(law, slot.overlap, record.mass().to_f64(), record.radius());
+                wall.felt.stiffness += tangent.normal;
+                wall.felt.dashpot += tangent.normal_dashpot;
                 wall.felt.contacts += 1;
                 wall.moment = sub(wall.moment, cross(slot.point, force));
             }
@@ -273,6 +283,29 @@ impl<R: Real> WallContacts<R> {
 }
 
 impl Wall {
+    /// Whether the surface is within reach of a pebble; of a mesh, the facets that are, those on the other side of a period
+    /// among them: there the pebble may be before the next list.
+    fn near(&self, domain: &Domain, away: Vec3, reach: f64, facets: &mut Vec<u32>) -> bool {
+        let mut found = self.shape.near(&self.turned_back(away), reach, facets);
+        let periods = [0, 1, 2].map(|axis| domain.period(axis));
+        if !matches!(self.shape, Shape::Mesh(_)) || periods.iter().all(Option::is_none) {
+            return found;
+        }
+        let mut more = Vec::new();
+        for image in 0..27 {
+            let steps = [image % 3 - 1, image / 3 % 3 - 1, image / 9 - 1];
+            if image == 13 || (0..3).any(|axis| steps[axis] != 0 && periods[axis].is_none()) {
+                continue;
+            }
+            let there = [0, 1, 2].map(|axis| away[axis] + f64::from(steps[axis]) * periods[axis].unwrap_or(0.0));
+            found |= self.shape.near(&self.turned_back(there), reach, &mut more);
+            facets.append(&mut more);
+        }
+        facets.sort_unstable();
+        facets.dedup();
+        found
+    }
+
     /// Pebbles that may be within `skin`.
     fn candidates(&self, Near { domain, seen, grids, skin }: Near) -> Vec<u32> {
         let Some([low, high]) = self.shape.bounds() else {

@@ -337,7 +337,7 @@ impl Real for f32 {
                 return lanes.enter(work, lanes);
             }
         }
-        work.run(Plain::<f32, 8>::new())
+        work.run(Plain::<f32, 4>::new())
     }
 }
 
@@ -367,8 +367,8 @@ impl Real for f64 {
         #[cfg(target_arch = "x86_64")]
         if let Some(lanes) = x86::Middle::detect() {
             // the reference is plain code; only its fused products want the instructions
-            return lanes.enter(work, Plain::<f64, 8>::new());
+            return lanes.enter(work, Plain::<f64, 4>::new());
         }
-        work.run(Plain::<f64, 8>::new())
+        work.run(Plain::<f64, 4>::new())
     }
 }

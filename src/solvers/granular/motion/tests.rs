@@ -97,7 +97,7 @@ fn errors(gain: f64, steps: usize) -> Vec<f64> {
     for step in 0..steps {
         let force = -stiffness * height;
         errors.push(force - target);
-        let felt = Felt { force: Vector3::z() * force, stiffness, contacts: 1 };
+        let felt = Felt { force: Vector3::z() * force, stiffness, contacts: 1, ..Felt::default() };
         height += servo.velocity(step as f64 * dt, dt, &felt).0.z * dt;
     }
     errors
@@ -126,16 +126,23 @@ fn a_servo_finds_its_contact_and_loads_a_bed_with_mass() {
     // ten bodies on springs with dashpots under a plate: the plate seeks them, then holds the force
     let (n, mass, k, c, dt) = (10, 0.05, 1.3e7, 480.0, 1e-5);
     let servo = Motion::servo(Vector3::z(), 2000.0, 0.2);
-    let mut plate = 1e-4;
+    let (mut plate, mut speed) = (1e-4, 0.0);
     let (mut x, mut v) = (vec![0.0; n], vec![0.0; n]);
     let mut forces = Vec::new();
     for step in 0..40_000 {
         let spring = |gap: f64, rate: f64| if gap < 0.0 { (-k * gap - c * rate).max(0.0) } else { 0.0 };
         let top = plate - x[n - 1];
-        let felt_force = spring(top, 0.0);
+        let felt_force = spring(top, speed - v[n - 1]);
         let contacts = usize::from(top < 0.0);
-        let felt = Felt { force: Vector3::z() * felt_force, stiffness: k * contacts as f64, contacts };
-        let speed = servo.velocity(f64::from(step) * dt, dt, &felt).0.z;
+        let count = contacts as f64;
+        let felt = Felt {
+            force: Vector3::z() * felt_force,
+            stiffness: k * count,
+            dashpot: c * count,
+            velocity: Vector3::z() * speed,
+            contacts,
+        };
+        speed = servo.velocity(f64::from(step) * dt, dt, &felt).0.z;
         assert!(contacts > 0 || speed == -0.2);
         let pushes: Vec<f64> = (0..n)
             .map(|i| if i == 0 { spring(x[0], v[0]) } else { spring(x[i] - x[i - 1], v[i] - v[i - 1]) })
@@ -162,7 +169,7 @@ fn a_servo_without_contact_moves_to_where_force_comes_from() {
     let speed = |force| Motion::servo(Vector3::x(), force, 0.3).velocity(0.0, 1e-5, &free).0.x;
     assert_eq!((speed(10.0), speed(-10.0), speed(0.0)), (-0.3, 0.3, 0.0));
     // with contact the limit holds as well
-    let felt = Felt { force: Vector3::x() * 1e6, stiffness: 1e6, contacts: 4 };
+    let felt = Felt { force: Vector3::x() * 1e6, stiffness: 1e6, contacts: 4, ..Felt::default() };
     assert_eq!(Motion::servo(Vector3::x(), 10.0, 0.3).velocity(0.0, 1e-5, &felt).0.x, 0.3);
 }
 

@@ -1,0 +1,167 @@
+//! The experiment: grains fall, a plate loads and unloads them.
+
+use nalgebra::{UnitQuaternion, Vector3};
+use std::time::Instant;
+use trackbed::solvers::granular::clump::{Pebble, Template};
+use trackbed::solvers::granular::{
+    Bed, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Law, Laws, Linear, Motion, Placed, Pose, Real, Shape,
+};
+
+/// Side of the periodic cell \[m\].
+const SIDE: f64 = 0.3;
+const GRAINS: usize = 200;
+/// Step of settling, stable for all grains here \[s\].
+const SETTLING_STEP: f64 = 1e-5;
+const PLATE_SPEED: f64 = 0.03;
+/// Pairs nearer than this count as contacts of a loaded bed \[m\].
+const GAP: f64 = 20e-6;
+const LOW: f64 = 5e3;
+const HIGH: f64 = 50e3;
+
+/// How a run is done.
+#[derive(Debug, Clone, Copy)]
+pub struct Setting {
+    pub double: bool,
+    /// Time step over the limit of the contact network.
+    pub share: f64,
+    pub skin: Option<f64>,
+    /// Pebbles a clump; 0 is a mixture of spheres.
+    pub pebbles: u32,
+    /// Masses are scaled so that a step of this many limits is stable.
+    pub scaled: Option<f64>,
+}
+
+impl Setting {
+    pub fn usual() -> Setting {
+        Setting { double: false, share: 0.5, skin: None, pebbles: 0, scaled: None }
+    }
+
+    pub fn reference() -> Setting {
+        Setting { double: true, share: 0.05, ..Setting::usual() }
+    }
+}
+
+/// What a run tells.
+#[derive(Debug, Clone, Copy)]
+pub struct Answer {
+    /// Permanent, of the load cycle \[m\].
+    pub settlement: f64,
+    /// Secant of the loading \[N/m\].
+    pub stiffness: f64,
+    /// Energy unaccounted for over the work done.
+    pub residual: f64,
+    /// Wall time for a second of the bed \[s\].
+    pub time: f64,
+}
+
+pub fn run(setting: &Setting, seed: u64) -> Option<Answer> {
+    if setting.double { run_in::<f64>(setting, seed) } else { run_in::<f32>(setting, seed) }
+}
+
+fn run_in<R: Real>(setting: &Setting, seed: u64) -> Option<Answer> {
+    let (mut bed, top) = settled::<R>(setting, seed)?;
+    let limit = bed.critical_step(GAP).ok()?.network.step;
+    let step = match setting.scaled {
+        Some(target) => 0.85 * target * limit,
+        None => setting.share * limit,
+    };
+    if setting.scaled.is_some() {
+        bed.scale_masses(step, GAP).ok()?;
+    }
+    bed.set_time_step(step);
+    bed.set_skin(setting.skin);
+    bed.watch_energy(true);
+    let plate = |speed: f64| Motion::Velocity { linear: Vector3::new(0.0, 0.0, speed), angular: Vector3::zeros() };
+    let pose = Pose { position: Vector3::new(0.0, 0.0, top + 1e-4), ..Pose::default() };
+    let wall = bed.add_wall(Shape::plane(-Vector3::z()).ok()?, pose, 0, plate(-PLATE_SPEED));
+    let (clock, start) = (Instant::now(), bed.time());
+    let mut heights = Vec::new();
+    for (pressure, sign) in [(LOW, -1.0), (HIGH, -1.0), (LOW, 1.0)] {
+        bed.set_motion(wall, plate(sign * PLATE_SPEED));
+        let end = bed.time() + 1.0;
+        loop {
+            bed.step().ok()?;
+            let felt = bed.wall(wall).felt().force.z / (SIDE * SIDE);
+            if sign * (pressure - felt) > 0.0 && sign > 0.0 || sign < 0.0 && felt >= pressure {
+                break;
+            }
+            if bed.time() > end {
+                return None;
+            }
+        }
+        heights.push(bed.wall(wall).pose(bed.domain()).position.z);
+    }
+    let energy = bed.energy();
+    Some(Answer {
+        settlement: heights[0] - heights[2],
+        stiffness: (HIGH - LOW) * SIDE * SIDE / (heights[0] - heights[1]),
+        residual: energy.residual().abs() / (energy.walls.abs() + energy.gravity.abs()),
+        time: clock.elapsed().as_secs_f64() / (bed.time() - start),
+    })
+}
+
+/// Grains at rest, and the height of the highest \[m\]. The same for every setting of the same grains and seed.
+fn settled<R: Real>(setting: &Setting, seed: u64) -> Option<(Bed<R>, f64)> {
+    let mut random = Random(seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+    let law = Law::Linear(Linear {
+        normal_stiffness: 1.3e7,
+        shear_stiffness: 1.3e7,
+        friction: 0.6,
+        dashpot: Dashpot::Ratio { normal: 0.2, shear: 0.0 },
+        mode: DashpotMode::NoTensionRestInSlip,
+        limit: FrictionLimit::Spring,
+    });
+    let domain = Domain::open().periodic(0, SIDE).periodic(1, SIDE);
+    let mut bed: Bed<R> = Bed::new(domain, Laws::single(law));
+    let template = Template::of(&pebbles(setting.pebbles.max(1))).ok()?;
+    for grain in 0..GRAINS {
+        let (layer, cell) = (grain / 16, grain % 16);
+        let mut around = |x: f64| x + 0.004 * (random.next() - 0.5);
+        let centre = [
+            around(0.075 * ((cell % 4) as f64 + 0.5)),
+            around(0.075 * ((cell / 4) as f64 + 0.5)),
+            around(0.04 + 0.07 * layer as f64),
+        ];
+        let diameter = 0.04 + 0.024 * random.next();
+        let axis = Vector3::new(random.next(), random.next(), random.next()) * 4.0;
+        let template = template.scaled(diameter / template.equivalent_diameter());
+        let attitude = UnitQuaternion::from_scaled_axis(axis);
+        bed.add_clump(&Placed { template: &template, centre, attitude, density: 2700.0, surface: 0 });
+    }
+    bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
+    bed.set_gravity(Gravity::EARTH);
+    bed.set_damping(0.7);
+    bed.set_time_step(SETTLING_STEP);
+    bed.run((0.8 / SETTLING_STEP) as u64).ok()?;
+    bed.set_damping(0.2);
+    let top = bed.pebbles().map(|p| p.place[2] + p.radius).fold(0.0, f64::max);
+    Some((bed, top))
+}
+
+/// Pebbles inside an ellipsoid of half axes 1, 0.85 and 0.7: one is a sphere.
+fn pebbles(count: u32) -> Vec<Pebble> {
+    let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
+    let axes = Vector3::new(1.0, 0.85, 0.7);
+    (0..count)
+        .map(|k| {
+            let z = 1.0 - 2.0 * (f64::from(k) + 0.5) / f64::from(count);
+            let (s, angle) = ((1.0 - z * z).sqrt(), golden * f64::from(k));
+            let out = Vector3::new(s * angle.cos(), s * angle.sin(), z);
+            let centre = if count == 1 { Vector3::zeros() } else { axes.component_mul(&out) * 0.4 };
+            // from the centre to the surface of the ellipsoid beyond it
+            Pebble { centre, radius: 0.6 * axes.component_mul(&out).norm() }
+        })
+        .collect()
+}
+
+/// Pseudo-random numbers in 0..1 (xorshift).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
