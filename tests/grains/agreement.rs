@@ -6,7 +6,7 @@ use trackbed::solvers::granular::{Bed, DashpotMode, Domain, Gravity, Laws, Real,
 
 const DT: f64 = 1e-5;
 const DAMPING: f64 = 0.2;
-const GRAVITY: Vec3 = [3.0, -2.0, -9.81];
+const GRAVITY: Vec3 = [1.0, -0.5, -9.81];
 
 fn surfaces() -> Vec<Surface> {
     [(1.3e7, 1.0e7, 0.7, [0.3, 0.1]), (5e6, 5e6, 0.5, [0.2, 0.2]), (4e7, 2e7, 0.2, [0.1, 0.3])]

@@ -4,9 +4,14 @@ mod oracle;
 mod scenes;
 
 mod agreement;
+mod conservation;
+mod determinism;
+mod energy;
 mod frames;
 mod impact;
 mod modes;
+mod moving;
+mod periodic;
 mod sliding;
 mod stability;
 mod statics;

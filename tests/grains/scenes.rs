@@ -109,48 +109,48 @@ pub fn walls(side: f64) -> [(Vec3, Vec3); 5] {
     ]
 }
 
-/// 200 spheres of 28 to 50 mm at rest in a box, packed without friction and settled with it, and the side of the box.
+/// 200 spheres of 28 to 50 mm at rest in a box, and the side of the box.
 pub fn packed() -> (Vec<Sphere>, f64) {
     static PACKED: OnceLock<(Vec<Sphere>, f64)> = OnceLock::new();
     PACKED.get_or_init(pack).clone()
 }
 
+/// Packs without friction and without rolling, under many times its weight, and then lets friction and weight decide.
 fn pack() -> (Vec<Sphere>, f64) {
     let (across, layers, pitch, mut seed) = (5, 8, 0.05, 3);
     let side = pitch * across as f64;
-    let mut bed = open(springs(1e7, 0.0));
     let mut spheres = Vec::new();
     for k in 0..across * across * layers {
         let cell = [k % across, k / across % across, k / (across * across)];
         let lean = 1e-3 * random(&mut seed);
         let centre = [lean, -lean, 2.0 * lean];
         let centre = [0, 1, 2].map(|c| centre[c] + pitch * (0.5 + cell[c] as f64));
-        let radius = 0.0195 + 0.0055 * random(&mut seed);
-        spheres.push(Sphere { centre, radius, ..sphere(centre) });
-        bed.add_sphere(spheres.last().unwrap());
+        spheres.push(Sphere { centre, radius: 0.0195 + 0.0055 * random(&mut seed), ..sphere(centre) });
     }
+    settle(&mut spheres, side, springs(1e7, 0.0), true, &[(100.0, 6000), (10.0, 2000)]);
+    settle(&mut spheres, side, Linear { friction: 0.5, ..springs(1e7, 1e7) }, false, &[(10.0, 2000), (1.0, 8000)]);
+    (spheres, side)
+}
+
+/// Moves spheres to where they come to rest under multiples of their weight, for some steps each.
+fn settle(spheres: &mut [Sphere], side: f64, law: Linear, held: bool, stages: &[(f64, u64)]) {
+    let mut bed = open(law);
     for (point, normal) in walls(side) {
         bed.add_plane(point, normal, 0);
     }
+    for sphere in spheres.iter() {
+        let id = bed.add_sphere(sphere);
+        if held {
+            bed.hold_rotation(id);
+        }
+    }
     bed.set_damping(0.7);
     bed.set_time_step(1.5e-5);
-    alone(|| {
-        for (weights, steps, rough) in [(100.0, 6000, 0.0), (10.0, 3000, 0.5), (1.0, 8000, 0.5)] {
-            bed.change_laws(|law| {
-                if let Law::Linear(law) = law {
-                    (law.friction, law.shear_stiffness) = (rough, 2e7 * rough);
-                }
-            });
-            bed.set_gravity(Gravity::Constant([0.0, 0.0, -weights * GRAVITY]));
-            bed.run(steps).unwrap();
-        }
-    });
-    let mut fast: Vec<_> = bed.states().map(|s| (norm(s.velocity), s.place, s.velocity)).collect();
-    fast.sort_by(|a, b| b.0.total_cmp(&a.0));
-    println!("{:?}", &fast[..6]);
-    println!("packed: {:?}", bed.snapshot().map(|s| (s.contacts.len(), s.translation)));
+    for &(weights, steps) in stages {
+        bed.set_gravity(Gravity::Constant([0.0, 0.0, -weights * GRAVITY]));
+        alone(|| bed.run(steps)).unwrap();
+    }
     for (sphere, state) in spheres.iter_mut().zip(bed.states()) {
         sphere.centre = state.place;
     }
-    (spheres, side)
 }

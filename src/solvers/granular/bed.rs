@@ -270,7 +270,10 @@ impl<R: Real> Bed<R> {
         let clump = &mut self.clumps[body.clump as usize];
         let matrix = rotation::matrix(&clump.attitude);
         let local = rotate_back(&matrix, spin);
-        body.spin = rotate(&matrix, [0, 1, 2].map(|c| local[c] / clump.inverse_inertia[c]));
+        // what keeps its spin has no momentum to speak of
+        let held = clump.inverse_inertia == [0.0; 3];
+        let momentum = [0, 1, 2].map(|c| if held { 0.0 } else { local[c] / clump.inverse_inertia[c] });
+        body.spin = rotate(&matrix, momentum);
         clump.turning = spin;
         for (record, arm) in self.records[range].iter_mut().zip(&self.arms[clump.arms as usize..]) {
             let velocity = add(velocity, cross(spin, rotate(&matrix, *arm)));
@@ -289,6 +292,8 @@ impl<R: Real> Bed<R> {
 
     /// A body that does not turn.
     pub fn hold_rotation(&mut self, id: BodyId) {
+        let velocity = self.body_state(id).velocity;
+        self.set_velocity(id, velocity, [0.0; 3]);
         let body = &mut self.bodies[self.index[id.0 as usize] as usize];
         body.inverse_inertia = 0.0;
         if body.clump != SPHERE {

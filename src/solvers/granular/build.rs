@@ -12,8 +12,8 @@ use super::lanes::{BLOCK, Real};
 use super::motion::Pose;
 use super::record::Record;
 use super::search::{CellTooSmall, Grids, Pair, Seen};
-use super::vector::{Vec3, dot, sub};
-use super::walls::{Kept, Near, WallContacts, moved};
+use super::vector::{Vec3, dot, norm, sub};
+use super::walls::{Kept, Near, Wall, WallContacts, moved};
 use super::watch::Failure;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -39,6 +39,8 @@ pub(super) struct Build {
     pub step: u64,
     /// Lists made.
     pub count: u64,
+    /// How far pebbles are from the origins of planes \[m\]: what a plane that turns sweeps.
+    pub extent: f64,
     /// Where tasks begin, and one more.
     pub tasks: Vec<Task>,
     /// Where pebbles, walls were \[m\].
@@ -108,14 +110,18 @@ impl<R: Real> Bed<R> {
                 dot(sub(now, before), sub(now, before))
             })
             .reduce(|| 0.0, f64::max);
-        let walls = self.walls.iter().zip(&self.build.walls).map(|(w, p)| moved(w, p)).fold(0.0, f64::max);
+        let walls =
+            self.walls.iter().zip(&self.build.walls).map(|(w, p)| moved(w, p, self.build.extent)).fold(0.0, f64::max);
         square.sqrt() + square.sqrt().max(walls)
     }
 
     fn rebuild(&mut self) -> Result<(), CellTooSmall> {
         let carried = self.carried();
         let kept = self.kept();
-        self.rebuild_with(carried, kept)
+        let done = self.rebuild_with(carried, kept);
+        // lists that are not finished must not be used
+        self.build.outdated |= done.is_err();
+        done
     }
 
     /// Histories of all contacts between pebbles.
@@ -438,6 +444,14 @@ impl<R: Real> Bed<R> {
         self.build.reference =
             records.iter().enumerate().map(|(p, r)| sub(r.position(), origin[p / BLOCK]).map(|x| x as f32)).collect();
         self.build.walls = self.walls.iter().map(|w| w.pose).collect();
+        let far = |wall: &Wall| {
+            let pebbles = records.iter().zip(&self.owner);
+            pebbles
+                .map(|(r, &b)| norm(wall.to(&self.domain, self.bodies[b as usize].cell, r.position())))
+                .fold(0.0, f64::max)
+        };
+        let planes = self.walls.iter().filter(|w| w.shape.bounds().is_none());
+        self.build.extent = planes.map(far).fold(0.0, f64::max) + self.build.skin;
     }
 }
 

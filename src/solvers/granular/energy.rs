@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// Energies at the start of the last step \[J\], and what was done and lost since the watch began.
 ///
 /// Work is the trapezoidal rule of force over displacement, as the leapfrog has it; so what remains unaccounted
-/// shrinks with the square of the time step, or with the step itself where dashpots lag.
+/// shrinks with the square of the time step. What moves a fixed body is not in it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Energy {
     /// Kinetic, of translation and of rotation.

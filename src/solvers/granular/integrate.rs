@@ -262,7 +262,10 @@ fn clump_step<R: Real>(
         tally.damping -= dot(lost, rotate(&turned, turning)) * drive.dt;
     }
     clump.centre = add(clump.centre, scale(body.velocity, drive.dt));
-    clump.turning = rotation::turn(&mut clump.attitude, &body.spin, &clump.inverse_inertia, drive.dt);
+    // a clump that keeps its spin turns like a sphere of unit inertia
+    let held = clump.inverse_inertia == [0.0; 3];
+    let (momentum, inverse) = if held { (clump.turning, [1.0; 3]) } else { (body.spin, clump.inverse_inertia) };
+    clump.turning = rotation::turn(&mut clump.attitude, &momentum, &inverse, drive.dt);
     let turned = rotation::matrix(&clump.attitude);
     let mut fastest: f64 = 0.0;
     for (record, arm) in records.iter_mut().zip(arms) {

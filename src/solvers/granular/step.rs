@@ -68,7 +68,8 @@ impl<R: Real> Bed<R> {
             self.ledger.enter(energy, &self.tally, &self.walls, self.dt);
         }
         self.move_walls();
-        self.build.travel += 2.0 * self.tally.fastest.0.sqrt() * self.dt + approach(&self.walls, self.dt);
+        self.build.travel +=
+            2.0 * self.tally.fastest.0.sqrt() * self.dt + approach(&self.walls, self.dt, self.build.extent);
         self.fresh = false;
         self.steps += 1;
         self.time += self.dt;

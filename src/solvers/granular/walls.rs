@@ -68,10 +68,14 @@ impl Wall {
         Pose { position: domain.place(self.cell, self.pose.position.into()).into(), ..self.pose }
     }
 
-    /// Largest speed of a point of the wall within `reach` of its origin, or of its surface where that ends \[m/s\].
-    pub(super) fn fastest(&self) -> f64 {
-        let reach = self.shape.bounds().map_or(0.0, |[low, high]| low.norm().max(high.norm()));
-        self.velocity.norm() + self.spin.norm() * reach
+    /// Largest speed of a point of the wall, of a plane within `extent` \[m\] of its origin \[m/s\].
+    pub(super) fn fastest(&self, extent: f64) -> f64 {
+        self.velocity.norm() + self.spin.norm() * self.reach(extent)
+    }
+
+    /// Distance of its farthest point from its origin, of a plane `extent` \[m\].
+    fn reach(&self, extent: f64) -> f64 {
+        self.shape.bounds().map_or(extent, |[low, high]| low.norm().max(high.norm()))
     }
 
     /// A vector of space in the wall's frame.
@@ -490,13 +494,12 @@ impl<R: Real> Scratch<R> {
 }
 
 /// Length that a pebble may come nearer to a wall in a step \[m\].
-pub(super) fn approach(walls: &[Wall], dt: f64) -> f64 {
-    walls.iter().map(|w| w.fastest() * dt).fold(0.0, f64::max)
+pub(super) fn approach(walls: &[Wall], dt: f64, extent: f64) -> f64 {
+    walls.iter().map(|w| w.fastest(extent) * dt).fold(0.0, f64::max)
 }
 
 /// Distance that a wall has gone since its pose was `before` \[m\].
-pub(super) fn moved(wall: &Wall, before: &Pose) -> f64 {
-    let reach = wall.shape.bounds().map_or(0.0, |[low, high]| low.norm().max(high.norm()));
+pub(super) fn moved(wall: &Wall, before: &Pose, extent: f64) -> f64 {
     let turned = (0..4).map(|k| (wall.pose.orientation[k] - before.orientation[k]).powi(2)).sum::<f64>().sqrt();
-    norm((wall.pose.position - before.position).into()) + 2.0 * turned * reach
+    norm((wall.pose.position - before.position).into()) + 2.0 * turned * wall.reach(extent)
 }
