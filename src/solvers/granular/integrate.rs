@@ -124,7 +124,7 @@ pub(super) fn advance<R: Real>(
 
 /// Force and moment about its centre on a pebble: the first six of eight numbers.
 #[inline(always)]
-fn sum<R: Real>(pebble: usize, (incidence, outcomes): (&Incidence, &[Outcome<R>])) -> (Vec3, Vec3) {
+fn sum<R: Real>(pebble: usize, (incidence, outcomes): (&Incidence, &[Outcome<R>])) -> [f64; 8] {
     let mut sums = [0.0; 8];
     let range = incidence.start[pebble] as usize..incidence.start[pebble + 1] as usize;
     for &entry in &incidence.entries[range] {
@@ -137,7 +137,7 @@ fn sum<R: Real>(pebble: usize, (incidence, outcomes): (&Incidence, &[Outcome<R>]
             sums[k] += factors[k] * outcome[k].to_f64();
         }
     }
-    ([sums[0], sums[1], sums[2]], [sums[3], sums[4], sums[5]])
+    sums
 }
 
 /// Cundall's local damping: each component is smaller where it drives the motion and larger where it brakes.
@@ -155,35 +155,75 @@ impl<R: Real> Work<R> for Share<'_, R> {
 
     #[inline(always)]
     fn run<L: Lanes<Real = R>>(self, _: L) -> Tally {
-        let Share { arms, contacts, drive, .. } = self;
-        let first = self.first_pebble as usize;
+        let Share { arms, contacts, drive, mut bodies, mut records, mut clumps, .. } = self;
+        let (mut place, mut pebble) = (self.at, self.first_pebble as usize);
         let mut tally = Tally::default();
-        let (mut pebble, mut composed) = (0, 0);
-        for (index, body) in self.bodies.iter_mut().enumerate() {
-            let place = self.at + index as u32;
-            let speed = if body.clump == SPHERE {
-                sphere(body, &mut self.records[pebble], sum(first + pebble, contacts), drive, &mut tally)
-            } else {
-                let records = &mut self.records[pebble..pebble + usize::from(body.pebbles)];
-                let clump = &mut self.clumps[composed];
-                composed += 1;
-                clump_step(body, clump, records, arms, (first + pebble, contacts), drive, &mut tally)
-            };
-            if !speed.is_finite() {
-                tally.lost = tally.lost.or(Some(place));
-            } else if speed > tally.fastest.0 {
-                tally.fastest = (speed, place);
-            }
-            pebble += usize::from(body.pebbles);
+        let mut sums = Vec::with_capacity(GROUP);
+        while !bodies.is_empty() {
+            // first the sums of some bodies, then their motion: what follows does not wait for what goes before
+            let count = group(bodies);
+            let (some, rest) = bodies.split_at_mut(count);
+            let pebbles = some.iter().map(|body| usize::from(body.pebbles)).sum();
+            sums.clear();
+            sums.extend((pebble..pebble + pebbles).map(|p| sum(p, contacts)));
+            let (mine, others) = records.split_at_mut(pebbles);
+            let composed = some.iter().filter(|body| body.clump != SPHERE).count();
+            let (here, beyond) = clumps.split_at_mut(composed);
+            move_group::<R>(some, mine, here, (arms, &sums), (place, drive), &mut tally);
+            (bodies, records, clumps) = (rest, others, beyond);
+            (place, pebble) = (place + count as u32, pebble + pebbles);
         }
         tally
     }
 }
 
-/// Adds gravity and damping to the force of a body's contacts and advances its velocity. Gives the mean velocity of
-/// before and after.
+/// Pebbles whose forces are summed before their bodies move.
+const GROUP: usize = 24;
+
+/// Bodies of the next group.
 #[inline(always)]
-fn kick(body: &mut Body, force: Vec3, drive: &Drive, tally: &mut Tally) {
+fn group(bodies: &[Body]) -> usize {
+    let mut pebbles = 0;
+    let fits = |body: &&Body| {
+        pebbles += usize::from(body.pebbles);
+        pebbles <= GROUP
+    };
+    bodies.iter().take_while(fits).count().max(1)
+}
+
+#[inline(always)]
+fn move_group<R: Real>(
+    bodies: &mut [Body],
+    records: &mut [R::Record],
+    clumps: &mut [Clump],
+    (arms, sums): (&[Vec3], &[[f64; 8]]),
+    (first, drive): (u32, &Drive),
+    tally: &mut Tally,
+) {
+    let (mut pebble, mut composed) = (0, 0);
+    for (index, body) in bodies.iter_mut().enumerate() {
+        let range = pebble..pebble + usize::from(body.pebbles);
+        pebble = range.end;
+        let speed = if body.clump == SPHERE {
+            sphere(body, &mut records[range.start], &sums[range.start], drive, tally)
+        } else {
+            let clump = &mut clumps[composed];
+            composed += 1;
+            clump_step::<R>(body, clump, &mut records[range.clone()], arms, &sums[range], drive, tally)
+        };
+        let place = first + index as u32;
+        if !speed.is_finite() {
+            tally.lost = tally.lost.or(Some(place));
+        } else if speed > tally.fastest.0 {
+            tally.fastest = (speed, place);
+        }
+    }
+}
+
+/// The velocity that gravity, damping and the force of its contacts give a body. State is kept in values until all is known:
+/// to read back what was just written costs more than the arithmetic.
+#[inline(always)]
+fn kick(body: &Body, force: Vec3, drive: &Drive, tally: &mut Tally) -> Vec3 {
     let weight = scale(drive.gravity, body.mass);
     let mut acting = add(force, weight);
     let mut lost = [0.0; 3];
@@ -192,40 +232,42 @@ fn kick(body: &mut Body, force: Vec3, drive: &Drive, tally: &mut Tally) {
         acting = add(acting, lost);
     }
     let change = scale(acting, body.inverse_mass);
-    body.velocity = add(body.velocity, scale(change, drive.kick));
+    let velocity = add(body.velocity, scale(change, drive.kick));
     if drive.watched && body.inverse_mass > 0.0 {
-        let mean = sub(body.velocity, scale(change, 0.5 * drive.dt));
+        let mean = sub(velocity, scale(change, 0.5 * drive.dt));
         tally.translation += 0.5 / body.inverse_mass * dot(mean, mean);
         tally.gravity += dot(weight, mean) * drive.dt;
         tally.damping -= dot(lost, mean) * drive.dt;
     }
+    velocity
 }
 
 #[inline(always)]
 fn sphere<R: Real, T: Record<R>>(
     body: &mut Body,
     record: &mut T,
-    (force, moment): (Vec3, Vec3),
+    &[x, y, z, u, v, w, ..]: &[f64; 8],
     drive: &Drive,
     tally: &mut Tally,
 ) -> f64 {
-    kick(body, force, drive, tally);
-    let mut acting = moment;
+    let velocity = kick(body, [x, y, z], drive, tally);
+    let mut acting = [u, v, w];
     let mut lost = [0.0; 3];
     if drive.damping > 0.0 {
         lost = damp(acting, body.spin, body.inverse_inertia, drive);
         acting = add(acting, lost);
     }
     let change = scale(acting, body.inverse_inertia);
-    body.spin = add(body.spin, scale(change, drive.kick));
+    let spin = add(body.spin, scale(change, drive.kick));
     if drive.watched && body.inverse_inertia > 0.0 {
-        let mean = sub(body.spin, scale(change, 0.5 * drive.dt));
+        let mean = sub(spin, scale(change, 0.5 * drive.dt));
         tally.rotation += 0.5 / body.inverse_inertia * dot(mean, mean);
         tally.damping -= dot(lost, mean) * drive.dt;
     }
-    record.place(add(record.position(), scale(body.velocity, drive.dt)));
-    record.move_with(body.velocity.map(R::of), body.spin.map(R::of));
-    dot(body.velocity, body.velocity)
+    record.place(add(record.position(), scale(velocity, drive.dt)));
+    record.move_with(velocity.map(R::of), spin.map(R::of));
+    (body.velocity, body.spin) = (velocity, spin);
+    dot(velocity, velocity)
 }
 
 #[inline(always)]
@@ -234,19 +276,19 @@ fn clump_step<R: Real>(
     clump: &mut Clump,
     records: &mut [R::Record],
     arms: &[Vec3],
-    (first, contacts): (usize, (&Incidence, &[Outcome<R>])),
+    sums: &[[f64; 8]],
     drive: &Drive,
     tally: &mut Tally,
 ) -> f64 {
     let arms = &arms[clump.arms as usize..clump.arms as usize + records.len()];
     let turned = rotation::matrix(&clump.attitude);
     let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
-    for (p, arm) in arms.iter().enumerate() {
-        let (f, m) = sum(first + p, contacts);
-        force = add(force, f);
-        moment = add(moment, add(m, cross(rotate(&turned, *arm), f)));
+    for (arm, &[x, y, z, u, v, w, ..]) in arms.iter().zip(sums) {
+        force = add(force, [x, y, z]);
+        moment = add(moment, add([u, v, w], cross(rotate(&turned, *arm), [x, y, z])));
     }
-    kick(body, force, drive, tally);
+    let velocity = kick(body, force, drive, tally);
+    body.velocity = velocity;
     let mut lost = [0.0; 3];
     if drive.damping > 0.0 {
         // the sign of the spin decides; the acceleration of half a step moves it by little
@@ -261,7 +303,7 @@ fn clump_step<R: Real>(
         tally.rotation += 0.5 * dot(local, turning);
         tally.damping -= dot(lost, rotate(&turned, turning)) * drive.dt;
     }
-    clump.centre = add(clump.centre, scale(body.velocity, drive.dt));
+    clump.centre = add(clump.centre, scale(velocity, drive.dt));
     // a clump that keeps its spin turns like a sphere of unit inertia
     let held = clump.inverse_inertia == [0.0; 3];
     let (momentum, inverse) = if held { (clump.turning, [1.0; 3]) } else { (body.spin, clump.inverse_inertia) };
@@ -270,13 +312,13 @@ fn clump_step<R: Real>(
     let mut fastest: f64 = 0.0;
     for (record, arm) in records.iter_mut().zip(arms) {
         let arm = rotate(&turned, *arm);
-        let velocity = add(body.velocity, cross(clump.turning, arm));
+        let velocity = add(velocity, cross(clump.turning, arm));
         record.place(add(clump.centre, arm));
         record.move_with(velocity.map(R::of), clump.turning.map(R::of));
         fastest = fastest.max(dot(velocity, velocity));
     }
     // a maximum forgets what is no number
-    if dot(body.velocity, body.velocity).is_finite() { fastest } else { f64::NAN }
+    if dot(velocity, velocity).is_finite() { fastest } else { f64::NAN }
 }
 
 #[inline(always)]

@@ -132,7 +132,7 @@ impl<R: Real> Bed<R> {
         self.build.outdated = true;
         let made = self.refresh();
         self.build.fixed_skin = fixed;
-        Ok(made?)
+        made
     }
 
     fn pair(&self, place: usize, gap: f64) -> Option<Link> {
