@@ -54,6 +54,7 @@ pub struct Bed<R: Real = f32> {
     /// Whether velocities are still those of the start, not of a half step.
     pub(super) fresh: bool,
     pub(super) limits: super::watch::Limits,
+    pub(super) watch: super::watch::Watch,
     pub(super) timings: Timings,
 }
 
@@ -134,6 +135,7 @@ impl<R: Real> Bed<R> {
             steps: 0,
             fresh: true,
             limits: super::watch::Limits::default(),
+            watch: super::watch::Watch::default(),
             timings: Timings::default(),
         }
     }

@@ -13,7 +13,7 @@ const STIFFNESS: f64 = 1.3e7;
 /// Overlap that moves no digit of a limit.
 const TOUCH: f64 = 1e-11;
 
-fn law(shear: f64, ratios: [f64; 2]) -> Law {
+pub(in super::super) fn law(shear: f64, ratios: [f64; 2]) -> Law {
     Law::Linear(Linear {
         normal_stiffness: STIFFNESS,
         shear_stiffness: shear * STIFFNESS,
@@ -91,6 +91,24 @@ fn a_sphere_between_two_walls() {
     let step = found(&mut between_walls(law(1.0, [0.0, 0.3])));
     let xi = 0.3 * 5f64.sqrt();
     near(&step, 2.0 / (5.0 * STIFFNESS / m).sqrt() * ((1.0 + xi * xi).sqrt() - xi));
+}
+
+#[test]
+fn local_damping_shortens_the_step() {
+    for share in [0.2, 0.5, 0.7] {
+        let mut bed = between_walls(law(0.1, [0.0; 2]));
+        bed.set_damping(share);
+        let limit = 2.0 / (2.0 * STIFFNESS / mass(RADIUS)).sqrt() / (1.0 + share).sqrt();
+        near(&found(&mut bed), limit);
+        let speed = |part: f64| {
+            let mut bed = bed.clone();
+            bed.set_time_step(part * limit);
+            bed.set_velocity(BodyId(0), [1e-12, 0.0, 0.0], [0.0; 3]);
+            bed.run(60).unwrap();
+            bed.body_state(BodyId(0)).velocity[0].abs()
+        };
+        assert!(speed(0.98) < 1e-12 && speed(1.02) > 1e-11, "{share}: {:e} {:e}", speed(0.98), speed(1.02));
+    }
 }
 
 #[test]

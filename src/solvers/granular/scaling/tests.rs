@@ -114,7 +114,7 @@ fn a_scaled_bed_is_stable_at_the_target_and_weighs_the_same() {
     assert!(bed.critical_step(1e-5).unwrap().network.step >= target);
     // forces at rest stay as they are
     bed.set_time_step(target);
-    bed.run(5000).unwrap();
+    bed.run(10_000).unwrap();
     assert!((bed.wall(floor).felt().force.z / -weight(&bed) - 1.0).abs() < 1e-3, "{}", bed.wall(floor).felt().force.z);
     let after = bed.snapshot().unwrap().contacts;
     let load =
