@@ -112,8 +112,8 @@ pub fn bound(links: &[Link], roots: &[Roots], around: &Around) -> (f64, Option<u
     let own = own(links, roots, around);
     let worst = |chunk: usize| {
         let mut worst = (f64::INFINITY, None);
-        for body in chunk * CHUNK..((chunk + 1) * CHUNK).min(roots.len()) {
-            let pencil = pencil(body, &roots[body], around.pick(body, links), Weight::Shared(&own));
+        for (body, root) in roots.iter().enumerate().skip(chunk * CHUNK).take(CHUNK) {
+            let pencil = pencil(body, root, around.pick(body, links), Weight::Shared(&own));
             if worst.1.is_none() || !pencil.allows(worst.0) {
                 let limit = pencil.limit();
                 if limit < worst.0 {
