@@ -26,6 +26,9 @@ struct Packing {
     bed: Bed<f64>,
 }
 
+/// What a line shows of a column.
+type Value = fn(&Column) -> f64;
+
 /// One column: what is known, and what the runs did.
 struct Column {
     ratio: f64,
@@ -321,7 +324,7 @@ fn svg(map: &[(Packing, Vec<Column>)]) -> String {
                 &format!("{share}"),
             );
         }
-        let of: [(&str, fn(&Column) -> f64); 4] =
+        let of: [(&str, Value); 4] =
             [("bound", |c| c.bound), ("pfc", |c| c.pfc), ("network", |c| c.network), ("theory", |c| c.theory)];
         for (class, value) in of {
             let mut path = String::new();

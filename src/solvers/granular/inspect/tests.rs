@@ -76,7 +76,8 @@ fn bodies_in_walls_are_found() {
         let mesh = Mesh::new(vertices, inward, MeshKind::Container).unwrap();
         bed.add_wall(Shape::Mesh(mesh), Pose::default(), 1, Motion::Fixed)
     };
-    let walls: [&dyn Fn(&mut Bed<f64>) -> WallId; 3] = [
+    type Put<'a> = &'a dyn Fn(&mut Bed<f64>) -> WallId;
+    let walls: [Put; 3] = [
         &|bed| bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 1),
         &|bed| bed.add_wall(Shape::block(Vector3::repeat(0.5)).unwrap(), at(0.5, 0.5, -0.5), 1, Motion::Fixed),
         &container,

@@ -173,7 +173,7 @@ impl<R: Real> Bed<R> {
             }
         }
         let every = self.limits.every.max(2);
-        if self.steps % every == 0 {
+        if self.steps.is_multiple_of(every) {
             let (share, pebble) = self.deepest();
             if share > self.limits.overlap {
                 return Err(Failure::Overlap { culprit: self.culprit(self.owner[pebble as usize]), share });
@@ -187,7 +187,7 @@ impl<R: Real> Bed<R> {
             self.look_for_growth()?;
         }
         let looks = self.steps / every;
-        if self.steps == 1 || self.steps % every == 0 && (looks < 3 || looks % ESTIMATES == 0) {
+        if self.steps == 1 || self.steps.is_multiple_of(every) && (looks < 3 || looks.is_multiple_of(ESTIMATES)) {
             self.remember_good();
         }
         Ok(())
@@ -207,7 +207,7 @@ impl<R: Real> Bed<R> {
             return Ok(());
         };
         self.watch.suspected += 1;
-        if self.watch.suspected % PATIENCE != 0 {
+        if !self.watch.suspected.is_multiple_of(PATIENCE) {
             return Ok(());
         }
         let id = BodyId(self.bodies[suspect.place as usize].id);
@@ -304,7 +304,9 @@ impl<R: Real> Bed<R> {
 
     fn remember_good(&mut self) {
         let Good { cells, pebbles, clumps, gap } = &mut self.watch.good;
-        (cells.clear(), pebbles.clear(), clumps.clear());
+        cells.clear();
+        pebbles.clear();
+        clumps.clear();
         *gap = 2.0 * self.tally.fastest.0.sqrt() * self.dt;
         for &place in &self.index {
             let body = &self.bodies[place as usize];
