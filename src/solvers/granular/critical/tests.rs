@@ -1,3 +1,5 @@
+//! Limits against closed forms, and against runs that grow or do not.
+
 use super::*;
 use crate::solvers::granular::clump::{Pebble, Template};
 use crate::solvers::granular::{
@@ -260,7 +262,6 @@ fn a_bed_is_stable_below_the_limit_of_its_network_and_grows_above() {
     for (shear, ratios) in [(1.0, [0.0; 2]), (1.0, [0.3, 0.0]), (0.5, [0.2, 0.4])] {
         let start = pressed(7, law(shear, ratios));
         let step = start.clone().critical_step(0.0).unwrap();
-        println!("{shear} {ratios:?}: {step:?}");
         assert!(step.bound.step < step.network.step && step.residual < 3e-3);
         let grown = |share: f64| {
             let mut bed = start.clone();
@@ -283,7 +284,6 @@ fn a_bed_is_stable_below_the_limit_of_its_network_and_grows_above() {
             let mid = 0.5 * (low + high);
             if grown(mid) > 10.0 { high = mid } else { low = mid }
         }
-        println!("boundary between {low} and {high}");
         assert!(low > 0.99 && high < 1.02, "{low} {high}");
     }
 }

@@ -1,3 +1,5 @@
+//! Every mistake that is looked for, made once.
+
 use super::{Finding, Other};
 use crate::solvers::granular::shape::{Mesh, MeshKind, Shape};
 use crate::solvers::granular::{

@@ -1,3 +1,5 @@
+//! What mass scaling changes, and what it must not.
+
 use crate::solvers::granular::clump::{Pebble, Template};
 use crate::solvers::granular::{
     Bed, BodyId, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Law, Laws, Linear, Placed, Sphere,
@@ -109,7 +111,6 @@ fn a_scaled_bed_is_stable_at_the_target_and_weighs_the_same() {
     let forces = bed.snapshot().unwrap().contacts;
     let target = 1.4 * step.network.step;
     let scaling = bed.scale_masses(target, 1e-5).unwrap();
-    println!("{step:?}\n{scaling:?}");
     assert!(scaling.bodies > 0 && scaling.bodies < bed.len() && scaling.limit >= target);
     assert!(bed.critical_step(1e-5).unwrap().network.step >= target);
     // forces at rest stay as they are

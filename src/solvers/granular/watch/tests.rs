@@ -1,3 +1,5 @@
+//! Runs that must stop, and runs that must not.
+
 use crate::solvers::granular::critical::tests::{law, pressed};
 use crate::solvers::granular::{Bed, Domain, Failure, Gravity, Law, Laws, Limits, Real, Sphere};
 
@@ -49,7 +51,6 @@ fn steps_above_the_limit_stop_with_the_body_and_what_is_stable() {
             let mut bed = start.clone();
             bed.set_time_step(share * limit);
             let failure = bed.run(4000).unwrap_err();
-            println!("{ratios:?} {share}: {failure}");
             let (Failure::Growth(culprit)
             | Failure::Stride { culprit, .. }
             | Failure::Overlap { culprit, .. }
@@ -73,7 +74,6 @@ fn a_bed_that_boils_is_stopped_in_single_precision_under_gravity() {
         let mut bed = bed.clone();
         bed.set_time_step(share * limit);
         let failure = bed.run(5000).unwrap_err();
-        println!("{share}: {failure} after {} steps", bed.steps() - 70_000);
         assert!(matches!(failure, Failure::Growth(_)), "{failure}");
         // unless it is told to go on
         bed.set_limits(Limits { growth: false, ..Limits::default() });
