@@ -265,7 +265,7 @@ fn svg(map: &[(Packing, Vec<Column>)]) -> String {
         ("network", "limit of the network", 180.0),
         ("theory", "theory for N equal contacts: (2/w) (sqrt(1 + xi²) - xi), xi = beta sqrt(N)", 480.0),
         ("bound", "bound by single bodies", 190.0),
-        ("pfc", "PFC's rule, 0.8 of it; none below 0.5", 160.0),
+        ("pfc", "PFC's rule, 0.8 of it", 160.0),
     ];
     for (class, name, room) in lines {
         let _ = write!(s, "<path class=\"{class}\" d=\"M{x} {} h26\"/>", y + 7.0);
