@@ -16,6 +16,9 @@ struct Panel {
     logarithmic: bool,
 }
 
+/// Class of a line's marks, and what it shows.
+type Series = (&'static str, fn(&Row) -> f64);
+
 const PANELS: [Panel; 5] = [
     Panel { chart: "step", title: "Time step", axis: "step over the limit of the contact network", logarithmic: false },
     Panel {
@@ -124,8 +127,7 @@ fn draw_panel(svg: &mut String, panel: &Panel, rows: &[&Row], (left, top): (f64,
         top + height + 34.0,
         panel.axis
     );
-    let series: [(&str, fn(&Row) -> f64); 3] =
-        [("r", |r| r.residual), ("k", |r| r.stiffness_error), ("s", |r| r.settlement_error)];
+    let series: [Series; 3] = [("r", |r| r.residual), ("k", |r| r.stiffness_error), ("s", |r| r.settlement_error)];
     for (class, value) in series {
         let open = |row: &Row| row.name.starts_with("f64");
         for double in [false, true] {

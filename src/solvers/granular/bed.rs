@@ -58,6 +58,7 @@ pub struct Bed<R: Real = f32> {
     /// Whether something was added or set that nobody has checked.
     pub(super) unchecked: bool,
     pub(super) limits: super::watch::Limits,
+    pub(super) watch: super::watch::Watch,
     pub(super) timings: Timings,
 }
 
@@ -139,6 +140,7 @@ impl<R: Real> Bed<R> {
             fresh: true,
             unchecked: true,
             limits: super::watch::Limits::default(),
+            watch: super::watch::Watch::default(),
             timings: Timings::default(),
         }
     }

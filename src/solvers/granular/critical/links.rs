@@ -93,32 +93,51 @@ impl<R: Real> Bed<R> {
     /// Contacts of pairs up to `gap` \[m\] apart now, in the order of the lists.
     pub(in super::super) fn links(&mut self, gap: f64) -> Result<Vec<Link>, Failure> {
         self.reach(gap)?;
+        let mut links: Vec<Link> = (0..self.contacts.len()).filter_map(|place| self.pair(place, gap)).collect();
+        (0..self.wall_contacts.entries.len()).for_each(|entry| self.walled(entry, gap, &mut links));
+        Ok(links)
+    }
+
+    /// Those of one body, as far as they are listed.
+    pub(in super::super) fn links_of(&self, body: u32, gap: f64) -> Vec<Link> {
         let mut links = Vec::new();
-        for place in 0..self.contacts.len() {
-            links.extend(self.pair(place, gap));
-        }
-        let mut touches = Vec::new();
-        for entry in &self.wall_contacts.entries {
-            let wall = &self.walls[entry.wall as usize];
-            let record = &self.records[entry.pebble as usize];
-            let body = self.owner[entry.pebble as usize];
-            let away = wall.to(&self.domain, self.bodies[body as usize].cell, record.position());
-            let facets = &self.wall_contacts.facets[entry.facets.0 as usize..entry.facets.1 as usize];
-            wall.shape.touches(&wall.turned_back(away), record.radius() + gap, facets, &mut touches);
-            let (mass, law) = (record.mass().to_f64(), &self.laws.all()[usize::from(entry.law)]);
-            for touch in &touches {
-                let normal: Vec3 = wall.pose.direction_to_space(&touch.normal).into();
-                let overlap = record.radius() - touch.distance;
-                links.push(Link {
-                    bodies: [body, GROUND],
-                    normal,
-                    arms: [self.arm(entry.pebble, scale(normal, -(record.radius() - 0.5 * overlap))), [0.0; 3]],
-                    tangent: Tangent::of(law, overlap, mass, record.radius()),
-                    mass,
-                });
+        let body = &self.bodies[body as usize];
+        for pebble in body.first as usize..body.first as usize + usize::from(body.pebbles) {
+            let range = self.incidence.start[pebble] as usize..self.incidence.start[pebble + 1] as usize;
+            let mut last = None;
+            for place in self.incidence.entries[range].iter().map(|entry| (entry >> 1) as usize) {
+                let Some(slot) = place.checked_sub(self.contacts.len()) else {
+                    links.extend(self.pair(place, gap));
+                    continue;
+                };
+                // an entry has room for several contacts
+                let entry = self.wall_contacts.entries.partition_point(|e| e.slots.1 as usize <= slot);
+                if last.replace(entry) != Some(entry) {
+                    self.walled(entry, gap, &mut links);
+                }
             }
         }
-        Ok(links)
+        links
+    }
+
+    /// Contacts of a pebble with a wall.
+    fn walled(&self, entry: usize, gap: f64, links: &mut Vec<Link>) {
+        let entry = &self.wall_contacts.entries[entry];
+        let wall = &self.walls[entry.wall as usize];
+        let record = &self.records[entry.pebble as usize];
+        let body = self.owner[entry.pebble as usize];
+        let away = wall.to(&self.domain, self.bodies[body as usize].cell, record.position());
+        let facets = &self.wall_contacts.facets[entry.facets.0 as usize..entry.facets.1 as usize];
+        let mut touches = Vec::new();
+        wall.shape.touches(&wall.turned_back(away), record.radius() + gap, facets, &mut touches);
+        let (mass, law) = (record.mass().to_f64(), &self.laws.all()[usize::from(entry.law)]);
+        links.extend(touches.iter().map(|touch| {
+            let normal: Vec3 = wall.pose.direction_to_space(&touch.normal).into();
+            let overlap = record.radius() - touch.distance;
+            let arm = self.arm(entry.pebble, scale(normal, -(record.radius() - 0.5 * overlap)));
+            let tangent = Tangent::of(law, overlap, mass, record.radius());
+            Link { bodies: [body, GROUND], normal, arms: [arm, [0.0; 3]], tangent, mass }
+        }));
     }
 
     /// Makes lists that hold all pairs up to `gap` apart.
@@ -174,9 +193,13 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    /// Roots of the inverse inertia of all bodies.
+    /// Roots of the inverse inertia of all bodies, as local damping leaves it.
     pub(in super::super) fn roots(&self) -> Vec<Roots> {
-        let rotation = |body: &Body| match body.clump {
+        self.bodies.iter().map(|body| self.root(body)).collect()
+    }
+
+    pub(in super::super) fn root(&self, body: &Body) -> Roots {
+        let rotation = match body.clump {
             SPHERE => Matrix3::from_diagonal_element(body.inverse_inertia.sqrt()),
             clump => {
                 let clump = &self.clumps[clump as usize];
@@ -185,6 +208,6 @@ impl<R: Real> Bed<R> {
                 axes * Matrix3::from_diagonal(&roots) * axes.transpose()
             }
         };
-        self.bodies.iter().map(|b| Roots { translation: b.inverse_mass.sqrt(), rotation: rotation(b) }).collect()
+        Roots { translation: body.inverse_mass.sqrt(), rotation }.heavier(1.0 / (1.0 + self.damping))
     }
 }

@@ -39,6 +39,11 @@ impl Around {
     pub fn of(&self, body: usize) -> &[u32] {
         &self.links[self.start[body] as usize..self.start[body + 1] as usize]
     }
+
+    /// The links of a body among all.
+    pub fn pick<'a>(&'a self, body: usize, links: &'a [Link]) -> impl Iterator<Item = &'a Link> {
+        self.of(body).iter().map(|&number| &links[number as usize])
+    }
 }
 
 /// How often a contact between bodies counts for each of them.
@@ -61,12 +66,10 @@ impl Weight<'_> {
     }
 }
 
-/// Stiffness and dashpots of a body whose neighbours are held.
-pub fn pencil(body: usize, links: &[Link], roots: &[Roots], around: &Around, weight: Weight) -> Pencil {
+/// Stiffness and dashpots of a body whose neighbours are held; `links` are all of its own.
+pub fn pencil<'a>(body: usize, root: &Roots, links: impl IntoIterator<Item = &'a Link>, weight: Weight) -> Pencil {
     let mut sum = Pencil::zero();
-    let root = &roots[body];
-    for &number in around.of(body) {
-        let link = &links[number as usize];
+    for link in links {
         // a body may touch its own image in a small period
         for (end, _) in link.ends().filter(|&(_, b)| b as usize == body) {
             let share = weight.of(body, link.bodies[1 - end]);
@@ -93,7 +96,7 @@ pub fn pencil(body: usize, links: &[Link], roots: &[Roots], around: &Around, wei
 /// How stiff every body is by its own contacts, over its inertia: a scale, by the traces at one step for all.
 pub fn own(links: &[Link], roots: &[Roots], around: &Around) -> Vec<f64> {
     let traces = |body| {
-        let pencil = pencil(body, links, roots, around, Weight::Even(1.0));
+        let pencil = pencil(body, &roots[body], around.pick(body, links), Weight::Even(1.0));
         (pencil.stiffness.trace(), pencil.dashpots.trace())
     };
     let all: Vec<_> = (0..roots.len()).into_par_iter().with_min_len(CHUNK).map(traces).collect();
@@ -109,8 +112,8 @@ pub fn bound(links: &[Link], roots: &[Roots], around: &Around) -> (f64, Option<u
     let own = own(links, roots, around);
     let worst = |chunk: usize| {
         let mut worst = (f64::INFINITY, None);
-        for body in chunk * CHUNK..((chunk + 1) * CHUNK).min(roots.len()) {
-            let pencil = pencil(body, links, roots, around, Weight::Shared(&own));
+        for (body, root) in roots.iter().enumerate().skip(chunk * CHUNK).take(CHUNK) {
+            let pencil = pencil(body, root, around.pick(body, links), Weight::Shared(&own));
             if worst.1.is_none() || !pencil.allows(worst.0) {
                 let limit = pencil.limit();
                 if limit < worst.0 {
@@ -128,8 +131,7 @@ pub fn estimate(links: &[Link], roots: &[Roots], around: &Around) -> (f64, Optio
     let of = |body: usize| {
         let root = &roots[body];
         let mut stiffness = SVector::<f64, 6>::zeros();
-        for &number in around.of(body) {
-            let link = &links[number as usize];
+        for link in around.pick(body, links) {
             let t = &link.tangent;
             let [along, across] = [(t.normal, t.normal_dashpot), (t.shear, t.shear_dashpot)].map(|(k, c)| {
                 if k == 0.0 {

@@ -11,6 +11,9 @@
 //! definite, and at the limit a mode turns round in every step (z = -1). For one oscillator of frequency w and damping ratio
 //! xi this is dt < (2/w) (sqrt(1 + xi^2) - xi).
 //!
+//! Local damping makes a force larger by its share while it brakes a body, and in that mode it brakes all the time: the limit is
+//! that of inertia less by the factor 1 + alpha, (2/w) / sqrt(1 + alpha) for one oscillator.
+//!
 //! K and C are those of the contacts as they are: springs and dashpots at full stiffness whether they slip or not, arms of
 //! clumps, inertia with what mass scaling added, walls and fixed bodies at rest. Left out is how forces turn with their
 //! contacts, a share of about overlap over radius.
@@ -20,7 +23,7 @@ mod links;
 mod local;
 mod network;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 pub(super) use local::{Around, Weight, bound, pencil};
 pub(super) use network::Network;
@@ -88,7 +91,8 @@ impl<R: Real> Bed<R> {
         let network = Network::new(&links, &roots).limit(&around, bound.0, TOLERANCE);
         let limit = |(step, body): (f64, Option<u32>)| Limit { step, seat: body.map(|b| self.seat(b, &around)) };
         Ok(CriticalStep {
-            estimate: limit(estimate),
+            // local damping is no part of PFC's rule
+            estimate: limit((estimate.0 * (1.0 + self.damping).sqrt(), estimate.1)),
             bound: limit(bound),
             network: limit((network.step, network.body)),
             residual: network.residual,
@@ -133,7 +137,8 @@ impl<R: Real> Bed<R> {
                 count(entry.pebble, &Tangent::of(law, slot.overlap, record.mass().to_f64(), record.radius()), 1.0);
             }
         }
-        sums.iter().map(|&[a, b]| limit::step(a, b)).fold(f64::INFINITY, f64::min)
+        let braked = 1.0 + self.damping;
+        sums.iter().map(|&[a, b]| limit::step(braked * a, braked * b)).fold(f64::INFINITY, f64::min)
     }
 
     /// Most that a unit force at a pebble's surface moves it, along and across \[1/kg\].

@@ -1,3 +1,5 @@
+//! Limits against closed forms, and against runs that grow or do not.
+
 use super::*;
 use crate::solvers::granular::clump::{Pebble, Template};
 use crate::solvers::granular::{
@@ -13,7 +15,7 @@ const STIFFNESS: f64 = 1.3e7;
 /// Overlap that moves no digit of a limit.
 const TOUCH: f64 = 1e-11;
 
-fn law(shear: f64, ratios: [f64; 2]) -> Law {
+pub(in super::super) fn law(shear: f64, ratios: [f64; 2]) -> Law {
     Law::Linear(Linear {
         normal_stiffness: STIFFNESS,
         shear_stiffness: shear * STIFFNESS,
@@ -91,6 +93,24 @@ fn a_sphere_between_two_walls() {
     let step = found(&mut between_walls(law(1.0, [0.0, 0.3])));
     let xi = 0.3 * 5f64.sqrt();
     near(&step, 2.0 / (5.0 * STIFFNESS / m).sqrt() * ((1.0 + xi * xi).sqrt() - xi));
+}
+
+#[test]
+fn local_damping_shortens_the_step() {
+    for share in [0.2, 0.5, 0.7] {
+        let mut bed = between_walls(law(0.1, [0.0; 2]));
+        bed.set_damping(share);
+        let limit = 2.0 / (2.0 * STIFFNESS / mass(RADIUS)).sqrt() / (1.0 + share).sqrt();
+        near(&found(&mut bed), limit);
+        let speed = |part: f64| {
+            let mut bed = bed.clone();
+            bed.set_time_step(part * limit);
+            bed.set_velocity(BodyId(0), [1e-12, 0.0, 0.0], [0.0; 3]);
+            bed.run(60).unwrap();
+            bed.body_state(BodyId(0)).velocity[0].abs()
+        };
+        assert!(speed(0.98) < 1e-12 && speed(1.02) > 1e-11, "{share}: {:e} {:e}", speed(0.98), speed(1.02));
+    }
 }
 
 #[test]
@@ -242,7 +262,6 @@ fn a_bed_is_stable_below_the_limit_of_its_network_and_grows_above() {
     for (shear, ratios) in [(1.0, [0.0; 2]), (1.0, [0.3, 0.0]), (0.5, [0.2, 0.4])] {
         let start = pressed(7, law(shear, ratios));
         let step = start.clone().critical_step(0.0).unwrap();
-        println!("{shear} {ratios:?}: {step:?}");
         assert!(step.bound.step < step.network.step && step.residual < 3e-3);
         let grown = |share: f64| {
             let mut bed = start.clone();
@@ -265,7 +284,31 @@ fn a_bed_is_stable_below_the_limit_of_its_network_and_grows_above() {
             let mid = 0.5 * (low + high);
             if grown(mid) > 10.0 { high = mid } else { low = mid }
         }
-        println!("boundary between {low} and {high}");
         assert!(low > 0.99 && high < 1.02, "{low} {high}");
+    }
+}
+
+/// A simple cubic lattice that does not turn, pressed a little: six equal contacts, xi = beta sqrt(6).
+#[test]
+fn a_lattice_grows_where_the_theory_says() {
+    for ratio in [0.0, 0.3, 1.0] {
+        let spacing = 2.0 * RADIUS * 0.999;
+        let domain = (0..3).fold(Domain::open(), |d, axis| d.periodic(axis, 4.0 * spacing));
+        let mut bed = Bed::<f64>::new(domain, Laws::uniform(1, law(1.0, [ratio; 2])));
+        bed.change_laws(|law| friction(law, 1e9));
+        for k in 0..64 {
+            let id = bed.add_sphere(&sphere([k % 4, k / 4 % 4, k / 16].map(|i| f64::from(i) * spacing), RADIUS));
+            bed.hold_rotation(id);
+            bed.set_velocity(id, [1e-9 * f64::from(k * 7 % 5) - 2e-9, 1e-9, -1e-9], [0.0; 3]);
+        }
+        let xi = ratio * 6f64.sqrt();
+        let theory = 2.0 / (12.0 * STIFFNESS / mass(RADIUS)).sqrt() * ((1.0 + xi * xi).sqrt() - xi);
+        near(&found(&mut bed), theory);
+        let peak = |share: f64| {
+            let mut bed = bed.clone();
+            bed.set_time_step(share * theory);
+            bed.run(1000).map_or(f64::INFINITY, |()| kinetic(&bed))
+        };
+        assert!(peak(0.98) < 1e-14 && peak(1.02) > 1e-10, "{ratio}: {:e} {:e}", peak(0.98), peak(1.02));
     }
 }

@@ -59,7 +59,9 @@ impl<R: Real> Bed<R> {
         let factors = |share: f64| -> Vec<f64> {
             // a little more, so that the network's limit is not missed by its tolerance
             let step = target * (1.0 + TOLERANCE);
-            let of = |body| pencil(body, &links, &roots, &around, Weight::Even(share)).inertia_factor(step).max(1.0);
+            let of = |body| {
+                pencil(body, &roots[body], around.pick(body, &links), Weight::Even(share)).inertia_factor(step).max(1.0)
+            };
             (0..roots.len()).map(of).collect()
         };
         let limit = |factors: &[f64]| {

@@ -1,0 +1,366 @@
+//! What a healthy run never does, and what is said when one does.
+//!
+//! Too long a step makes a body and its neighbours turn round in every step, and what they gain between two looks they lose
+//! as contacts open: such a bed need not fly apart, it boils. So every now and then the bodies are seen in two steps, one
+//! after the other. The one that turns round with the most energy is the suspect; whether its contacts, and those that it
+//! reaches in a step, allow the step is a matter of six numbers (see `critical`), and only if they do not, look after look,
+//! the whole network is asked. So nothing but a step above the limit ends a run as growth.
+
+use super::bed::Bed;
+use super::body::{BodyId, SPHERE};
+use super::critical::{Around, Network, Weight, bound, pencil};
+use super::fault::Fault;
+use super::lanes::Real;
+use super::record::Record;
+use super::vector::{Vec3, dot, norm};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Looks in a row at which a body is suspected before the network is asked, and asked again.
+const PATIENCE: u32 = 8;
+/// Times that the network must say no.
+const TIMES: u32 = 2;
+/// A network that was found stable is asked again when a body turns round with this many times the energy.
+const RISE: f64 = 16.0;
+/// Looks between estimates of what is stable, after the first few.
+const ESTIMATES: u64 = 16;
+/// Relative tolerance of the network's limit.
+const TOLERANCE: f64 = 5e-3;
+
+/// Bounds that stop a run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Limits {
+    /// Overlap over the smaller radius.
+    pub overlap: f64,
+    /// Way of a pebble in one step over its radius.
+    pub stride: f64,
+    /// Steps between looks at overlaps and at bodies that turn round.
+    pub every: u64,
+    /// Whether a run stops where its step is above the limit of its contacts and a body turns round in every step.
+    pub growth: bool,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Limits { overlap: 0.2, stride: 0.1, every: 64, growth: true }
+    }
+}
+
+/// Why a run cannot go on.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Failure {
+    /// No time step has been set.
+    NoTimeStep,
+    /// Something in the bed cannot be; nothing was moved.
+    Fault(Fault),
+    /// The state of a body is no number any more.
+    Lost(Culprit),
+    /// A body goes too far in a step.
+    Stride { culprit: Culprit, share: f64 },
+    /// Two bodies are too deep in each other.
+    Overlap { culprit: Culprit, share: f64 },
+    /// A body turns round in every step, and the step is above the limit of the contacts.
+    Growth(Culprit),
+    /// Neighbours more than one cell apart: a period or a bay is too short for its bodies.
+    CellTooSmall,
+}
+
+/// The body at which a failure showed, and what would have been stable.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Culprit {
+    pub body: BodyId,
+    /// \[m\]
+    pub place: [f64; 3],
+    pub step: u64,
+    pub time: f64,
+    pub dt: f64,
+    /// A stable time step \[s\]: the limit of the network of contacts now where growth was found, else when all was well.
+    pub stable_dt: f64,
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Failure::NoTimeStep => write!(f, "no time step has been set; the limit of the contacts times 0.9 is one"),
+            Failure::Fault(fault) => fault.fmt(f),
+            Failure::CellTooSmall => {
+                write!(f, "a period or bay is shorter than its bodies reach; make it longer than twice the largest")
+            }
+            Failure::Lost(c) => write!(f, "the motion of {c} is no number any more{}", c.advice()),
+            Failure::Stride { culprit, share } => {
+                write!(f, "{culprit} moves by {share:.2} of its radius in one step{}", culprit.advice())
+            }
+            Failure::Overlap { culprit, share } => {
+                write!(f, "{culprit} is {share:.2} of the smaller radius deep in its neighbour{}", culprit.advice())
+            }
+            Failure::Growth(c) => write!(f, "{c} turns round in every step{}", c.advice()),
+        }
+    }
+}
+
+impl std::error::Error for Failure {}
+
+impl fmt::Display for Culprit {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let [x, y, z] = self.place;
+        write!(f, "body {} at ({x:.4}, {y:.4}, {z:.4}) m, step {}, {:.4e} s", self.body.0, self.step, self.time)
+    }
+}
+
+impl Culprit {
+    fn advice(&self) -> String {
+        let (dt, stable) = (self.dt, self.stable_dt);
+        if dt > stable {
+            format!(
+                ": the step of {dt:.3e} s is above the stable {stable:.3e} s of its contacts; take 0.9 of that, or scale masses"
+            )
+        } else {
+            format!(
+                ": the step of {dt:.3e} s is stable, so it was pushed too hard or set in too deep; start with less overlap, or push more slowly"
+            )
+        }
+    }
+}
+
+/// What is kept between looks.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Watch {
+    /// The bed when all was still well.
+    good: Good,
+    /// Velocity and spin of every body one step ago, and which lists they belong to.
+    before: Vec<[f32; 6]>,
+    lists: u64,
+    /// Looks in a row with a suspect.
+    suspected: u32,
+    /// Up to which energy of turning \[J\] and for which step the network is known to be stable.
+    cleared: (f64, f64),
+}
+
+/// Where everything was, in the order of making.
+#[derive(Debug, Clone, Default)]
+struct Good {
+    cells: Vec<[i32; 3]>,
+    /// Offsets of pebbles \[m\].
+    pebbles: Vec<Vec3>,
+    clumps: Vec<(Vec3, [f64; 4])>,
+    /// Gap up to which contacts open and close \[m\].
+    gap: f64,
+}
+
+/// A body that turned round in the last step.
+#[derive(Debug, Clone, Copy)]
+struct Suspect {
+    place: u32,
+    /// \[J\]
+    energy: f64,
+    /// Way of its surface in a step \[m\].
+    stride: f64,
+}
+
+impl<R: Real> Bed<R> {
+    /// Changes the bounds that stop a run.
+    pub fn set_limits(&mut self, limits: Limits) {
+        self.limits = limits;
+        self.unchecked = true;
+    }
+
+    /// Looks at what the last step did.
+    pub(super) fn look(&mut self) -> Result<(), Failure> {
+        if let Some(place) = self.tally.lost {
+            return Err(Failure::Lost(self.culprit(place)));
+        }
+        let (square, place) = self.tally.fastest;
+        let stride = square.sqrt() * self.dt;
+        if stride > 0.0 {
+            let share = stride / self.records[self.bodies[place as usize].first as usize].radius();
+            if share > self.limits.stride {
+                return Err(Failure::Stride { culprit: self.culprit(place), share });
+            }
+        }
+        let every = self.limits.every.max(2);
+        if self.steps.is_multiple_of(every) {
+            let (share, pebble) = self.deepest();
+            if share > self.limits.overlap {
+                return Err(Failure::Overlap { culprit: self.culprit(self.owner[pebble as usize]), share });
+            }
+            if self.limits.growth {
+                self.watch.before = self.bodies.iter().map(motion).collect();
+                self.watch.lists = self.build.count;
+            }
+        }
+        if self.limits.growth && self.steps % every == 1 {
+            self.look_for_growth()?;
+        }
+        let looks = self.steps / every;
+        if self.steps == 1 || self.steps.is_multiple_of(every) && (looks < 3 || looks.is_multiple_of(ESTIMATES)) {
+            self.remember_good();
+        }
+        Ok(())
+    }
+
+    /// Fails where a body turns round in every step because the step is too long.
+    fn look_for_growth(&mut self) -> Result<(), Failure> {
+        if self.watch.lists != self.build.count || self.watch.before.len() != self.bodies.len() {
+            return Ok(());
+        }
+        if self.watch.cleared.1 != self.dt {
+            self.watch.cleared = (0.0, self.dt);
+        }
+        let suspect = self.suspect().filter(|s| s.energy > self.watch.cleared.0 && !self.allows(s));
+        let Some(suspect) = suspect else {
+            self.watch.suspected = 0;
+            return Ok(());
+        };
+        self.watch.suspected += 1;
+        if !self.watch.suspected.is_multiple_of(PATIENCE) {
+            return Ok(());
+        }
+        let id = BodyId(self.bodies[suspect.place as usize].id);
+        let limit = self.limit_of_network(suspect.stride)?;
+        if self.dt <= limit {
+            self.watch.cleared.0 = RISE * suspect.energy;
+            self.watch.suspected = 0;
+        } else if self.watch.suspected >= TIMES * PATIENCE {
+            let culprit = self.culprit(self.index[id.0 as usize]);
+            return Err(Failure::Growth(Culprit { stable_dt: limit, ..culprit }));
+        }
+        Ok(())
+    }
+
+    /// The body that turned round in the last step with the most energy.
+    fn suspect(&self) -> Option<Suspect> {
+        let mut most: Option<Suspect> = None;
+        for (place, (body, before)) in self.bodies.iter().zip(&self.watch.before).enumerate() {
+            let (now, before) = (motion(body).map(f64::from), before.map(f64::from));
+            let part = |m: &[f64; 6], at: usize| -> Vec3 { [m[at], m[at + 1], m[at + 2]] };
+            let moving = -dot(part(&now, 0), part(&before, 0));
+            let turning = -dot(part(&now, 3), part(&before, 3));
+            let inertia = |inverse: f64| if inverse > 0.0 { 1.0 / inverse } else { 0.0 };
+            let (per_spin, radius) = match body.clump {
+                SPHERE => (inertia(body.inverse_inertia), self.records[body.first as usize].radius()),
+                // angular momentum instead of spin
+                clump => (self.clumps[clump as usize].inverse_inertia.into_iter().fold(0.0, f64::max), 0.0),
+            };
+            let energy = inertia(body.inverse_mass) * moving.max(0.0) + per_spin * turning.max(0.0);
+            if energy > most.map_or(0.0, |m| m.energy) {
+                let spin = if body.clump == SPHERE { norm(body.spin) * radius } else { 0.0 };
+                most = Some(Suspect { place: place as u32, energy, stride: (norm(body.velocity) + spin) * self.dt });
+            }
+        }
+        most
+    }
+
+    /// Whether the contacts of a body and those of its neighbours allow the step, each body by itself.
+    fn allows(&self, suspect: &Suspect) -> bool {
+        let gap = suspect.stride;
+        let links = self.links_of(suspect.place, gap);
+        let mut bodies: Vec<u32> = links.iter().flat_map(|l| l.ends().map(|(_, body)| body)).collect();
+        bodies.sort_unstable();
+        bodies.dedup();
+        bodies.iter().all(|&body| {
+            let links = self.links_of(body, gap);
+            pencil(body as usize, &self.root(&self.bodies[body as usize]), &links, Weight::Even(2.0)).allows(self.dt)
+        })
+    }
+
+    /// Largest overlap over the smaller radius, and a pebble that has it.
+    pub(super) fn deepest(&self) -> (f64, u32) {
+        let mut deepest = (0.0, 0);
+        for place in 0..self.contacts.len() {
+            let (a, b) = (self.contacts.first[place], self.contacts.second[place]);
+            if let Some(overlap) = self.overlap(place) {
+                let share = overlap / self.records[a as usize].radius().min(self.records[b as usize].radius());
+                if share > deepest.0 {
+                    deepest = (share, a);
+                }
+            }
+        }
+        for entry in &self.wall_contacts.entries {
+            for slot in self.wall_contacts.slots(entry).iter().filter(|s| s.touches()) {
+                let share = slot.overlap / self.records[entry.pebble as usize].radius();
+                if share > deepest.0 {
+                    deepest = (share, entry.pebble);
+                }
+            }
+        }
+        deepest
+    }
+
+    /// Overlap of a contact when its force was computed \[m\], to the precision of an arm; none where it does not touch.
+    pub(super) fn overlap(&self, place: usize) -> Option<f64> {
+        let outcome = &self.contacts.outcomes[place];
+        let radius = self.records[self.contacts.first[place] as usize].radius();
+        let touches = outcome[..3].iter().any(|&force| force != R::default());
+        touches.then_some(2.0 * (radius - outcome[6].to_f64()).max(0.0))
+    }
+
+    fn culprit(&self, place: u32) -> Culprit {
+        let body = &self.bodies[place as usize];
+        Culprit {
+            body: BodyId(body.id),
+            place: self.body_state(BodyId(body.id)).place,
+            step: self.steps,
+            time: self.time,
+            dt: self.dt,
+            // contacts of a run that has failed say little, unless there were none before
+            stable_dt: self.stable_when_good().unwrap_or_else(|| self.body_time_step()),
+        }
+    }
+
+    fn remember_good(&mut self) {
+        let Good { cells, pebbles, clumps, gap } = &mut self.watch.good;
+        cells.clear();
+        pebbles.clear();
+        clumps.clear();
+        *gap = 2.0 * self.tally.fastest.0.sqrt() * self.dt;
+        for &place in &self.index {
+            let body = &self.bodies[place as usize];
+            cells.push(body.cell);
+            let range = body.first as usize..body.first as usize + usize::from(body.pebbles);
+            pebbles.extend(self.records[range].iter().map(Record::position));
+            if body.clump != SPHERE {
+                let clump = &self.clumps[body.clump as usize];
+                clumps.push((clump.centre, clump.attitude));
+            }
+        }
+    }
+
+    /// Limit of the network when all was well \[s\]; none without contacts then.
+    fn stable_when_good(&self) -> Option<f64> {
+        let good = &self.watch.good;
+        if good.cells.len() != self.bodies.len() {
+            return None;
+        }
+        let mut bed = self.clone();
+        let (mut pebbles, mut clumps) = (good.pebbles.iter(), good.clumps.iter());
+        for (&place, &cell) in self.index.iter().zip(&good.cells) {
+            let body = &mut bed.bodies[place as usize];
+            body.cell = cell;
+            let range = body.first as usize..body.first as usize + usize::from(body.pebbles);
+            bed.records[range].iter_mut().zip(&mut pebbles).for_each(|(record, place)| record.place(*place));
+            if body.clump != SPHERE {
+                let clump = &mut bed.clumps[body.clump as usize];
+                (clump.centre, clump.attitude) = *clumps.next()?;
+            }
+        }
+        bed.build.outdated = true;
+        bed.limit_of_network(good.gap).ok().filter(|limit| limit.is_finite())
+    }
+
+    /// Largest stable step for contacts of pairs up to `gap` \[m\] apart \[s\].
+    fn limit_of_network(&mut self, gap: f64) -> Result<f64, Failure> {
+        let links = self.links(gap)?;
+        let roots = self.roots();
+        let around = Around::new(&links, roots.len());
+        let bound = bound(&links, &roots, &around).0;
+        Ok(Network::new(&links, &roots).limit(&around, bound, TOLERANCE).step)
+    }
+}
+
+fn motion(body: &super::body::Body) -> [f32; 6] {
+    let ([a, b, c], [p, q, r]) = (body.velocity, body.spin);
+    [a, b, c, p, q, r].map(|x| x as f32)
+}
+
+#[cfg(test)]
+mod tests;
