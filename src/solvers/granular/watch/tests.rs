@@ -70,10 +70,11 @@ fn a_bed_that_boils_is_stopped_in_single_precision_under_gravity() {
     let mut bed = falling::<f32>(1.0, [0.3, 0.3]);
     settle(&mut bed);
     let limit = bed.critical_step(0.0).unwrap().network.step;
-    for share in [1.05, 1.2] {
+    // this bed still moves a little: contacts open, and soon its limit is up to 1.3 times that of the start
+    for share in [1.4, 1.6] {
         let mut bed = bed.clone();
         bed.set_time_step(share * limit);
-        let failure = bed.run(5000).unwrap_err();
+        let failure = bed.run(20_000).unwrap_err();
         assert!(matches!(failure, Failure::Growth(_)), "{failure}");
         // unless it is told to go on
         bed.set_limits(Limits { growth: false, ..Limits::default() });
