@@ -2,8 +2,9 @@
 
 use super::domain::{Domain, Image};
 use super::force::{Meeting, Outcome, Prepared, Rule, outcome};
-use super::integrate::Task;
+use super::integrate::{Task, fetch};
 use super::lanes::{BLOCK, Fine, Lanes, Num, Real, Vector, Work};
+use super::record::Record;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -87,6 +88,7 @@ impl<R: Real> Contacts<R> {
             let (some_damping, rest_damping) = damping.split_at_mut(if watched { blocks.len() } else { 0 });
             passes.push(Pass {
                 around,
+                own: &around.records[task.pebble as usize..next.pebble as usize],
                 first: &self.first[places.clone()],
                 second: &self.second[places.clone()],
                 image: &self.image[places],
@@ -107,6 +109,8 @@ impl<R: Real> Contacts<R> {
 /// The contacts of a task at work.
 struct Pass<'a, R: Real> {
     around: Surroundings<'a, R>,
+    /// Pebbles of the task, which most contacts are of.
+    own: &'a [R::Record],
     first: &'a [u32],
     second: &'a [u32],
     image: &'a [Image],
@@ -122,6 +126,7 @@ impl<R: Real> Work<R> for Pass<'_, R> {
     #[inline(always)]
     fn run<L: Lanes<Real = R>>(mut self, lanes: L) -> ContactEnergy {
         let mut sums = [[0.0; BLOCK]; 3];
+        fetch(self.own, |record| record.position()[0].to_bits());
         for block in 0..self.shear.len() {
             // no closures on this path: their bodies would lose the instructions of the lanes
             match &self.around.laws[usize::from(self.law[block])] {

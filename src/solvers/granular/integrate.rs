@@ -159,13 +159,17 @@ impl<R: Real> Work<R> for Share<'_, R> {
         let (mut place, mut pebble) = (self.at, self.first_pebble as usize);
         let mut tally = Tally::default();
         let mut sums = Vec::with_capacity(GROUP);
+        fetch(bodies, |body| body.velocity[0].to_bits() ^ u64::from(body.id));
         while !bodies.is_empty() {
             // first the sums of some bodies, then their motion: what follows does not wait for what goes before
             let count = group(bodies);
             let (some, rest) = bodies.split_at_mut(count);
             let pebbles = some.iter().map(|body| usize::from(body.pebbles)).sum();
             sums.clear();
-            sums.extend((pebble..pebble + pebbles).map(|p| sum(p, contacts)));
+            // a closure here would be left outside the function that has the wide instructions
+            for p in pebble..pebble + pebbles {
+                sums.push(sum(p, contacts));
+            }
             let (mine, others) = records.split_at_mut(pebbles);
             let composed = some.iter().filter(|body| body.clump != SPHERE).count();
             let (here, beyond) = clumps.split_at_mut(composed);
@@ -175,6 +179,12 @@ impl<R: Real> Work<R> for Share<'_, R> {
         }
         tally
     }
+}
+
+/// Reads something of all, so that they are on their way to the cache together: one by one, each would be waited for.
+#[inline(always)]
+pub(super) fn fetch<T>(all: &[T], word: impl Fn(&T) -> u64) {
+    std::hint::black_box(all.iter().fold(0, |bits, one| bits ^ word(one)));
 }
 
 /// Pebbles whose forces are summed before their bodies move.
