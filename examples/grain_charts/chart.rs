@@ -61,7 +61,7 @@ pub fn draw(rows: &[Row], band: [f64; 2]) -> String {
 
 fn legend(svg: &mut String, band: [f64; 2]) {
     let items = [
-        ("s", "settlement, root mean square over 8 seeds".to_string()),
+        ("s", "settlement, root mean square over 5 seeds".to_string()),
         ("k", "stiffness, the same".to_string()),
         ("r", "energy unaccounted for over work".to_string()),
     ];
