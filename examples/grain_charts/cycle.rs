@@ -82,12 +82,16 @@ fn run_in<R: Real>(setting: &Setting, seed: u64) -> Option<Answer> {
         bed.set_motion(wall, plate(sign * PLATE_SPEED));
         let end = bed.time() + 1.0;
         loop {
-            bed.step().ok()?;
+            if let Err(failure) = bed.step() {
+                eprintln!("{failure}");
+                return None;
+            }
             let felt = bed.wall(wall).felt().force.z / (SIDE * SIDE);
             if sign * (pressure - felt) > 0.0 && sign > 0.0 || sign < 0.0 && felt >= pressure {
                 break;
             }
             if bed.time() > end {
+                eprintln!("the plate found no {pressure} Pa");
                 return None;
             }
         }
@@ -150,9 +154,15 @@ fn fallen<R: Real>(setting: &Setting, seed: u64) -> Option<Bed<R>> {
     }
     bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
     bed.set_gravity(Gravity::EARTH);
-    bed.set_damping(0.7);
     bed.set_time_step(SETTLING_STEP);
-    bed.run((0.5 / SETTLING_STEP) as u64).ok()?;
+    // first they fall, then they come to rest
+    for (damping, time) in [(0.3, 0.5), (0.7, 0.3)] {
+        bed.set_damping(damping);
+        if let Err(failure) = bed.run((time / SETTLING_STEP) as u64) {
+            eprintln!("settling: {failure}");
+            return None;
+        }
+    }
     bed.set_damping(0.2);
     Some(bed)
 }
