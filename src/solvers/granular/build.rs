@@ -10,6 +10,7 @@ use super::domain::{mirrored, steps_of};
 use super::integrate::{Incidence, TASK, Task};
 use super::lanes::{BLOCK, Real};
 use super::motion::Pose;
+use super::order::Strips;
 use super::record::Record;
 use super::search::{CellTooSmall, Grids, Pair, Seen};
 use super::vector::{Vec3, dot, norm, sub};
@@ -241,21 +242,15 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    /// Sorts bodies along a curve that fills space, so that neighbours are near in memory.
+    /// Sorts bodies so that neighbours are near in memory.
     fn sort(&mut self) {
-        let largest = self.records[..self.owner.len()].iter().map(Record::radius).fold(0.0, f64::max);
         let place = |body: &super::body::Body| {
             let first = self.records[body.first as usize].position();
             self.domain.place(self.domain.wrap(body.cell), first)
         };
-        let least =
-            self.bodies.iter().map(place).fold([f64::INFINITY; 3], |low, p| [0, 1, 2].map(|c| low[c].min(p[c])));
-        let mut order: Vec<(u64, u32)> = self
-            .bodies
-            .iter()
-            .enumerate()
-            .map(|(index, body)| (interleave(sub(place(body), least).map(|x| x / (2.0 * largest))), index as u32))
-            .collect();
+        let strips = Strips::of(self.bodies.iter().map(place));
+        let key = |(index, body)| (strips.key(place(body)), index as u32);
+        let mut order: Vec<(u64, u32)> = self.bodies.iter().enumerate().map(key).collect();
         order.sort_unstable_by_key(|&(key, index)| (key, self.bodies[index as usize].id));
         if order.iter().enumerate().all(|(new, &(_, old))| new as u32 == old) {
             self.records.truncate(self.owner.len());
@@ -453,13 +448,4 @@ impl<R: Real> Bed<R> {
         let planes = self.walls.iter().filter(|w| w.shape.bounds().is_none());
         self.build.extent = planes.map(far).fold(0.0, f64::max) + self.build.skin;
     }
-}
-
-/// A place's cell as one number: the bits of its three coordinates in turn (Morton).
-fn interleave(place: Vec3) -> u64 {
-    let spread = |x: f64| {
-        let x = x.clamp(0.0, f64::from((1 << 21) - 1)) as u64;
-        (0..21).fold(0u64, |bits, b| bits | (x >> b & 1) << (3 * b))
-    };
-    spread(place[0]) | spread(place[1]) << 1 | spread(place[2]) << 2
 }

@@ -2,9 +2,9 @@
 
 use super::domain::{Domain, Image};
 use super::force::{Meeting, Outcome, Prepared, Rule, outcome};
-use super::integrate::{Task, fetch};
+use super::integrate::Task;
 use super::lanes::{BLOCK, Fine, Lanes, Num, Real, Vector, Work};
-use super::record::Record;
+use super::prefetch::prefetch;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -88,7 +88,6 @@ impl<R: Real> Contacts<R> {
             let (some_damping, rest_damping) = damping.split_at_mut(if watched { blocks.len() } else { 0 });
             passes.push(Pass {
                 around,
-                own: &around.records[task.pebble as usize..next.pebble as usize],
                 first: &self.first[places.clone()],
                 second: &self.second[places.clone()],
                 image: &self.image[places],
@@ -109,8 +108,6 @@ impl<R: Real> Contacts<R> {
 /// The contacts of a task at work.
 struct Pass<'a, R: Real> {
     around: Surroundings<'a, R>,
-    /// Pebbles of the task, which most contacts are of.
-    own: &'a [R::Record],
     first: &'a [u32],
     second: &'a [u32],
     image: &'a [Image],
@@ -126,8 +123,8 @@ impl<R: Real> Work<R> for Pass<'_, R> {
     #[inline(always)]
     fn run<L: Lanes<Real = R>>(mut self, lanes: L) -> ContactEnergy {
         let mut sums = [[0.0; BLOCK]; 3];
-        fetch(self.own, |record| record.position()[0].to_bits());
         for block in 0..self.shear.len() {
+            self.ask_for(block + AHEAD);
             // no closures on this path: their bodies would lose the instructions of the lanes
             match &self.around.laws[usize::from(self.law[block])] {
                 Prepared::Linear(rule) => self.block(lanes, block, rule, &mut sums),
@@ -139,7 +136,26 @@ impl<R: Real> Work<R> for Pass<'_, R> {
     }
 }
 
+/// Blocks between what is asked for and what is computed.
+const AHEAD: usize = 4;
+
 impl<R: Real> Pass<'_, R> {
+    /// Asks for all that a block reads and writes. Its earlier pebbles follow each other in memory and come by themselves.
+    #[inline(always)]
+    fn ask_for(&self, block: usize) {
+        let Some(shear) = self.shear.get(block) else { return };
+        let places = block * BLOCK..(block + 1) * BLOCK;
+        for component in shear {
+            prefetch(component);
+        }
+        for &pebble in &self.second[places.clone()] {
+            prefetch(&self.around.records[pebble as usize]);
+        }
+        for pair in self.outcomes[places].chunks(2) {
+            prefetch(&pair[0]);
+        }
+    }
+
     #[inline(always)]
     fn block<L: Lanes<Real = R>>(&mut self, lanes: L, block: usize, rule: &impl Rule, sums: &mut [[f64; BLOCK]; 3]) {
         for at in (0..BLOCK).step_by(L::WIDTH) {

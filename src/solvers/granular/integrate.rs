@@ -3,11 +3,13 @@
 use super::body::{Body, Clump, SPHERE};
 use super::force::Outcome;
 use super::lanes::{Lanes, Real, Work};
+use super::prefetch::prefetch;
 use super::record::Record;
 use super::rotation;
 use super::vector::{Vec3, add, cross, dot, scale, sub};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Bodies of one task. Fixed, so that threads change nothing.
 pub(super) const TASK: usize = 512;
@@ -159,11 +161,12 @@ impl<R: Real> Work<R> for Share<'_, R> {
         let (mut place, mut pebble) = (self.at, self.first_pebble as usize);
         let mut tally = Tally::default();
         let mut sums = Vec::with_capacity(GROUP);
-        fetch(bodies, |body| body.velocity[0].to_bits() ^ u64::from(body.id));
+        ask_for(bodies, 0..2 * GROUP);
         while !bodies.is_empty() {
             // first the sums of some bodies, then their motion: what follows does not wait for what goes before
             let count = group(bodies);
             let (some, rest) = bodies.split_at_mut(count);
+            ask_for(rest, GROUP..GROUP + count);
             let pebbles = some.iter().map(|body| usize::from(body.pebbles)).sum();
             sums.clear();
             // a closure here would be left outside the function that has the wide instructions
@@ -181,10 +184,13 @@ impl<R: Real> Work<R> for Share<'_, R> {
     }
 }
 
-/// Reads something of all, so that they are on their way to the cache together: one by one, each would be waited for.
+/// Asks for bodies that will move soon; each lies in two lines of the cache.
 #[inline(always)]
-pub(super) fn fetch<T>(all: &[T], word: impl Fn(&T) -> u64) {
-    std::hint::black_box(all.iter().fold(0, |bits, one| bits ^ word(one)));
+fn ask_for(bodies: &[Body], range: Range<usize>) {
+    for body in bodies.iter().take(range.end).skip(range.start) {
+        prefetch(&body.velocity);
+        prefetch(&body.id);
+    }
 }
 
 /// Pebbles whose forces are summed before their bodies move.

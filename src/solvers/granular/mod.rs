@@ -46,6 +46,8 @@ mod lanes;
 mod law;
 pub mod measure;
 pub mod motion;
+mod order;
+mod prefetch;
 mod record;
 mod replicate;
 pub mod rotation;

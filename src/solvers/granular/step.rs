@@ -27,7 +27,7 @@ pub struct Timings {
 /// Tasks that one thread does before it moves their bodies: what fits into its own cache.
 const ALONE: usize = 3;
 /// Tasks a thread that several do: threads wait for each other twice a window.
-const TOGETHER: usize = 16;
+const TOGETHER: usize = 6;
 
 impl From<Fault> for Failure {
     fn from(fault: Fault) -> Failure {
@@ -119,9 +119,7 @@ impl<R: Real> Bed<R> {
         }
         let start = Instant::now();
         let around = Surroundings { records: &self.records, laws, shifts, dt: self.dt };
-        let bodies = &self.bodies;
-        let cell = |body: u32| bodies[body as usize].cell;
-        let pebbles = Pebbles { domain: &self.domain, owner: &self.owner, cell: &cell };
+        let pebbles = Pebbles { domain: &self.domain, owner: &self.owner, bodies: &self.bodies };
         let outcomes = &mut self.contacts.outcomes[self.contacts.first.len()..];
         let (walls, watched) = (&mut self.walls, self.ledger.watched);
         let energy = self.wall_contacts.evaluate(walls, &self.laws, pebbles, around, outcomes, watched);

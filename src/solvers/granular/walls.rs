@@ -1,11 +1,13 @@
 //! Contacts of pebbles with walls: one evaluation a pebble and wall, as many contacts as the shape has there.
 
+use super::body::Body;
 use super::contacts::{ContactEnergy, Surroundings};
 use super::domain::Domain;
 use super::force::{Contact, Meeting, Outcome, Tangent, force_of, outcome};
 use super::lanes::{Lanes, Num, Plain, Real, Vector, Work};
 use super::law::Laws;
 use super::motion::{Felt, Motion, Pose};
+use super::prefetch::prefetch;
 use super::record::Record;
 use super::search::{Grids, Seen};
 use super::shape::{Shape, Touch, inherit};
@@ -165,8 +167,7 @@ pub(super) struct Pebbles<'a> {
     pub domain: &'a Domain,
     /// Body of each pebble.
     pub owner: &'a [u32],
-    /// Cell of each body.
-    pub cell: &'a (dyn Fn(u32) -> [i32; 3] + Sync),
+    pub bodies: &'a [Body],
 }
 
 impl<R: Real> WallContacts<R> {
@@ -359,12 +360,25 @@ impl<R: Real> Work<R> for Pass<'_, R> {
         let mut energy = ContactEnergy::default();
         let mut scratch = Scratch::default();
         let base = self.entries[0].slots.0;
+        self.ask_for();
         for entry in self.entries {
             let range = (entry.slots.0 - base) as usize..(entry.slots.1 - base) as usize;
             let (slots, places) = (&mut self.slots[range.clone()], &mut self.places[range]);
             self.shared.entry(entry, slots, places, &mut scratch, &mut energy);
         }
         energy
+    }
+}
+
+impl<R: Real> Pass<'_, R> {
+    /// Asks for all pebbles: in the order of their names, they are anywhere in memory.
+    #[inline(always)]
+    fn ask_for(&self) {
+        let Shared { pebbles, around, .. } = self.shared;
+        for entry in self.entries {
+            prefetch(&around.records[entry.pebble as usize]);
+            prefetch(&pebbles.bodies[pebbles.owner[entry.pebble as usize] as usize].cell);
+        }
     }
 }
 
@@ -381,7 +395,7 @@ impl<R: Real> Shared<'_, R> {
     ) {
         let wall = &self.walls[entry.wall as usize];
         let record = &self.around.records[entry.pebble as usize];
-        let cell = (self.pebbles.cell)(self.pebbles.owner[entry.pebble as usize]);
+        let cell = self.pebbles.bodies[self.pebbles.owner[entry.pebble as usize] as usize].cell;
         let away = wall.to(self.pebbles.domain, cell, record.position());
         let facets = &self.facets[entry.facets.0 as usize..entry.facets.1 as usize];
         wall.shape.touches(&wall.turned_back(away), record.radius(), facets, &mut scratch.touches);

@@ -245,10 +245,10 @@ fn shares(round: &Round, body_steps: f64) -> Shares {
     let of = |time: Duration| share(time.as_secs_f64());
     Shares {
         search: of(search),
-        forces: of(forces.saturating_sub(walls)),
+        forces: of(forces),
         walls: of(walls),
         motion: of(motion),
-        other: share((round.seconds - (search + forces + motion).as_secs_f64()).max(0.0)),
+        other: share((round.seconds - (search + forces + walls + motion).as_secs_f64()).max(0.0)),
     }
 }
 
