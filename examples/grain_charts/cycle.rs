@@ -7,6 +7,7 @@ use std::time::Instant;
 use trackbed::solvers::granular::clump::{Pebble, Template};
 use trackbed::solvers::granular::{
     Bed, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Law, Laws, Linear, Motion, Placed, Pose, Real, Shape,
+    WallId,
 };
 
 /// Side of the periodic cell \[m\].
@@ -15,6 +16,10 @@ const GRAINS: usize = 200;
 /// Step of settling, stable for all grains here \[s\].
 const SETTLING_STEP: f64 = 1e-5;
 const PLATE_SPEED: f64 = 0.03;
+/// Speed at which the plate comes down on the loose grains \[m/s\].
+const APPROACH: f64 = 0.1;
+/// The longest that the plate looks for a pressure \[s\].
+const PATIENCE: f64 = 3.0;
 /// Pairs nearer than this count as contacts of a loaded bed \[m\].
 const GAP: f64 = 20e-6;
 const LOW: f64 = 5e3;
@@ -61,7 +66,7 @@ pub fn run(setting: &Setting, seed: u64) -> Option<Answer> {
 }
 
 fn run_in<R: Real>(setting: &Setting, seed: u64) -> Option<Answer> {
-    let (mut bed, top) = settled::<R>(setting, seed)?;
+    let (mut bed, plate) = settled::<R>(setting, seed)?;
     let limit = bed.critical_step(GAP).ok()?.network.step;
     let step = match setting.scaled {
         Some(target) => 0.85 * target * limit,
@@ -73,29 +78,10 @@ fn run_in<R: Real>(setting: &Setting, seed: u64) -> Option<Answer> {
     bed.set_time_step(step);
     bed.set_skin(setting.skin);
     bed.watch_energy(true);
-    let plate = |speed: f64| Motion::Velocity { linear: Vector3::new(0.0, 0.0, speed), angular: Vector3::zeros() };
-    let pose = Pose { position: Vector3::new(0.0, 0.0, top + 1e-4), ..Pose::default() };
-    let wall = bed.add_wall(Shape::plane(-Vector3::z()).ok()?, pose, 0, plate(-PLATE_SPEED));
     let (clock, start) = (Instant::now(), bed.time());
     let mut heights = Vec::new();
-    for (pressure, sign) in [(LOW, -1.0), (HIGH, -1.0), (LOW, 1.0)] {
-        bed.set_motion(wall, plate(sign * PLATE_SPEED));
-        let end = bed.time() + 1.0;
-        loop {
-            if let Err(failure) = bed.step() {
-                eprintln!("{failure}");
-                return None;
-            }
-            let felt = bed.wall(wall).felt().force.z / (SIDE * SIDE);
-            if sign * (pressure - felt) > 0.0 && sign > 0.0 || sign < 0.0 && felt >= pressure {
-                break;
-            }
-            if bed.time() > end {
-                eprintln!("the plate found no {pressure} Pa");
-                return None;
-            }
-        }
-        heights.push(bed.wall(wall).pose(bed.domain()).position.z);
+    for (pressure, speed) in [(LOW, -PLATE_SPEED), (HIGH, -PLATE_SPEED), (LOW, PLATE_SPEED)] {
+        heights.push(press(&mut bed, plate, speed, pressure)?);
     }
     let energy = bed.energy();
     Some(Answer {
@@ -106,26 +92,46 @@ fn run_in<R: Real>(setting: &Setting, seed: u64) -> Option<Answer> {
     })
 }
 
-/// Beds at rest as text, by precision, pebbles and seed: settling takes longer than the load cycle.
-static SETTLED: Mutex<BTreeMap<(bool, u32, u64), String>> = Mutex::new(BTreeMap::new());
-
-/// Grains at rest, and the height of the highest \[m\]. The same for every setting of the same grains and seed.
-fn settled<R: Real>(setting: &Setting, seed: u64) -> Option<(Bed<R>, f64)> {
-    let key = (setting.double, setting.pebbles, seed);
-    let known = SETTLED.lock().ok()?.get(&key).cloned();
-    let bed = match known {
-        Some(text) => Bed::restore(serde_json::from_str(&text).ok()?).ok()?,
-        None => {
-            let bed = fallen::<R>(setting, seed)?;
-            SETTLED.lock().ok()?.insert(key, serde_json::to_string(&bed.checkpoint()).ok()?);
-            bed
+/// Moves the plate at `speed` \[m/s\] until it feels `pressure` \[Pa\], and says where that is \[m\].
+fn press<R: Real>(bed: &mut Bed<R>, plate: WallId, speed: f64, pressure: f64) -> Option<f64> {
+    let linear = Vector3::new(0.0, 0.0, speed);
+    bed.set_motion(plate, Motion::Velocity { linear, angular: Vector3::zeros() });
+    let end = bed.time() + PATIENCE;
+    while bed.time() < end {
+        if let Err(failure) = bed.step() {
+            eprintln!("{failure}");
+            return None;
         }
-    };
-    let top = bed.pebbles().map(|p| p.place[2] + p.radius).fold(0.0, f64::max);
-    Some((bed, top))
+        let felt = bed.wall(plate).felt().force.z / (SIDE * SIDE);
+        if if speed < 0.0 { felt >= pressure } else { felt <= pressure } {
+            return Some(bed.wall(plate).pose(bed.domain()).position.z);
+        }
+    }
+    eprintln!("the plate found no {pressure} Pa");
+    None
 }
 
-fn fallen<R: Real>(setting: &Setting, seed: u64) -> Option<Bed<R>> {
+/// Beds at rest as text, by pebbles and seed: settling takes longer than the load cycle.
+static SETTLED: Mutex<BTreeMap<(u32, u64), String>> = Mutex::new(BTreeMap::new());
+
+/// Grains at rest under a plate that touches them. The same for every setting of the same grains and seed, whatever its
+/// precision: grains that fall forget how they started.
+fn settled<R: Real>(setting: &Setting, seed: u64) -> Option<(Bed<R>, WallId)> {
+    let key = (setting.pebbles, seed);
+    let known = SETTLED.lock().ok()?.get(&key).cloned();
+    let text = match known {
+        Some(text) => text,
+        None => {
+            let text = serde_json::to_string(&fallen(setting.pebbles, seed)?.checkpoint()).ok()?;
+            SETTLED.lock().ok()?.insert(key, text.clone());
+            text
+        }
+    };
+    // the first wall is the floor
+    Some((Bed::restore(serde_json::from_str(&text).ok()?).ok()?, WallId(1)))
+}
+
+fn fallen(pebbles: u32, seed: u64) -> Option<Bed<f64>> {
     let mut random = Random(seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
     let law = Law::Linear(Linear {
         normal_stiffness: 1.3e7,
@@ -136,8 +142,8 @@ fn fallen<R: Real>(setting: &Setting, seed: u64) -> Option<Bed<R>> {
         limit: FrictionLimit::Spring,
     });
     let domain = Domain::open().periodic(0, SIDE).periodic(1, SIDE);
-    let mut bed: Bed<R> = Bed::new(domain, Laws::single(law));
-    let template = Template::of(&pebbles(setting.pebbles.max(1))).ok()?;
+    let mut bed: Bed<f64> = Bed::new(domain, Laws::single(law));
+    let template = Template::of(&ellipsoid(pebbles.max(1))).ok()?;
     for grain in 0..GRAINS {
         let (layer, cell) = (grain / 16, grain % 16);
         let mut around = |x: f64| x + 0.004 * (random.next() - 0.5);
@@ -163,12 +169,18 @@ fn fallen<R: Real>(setting: &Setting, seed: u64) -> Option<Bed<R>> {
             return None;
         }
     }
+    let top = bed.pebbles().map(|p| p.place[2] + p.radius).fold(0.0, f64::max);
+    let pose = Pose { position: Vector3::new(0.0, 0.0, top), ..Pose::default() };
+    let plate = bed.add_wall(Shape::plane(-Vector3::z()).ok()?, pose, 0, Motion::Fixed);
+    press(&mut bed, plate, -APPROACH, 0.5 * LOW)?;
+    bed.set_motion(plate, Motion::Fixed);
+    bed.run((0.1 / SETTLING_STEP) as u64).ok()?;
     bed.set_damping(0.2);
     Some(bed)
 }
 
 /// Pebbles inside an ellipsoid of half axes 1, 0.85 and 0.7: one is a sphere.
-fn pebbles(count: u32) -> Vec<Pebble> {
+fn ellipsoid(count: u32) -> Vec<Pebble> {
     let golden = std::f64::consts::PI * (3.0 - 5f64.sqrt());
     let axes = Vector3::new(1.0, 0.85, 0.7);
     (0..count)
