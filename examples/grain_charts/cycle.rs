@@ -14,10 +14,10 @@ use trackbed::solvers::granular::{
 const SIDE: f64 = 0.3;
 const GRAINS: usize = 200;
 /// Step of settling, stable for all grains here \[s\].
-const SETTLING_STEP: f64 = 1e-5;
+const SETTLING_STEP: f64 = 2e-5;
 const PLATE_SPEED: f64 = 0.03;
 /// Speed at which the plate comes down on the loose grains \[m/s\].
-const APPROACH: f64 = 0.1;
+const APPROACH: f64 = 0.3;
 /// The longest that the plate looks for a pressure \[s\].
 const PATIENCE: f64 = 3.0;
 /// Pairs nearer than this count as contacts of a loaded bed \[m\].
@@ -162,7 +162,7 @@ fn fallen(pebbles: u32, seed: u64) -> Option<Bed<f64>> {
     bed.set_gravity(Gravity::EARTH);
     bed.set_time_step(SETTLING_STEP);
     // first they fall, then they come to rest
-    for (damping, time) in [(0.3, 0.5), (0.7, 0.3)] {
+    for (damping, time) in [(0.2, 1.0), (0.7, 0.4)] {
         bed.set_damping(damping);
         if let Err(failure) = bed.run((time / SETTLING_STEP) as u64) {
             eprintln!("settling: {failure}");
@@ -172,7 +172,7 @@ fn fallen(pebbles: u32, seed: u64) -> Option<Bed<f64>> {
     let top = bed.pebbles().map(|p| p.place[2] + p.radius).fold(0.0, f64::max);
     let pose = Pose { position: Vector3::new(0.0, 0.0, top), ..Pose::default() };
     let plate = bed.add_wall(Shape::plane(-Vector3::z()).ok()?, pose, 0, Motion::Fixed);
-    press(&mut bed, plate, -APPROACH, 0.5 * LOW)?;
+    press(&mut bed, plate, -APPROACH, LOW)?;
     bed.set_motion(plate, Motion::Fixed);
     bed.run((0.1 / SETTLING_STEP) as u64).ok()?;
     bed.set_damping(0.2);

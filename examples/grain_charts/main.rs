@@ -4,8 +4,8 @@
 //! cargo run --release --example grain_charts -- docs/charts
 //! ```
 //!
-//! A periodic bed of 200 grains is loaded by a plate from 5 to 50 kPa and unloaded, once for each seed. Every setting is
-//! compared with a reference of the same seeds (`f64`, a tenth of the stable step); the scatter of the reference over its
+//! A periodic bed of 200 grains at rest is loaded by a plate from 5 to 50 kPa and unloaded, once for each seed. Every setting is
+//! compared with a reference of the same seeds (`f64`, a twentieth of the stable step, of clumps a tenth); the scatter of the reference over its
 //! seeds is the band below which an error does not matter. Writes `grains_accuracy.csv` and `grains_accuracy.svg`.
 
 mod chart;
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let reference = runs(&Setting::reference());
     let band = [scatter(&reference, |a| a.settlement), scatter(&reference, |a| a.stiffness)];
     // a clump of other pebbles is another grain: its reference is that of most pebbles
-    let clumps = runs(&Setting { pebbles: 8, ..Setting::reference() });
+    let clumps = runs(&Setting { pebbles: 8, share: 0.1, ..Setting::reference() });
     let mut rows = Vec::new();
     for (chart, name, value, setting) in settings() {
         let answers = runs(&setting);
@@ -77,7 +77,7 @@ fn settings() -> Vec<(&'static str, String, f64, Setting)> {
     for skin in [0.05e-3, 0.2e-3, 1e-3, 4e-3, 10e-3] {
         all.push(("skin", format!("{} mm", skin * 1e3), skin * 1e3, Setting { skin: Some(skin), ..base }));
     }
-    for pebbles in 1..=8 {
+    for pebbles in [1, 2, 3, 4, 6, 8] {
         all.push(("pebbles", format!("{pebbles}"), f64::from(pebbles), Setting { pebbles, ..base }));
     }
     for target in [1.0, 1.2, 1.5, 2.0, 3.0] {

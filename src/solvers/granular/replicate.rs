@@ -14,8 +14,9 @@ impl<R: Real> Bed<R> {
     /// Bodies are numbered copy by copy: body `i` of copy `c` is `c len + i`.
     ///
     /// # Panics
-    /// If the bed is not one period along x.
+    /// If the bed is not one period along x, or `count` is 0.
     pub fn replicate(&mut self, count: u32) -> Result<Bed<R>, Failure> {
+        assert!(count > 0, "a bed of no copies");
         let length = self.domain.period(0).filter(|_| self.domain.cells(0) == Some(1)).expect("one period along x");
         self.refresh()?;
         let mut copy: Bed<R> = self.clone();
