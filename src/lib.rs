@@ -49,7 +49,7 @@ pub mod report;
 pub mod cli;
 
 use check::{Modules, Override};
-use diag::{Diagnostic, Sources};
+use diag::{Code, Diagnostic, Severity, Sources};
 use graph::Graph;
 use scenario::Scenario;
 use sha2::{Digest, Sha256};
@@ -61,8 +61,19 @@ pub struct Compiled {
     /// Down the file; errors among them stop a run.
     pub diagnostics: Vec<Diagnostic>,
     pub scenario: Option<Scenario>,
-    /// `None` where nothing acts on the track, too.
+    /// `None` where nothing acts on the track, too, and where only grains could answer.
     pub graph: Option<Graph>,
+}
+
+impl Compiled {
+    /// The same for a run: what a scene needs and this version cannot do is an error there, and a warning to a check.
+    pub fn to_run(mut self) -> Compiled {
+        for diagnostic in self.diagnostics.iter_mut().filter(|d| d.code == Code::E0604) {
+            diagnostic.severity = Severity::Error;
+        }
+        diag::sort(&mut self.diagnostics);
+        self
+    }
 }
 
 /// Checks a text that a person calls `name`, lowers it and applies the physics rules. Costs milliseconds.
@@ -76,7 +87,8 @@ pub fn compile(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overr
         diagnostics.extend(found.into_iter().filter(|d| checked.sound || d.is_error()));
         if let Some(lowered) = lowered.filter(|_| checked.sound) {
             diagnostics.extend(lint::lint(scenario, &lowered));
-            graph = Some(lowered);
+            // track and trains of a scene with grains are planned and looked at; its substructure cannot be run
+            graph = Some(lowered).filter(|_| !scenario.solve.grains.tier.has_grains());
         }
     }
     diag::sort(&mut diagnostics);

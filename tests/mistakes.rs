@@ -27,7 +27,7 @@ trackform open {
   spacing = bay
   support = { stiffness = 50 MN/m per seat, damping = 50 kN s/m per seat }
   usp     = usps.stiff { damping_time = 0.1 ms }
-  settlement = ramp(0 .. 2 mm, over = -6 .. 0 m)
+  settlement = ramp(0 .. 2 mm, over = -6 .. 0 m), layers = [stone: 350 mm, fill: 1 m]
 }
 
 trackform stiff : open {
@@ -93,6 +93,16 @@ expect {
     max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat
     -12 m < place_of_max(settlement) < 0 m
   ]
+}
+
+granular stone : ballasts.granite_31_63 {
+  grading  = { passing = [22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 %], cut_below = 25 mm }
+  friction = 0.7
+}
+
+soil fill {
+  youngs_modulus = 90 MPa, poisson_ratio = 0.3
+  density        = 2000 kg/m^3
 }
 "#;
 
@@ -193,8 +203,9 @@ const PLANTED: &[Planted] = &[
     breaks("vt", plant("an unknown word", "direction = forward", "direction = forwards", Code::E0408)),
     plant("an unknown response", "rail_seat_load, contact_force]", "rail_seat_force, contact_force]", Code::E0408),
     plant("an unknown rule", "allow = [stiffness_jump:", "allow = [stiffness_jumps:", Code::E0408),
-    plant("a planned word", "substructure     = law", "substructure     = full", Code::E0411),
-    plant("a planned field", "rail_ends   = clamped", "bed_width   = 2.4 m per track", Code::E0411),
+    plant("a planned word", "elements_per_bay = 4", "passages         = continuous", Code::E0411),
+    plant("a tier that is only checked", "substructure     = law", "substructure     = full", Code::E0604),
+    needs("p", plant("a narrow bed", "rail_ends   = clamped", "bed_width   = 2 m per track", Code::E0420)),
     plant("a profile without basis", "support = { stiffness = 50 MN/m per seat,", "support = { stiffness = ramp(50 .. 80 MN/m),", Code::E0304),
     breaks("pb", plant("a profile of later versions", "  spacing = bay", "  spacing = ramp(0.6 .. 0.5 m)", Code::E0411)),
     // what varies along the track
@@ -225,6 +236,34 @@ const PLANTED: &[Planted] = &[
     needs("p", plant("a support that seats itself stiffly", "damping = 50 kN s/m per seat }", "damping = 50 kN s/m per seat, seating = { stiffness = 60 MN/m per seat, closure = 0.4 mm } }", Code::E0407)),
     needs("p", plant("a base larger than its sleeper", "length = 2.4 m }", "length = 2.4 m, base_area = 1.2 m^2 }", Code::E0407)),
     plant("a thick bed of pads", "usps.stiff { damping_time", "usps.stiff { bedding_modulus = 3 N/mm^3, damping_time", Code::E0405),
+    // layers and their materials
+    needs("s", plant("sieves out of order", "40 mm: 60 %, 63 mm", "40 mm: 60 %, 35 mm", Code::E0414)),
+    needs("s", plant("a curve that falls", "40 mm: 60 %, 63 mm", "40 mm: 60 %, 50 mm: 40 %, 63 mm", Code::E0414)),
+    needs("s", plant("a curve that ends early", "63 mm: 100 %", "63 mm: 98 %", Code::E0414)),
+    needs("s", plant("a curve that begins late", "[22.4 mm: 0 %,", "[28 mm: 10 %,", Code::E0414)),
+    needs("s", plant("one sieve", "[22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 %]", "[63 mm: 100 %]", Code::E0414)),
+    needs("s", plant("a cut that leaves nothing", "cut_below = 25 mm", "cut_below = 70 mm", Code::E0415)),
+    needs("s", plant("a log-normal curve without ends", "[22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 %]", "log_normal(40 mm, 0.3)", Code::E0415)),
+    needs("s", plant("a cut that leaves little", "cut_below = 25 mm", "cut_below = 55 mm", Code::E0416)),
+    plant("a sieve without its share", "40 mm: 60 %,", "40 mm,", Code::E0406),
+    plant("more than everything", "40 mm: 60 %,", "40 mm: 160 %,", Code::E0405),
+    needs("s", plant("a data file of sieves that is not there", "[22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 %]", "file(\"sieves.csv\")", Code::E0508)),
+    needs("s", plant("a surface that is not there", "  friction = 0.7", "  friction = 0.7, shape = clumps(from = file(\"stone.stl\"))", Code::E0508)),
+    needs("s", plant("part of a pebble", "  friction = 0.7", "  friction = 0.7, shape = clumps(2 .. 3.5)", Code::E0405)),
+    plant("a stiffness of nobody knows what", "  friction = 0.7", "  friction = 0.7, contact_stiffness = 13 MN/m", Code::E0304),
+    plant("a layer of nothing known", "[stone: 350 mm", "[stoen: 350 mm", Code::E0201),
+    plant("a layer of something else", "[stone: 350 mm", "[wagon: 350 mm", Code::E0406),
+    plant("a thickness without unit", "[stone: 350 mm", "[stone: 350", Code::E0301),
+    plant("a layer without thickness", "[stone: 350 mm", "[stone", Code::E0406),
+    needs("s", plant("what is left of nothing", "fill: 1 m]", "fill: rest]", Code::E0421)),
+    needs("ps", plant("a layer of single grains", "[stone: 350 mm", "[stone: 100 mm", Code::E0511)),
+    needs("ps", plant("a layer that ends early", "fill: 1 m]", "fill: [-42 m: 1 m, -6 m: 2 m]]", Code::E0506)),
+    plant("a soil that grows when it is pulled", "poisson_ratio = 0.3", "poisson_ratio = 0.6", Code::E0405),
+    needs("s", plant("moduli that contradict each other", "youngs_modulus = 90 MPa, poisson_ratio = 0.3", "bulk_modulus = 10 MPa, shear_modulus = 90 MPa", Code::E0407)),
+    needs("s", plant("a modulus said twice", "poisson_ratio = 0.3", "poisson_ratio = 0.3, bulk_modulus = 100 MPa, shear_modulus = 34.6 MPa", Code::E0407)),
+    needs("s", plant("a soil that makes energy", "= 2000 kg/m^3", "= 2000 kg/m^3, strength = mohr_coulomb(10 kPa, 30 deg, dilation = 35 deg)", Code::E0407)),
+    needs("s", below(-2, plant("a missing density", "  density        = 2000 kg/m^3", "", Code::E0403))),
+    needs("p", plant("a window off the track", "elements_per_bay = 4", "window           = -80 .. 6 m", Code::E0501)),
     // places
     needs("p", plant("sleeper 0", "[-20, -5, -1, +1] sleepers", "[-20, -5, -1, 0] sleepers", Code::E0501)),
     needs("p", plant("a sleeper off the track", "[-20, -5, -1, +1] sleepers", "[-200, -5, -1, +1] sleepers", Code::E0501)),

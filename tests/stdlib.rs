@@ -37,13 +37,19 @@ fn scene(kind: &str, entry: &str) -> String {
         ("slab", "slabs.half_width_1600"),
         ("vehicle", "vehicles.ore_wagon_20t"),
         ("law", "laws.varandas_2014"),
+        ("grading", "gradings.ballast_31_63"),
+        ("granular", "ballasts.granite_31_63"),
+        ("soil", "soils.sandy_gravel"),
     ]);
     assert!(parts.insert(kind, entry).is_some(), "a scene has no place for a {kind}");
     let part = |kind: &str| parts[kind];
     format!(
         "use std
+granular under : {} {{ shape = spheres }}
+granular sieved : ballasts.granite_31_63 {{ grading = {} }}
 trackform open {{
   rail = {}, pad = {}, sleeper = {}, spacing = 0.6 m, support = {{ stiffness = 40 MN/m per seat }}, usp = {}
+  layers = [under: 0.5 m, sieved: 0.5 m, {}: 2 m]
 }}
 trackform deck : open {{ sleeper = none, support = none, usp = none, slab = {} }}
 track line {{ sections = [open: 90 m, deck: 60 m] }}
@@ -51,10 +57,13 @@ train one {{ vehicles = [{}: 2], speed = 60 km/h }}
 traffic {{ trains = one, total = 400 axles }}
 solve {{ law = {} }}
 ",
+        part("granular"),
+        part("grading"),
         part("rail"),
         part("pad"),
         part("sleeper"),
         part("usp"),
+        part("soil"),
         part("slab"),
         part("vehicle"),
         part("law"),
@@ -146,6 +155,7 @@ fn inside(kind: &Kind, fields: &str) -> String {
         (Role::Nested, "primary_suspension") => format!("vehicle v {{ primary = {{ {fields} }} }}\n"),
         (Role::Nested, "secondary_suspension") => format!("vehicle v {{ secondary = {{ {fields} }} }}\n"),
         (Role::Nested, "seating") => format!("support s {{ seating = {{ {fields} }} }}\n"),
+        (Role::Nested, name @ ("packing" | "bond")) => format!("granular g {{ {name} = {{ {fields} }} }}\n"),
         (Role::Nested, "auxiliary_rails") => format!("trackform t {{ auxiliary_rails = {{ {fields} }} }}\n"),
         (Role::Nested, name) => format!("vehicle v {{ {name} = {{ {fields} }} }}\n"),
         (_, name) => format!("{name} x {{ {fields} }}\n"),

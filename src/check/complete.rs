@@ -36,6 +36,7 @@ impl Checker<'_> {
         match &mut slot.value {
             Val::Record(inner) => *inner = Rc::new(self.complete(inner)),
             Val::Word { word, arguments } => {
+                arguments.values_mut().for_each(|argument| self.complete_slot(argument));
                 for argument in word.arguments {
                     if arguments.contains_key(argument.name) {
                         continue;

@@ -225,6 +225,13 @@ impl Checker<'_> {
     /// An axle count.
     fn count(&mut self, value: &Value, scope: ScopeId) -> Option<u64> {
         let raw = self.raw(value, scope)?;
+        if raw.dimension == Dimension::CYCLES {
+            if self.asked.traffic {
+                self.not_counted(raw.dimension, "axles of its trains", raw.span);
+                return None;
+            }
+            return self.whole(raw.value, "cycles", raw.span);
+        }
         if raw.dimension != Dimension::AXLES {
             self.report(
                 Diagnostic::new(Code::E0302, format!("expected a number of axles, found {}", raw.dimension.describe()))

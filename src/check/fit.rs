@@ -3,6 +3,7 @@
 use super::Checker;
 use super::arithmetic::shape;
 use super::modules::ScopeId;
+use super::profile::is_profile;
 use super::value::{Slot, Val};
 use crate::diag::{Code, Diagnostic, Span, or_list};
 use crate::scenario::Origin;
@@ -156,6 +157,9 @@ impl Checker<'_> {
     }
 
     fn fit_form(&mut self, form: &'static Form, value: &Value, scope: ScopeId) -> Option<Val> {
+        if let Some(word) = per_inside(form, value) {
+            return self.fit_form(form, &word, scope);
+        }
         match (form, &value.kind) {
             (Form::Text, ValueKind::Text(text)) => Some(Val::Text(text.clone())),
             (Form::Name, ValueKind::Path(path)) if path.names.len() == 1 => Some(Val::Text(path.text())),
@@ -202,6 +206,9 @@ impl Checker<'_> {
 
     fn shape_of(&mut self, value: &Value, scope: ScopeId, depth: u32) -> Shape {
         match &value.kind {
+            ValueKind::Per(inner, _) if matches!(inner.kind, ValueKind::Call { .. }) => {
+                self.shape_of(inner, scope, depth)
+            }
             ValueKind::Number { .. } | ValueKind::Binary(..) | ValueKind::Negate(_) | ValueKind::Per(..) => {
                 Shape::Number
             }
@@ -229,11 +236,18 @@ impl Checker<'_> {
         }
     }
 
-    /// Picks the form that the value has: an object, or a number by its dimension.
+    /// Picks the form that the value has: an object by its kind, a number by its dimension, a list, a range, a profile.
     fn one_of(&mut self, form: &'static Form, forms: &'static [Form], value: &Value, scope: ScopeId) -> Option<Val> {
+        let varying = |f: &&Form| matches!(f, Form::Number(m) if m.varies != Varies::No);
+        if let Some(number) = forms.iter().find(varying).filter(|_| is_profile(value)) {
+            return self.fit_form(number, value, scope);
+        }
         match self.shape_of(value, scope, 0) {
             Shape::Object => {
-                if let Some(object) = forms.iter().find(|f| matches!(f, Form::Object(_))) {
+                let extended = self.kind_extended(value, scope);
+                let objects = || forms.iter().filter(|f| matches!(f, Form::Object(_)));
+                let same = objects().find(|f| extended.is_some_and(|kind| form_has_object(f, kind)));
+                if let Some(object) = same.or(objects().next()) {
                     return self.fit_form(object, value, scope);
                 }
             }
@@ -255,19 +269,33 @@ impl Checker<'_> {
                 }
             }
             Shape::Other => {
-                if let (Some(list), ValueKind::List { .. }) =
-                    (forms.iter().find(|f| matches!(f, Form::List(_))), &value.kind)
-                {
-                    return self.fit_form(list, value, scope);
+                let fits = |f: &&Form| match &value.kind {
+                    ValueKind::List { .. } => matches!(f, Form::List(_) | Form::Pairs { .. }),
+                    ValueKind::Range(..) => matches!(f, Form::Interval(_) | Form::Span),
+                    _ => false,
+                };
+                if let Some(chosen) = forms.iter().find(fits) {
+                    return self.fit_form(chosen, value, scope);
                 }
             }
         }
-        if let ValueKind::Call { word, .. } = &value.kind {
+        let bare = if let ValueKind::Per(inner, _) = &value.kind { inner } else { value };
+        if let ValueKind::Call { word, .. } = &bare.kind {
             self.unknown_word(word, &form.words());
         } else {
             self.wrong_form(form, shape(&value.kind), value.span);
         }
         None
+    }
+
+    /// The kind of what an object written in place extends.
+    fn kind_extended(&mut self, value: &Value, scope: ScopeId) -> Option<&'static str> {
+        let ValueKind::Object { base: Some(path), .. } = &value.kind else { return None };
+        let target = self.resolve(path, scope, &[]).filter(|target| !target.is_let)?;
+        match self.slot_at(&target, path)?.value {
+            Val::Record(record) => Some(record.kind.name),
+            _ => None,
+        }
     }
 
     fn list(&mut self, item: &'static Form, entries: &[Entry], unit: Option<&UnitText>, scope: ScopeId) -> Option<Val> {
@@ -313,6 +341,29 @@ impl Checker<'_> {
         }
         Some(Val::Pairs(pairs))
     }
+}
+
+/// `cyclic(5 .. 60 kN, 5 Hz) per sleeper`: `per` after a word is of those of its arguments that are of something.
+fn per_inside(form: &Form, value: &Value) -> Option<Value> {
+    let ValueKind::Per(inner, basis) = &value.kind else { return None };
+    let ValueKind::Call { word, arguments } = &inner.kind else { return None };
+    let known = form.word(&word.text)?;
+    let mut arguments = arguments.clone();
+    let mut any = false;
+    for (i, argument) in arguments.iter_mut().enumerate() {
+        let field = match &argument.name {
+            Some(name) => known.arguments.iter().find(|a| a.name == name.text),
+            None => known.arguments.get(i),
+        };
+        if let Some(Form::Number(Measure { basis: Some(_), .. }) | Form::Interval(Measure { basis: Some(_), .. })) =
+            field.map(|f| &f.form)
+        {
+            any = true;
+            let of = ValueKind::Per(Box::new(argument.value.clone()), basis.clone());
+            argument.value = Value { kind: of, span: argument.value.span };
+        }
+    }
+    any.then(|| Value { kind: ValueKind::Call { word: word.clone(), arguments }, span: value.span })
 }
 
 /// Gives the unit after a list to a bare number in it.

@@ -2,11 +2,13 @@
 
 use super::Checker;
 use super::geometry::Places;
+use super::tier::changes;
 use super::track::given;
 use super::value::{Number, Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
+use crate::scenario::response::{Place, Response};
 use crate::scenario::{
-    Beam, Given, Integrator, Record as Kept, Solve, StaticLoad, Target, TimeStep, Traffic, Train, Update,
+    Beam, Given, Integrator, Record as Kept, Solve, StaticLoad, Target, TimeStep, Traffic, Train, Update, VolumeRecord,
 };
 use crate::units::{Dimension, number};
 
@@ -63,29 +65,36 @@ impl Checker<'_> {
 
     /// An axle count, which is a whole number.
     pub(super) fn whole_axles(&mut self, axles: f64, span: Span) -> Option<u64> {
-        if axles.fract() != 0.0 {
+        self.whole(axles, "axles", span)
+    }
+
+    pub(super) fn whole(&mut self, count: f64, what: &str, span: Span) -> Option<u64> {
+        if count.fract() != 0.0 {
             self.report(
-                Diagnostic::new(Code::E0405, format!("expected a whole number of axles, found {}", number(axles)))
+                Diagnostic::new(Code::E0405, format!("expected a whole number of {what}, found {}", number(count)))
                     .at(span, "not whole"),
             );
             return None;
         }
-        Some(axles as u64)
+        Some(count as u64)
     }
 
     pub(super) fn loads(&mut self, record: &Record, places: &Option<Places>) -> Option<Vec<StaticLoad>> {
         let on = if record.word("on")? == "rail" { Target::Rail } else { Target::Sleepers };
-        let force_slot = record.get("force")?;
-        let Val::Number(force) = force_slot.value else { return None };
+        let force = record.get("force")?;
+        let of = match &force.value {
+            Val::Number(n) => n.basis,
+            Val::Word { arguments, .. } => match arguments.get("range").map(|slot| &slot.value) {
+                Some(Val::Range(smallest, _)) => smallest.basis,
+                _ => return None,
+            },
+            _ => return None,
+        };
+        let (of, on_what) = (of.unwrap_or_default(), record.word("on")?);
         let allowed = if on == Target::Rail { ["rail", "track"] } else { ["seat", "sleeper"] };
-        if !allowed.contains(&force.basis.unwrap_or_default()) {
-            self.report(
-                Diagnostic::new(
-                    Code::E0304,
-                    format!("a load on the {} is `per {}` or `per {}`", record.word("on")?, allowed[0], allowed[1]),
-                )
-                .at(force_slot.span, format!("per {}", force.basis.unwrap_or_default())),
-            );
+        if !allowed.contains(&of) {
+            let message = format!("a load on the {on_what} is `per {}` or `per {}`", allowed[0], allowed[1]);
+            self.report(Diagnostic::new(Code::E0304, message).at(force.span, format!("per {of}")));
             return None;
         }
         let places = places.as_ref()?;
@@ -99,7 +108,9 @@ impl Checker<'_> {
                 let Val::Number(n) = slot.value else { return None };
                 let x = self.chainage(places, n, from, slot.span)?;
                 let x = if on == Target::Sleepers { places.seats[places.nearest_seat(x)?].0 } else { x };
-                Some(StaticLoad { name: record.name.clone(), on, x, force: given(record, "force")? })
+                // the other forces are checked and cannot be run yet
+                let force = given(record, "force").filter(|_| changes(record).is_none())?;
+                Some(StaticLoad { name: record.name.clone(), on, x, force })
             })
             .collect();
         loads.into_iter().collect()
@@ -145,6 +156,7 @@ impl Checker<'_> {
         };
         let (integrator, time_step) = (integrator(record), time_step(record));
         let elements = record.number("elements_per_bay")?;
+        let grains = self.grains(record, places);
         let (law, other_laws) = laws?;
         Some(Solve {
             law,
@@ -159,6 +171,7 @@ impl Checker<'_> {
             finish: finish?,
             gravity: given(record, "gravity")?,
             seed: record.number("seed")?.value as u64,
+            grains: grains?,
         })
     }
 
@@ -176,32 +189,89 @@ impl Checker<'_> {
         Some(Update::Adaptive { tolerance, cap: cap.map(|(cap, _)| cap) })
     }
 
-    pub(super) fn kept(&mut self, record: &Record, places: &Option<Places>, traffic: Option<&Traffic>) -> Option<Kept> {
-        let Val::List(quantities) = &record.get("quantities")?.value else { return None };
-        let quantities = quantities
+    /// What a record keeps of the track, and what of volumes under it.
+    pub(super) fn kept(
+        &mut self,
+        record: &Record,
+        places: &Option<Places>,
+        traffic: Option<&Traffic>,
+        cycles: Option<u64>,
+    ) -> Option<(Option<Kept>, Option<VolumeRecord>)> {
+        let Val::List(slots) = &record.get("quantities")?.value else { return None };
+        let quantities: Option<Vec<(Response, Span)>> = slots
             .iter()
-            .map(|slot| if let Val::Response(r) = slot.value { Some(r) } else { None })
-            .collect::<Option<Vec<_>>>();
+            .map(|slot| if let Val::Response(r) = slot.value { Some((r, slot.span)) } else { None })
+            .collect();
         let seats = places.as_ref().and_then(|places| self.kept_seats(record, places));
-        let after = match (record.get("after").map(|s| &s.value), traffic) {
-            (Some(Val::List(counts)), Some(traffic)) => {
-                let counts: Vec<Option<u64>> = counts.iter().map(|slot| self.recorded(slot, traffic)).collect();
-                counts.into_iter().collect::<Option<Vec<_>>>()
-            }
-            (None, Some(traffic)) => Some(vec![*traffic.total]),
-            (Some(Val::List(_)) | None, None) => Some(Vec::new()),
-            _ => None,
+        let after = self.counts(record, traffic, cycles);
+        let volume = self.volume(record);
+        let (in_volumes, along): (Vec<_>, Vec<_>) =
+            quantities?.into_iter().partition(|(quantity, _)| quantity.place() == Place::Volume);
+        if let Some((quantity, span)) = in_volumes.first().filter(|_| !self.asked.layers_do) {
+            self.without_grains(*quantity, *span);
+        }
+        let names = |list: Vec<(Response, Span)>| list.into_iter().map(|(quantity, _)| quantity).collect::<Vec<_>>();
+        let (in_volumes, along) = (names(in_volumes), names(along));
+        let (seats, after, volume) = (seats?, after?, volume?);
+        let every = record.number("every").map(|n| n.value);
+        let volumes = (!in_volumes.is_empty()).then(|| VolumeRecord {
+            quantities: in_volumes,
+            seats: seats.clone(),
+            after: after.clone(),
+            every,
+            depth: record.number("depth").map(|n| n.value),
+            volume,
+        });
+        let kept = (!along.is_empty()).then_some(Kept { quantities: along, seats, after, every, near: None });
+        Some((kept, volumes))
+    }
+
+    /// The counts of a record: axles of traffic, or cycles of a load.
+    fn counts(&mut self, record: &Record, traffic: Option<&Traffic>, cycles: Option<u64>) -> Option<Vec<u64>> {
+        let slots = match record.get("after").map(|slot| &slot.value) {
+            Some(Val::List(slots)) => slots.as_slice(),
+            Some(_) => return None,
+            None => return Some(traffic.map(|t| *t.total).or(cycles).into_iter().collect()),
         };
-        Some(Kept {
-            quantities: quantities?,
-            seats: seats?,
-            after: after?,
-            every: record.number("every").map(|n| n.value),
-            near: None,
-        })
+        let counts: Vec<Option<u64>> = match (traffic, cycles) {
+            (Some(traffic), _) => slots.iter().map(|slot| self.recorded(slot, traffic)).collect(),
+            (None, Some(cycles)) => slots.iter().map(|slot| self.recorded_cycles(slot, cycles)).collect(),
+            // what counts is not understood, or nothing does
+            (None, None) => Vec::new(),
+        };
+        counts.into_iter().collect()
+    }
+
+    fn recorded_cycles(&mut self, slot: &Slot, cycles: u64) -> Option<u64> {
+        let Val::Number(n) = slot.value else { return None };
+        if n.dimension != Dimension::CYCLES {
+            self.not_counted(n.dimension, "cycles of its load", slot.span);
+            return None;
+        }
+        let count = self.whole(n.value, "cycles", slot.span)?;
+        if count > cycles {
+            self.report(
+                Diagnostic::new(Code::E0602, format!("the run ends after {cycles} cycles"))
+                    .at(slot.span, format!("{count} cycles are never reached")),
+            );
+            return None;
+        }
+        Some(count)
+    }
+
+    /// A count of something that this scene does not count.
+    pub(super) fn not_counted(&mut self, dimension: Dimension, counts: &str, span: Span) {
+        let message = format!("this scene counts the {counts}, found {}", dimension.describe());
+        self.report(Diagnostic::new(Code::E0302, message).at(span, "not counted here"));
     }
 
     fn recorded(&mut self, slot: &Slot, traffic: &Traffic) -> Option<u64> {
+        if let Val::Number(n) = slot.value
+            && n.dimension == Dimension::CYCLES
+        {
+            self.not_counted(n.dimension, "axles of its trains", slot.span);
+            return None;
+        }
         let count = self.axles_from_zero(slot, &traffic.train)?;
         if count > *traffic.total {
             self.report(
@@ -271,6 +341,12 @@ impl Checker<'_> {
         let x = self.chainage(places, at, from, span)?;
         places.nearest_seat(x)
     }
+}
+
+/// The most cycles of any load that comes back.
+pub(super) fn cycles(loads: &[Record]) -> Option<u64> {
+    let cyclic = loads.iter().filter(|load| matches!(load.get("force").map(|f| &f.value), Some(Val::Word { .. })));
+    cyclic.filter_map(|load| load.number("total").map(|n| n.value as u64)).max()
 }
 
 /// A number among the arguments of a word.

@@ -9,9 +9,12 @@ mod complete;
 mod expectation;
 mod fit;
 mod geometry;
+mod grading;
 mod law;
+mod layers;
 mod library;
 mod loading;
+mod material;
 mod measure;
 mod measured;
 mod modules;
@@ -22,6 +25,7 @@ mod records;
 mod seats;
 mod springs;
 mod table;
+mod tier;
 mod track;
 mod trackform;
 mod value;
@@ -42,6 +46,7 @@ use names::ItemId;
 use std::collections::{BTreeSet, HashMap, HashSet};
 use std::rc::Rc;
 use table::Table;
+use tier::Asked;
 use value::{Record, Val};
 
 /// What became of a file: every diagnostic, and the scene where nothing stands against it.
@@ -83,6 +88,7 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
         depth: 0,
         operands: 0,
         seat_places: None,
+        asked: Asked::default(),
     };
     let scenario = checker.scene(main);
     let mut diagnostics = checker.diagnostics;
@@ -124,6 +130,8 @@ struct Checker<'a> {
     operands: usize,
     /// Known once the track is laid out.
     seat_places: Option<Places>,
+    /// Known before the track is read.
+    asked: Asked,
 }
 
 /// Something that an object lacks.
@@ -275,19 +283,22 @@ impl Checker<'_> {
     }
 
     fn build(&mut self, main: ScopeId, track_record: &Record) -> Option<Scenario> {
+        let traffic_record = self.only(main, "traffic");
+        let load_records = self.all(main, "load");
+        let solve_record = self.only(main, "solve").unwrap_or_else(|| self.default_solve());
+        self.asked = Asked::of(&solve_record, track_record, traffic_record.is_some(), &load_records);
+        self.waits_for_grains(&solve_record, track_record, &load_records);
         let track = self.track(track_record);
         let places = self.seat_places.clone();
-        let traffic_record = self.only(main, "traffic");
         let traffic: Option<Traffic> = traffic_record.as_ref().and_then(|r| self.traffic(r));
-        let load_records = self.all(main, "load");
         let loads: Vec<Option<Vec<_>>> = load_records.iter().map(|r| self.loads(r, &places)).collect();
-        let solve = self.only(main, "solve").unwrap_or_else(|| self.default_solve());
-        let solve = self.solve(&solve, &places);
+        let solve = self.solve(&solve_record, &places);
         if let Some(solve) = &solve {
             self.shear_stiffnesses(track_record, solve.beam);
         }
+        let ends = loading::cycles(&load_records);
         let records = self.all(main, "record");
-        let records: Vec<Option<_>> = records.iter().map(|r| self.kept(r, &places, traffic.as_ref())).collect();
+        let records: Vec<Option<_>> = records.iter().map(|r| self.kept(r, &places, traffic.as_ref(), ends)).collect();
         let expectations = self.expectations(main);
         let (title, allow, deny) = self.scenario_head(main);
         let loads: Vec<_> = loads.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
@@ -296,16 +307,10 @@ impl Checker<'_> {
             (false, false) => Some(Loading::Static(loads)),
             (false, true) => None,
         };
-        Some(Scenario {
-            title,
-            track: track?,
-            loading,
-            solve: solve?,
-            records: records.into_iter().collect::<Option<_>>()?,
-            expectations,
-            allow,
-            deny,
-        })
+        let kept: Vec<_> = records.into_iter().collect::<Option<_>>()?;
+        let (records, volumes): (Vec<_>, Vec<_>) = kept.into_iter().unzip();
+        let (records, volumes) = (records.into_iter().flatten().collect(), volumes.into_iter().flatten().collect());
+        Some(Scenario { title, track: track?, loading, solve: solve?, records, volumes, expectations, allow, deny })
     }
 
     /// `solve` of a scene that says nothing about it.

@@ -60,7 +60,7 @@ fn bare(value: &Value) -> (&Value, Per) {
     }
 }
 
-fn is_profile(value: &Value) -> bool {
+pub(super) fn is_profile(value: &Value) -> bool {
     match &bare(value).0.kind {
         ValueKind::Call { word, .. } => WORDS.contains(&word.text.as_str()),
         ValueKind::List { entries, .. } => entries.iter().any(|e| e.key.is_some()),

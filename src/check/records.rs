@@ -198,7 +198,7 @@ impl Checker<'_> {
 
     /// Giving one way to say a thing drops the inherited other ways.
     fn drop_rivals(&self, record: &mut Record, fields: &[Field]) {
-        let sets = |path: &str| fields.iter().any(|f| sets_path(f, path));
+        let sets = |path: &str| fields.iter().any(|f| !is_none(f) && sets_path(f, path));
         for alternative in record.kind.alternatives {
             let given: Vec<bool> = alternative.ways.iter().map(|way| way.iter().any(|p| sets(p))).collect();
             if !given.contains(&true) {
@@ -336,6 +336,11 @@ fn object_kind(form: &Form) -> Option<&'static Kind> {
         Form::OneOf(forms) => forms.iter().find_map(object_kind),
         _ => None,
     }
+}
+
+/// Whether a field says that there is nothing, which takes the place of nothing else.
+fn is_none(field: &Field) -> bool {
+    matches!(&field.value.kind, ValueKind::Path(path) if path.names.len() == 1 && path.names[0].text == "none")
 }
 
 /// Whether a field sets `path`: itself, or inside the object that it gives.

@@ -56,14 +56,19 @@ impl Checker<'_> {
         table
     }
 
-    fn read_table(&mut self, name: &str, span: Span) -> Option<Table> {
-        let bytes = match self.data(name) {
-            Ok(bytes) => bytes,
+    /// The bytes of a data file below the main file's folder; `None` where a diagnostic has been given.
+    pub(super) fn data_file(&mut self, name: &str, span: Span) -> Option<Vec<u8>> {
+        match self.data(name) {
+            Ok(bytes) => Some(bytes),
             Err(error) => {
                 self.report(refusal(name, &error).at(span, "read here"));
-                return None;
+                None
             }
-        };
+        }
+    }
+
+    fn read_table(&mut self, name: &str, span: Span) -> Option<Table> {
+        let bytes = self.data_file(name, span)?;
         let text = match decode(name, &bytes) {
             Ok(text) => text,
             Err(mistake) => {

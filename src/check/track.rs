@@ -6,7 +6,7 @@ use super::seats::{Along, Cover};
 use super::trackform::{Built, base_area};
 use super::value::{Number, Record, Val};
 use crate::diag::{Code, Diagnostic};
-use crate::scenario::{Curve, Given, Origin, Piece, Profile, RailEnds, Section, Side, Track};
+use crate::scenario::{Curve, Given, Layer, Origin, Piece, Profile, RailEnds, Section, Side, Track};
 use crate::units::number;
 use std::rc::Rc;
 
@@ -52,11 +52,13 @@ impl Checker<'_> {
         let places = self.lay_out(&plans, &sides?)?;
         self.seat_places = Some(places.clone());
         let irregularity = self.irregularity(record, &places);
+        let bed = self.bed(record, &built);
         let mut seats = Vec::with_capacity(places.seats.len());
         let mut sections = Vec::new();
         let mut sound = true;
         for (i, built) in built.iter().enumerate() {
-            let section = section(built, places.sections[i], lengths[i]);
+            let layers = self.lay_layers(built, &places, i);
+            let section = layers.and_then(|layers| section(built, places.sections[i], lengths[i], layers));
             let laid = self.seats(built, &places, i);
             sound &= laid.is_some() && section.is_some();
             seats.extend(laid.unwrap_or_default());
@@ -70,7 +72,8 @@ impl Checker<'_> {
         };
         let irregularity = irregularity?;
         let transitions = places.transitions;
-        let track = Track { name: record.name.clone(), sections, transitions, seats, rail_ends, irregularity };
+        let (name, bed) = (record.name.clone(), bed?);
+        let track = Track { name, sections, transitions, seats, rail_ends, irregularity, bed };
         Some(track).filter(|_| sound)
     }
 
@@ -178,7 +181,7 @@ impl Checker<'_> {
 }
 
 /// What a section is made of, as far as it does not vary.
-fn section(built: &Built, (start, end): (f64, f64), length_origin: Origin) -> Option<Section> {
+fn section(built: &Built, (start, end): (f64, f64), length_origin: Origin, layers: Vec<Layer>) -> Option<Section> {
     let sleeper = |field: &str| built.sleeper.as_ref()?.number(field).map(|n: Number| n.value);
     let size = || Some([sleeper("length")?, sleeper("base_width")?, sleeper("height")?]);
     Some(Section {
@@ -193,5 +196,6 @@ fn section(built: &Built, (start, end): (f64, f64), length_origin: Origin) -> Op
         sleeper_base_area: built.sleeper.as_ref().and_then(|r| base_area(r)),
         seat_distance: sleeper("seat_distance"),
         auxiliary_rails: built.auxiliary_rails.clone()?,
+        layers,
     })
 }

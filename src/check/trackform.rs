@@ -1,7 +1,9 @@
 //! What a trackform is made of: its parts as far as they are understood, each checked against the others.
 
 use super::Checker;
+use super::layers::Stratum;
 use super::seats::Along;
+use super::tier::{has_layers, stands_on_layers};
 use super::track::given;
 use super::value::{Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
@@ -24,6 +26,7 @@ pub(super) struct Built {
     pub pad: Option<Damped>,
     pub foot: Option<Base>,
     pub settlement: Option<Along>,
+    pub layers: Option<Vec<Stratum>>,
 }
 
 /// What the pads stand on.
@@ -57,6 +60,14 @@ pub(super) struct Cushion {
     pub thickness: f64,
 }
 
+fn under_sleepers(form: &Record) -> &'static str {
+    if has_layers(form) {
+        "beside its layers, under the sleepers: only grains find it from them"
+    } else {
+        "under the sleepers"
+    }
+}
+
 /// Bearing area of a sleeper, m^2.
 pub(super) fn base_area(sleeper: &Record) -> Option<f64> {
     let of = |field: &str| sleeper.number(field).map(|n| n.value);
@@ -65,16 +76,17 @@ pub(super) fn base_area(sleeper: &Record) -> Option<f64> {
 
 impl Checker<'_> {
     pub(super) fn trackform(&mut self, form: &Record) -> Built {
-        let rail = self.part(form, "rail", "to carry the wheels").and_then(|r| self.rail(&r));
-        let pad = self.part(form, "pad", "between rail and seat").and_then(|r| self.damped(&r));
+        let rail = self.upper(form, "rail", "to carry the wheels").and_then(|r| self.rail(&r));
+        let pad = self.upper(form, "pad", "between rail and seat").and_then(|r| self.damped(&r));
         let spacing = given(form, "spacing");
         let auxiliary_rails = self.auxiliary_rails(form);
         let settlement = self.along(form, "settlement");
         let sleeper = form.record("sleeper").cloned();
         let (foot, slab) = self.under_the_pads(form, sleeper.as_ref());
         let sleeper = sleeper.filter(|_| slab.is_none());
+        let layers = self.strata(form);
         let name = form.name.clone();
-        Built { name, rail, spacing, slab, sleeper, auxiliary_rails, pad, foot, settlement }
+        Built { name, rail, spacing, slab, sleeper, auxiliary_rails, pad, foot, settlement, layers }
     }
 
     fn under_the_pads(&mut self, form: &Record, sleeper: Option<&Rc<Record>>) -> (Option<Base>, Option<Slab>) {
@@ -107,7 +119,8 @@ impl Checker<'_> {
         if let Some(sleeper) = &sleeper {
             self.bears(sleeper);
         }
-        let record = self.part(form, "support", "under the sleepers");
+        let by_layers = self.asked.layers_do && stands_on_layers(form);
+        let record = if by_layers { None } else { self.part(form, "support", under_sleepers(form)) };
         let seating = record.as_ref().and_then(|r| self.seating(r));
         let support = record.and_then(|s| self.damped(&s));
         (Some(Base::Sleeper(Box::new(Bed { mass, support, seating, usp }))), None)
@@ -120,7 +133,9 @@ impl Checker<'_> {
             Val::Number(n) => n.value != 0.0,
             value => matches!(value, Val::Profile(_) | Val::Record(_)),
         };
-        for (name, nothing) in [("usp", "none"), ("settlement", "0 mm")] {
+        let layered = |slot: &Slot| field == "slab" && matches!(&slot.value, Val::Pairs(pairs) if !pairs.is_empty());
+        let has = |slot: &Slot| has(slot) || layered(slot);
+        for (name, nothing) in [("usp", "none"), ("settlement", "0 mm"), ("layers", "[]")] {
             if let Some(slot) = form.get(name).filter(|slot| has(slot)) {
                 let message = format!(
                     "trackform `{}` {stands} and has a `{name}`, which only sleepers on a support have",
@@ -134,6 +149,12 @@ impl Checker<'_> {
                 );
             }
         }
+    }
+
+    /// A part above the sleepers, which a rig for sleepers does without.
+    fn upper(&mut self, form: &Record, name: &str, why: &str) -> Option<Rc<Record>> {
+        let left_out = self.asked.rig && form.record(name).is_none();
+        if left_out { None } else { self.part(form, name, why) }
     }
 
     /// A part that a trackform cannot do without.

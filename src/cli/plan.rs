@@ -2,6 +2,7 @@
 
 use super::scene::{SceneArguments, failed, not_yet, show};
 use super::{Outcome, terminal};
+use crate::Compiled;
 use clap::ValueEnum;
 
 /// Print the solver graph, the passes and the estimate
@@ -21,7 +22,7 @@ enum PlanFormat {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
-    let Some(compiled) = arguments.scene.compile() else { return Outcome::Usage };
+    let Some(compiled) = arguments.scene.compile().map(Compiled::to_run) else { return Outcome::Usage };
     show(&compiled);
     let Some(graph) = compiled.graph.as_ref().filter(|_| !failed(&compiled)) else {
         return not_yet(&compiled);

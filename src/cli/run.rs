@@ -33,7 +33,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
     let started = Instant::now();
-    let Some(compiled) = arguments.scene.compile() else { return Outcome::Usage };
+    let Some(compiled) = arguments.scene.compile().map(Compiled::to_run) else { return Outcome::Usage };
     show(&compiled);
     if failed(&compiled) {
         return Outcome::Failed;

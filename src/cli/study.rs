@@ -22,7 +22,7 @@ pub(super) struct Subject<'a> {
 
 /// Compiles the scene of a study.
 pub(super) fn compile(scene: &SceneArguments) -> Result<Compiled, Outcome> {
-    let Some(compiled) = scene.compile() else { return Err(Outcome::Usage) };
+    let Some(compiled) = scene.compile().map(Compiled::to_run) else { return Err(Outcome::Usage) };
     show(&compiled);
     if failed(&compiled) { Err(Outcome::Failed) } else { Ok(compiled) }
 }

@@ -41,6 +41,7 @@ fn solve() -> Solve {
         finish: None,
         gravity: given(9.81),
         seed: 1,
+        grains: Grains::default(),
     }
 }
 
@@ -77,6 +78,7 @@ pub(crate) fn transition() -> Run {
         sleeper_base_area: None,
         seat_distance: None,
         auxiliary_rails: None,
+        layers: vec![],
         length_origin: Origin::Default,
     };
     let slab = Slab {
@@ -119,6 +121,7 @@ pub(crate) fn transition() -> Run {
             seats: (-69..=40).filter(|n| *n != 0).map(seat).collect(),
             rail_ends: RailEnds::Clamped,
             irregularity: None,
+            bed: Bed::default(),
         },
         loading: Some(Loading::Traffic(Traffic {
             train: Train {
@@ -132,6 +135,7 @@ pub(crate) fn transition() -> Run {
         })),
         solve: solve(),
         records: vec![],
+        volumes: vec![],
         expectations: vec![
             expectation(
                 "-5 m < place_of_max(settlement) < -2.5 m",
@@ -306,12 +310,14 @@ pub(crate) fn bench() -> Run {
                 sleeper_base_area: None,
                 seat_distance: None,
                 auxiliary_rails: None,
+                layers: vec![],
                 length_origin: Origin::Default,
             }],
             transitions: vec![],
             seats,
             rail_ends: RailEnds::Free,
             irregularity: None,
+            bed: Bed::default(),
         },
         loading: Some(Loading::Static(vec![StaticLoad {
             name: "jack".to_owned(),
@@ -321,6 +327,7 @@ pub(crate) fn bench() -> Run {
         }])),
         solve: Solve { gravity: given(0.0), start: None, ..solve() },
         records: vec![],
+        volumes: vec![],
         expectations: vec![],
         allow: vec![],
         deny: vec![],

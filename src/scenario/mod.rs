@@ -4,16 +4,22 @@
 //! that its value is of a whole. Chainage x grows to the right, x = 0 is the first transition; downward displacement,
 //! settlement and force are positive; every number a person may have written carries its [`Origin`].
 
+mod bed;
 mod given;
+mod grading;
 mod law;
+mod material;
 mod profile;
 pub mod response;
 mod track;
 mod traffic;
 
+pub use bed::{Base, Bed, BedEnds, Grains, Tier, Volume, VolumeRecord};
 pub use given::{Given, Origin};
+pub use grading::{Grading, Passing};
 pub use law::{SettlementLaw, law_argument};
-pub use profile::{Cubic, Curve, Piece, Profile};
+pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soil, Strength};
+pub use profile::{Cubic, Curve, Piece, Profile, Varying};
 pub use track::{
     AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, Spring, Support, Track, Transition,
     Usp,
@@ -34,6 +40,8 @@ pub struct Scenario {
     pub loading: Option<Loading>,
     pub solve: Solve,
     pub records: Vec<Record>,
+    /// What is wanted from volumes of grains.
+    pub volumes: Vec<VolumeRecord>,
     pub expectations: Vec<response::Expectation>,
     /// Physics rules silenced with a reason.
     pub allow: Vec<(String, String)>,
@@ -69,6 +77,8 @@ pub struct Solve {
     /// m/s^2.
     pub gravity: Given,
     pub seed: u64,
+    /// What models of grains and soil read.
+    pub grains: Grains,
 }
 
 /// After how many axles forces and settlement are exchanged.

@@ -1,6 +1,6 @@
 //! A value that varies along the track: curves side by side, each over its piece of chainage.
 
-use super::Origin;
+use super::{Given, Origin};
 use serde::{Deserialize, Serialize};
 
 /// Two chainages closer than this are one place, m.
@@ -33,6 +33,13 @@ pub enum Curve {
     Natural(Vec<[f64; 3]>),
 }
 
+/// A value that may vary along the track, in SI.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Varying {
+    Constant(Given),
+    Profile(Profile),
+}
+
 /// A cubic between two chainages by its values and second derivatives at both.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cubic {
@@ -47,6 +54,34 @@ impl Profile {
     pub fn value(&self, x: f64) -> f64 {
         let after = self.pieces.partition_point(|piece| piece.start <= x + TINY);
         self.pieces.get(after.saturating_sub(1)).map_or(0.0, |piece| piece.curve.value(x))
+    }
+}
+
+impl Varying {
+    /// The value at a chainage.
+    pub fn at(&self, x: f64) -> f64 {
+        match self {
+            Varying::Constant(given) => **given,
+            Varying::Profile(profile) => profile.value(x),
+        }
+    }
+
+    pub fn origin(&self) -> Origin {
+        match self {
+            Varying::Constant(given) => given.origin,
+            Varying::Profile(profile) => profile.origin,
+        }
+    }
+
+    /// The largest value between the points of its curves, exact where these run straight or level out.
+    pub fn largest(&self) -> f64 {
+        match self {
+            Varying::Constant(given) => **given,
+            Varying::Profile(profile) => {
+                let values = profile.pieces.iter().flat_map(|p| p.knots().into_iter().map(|x| p.curve.value(x)));
+                values.fold(f64::NEG_INFINITY, f64::max)
+            }
+        }
     }
 }
 

@@ -40,6 +40,16 @@ pub enum Response {
     SupportStiffness,
     /// Time without contact of sleeper and support during a passage, s.
     ContactLoss,
+    /// Mean velocity of the grains in a volume, m/s, downward.
+    BallastVelocity,
+    /// Mean acceleration of the grains in a volume, m/s^2, downward.
+    BallastAcceleration,
+    /// Vertical stress in a volume of grains, Pa.
+    BallastStress,
+    /// Share of pores in a volume.
+    Porosity,
+    /// Mean number of neighbours that a grain of a volume touches.
+    CoordinationNumber,
     /// Median settlement far from every transition, m.
     FarFieldSettlement,
     /// Largest settlement less the far-field one, m.
@@ -54,6 +64,8 @@ pub enum Place {
     Seat,
     Rail,
     Wheel,
+    /// In volumes of grains.
+    Volume,
     Scene,
 }
 
@@ -120,6 +132,11 @@ impl Response {
         Response::SleeperAcceleration,
         Response::SupportStiffness,
         Response::ContactLoss,
+        Response::BallastVelocity,
+        Response::BallastAcceleration,
+        Response::BallastStress,
+        Response::Porosity,
+        Response::CoordinationNumber,
         Response::FarFieldSettlement,
         Response::DifferentialSettlement,
         Response::VoidedSleepers,
@@ -143,6 +160,11 @@ impl Response {
             Response::SleeperAcceleration => "sleeper_acceleration",
             Response::SupportStiffness => "support_stiffness",
             Response::ContactLoss => "contact_loss",
+            Response::BallastVelocity => "ballast_velocity",
+            Response::BallastAcceleration => "ballast_acceleration",
+            Response::BallastStress => "ballast_stress",
+            Response::Porosity => "porosity",
+            Response::CoordinationNumber => "coordination_number",
             Response::FarFieldSettlement => "far_field_settlement",
             Response::DifferentialSettlement => "differential_settlement",
             Response::VoidedSleepers => "voided_sleepers",
@@ -159,6 +181,11 @@ impl Response {
             Response::RailDisplacement | Response::RailLevel | Response::RailMoment | Response::RailStiffness => {
                 Place::Rail
             }
+            Response::BallastVelocity
+            | Response::BallastAcceleration
+            | Response::BallastStress
+            | Response::Porosity
+            | Response::CoordinationNumber => Place::Volume,
             Response::FarFieldSettlement | Response::DifferentialSettlement | Response::VoidedSleepers => Place::Scene,
             _ => Place::Seat,
         }
@@ -171,12 +198,12 @@ impl Response {
                 "N"
             }
             Response::RailMoment => "N m",
-            Response::SleeperVelocity => "m/s",
-            Response::SleeperAcceleration => "m/s^2",
+            Response::SleeperVelocity | Response::BallastVelocity => "m/s",
+            Response::SleeperAcceleration | Response::BallastAcceleration => "m/s^2",
             Response::SupportStiffness | Response::RailStiffness => "N/m",
-            Response::ContactPressure => "Pa",
+            Response::ContactPressure | Response::BallastStress => "Pa",
             Response::ContactLoss => "s",
-            Response::VoidedSleepers => "1",
+            Response::VoidedSleepers | Response::Porosity | Response::CoordinationNumber => "1",
             _ => "m",
         }
     }

@@ -1,6 +1,6 @@
 //! The track at rest: sections side by side, the transitions between them, and every rail seat.
 
-use super::{Given, Origin, Profile};
+use super::{Bed, Given, Layer, Origin, Profile};
 use serde::{Deserialize, Serialize};
 
 /// The whole track of the model, of one rail.
@@ -16,6 +16,8 @@ pub struct Track {
     pub rail_ends: RailEnds,
     /// Level of the rail as built, m, positive down, over the whole track; `None` is level.
     pub irregularity: Option<Profile>,
+    /// What holds the layers.
+    pub bed: Bed,
 }
 
 /// What holds the rail at both ends of the model.
@@ -49,6 +51,8 @@ pub struct Section {
     pub seat_distance: Option<f64>,
     /// Rails beside the running rails, from one end of the section to the other.
     pub auxiliary_rails: Option<AuxiliaryRails>,
+    /// Under the sleepers, downwards; none where the scene has only their supports.
+    pub layers: Vec<Layer>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

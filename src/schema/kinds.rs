@@ -1,5 +1,6 @@
 //! The table of kinds and fields. Ranges are in the unit of their field; `per` names the basis of the range first.
 
+use super::materials;
 use super::{Alternative, Basis, Field, Form, Kind, Measure, Need, Role, Varies, Word};
 
 const fn field(name: &'static str, form: Form, need: Need, doc: &'static str) -> Field {
@@ -8,13 +9,13 @@ const fn field(name: &'static str, form: Form, need: Need, doc: &'static str) ->
 pub(super) const fn required(name: &'static str, form: Form, doc: &'static str) -> Field {
     field(name, form, Need::Required, doc)
 }
-const fn optional(name: &'static str, form: Form, doc: &'static str) -> Field {
+pub(super) const fn optional(name: &'static str, form: Form, doc: &'static str) -> Field {
     field(name, form, Need::Optional, doc)
 }
 pub(super) const fn default(name: &'static str, form: Form, text: &'static str, doc: &'static str) -> Field {
     field(name, form, Need::Default(text), doc)
 }
-const fn way(name: &'static str, form: Form, doc: &'static str) -> Field {
+pub(super) const fn way(name: &'static str, form: Form, doc: &'static str) -> Field {
     field(name, form, Need::Alternative, doc)
 }
 
@@ -28,7 +29,7 @@ pub(super) const fn per(unit: &'static str, min: f64, max: f64, basis: &'static 
     Form::Number(Measure { basis: Some(basis), ..measure(unit, min, max) })
 }
 /// A number that may vary along the track.
-const fn along(form: Form) -> Form {
+pub(super) const fn along(form: Form) -> Form {
     varying(form, Varies::Yes)
 }
 /// A number that will vary along the track in a later version.
@@ -47,7 +48,7 @@ pub(super) const fn word(name: &'static str, doc: &'static str) -> Word {
 const fn planned(name: &'static str) -> Word {
     Word { name, doc: "not in this version", arguments: &[], planned: true }
 }
-const fn either(ways: &'static [&'static [&'static str]]) -> Alternative {
+pub(super) const fn either(ways: &'static [&'static [&'static str]]) -> Alternative {
     Alternative { ways, default: None }
 }
 
@@ -62,7 +63,7 @@ const PRIMARY: Basis =
     Basis { names: &[("wheel", 1.0), ("wheelset", 0.5), ("bogie", 0.25), ("rail", 1.0)], assumed: None };
 pub(super) const SEAT: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: Some("seat") };
 
-const NONE: &[Word] = &[word("none", "absent")];
+pub(super) const NONE: &[Word] = &[word("none", "absent")];
 const AUTO: &[Word] = &[word("auto", "chosen by the planner")];
 const USP: Form = Form::OneOf(&[Form::Object("usp"), Form::Words(NONE)]);
 const SEATING: Form = Form::OneOf(&[Form::Object("seating"), Form::Words(NONE)]);
@@ -77,6 +78,55 @@ const SUPPORT: Form = Form::OneOf(&[
 ]);
 const AXLES_OR_MASS: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 1e-6, 1e4)]);
 const AXLE_COUNT: Form = number("axles", 0.0, 1e9);
+const AXLES_MASS_OR_CYCLES: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 1e-6, 1e4), number("cycles", 0.0, 1e9)]);
+const TRACK_OR_RAIL: Basis = Basis { names: &[("track", 0.5), ("rail", 1.0)], assumed: Some("track") };
+const LAYERS: Form = Form::Pairs {
+    key: &Form::OneOf(&[Form::Object("granular"), Form::Object("soil")]),
+    value: &Form::OneOf(&[
+        along(number("m", 0.0, 100.0)),
+        Form::Words(&[word("rest", "what is left of the depth; in stretches only")]),
+    ]),
+    implied: None,
+};
+
+const VOLUMES: &[Word] = &[
+    Word {
+        name: "box",
+        doc: "a box about the depth, under the middle of the sleeper",
+        arguments: &[
+            default("along", number("m", 0.01, 10.0), "0.2 m", ""),
+            default(
+                "across",
+                Form::OneOf(&[number("m", 0.01, 20.0), Form::Words(&[word("bed", "the whole width of the bed")])]),
+                "bed",
+                "",
+            ),
+            default("height", number("m", 0.01, 10.0), "0.2 m", ""),
+        ],
+        planned: false,
+    },
+    Word {
+        name: "sphere",
+        doc: "a sphere about the depth",
+        arguments: &[required("radius", number("m", 0.005, 5.0), "")],
+        planned: false,
+    },
+];
+
+const CYCLIC: Word = Word {
+    name: "cyclic",
+    doc: "goes from the smaller to the greater force and back",
+    arguments: &[
+        required(
+            "range",
+            Form::Interval(Measure { basis: Some(&FORCE), ..measure("kN", 0.0, 10_000.0) }),
+            "smallest and greatest force",
+        ),
+        required("frequency", number("Hz", 1e-3, 1000.0), ""),
+        default("wave", Form::Words(&[word("sine", "")]), "sine", ""),
+    ],
+    planned: false,
+};
 
 /// Every kind, in the order of `trackbed docs`.
 pub const KINDS: &[Kind] = &[
@@ -242,6 +292,11 @@ pub const KINDS: &[Kind] = &[
         alternatives: &[],
         planned: &[],
     },
+    materials::GRADING,
+    materials::GRANULAR,
+    materials::PACKING,
+    materials::BOND,
+    materials::SOIL,
     Kind {
         name: "trackform",
         doc: "A way to build track: what repeats from seat to seat.",
@@ -252,8 +307,17 @@ pub const KINDS: &[Kind] = &[
             optional("sleeper", SLEEPER, "a slab has none"),
             optional("usp", USP, "under the sleepers, in series with the support"),
             required("spacing", along_later(number("m", 0.3, 1.2)), "of sleepers or seats"),
-            optional("slab", SLAB, "carries the seats instead of sleepers and support"),
-            optional("support", SUPPORT, "carries the sleepers"),
+            optional(
+                "slab",
+                SLAB,
+                "carries the seats instead of sleepers, layers and support; it drops those inherited",
+            ),
+            optional(
+                "layers",
+                LAYERS,
+                "under the sleepers, downwards, each with its thickness: what grain tiers model",
+            ),
+            optional("support", SUPPORT, "carries the sleepers; beside `layers` it serves where no 3D model gives one"),
             default(
                 "settlement",
                 along(number("mm", -100.0, 100.0)),
@@ -267,8 +331,9 @@ pub const KINDS: &[Kind] = &[
                 "rails beside the running rails, from one end of the section to the other: they spread the load",
             ),
         ],
-        alternatives: &[],
-        planned: &["layers"],
+        // layers and support stand beside each other, a slab alone
+        alternatives: &[Alternative { ways: &[&["slab"], &["layers", "support"]], default: Some(("slab", "none")) }],
+        planned: &[],
     },
     Kind {
         name: "auxiliary_rails",
@@ -319,6 +384,23 @@ pub const KINDS: &[Kind] = &[
                 "clamped",
                 "what holds the rail at the ends of the model",
             ),
+            optional(
+                "bed_width",
+                per("m", 0.5, 20.0, &TRACK_OR_RAIL),
+                "of the layers between their side walls; the length of the longest sleeper where absent",
+            ),
+            default(
+                "bed_ends",
+                Form::Words(&[word("walls", "rigid walls across the track"), word("periodic", "the bed goes on")]),
+                "walls",
+                "what closes the layers at the ends of the model",
+            ),
+            default(
+                "base",
+                Form::Words(&[word("rigid", "does not move"), word("quiet", "lets waves out")]),
+                "rigid",
+                "under the lowest layer",
+            ),
             default(
                 "irregularity",
                 along(number("mm", -50.0, 50.0)),
@@ -327,7 +409,7 @@ pub const KINDS: &[Kind] = &[
             ),
         ],
         alternatives: &[],
-        planned: &["stretches", "bed_width", "bed_ends", "base"],
+        planned: &["stretches"],
     },
     Kind {
         name: "vehicle",
@@ -480,10 +562,16 @@ pub const KINDS: &[Kind] = &[
             required("on", Form::Words(&[word("rail", ""), word("sleepers", "")]), "what it stands on"),
             required("at", Form::List(&Form::Place), "one force at each place"),
             optional("from", Form::Name, "the transition from which `at` counts; needed where there are several"),
-            required("force", per("kN", 0.0, 10_000.0, &FORCE), "constant, positive down"),
+            required(
+                "force",
+                Form::OneOf(&[per("kN", 0.0, 10_000.0, &FORCE), Form::Words(&[CYCLIC])]),
+                "constant or cyclic, positive down",
+            ),
+            default("total", number("cycles", 1.0, 1e9), "1 cycle", "times that a cyclic force comes back"),
+            default("speed", number("m/s", 0.0, 200.0), "0 m/s", "with which it moves along the rail"),
         ],
         alternatives: &[],
-        planned: &["total", "speed"],
+        planned: &[],
     },
     Kind {
         name: "law",
@@ -521,9 +609,9 @@ pub const KINDS: &[Kind] = &[
                 Form::Words(&[
                     word("auto", "the cheapest tier that answers"),
                     word("law", "a settlement law under each sleeper"),
-                    planned("cells"),
-                    planned("zone"),
-                    planned("full"),
+                    word("cells", "grains under each sleeper that differs, in a periodic cell; checked, not run yet"),
+                    word("zone", "grains under the bays that differ, springs beyond; checked, not run yet"),
+                    word("full", "grains under the whole softer side; checked, not run yet"),
                 ]),
                 "auto",
                 "the tier of the model under the sleepers",
@@ -643,20 +731,75 @@ pub const KINDS: &[Kind] = &[
             default("finish", Form::OneOf(&[Form::Place, Form::Words(AUTO)]), "auto", "of the leading wheel"),
             default("gravity", number("m/s^2", 0.0, 20.0), "9.81 m/s^2", ""),
             default("seed", Form::Integer { min: 0, max: 1_000_000_000 }, "1", "of everything random"),
+            default(
+                "window",
+                Form::OneOf(&[Form::Span, Form::Words(AUTO)]),
+                "auto",
+                "where grains are modelled, at every transition; track and vehicle keep their length",
+            ),
+            default(
+                "coupling",
+                Form::Words(&[
+                    word("iterated", "track and grains in turn"),
+                    word("monolithic", "track and grains together, step by step"),
+                ]),
+                "iterated",
+                "of track and grains",
+            ),
+            default(
+                "support_from",
+                Form::Words(&[
+                    word("static_load", "each sleeper pressed once"),
+                    word("passage", "the forces of the last passage"),
+                ]),
+                "static_load",
+                "from which grains give the stiffness of supports",
+            ),
+            default(
+                "grain_step",
+                Form::OneOf(&[number("s", 1e-9, 1e-2), Form::Words(AUTO)]),
+                "auto",
+                "time step of grains",
+            ),
+            default(
+                "zone_size",
+                Form::OneOf(&[number("m", 0.005, 5.0), Form::Words(AUTO)]),
+                "auto",
+                "of the elements of soil",
+            ),
+            default(
+                "tolerance",
+                number("%", 0.1, 50.0),
+                "5 %",
+                "of the largest settlement: the error that `auto` plans for",
+            ),
+            default(
+                "budget",
+                Form::OneOf(&[number("min", 0.01, 1e6), Form::Words(NONE)]),
+                "none",
+                "time that the run may take",
+            ),
+            default(
+                "memory",
+                Form::OneOf(&[number("GiB", 0.01, 1e5), Form::Words(NONE)]),
+                "none",
+                "that the run may take",
+            ),
+            default(
+                "symmetry",
+                Form::Words(&[word("half", "the bed of one rail"), word("full", "the bed of both rails")]),
+                "half",
+                "of the bed of grains",
+            ),
+            default(
+                "repeats",
+                Form::Integer { min: 1, max: 1000 },
+                "1",
+                "packings with further seeds, for the band of confidence",
+            ),
         ],
         alternatives: &[],
-        planned: &[
-            "window",
-            "coupling",
-            "support_from",
-            "grain_step",
-            "zone_size",
-            "tolerance",
-            "budget",
-            "memory",
-            "symmetry",
-            "repeats",
-        ],
+        planned: &[],
     },
     Kind {
         name: "record",
@@ -667,11 +810,26 @@ pub const KINDS: &[Kind] = &[
             optional("at", Form::List(&Form::Place), "at these seats"),
             optional("over", Form::Span, "at all seats of a span"),
             optional("from", Form::Name, "the transition from which places count; needed where there are several"),
-            optional("after", Form::List(&AXLES_OR_MASS), "of a passage at these axle counts; the last where absent"),
+            optional(
+                "after",
+                Form::List(&AXLES_MASS_OR_CYCLES),
+                "of a passage at these axle counts, or of a cyclic load at these cycles; the last where absent",
+            ),
             optional("every", number("s", 1e-7, 1.0), "sampling interval"),
+            optional(
+                "depth",
+                number("m", 0.0, 100.0),
+                "of volumes, below the sleepers; half the top layer where absent",
+            ),
+            default(
+                "volume",
+                Form::Words(VOLUMES),
+                "box(0.2 m, bed, 0.2 m)",
+                "over which the responses of ballast are averaged",
+            ),
         ],
         alternatives: &[],
-        planned: &["depth", "volume", "states"],
+        planned: &["states"],
     },
     Kind {
         name: "expect",

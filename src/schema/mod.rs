@@ -5,6 +5,7 @@
 mod docs;
 mod kinds;
 mod laws;
+mod materials;
 
 pub use docs::{index, page};
 pub use kinds::{COMMON, KINDS};
@@ -137,7 +138,7 @@ pub struct Alternative {
 }
 
 /// Kinds of the language that this version does not read yet.
-pub const PLANNED_KINDS: &[&str] = &["granular", "grading", "soil", "stretch", "tamping", "study"];
+pub const PLANNED_KINDS: &[&str] = &["stretch", "tamping", "study"];
 
 /// The kind of that name, nested ones included.
 pub fn kind(name: &str) -> Option<&'static Kind> {

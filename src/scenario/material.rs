@@ -1,0 +1,137 @@
+//! What lies under the sleepers: layers of granular material and of soil.
+
+use super::{Given, Grading, Varying};
+use serde::{Deserialize, Serialize};
+
+/// A layer of a section; the first of several lies under the sleepers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Layer {
+    /// That of its material.
+    pub name: String,
+    pub material: Material,
+    /// m.
+    pub thickness: Varying,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Material {
+    Granular(Box<Granular>),
+    Soil(Soil),
+}
+
+/// Ballast or sub-ballast: grains.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Granular {
+    pub grading: Grading,
+    /// Of a grain, kg/m^3.
+    pub density: Given,
+    pub shape: Shape,
+    pub contact: Contact,
+    /// Tangential stiffness of a contact / normal stiffness.
+    pub shear_ratio: Given,
+    /// Between grains, under traffic.
+    pub friction: Given,
+    /// To walls and sleepers.
+    pub wall_friction: Given,
+    /// Share of the force out of balance that opposes motion, under traffic.
+    pub local_damping: Given,
+    /// Of a contact, as share of its critical damping, under traffic.
+    pub viscous_damping: Given,
+    /// Whether a dashpot may pull grains that part.
+    pub dashpots_pull: bool,
+    pub packing: Packing,
+    pub bond: Option<Bond>,
+}
+
+/// The shape of grains. A grain has the volume of the sphere of its size.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Shape {
+    Spheres,
+    /// Overlapping spheres that move as one.
+    Clumps {
+        /// Fewest and most spheres of a clump.
+        pebbles: [u32; 2],
+        /// Smallest sphere / largest sphere of a clump.
+        ratio: Given,
+        /// Overlap of spheres that smooths the surface, rad.
+        distance: Given,
+        /// Shapes that grains are copies of.
+        templates: u32,
+        /// Surface that the spheres fill: a file below the scene's folder.
+        from: Option<String>,
+    },
+}
+
+/// The normal force of two grains that touch.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Contact {
+    Linear {
+        /// Of a contact, N/m.
+        stiffness: Given,
+    },
+    Hertz {
+        /// Pa.
+        youngs_modulus: Given,
+        poisson_ratio: Given,
+    },
+}
+
+/// How a granular layer is packed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Packing {
+    pub lifts: u32,
+    /// On each lift, Pa.
+    pub pressure: Given,
+    /// As those of [`Granular`], while grains are packed.
+    pub friction: Given,
+    pub local_damping: Given,
+    pub viscous_damping: Given,
+}
+
+/// Glue between grains.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Bond {
+    /// Of a contact, N/m.
+    pub stiffness: Given,
+    /// N.
+    pub tensile_strength: Given,
+    /// N.
+    pub shear_strength: Given,
+}
+
+/// A continuous layer.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Soil {
+    /// Pa.
+    pub youngs_modulus: Varying,
+    pub poisson_ratio: Given,
+    /// kg/m^3.
+    pub density: Given,
+    pub strength: Strength,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Strength {
+    /// It does not yield.
+    Elastic,
+    MohrCoulomb {
+        /// Pa.
+        cohesion: Given,
+        /// rad.
+        friction_angle: Given,
+        /// rad, not above the friction angle.
+        dilation: Given,
+        /// Pa.
+        tension: Given,
+    },
+}
+
+impl Layer {
+    pub fn granular(&self) -> Option<&Granular> {
+        if let Material::Granular(granular) = &self.material { Some(granular) } else { None }
+    }
+
+    pub fn soil(&self) -> Option<&Soil> {
+        if let Material::Soil(soil) = &self.material { Some(soil) } else { None }
+    }
+}

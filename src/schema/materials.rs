@@ -1,0 +1,214 @@
+//! Kinds of what lies under the sleepers: gradings, granular materials, soils.
+
+use super::kinds::{NONE, along, default, either, measure, number, optional, per, required, way, word};
+use super::{Basis, Form, Kind, Role, Word};
+
+/// A contact is two particles in series.
+const CONTACT_OR_PARTICLE: Basis = Basis { names: &[("contact", 1.0), ("particle", 0.5)], assumed: None };
+
+pub(super) const GRADING: Kind = Kind {
+    name: "grading",
+    doc: "How the sizes of grains share the mass: the curve of a sieve test, and the part of it that is modelled.",
+    role: Role::Part,
+    fields: &[
+        required(
+            "passing",
+            Form::OneOf(&[
+                Form::Pairs { key: &number("mm", 1e-3, 1000.0), value: &number("%", 0.0, 100.0), implied: None },
+                Form::Words(&[
+                    Word {
+                        name: "log_normal",
+                        doc: "the logarithm of the size is normally distributed by mass; it needs both cuts",
+                        arguments: &[
+                            required("median", number("mm", 1e-3, 1000.0), "half of the mass is finer"),
+                            required(
+                                "spread",
+                                number("", 0.01, 3.0),
+                                "standard deviation of the natural logarithm of the size",
+                            ),
+                        ],
+                        planned: false,
+                    },
+                    Word {
+                        name: "file",
+                        doc: "a table below the main file's folder with the columns `size_mm` and `passing_%`",
+                        arguments: &[required("name", Form::Text, "such as \"sieves.csv\"")],
+                        planned: false,
+                    },
+                ]),
+            ]),
+            "share of the mass that passes a sieve, by its size; straight over the logarithm of the size between sieves",
+        ),
+        default("cut_below", CUT, "none", "smaller grains are not modelled"),
+        default("cut_above", CUT, "none", "larger grains are not modelled"),
+    ],
+    alternatives: &[],
+    planned: &[],
+};
+
+const CUT: Form = Form::OneOf(&[number("mm", 1e-3, 1000.0), Form::Words(NONE)]);
+
+pub(super) const GRANULAR: Kind = Kind {
+    name: "granular",
+    doc: "Ballast or sub-ballast: grains with their sizes, shapes, contacts and the recipe by which they are packed.",
+    role: Role::Part,
+    fields: &[
+        required("grading", Form::Object("grading"), "of the grains"),
+        required("density", number("kg/m^3", 1500.0, 3500.0), "of a grain, without pores between grains"),
+        default(
+            "shape",
+            Form::Words(&[word("spheres", "one sphere a grain"), CLUMPS]),
+            "spheres",
+            "of the grains; a grain of any shape has the volume of the sphere of its size",
+        ),
+        default(
+            "contact",
+            Form::Words(&[
+                word("linear", "a spring of `contact_stiffness`"),
+                Word {
+                    name: "hertz",
+                    doc: "elastic bodies that touch: the stiffness grows with the force",
+                    arguments: &[
+                        required("youngs_modulus", number("GPa", 0.1, 200.0), "of the rock"),
+                        required("poisson_ratio", number("", 0.0, 0.49), "of the rock"),
+                    ],
+                    planned: false,
+                },
+            ]),
+            "linear",
+            "law of two grains that touch",
+        ),
+        optional(
+            "contact_stiffness",
+            per("MN/m", 0.1, 1000.0, &CONTACT_OR_PARTICLE),
+            "normal; needed for `contact = linear`",
+        ),
+        default("shear_ratio", number("", 0.0, 1.5), "1", "tangential stiffness / normal stiffness"),
+        required("friction", number("", 0.0, 1.5), "between grains, under traffic"),
+        optional("wall_friction", number("", 0.0, 1.5), "to walls and sleepers; that between grains where absent"),
+        default(
+            "local_damping",
+            number("", 0.0, 0.9),
+            "0.2",
+            "share of the force out of balance that opposes motion, under traffic",
+        ),
+        default(
+            "viscous_damping",
+            number("", 0.0, 1.0),
+            "0.3",
+            "of a contact as share of its critical damping, under traffic",
+        ),
+        default(
+            "dashpots",
+            Form::Words(&[
+                word("no_tension", "spring and dashpot together never pull"),
+                word("full", "a dashpot may pull grains that part"),
+            ]),
+            "no_tension",
+            "of contacts",
+        ),
+        default("packing", Form::Object("packing"), "{}", "recipe by which the periodic cell is packed"),
+        default(
+            "bond",
+            Form::OneOf(&[Form::Object("bond"), Form::Words(NONE)]),
+            "none",
+            "glue between grains that touch after packing",
+        ),
+    ],
+    alternatives: &[],
+    planned: &[],
+};
+
+const CLUMPS: Word = Word {
+    name: "clumps",
+    doc: "overlapping spheres that move as one",
+    arguments: &[
+        default(
+            "pebbles",
+            Form::OneOf(&[Form::Integer { min: 1, max: 50 }, Form::Interval(measure("", 1.0, 50.0))]),
+            "2 .. 3",
+            "spheres a clump",
+        ),
+        default(
+            "ratio",
+            number("", 0.05, 1.0),
+            "0.8",
+            "smallest sphere / largest sphere of a clump, as in bubble-pack",
+        ),
+        default("distance", number("deg", 0.0, 180.0), "110 deg", "how smooth the surface is, as in bubble-pack"),
+        default("templates", Form::Integer { min: 1, max: 1000 }, "5", "shapes that grains are copies of"),
+        optional(
+            "from",
+            Form::Words(&[Word {
+                name: "file",
+                doc: "a scanned grain below the main file's folder",
+                arguments: &[required("name", Form::Text, "such as \"stone.stl\"")],
+                planned: false,
+            }]),
+            "a surface (STL) to fill with spheres",
+        ),
+    ],
+    planned: false,
+};
+
+pub(super) const PACKING: Kind = Kind {
+    name: "packing",
+    doc: "How a granular layer is made: lift by lift, each pressed down, with properties of its own meanwhile.",
+    role: Role::Nested,
+    fields: &[
+        default("lifts", Form::Integer { min: 1, max: 20 }, "3", "layers that are pressed one after the other"),
+        default("pressure", number("kPa", 1.0, 2000.0), "200 kPa", "on each lift"),
+        default("friction", number("", 0.0, 1.5), "0", "between grains, while they are packed"),
+        default("local_damping", number("", 0.0, 0.9), "0.7", "while they are packed"),
+        default("viscous_damping", number("", 0.0, 1.0), "0", "while they are packed"),
+    ],
+    alternatives: &[],
+    planned: &[],
+};
+
+pub(super) const BOND: Kind = Kind {
+    name: "bond",
+    doc: "Glue between grains: a spring that also pulls, until it breaks.",
+    role: Role::Nested,
+    fields: &[
+        required("stiffness", per("MN/m", 0.1, 1000.0, &CONTACT_OR_PARTICLE), "normal"),
+        required("tensile_strength", number("kN", 1e-3, 1000.0), "force at which it breaks when pulled"),
+        required("shear_strength", number("kN", 1e-3, 1000.0), "force at which it breaks when sheared"),
+    ],
+    alternatives: &[],
+    planned: &[],
+};
+
+pub(super) const SOIL: Kind = Kind {
+    name: "soil",
+    doc: "A continuous layer: soil, treated soil, concrete or a ballast mat.",
+    role: Role::Part,
+    fields: &[
+        way("youngs_modulus", along(number("MPa", 1.0, 50_000.0)), ""),
+        way("poisson_ratio", number("", 0.0, 0.49), ""),
+        way("bulk_modulus", number("MPa", 0.3, 1e6), ""),
+        way("shear_modulus", number("MPa", 0.3, 25_000.0), ""),
+        required("density", number("kg/m^3", 100.0, 3500.0), "with its pores and water"),
+        default(
+            "strength",
+            Form::Words(&[
+                word("elastic", "it does not yield"),
+                Word {
+                    name: "mohr_coulomb",
+                    doc: "it yields where shear exceeds cohesion + tan(friction_angle) x pressure",
+                    arguments: &[
+                        required("cohesion", number("kPa", 0.0, 10_000.0), ""),
+                        required("friction_angle", number("deg", 0.0, 60.0), ""),
+                        default("dilation", number("deg", 0.0, 60.0), "0 deg", "not above the friction angle"),
+                        default("tension", number("kPa", 0.0, 10_000.0), "0 kPa", "tensile strength"),
+                    ],
+                    planned: false,
+                },
+            ]),
+            "elastic",
+            "",
+        ),
+    ],
+    alternatives: &[either(&[&["youngs_modulus", "poisson_ratio"], &["bulk_modulus", "shear_modulus"]])],
+    planned: &[],
+};
