@@ -7,6 +7,7 @@ mod calibrate;
 mod chart;
 mod check;
 mod docs;
+mod draw;
 mod explain;
 mod fmt;
 mod new;
@@ -33,6 +34,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Check(check::Arguments),
+    Draw(draw::Arguments),
     Plan(plan::Arguments),
     Run(run::Arguments),
     Calibrate(calibrate::Arguments),
@@ -75,6 +77,7 @@ pub fn main() -> ExitCode {
     };
     let outcome = match cli.command {
         Command::Check(arguments) => check::run(&arguments),
+        Command::Draw(arguments) => draw::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),

@@ -1,7 +1,7 @@
 //! Pictures and pages of a run: the scene to scale, what happens along the track, in time and with the axles.
 //!
 //! [`page`] is the whole report in one file that needs nothing else; [`figures`] are its pictures one by one, each an
-//! SVG that stands on its own; [`scene_svg`] draws a scene that has not been run. Nothing here computes physics: the
+//! SVG that stands on its own; [`drawing_svg`] draws a scene that has not been run. Nothing here computes physics: the
 //! numbers are those of the run's tables.
 
 mod along;
@@ -10,11 +10,15 @@ mod blocks;
 mod chart;
 mod colour_map;
 mod counts;
+mod cross_section;
+mod drawing;
 mod exchanges;
+mod gradings;
 mod hanging;
 mod headline;
 mod histories;
 mod laws;
+mod layers;
 mod level;
 mod limits;
 mod moments;
@@ -34,6 +38,7 @@ mod wheels;
 mod work_precision;
 
 pub use bed::{BedView, Colour, Side, bed_svg};
+pub use drawing::drawing_svg;
 pub use page::page;
 pub use scene::scene_svg;
 pub use stability::stability_svg;

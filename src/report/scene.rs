@@ -57,8 +57,14 @@ impl View {
 /// Draws the scene as one picture, valid on its own.
 pub fn scene_svg(scenario: &Scenario) -> String {
     let mut svg = Svg::default();
+    let bottom = draw_scene(&mut svg, scenario);
+    svg.finish(WIDTH, bottom, &format!("{}: the scene to scale", scenario.title))
+}
+
+/// Draws the track as a whole and each transition close up; gives the height.
+pub(super) fn draw_scene(svg: &mut Svg, scenario: &Scenario) -> f64 {
     let track = &scenario.track;
-    let mut bottom = draw_whole(&mut svg, scenario);
+    let mut bottom = draw_whole(svg, scenario);
     let length = track.end() - track.start();
     if length > 3.0 * CLOSE {
         let places: Vec<f64> = match &scenario.loading {
@@ -66,10 +72,10 @@ pub fn scene_svg(scenario: &Scenario) -> String {
             _ => track.transitions.iter().map(|transition| transition.x).collect(),
         };
         for (index, place) in places.iter().take(4).enumerate() {
-            bottom = draw_close(&mut svg, scenario, *place, index, bottom);
+            bottom = draw_close(svg, scenario, *place, index, bottom);
         }
     }
-    svg.finish(WIDTH, bottom, &format!("{}: the scene to scale", scenario.title))
+    bottom
 }
 
 fn draw_whole(svg: &mut Svg, scenario: &Scenario) -> f64 {

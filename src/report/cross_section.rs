@@ -1,0 +1,122 @@
+//! Sections across the track, to scale: rails, sleeper, layers and side walls, with their dimensions.
+
+use super::layers::class;
+use super::number::plain;
+use super::scene::WIDTH;
+use super::svg::{Anchor, Frame, Svg};
+use super::symbols::{draw_dimension, draw_stones};
+use crate::scenario::{Scenario, Section};
+
+/// Sections side by side, at most.
+const COLUMNS: usize = 3;
+const MARGIN: f64 = 26.0;
+/// Room beside a bed for the names of its layers, px.
+const NAMES: f64 = 92.0;
+/// What of a deep layer is shown, m.
+const DEEPEST: f64 = 1.5;
+const PAD: f64 = 0.035;
+const RAIL_WIDTH: f64 = 0.15;
+
+/// Where a section is drawn: the centre line and the rail's top, px, and px a metre.
+struct Place {
+    centre: f64,
+    top: f64,
+    scale: f64,
+}
+
+impl Place {
+    /// A box of the world, m: left and right of the centre line, top and bottom below the rail's top.
+    fn area(&self, left: f64, right: f64, top: f64, bottom: f64) -> Frame {
+        Frame {
+            x: self.centre + left * self.scale,
+            y: self.top + top * self.scale,
+            width: (right - left) * self.scale,
+            height: (bottom - top) * self.scale,
+        }
+    }
+}
+
+/// Draws each kind of section that has sleepers; gives the height.
+pub(super) fn draw(svg: &mut Svg, scenario: &Scenario) -> f64 {
+    let mut sections: Vec<&Section> = Vec::new();
+    for section in scenario.track.sections.iter().filter(|s| s.sleeper_size.is_some()) {
+        let same = |known: &&&Section| known.sleeper_size == section.sleeper_size && known.layers == section.layers;
+        if sections.iter().find(same).is_none() {
+            sections.push(section);
+        }
+    }
+    if sections.is_empty() {
+        return 0.0;
+    }
+    svg.text("strong", (6.0, 18.0), Anchor::Start, "Across the track, to scale");
+    let columns = sections.len().min(COLUMNS) as f64;
+    let room = (WIDTH - 2.0 * MARGIN) / columns;
+    let widest = sections.iter().map(|s| 2.0 * half_width(scenario, s)).fold(0.0, f64::max);
+    let scale = ((room - NAMES - 20.0) / widest).min(110.0);
+    let mut bottom: f64 = 0.0;
+    for (index, section) in sections.iter().take(COLUMNS).enumerate() {
+        let centre = MARGIN + room * index as f64 + 0.5 * (room - NAMES);
+        bottom = bottom.max(draw_section(svg, scenario, section, &Place { centre, top: 70.0, scale }));
+    }
+    bottom + 20.0
+}
+
+/// Half the width of the bed, m.
+fn half_width(scenario: &Scenario, section: &Section) -> f64 {
+    let sleeper = section.sleeper_size.map_or(2.6, |[length, ..]| length);
+    scenario.track.bed.half_width.map_or(0.5 * sleeper, |half| *half).max(0.5 * sleeper)
+}
+
+fn draw_section(svg: &mut Svg, scenario: &Scenario, section: &Section, place: &Place) -> f64 {
+    let Some([length, _, height]) = section.sleeper_size else { return 0.0 };
+    let (half, gauge) = (half_width(scenario, section), section.seat_distance.unwrap_or(1.5));
+    svg.text("small halo", (place.centre, place.top - 34.0), Anchor::Middle, &section.name);
+    let (foot, rail) = (section.rail.height + PAD, section.rail.height);
+    let mut depth = foot + height;
+    // beside the sleeper the bed reaches up to its top
+    if let Some(first) = section.layers.first() {
+        svg.rect(class(&first.material), place.area(-half, half, foot + 0.25 * height, depth));
+    }
+    for layer in &section.layers {
+        let thickness = layer.thickness.at(section.start.max(section.end - 1e-6).min(section.end));
+        let below = depth + thickness.min(DEEPEST);
+        let area = place.area(-half, half, depth, below);
+        svg.titled_rect(class(&layer.material), area, &layer.name);
+        if layer.granular().is_some() {
+            draw_stones(svg, area, place.scale);
+        }
+        svg.line("ground", (area.x, area.y + area.height), (area.x + area.width, area.y + area.height));
+        let (x, y) = (area.x + area.width + 8.0, area.y + 0.5 * area.height);
+        let cut = if thickness > DEEPEST { ", cut off" } else { "" };
+        svg.text("small", (x, y), Anchor::Start, &layer.name);
+        svg.text("small muted", (x, y + 13.0), Anchor::Start, &format!("{} mm{cut}", plain(1e3 * thickness, 4)));
+        depth = below;
+    }
+    svg.rect("sleeper", place.area(-0.5 * length, 0.5 * length, foot, foot + height));
+    for side in [-0.5, 0.5] {
+        let x = side * gauge;
+        svg.rect("pad", place.area(x - 0.5 * RAIL_WIDTH, x + 0.5 * RAIL_WIDTH, rail, foot));
+        svg.rect("steel", place.area(x - 0.5 * RAIL_WIDTH, x + 0.5 * RAIL_WIDTH, rail - 0.02, rail));
+        svg.rect("steel", place.area(x - 0.012, x + 0.012, 0.04, rail));
+        svg.rect("steel", place.area(x - 0.036, x + 0.036, 0.0, 0.045));
+    }
+    let wall = place.area(-half, half, foot, depth);
+    if !section.layers.is_empty() {
+        for x in [wall.x, wall.x + wall.width] {
+            svg.line("wall", (x, wall.y), (x, wall.y + wall.height));
+        }
+    }
+    draw_widths(svg, place, &[(gauge, place.top - 12.0)]);
+    let bottom = place.top + depth * place.scale;
+    draw_widths(svg, place, &[(length, bottom + 16.0), (2.0 * half, bottom + 38.0)]);
+    bottom + 46.0
+}
+
+/// Dimension lines of widths \[m\] about the centre line, with their texts.
+fn draw_widths(svg: &mut Svg, place: &Place, widths: &[(f64, f64)]) {
+    for (width, y) in widths {
+        let (a, b) = (place.centre - 0.5 * width * place.scale, place.centre + 0.5 * width * place.scale);
+        draw_dimension(svg, a, b, *y);
+        svg.text("small halo", (place.centre, y + 4.0), Anchor::Middle, &format!("{} m", plain(*width, 3)));
+    }
+}
