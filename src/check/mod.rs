@@ -18,6 +18,8 @@ mod modules;
 mod names;
 mod overrides;
 mod profile;
+mod random;
+mod random_field;
 mod records;
 mod seats;
 mod springs;
@@ -83,6 +85,7 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
         depth: 0,
         operands: 0,
         seat_places: None,
+        seed: 1,
     };
     let scenario = checker.scene(main);
     let mut diagnostics = checker.diagnostics;
@@ -124,6 +127,8 @@ struct Checker<'a> {
     operands: usize,
     /// Known once the track is laid out.
     seat_places: Option<Places>,
+    /// Of everything random that has none of its own.
+    seed: u64,
 }
 
 /// Something that an object lacks.
@@ -275,6 +280,9 @@ impl Checker<'_> {
     }
 
     fn build(&mut self, main: ScopeId, track_record: &Record) -> Option<Scenario> {
+        if let Some(seed) = self.only(main, "solve").and_then(|solve| solve.number("seed")) {
+            self.seed = seed.value as u64;
+        }
         let track = self.track(track_record);
         let places = self.seat_places.clone();
         let traffic_record = self.only(main, "traffic");

@@ -78,6 +78,7 @@ codes! {
     E0601 Error "scene without something to run"
     E0602 Error "axle counts that do not divide"
     E0603 Error "step too coarse to be stable"
+    E0605 Error "random values beyond their range"
     E0701 Error "study of a scene without trains"
     E0702 Error "axle count between two exchanges"
     E0703 Error "wheel force that has run away"
