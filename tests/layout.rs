@@ -26,7 +26,7 @@ const FLOORS: &[(&str, u32)] = &[
 ];
 
 /// Solvers that know `linalg` and nothing else of the program, each other neither.
-const SOLVERS: &[&str] = &["track", "granular", "continuum", "superstructure", "settlement"];
+const SOLVERS: &[&str] = &["track", "granular", "continuum", "superstructure", "settlement", "foundation"];
 
 fn floor(folder: &str) -> Option<u32> {
     FLOORS.iter().find(|(name, _)| *name == folder).map(|(_, floor)| *floor)

@@ -439,3 +439,131 @@ fn what_has_settled_at_the_start_is_in_the_tables_and_makes_sleepers_hang() {
     let scene = scene("settlement = [-19 .. -6 sleepers: 0 mm, -5 sleepers: 3 mm, -4 .. -1 sleepers: 0 mm]", "", load);
     assert!(run(&scene)["-5"].void_m > 1e-3);
 }
+
+/// 600 m of sleepers with a random support.
+fn long(random: &str, rest: &str) -> Vec<f64> {
+    let text = scene("", "", rest)
+        .replacen("stiffness = 50 MN/m per seat", &format!("stiffness = {random}"), 1)
+        .replacen("open: 12 m", "open: 600 m", 1);
+    let scenario = sound(&text);
+    let ballasted = scenario.track.seats.iter().filter(|seat| seat.is_ballasted());
+    ballasted.map(|seat| *support(&scenario, seat.number).stiffness).collect()
+}
+
+/// Mean, coefficient of variation and correlation of neighbours.
+fn statistics(values: &[f64]) -> [f64; 3] {
+    let mean = |of: &dyn Fn(usize) -> f64, n: usize| (0..n).map(of).sum::<f64>() / n as f64;
+    let centre = mean(&|i| values[i], values.len());
+    let away = |i: usize| values[i] - centre;
+    let variance = mean(&|i| away(i).powi(2), values.len());
+    [centre, variance.sqrt() / centre, mean(&|i| away(i) * away(i + 1), values.len() - 1) / variance]
+}
+
+#[test]
+fn random_values_have_the_mean_the_scatter_and_the_correlation_that_were_asked_for() {
+    for distribution in ["normal", "log_normal"] {
+        let random = format!("random(50 MN/m, cov = 20 %, correlation = 1 m, distribution = {distribution}) per seat");
+        let all: Vec<[f64; 3]> =
+            (1..=12).map(|seed| statistics(&long(&random, &format!("solve {{ seed = {seed} }}")))).collect();
+        let mean = |i: usize| all.iter().map(|s| s[i]).sum::<f64>() / 12.0;
+        assert!((mean(0) / 50e6 - 1.0).abs() < 0.01, "{distribution}: mean {}", mean(0));
+        assert!((mean(1) / 0.2 - 1.0).abs() < 0.03, "{distribution}: cov {}", mean(1));
+        // exp(-0.36) of neighbours 0.6 m apart; of log-normal values a little less
+        assert!((mean(2) - f64::exp(-0.36)).abs() < 0.02, "{distribution}: correlation {}", mean(2));
+    }
+    let sd = statistics(&long("random(100 MN/m, sd = 10 MN/m, correlation = 1 m) per sleeper", ""));
+    assert!((sd[0] / 50e6 - 1.0).abs() < 0.03 && (sd[1] / 0.1 - 1.0).abs() < 0.1, "{sd:?}");
+    let usual = statistics(&long("random(50 MN/m per seat)", ""));
+    assert!((usual[0] / 50e6 - 1.0).abs() < 0.03 && (usual[1] / 0.1 - 1.0).abs() < 0.15 && usual[2] > 0.9, "{usual:?}");
+}
+
+#[test]
+fn a_line_elsewhere_changes_no_random_value() {
+    const RANDOM: &str = "support = { stiffness = random(50 MN/m, cov = 20 %) per seat }";
+    let all = |text: &str| -> BTreeMap<i32, f64> {
+        // what nothing uses is said, and matters nothing
+        let scenario = with(text, Files::default()).scenario.unwrap();
+        let ballasted = scenario.track.seats.iter().filter(|seat| seat.is_ballasted());
+        ballasted.map(|seat| (seat.number, *support(&scenario, seat.number).stiffness)).collect()
+    };
+    let plain =
+        scene("", "", "").replacen("support = { stiffness = 50 MN/m per seat, damping_time = 1 ms }", RANDOM, 1);
+    let first = all(&plain);
+    assert!(first.values().any(|k| (k - 50e6).abs() > 1e6));
+    assert_eq!(first, all(&plain));
+    for (before, after) in [
+        ("use std\n", "use std\n// a comment\nlet other = random(3 mm, cov = 5 %)\n"),
+        ("sleeper = sleepers.B70,", "settlement = random(0 mm, sd = 1 mm), sleeper = sleepers.B70,"),
+        (RANDOM, "support = { damping_time = 2 ms, stiffness = random(50 MN/m, cov = 20 %) per seat }"),
+        ("track line", "solve { elements_per_bay = 6 }\ntrack line"),
+        ("deck: 12 m", "deck: 24 m"),
+    ] {
+        assert_eq!(first, all(&plain.replacen(before, after, 1)), "{after}");
+    }
+    // a longer section adds sleepers at its far end
+    let longer = all(&plain.replacen("open: 12 m", "open: 24 m", 1));
+    assert!(longer.len() > first.len() && first.iter().all(|(number, k)| longer[number] == *k));
+    // another seed, or another field, is another draw; a seed of its own does not ask the scene
+    let seeded = |text: &str, seed: u32| all(&format!("{text}solve {{ seed = {seed} }}\n"));
+    assert_eq!(first, seeded(&plain, 1));
+    assert_ne!(first, seeded(&plain, 2));
+    let own = plain.replacen("cov = 20 %", "cov = 20 %, seed = 7", 1);
+    assert_eq!(seeded(&own, 1), seeded(&own, 2));
+    assert_ne!(first, all(&own));
+    assert_ne!(first, all(&plain.replace("open", "other")));
+}
+
+#[test]
+fn random_levels_and_pieces_run_on_where_they_meet() {
+    let level = |track: &str| sound(&scene("", track, "")).track.irregularity.unwrap();
+    let whole = level("irregularity = random(0 mm, sd = 1 mm, correlation = 2 m)");
+    let parts = level(
+        "irregularity = [-12 .. -3 m: random(0 mm, sd = 1 mm, correlation = 2 m), -3 .. 12 m: random(0 mm, sd = 1 mm, correlation = 2 m)]",
+    );
+    let mut rough = 0.0_f64;
+    for i in -480..480 {
+        let x = f64::from(i) * 0.025;
+        assert!((whole.value(x) - parts.value(x)).abs() < 1e-12, "{x}");
+        rough = rough.max(whole.value(x).abs());
+    }
+    assert!((0.5e-3..4e-3).contains(&rough), "{rough}");
+    // two sections that share a support share its field, to the seat
+    let shared = scene("", "", "").replacen("stiffness = 50 MN/m per seat", "stiffness = ground", 1).replacen(
+        "trackform deck",
+        "let ground = random(50 MN/m, cov = 20 %) per seat\ntrackform deck",
+        1,
+    );
+    let parts = shared.replacen("trackform deck", "trackform more : open { }\ntrackform deck", 1).replacen(
+        "[open: 12 m, deck: 12 m]",
+        "[more: 12 m, open: 12 m, deck: 12 m], transitions = [a: soft_to_stiff, b: soft_to_stiff]",
+        1,
+    );
+    let whole = parts.replacen("more: 12 m, open: 12 m", "open: 12 m, more: 12 m", 1);
+    let supports = |text: &str| -> Vec<f64> {
+        let scenario = sound(text);
+        let feet = scenario.track.seats.iter().filter_map(|seat| match &seat.foot {
+            Foot::Sleeper { support, .. } => Some(*support.stiffness),
+            _ => None,
+        });
+        feet.collect()
+    };
+    assert_eq!(supports(&parts), supports(&whole));
+}
+
+#[test]
+fn random_values_beyond_their_range_are_counted() {
+    let text = scene("settlement = random(0 mm, sd = 60 mm, correlation = 0.5 m)", "", "");
+    let compiled = with(&text, Files::default());
+    let mistake =
+        compiled.diagnostics.iter().find(|d| d.code == Code::E0605).unwrap_or_else(|| panic!("{}", told(&compiled)));
+    assert!(
+        mistake.message.contains(" of 20 random values (") || mistake.message.contains(" of 19 random values ("),
+        "{}",
+        mistake.message
+    );
+    assert!(
+        mistake.message.ends_with("of the settlement of trackform `open` leave -100 .. 100 mm"),
+        "{}",
+        mistake.message
+    );
+}

@@ -32,7 +32,7 @@ impl Checker<'_> {
         full
     }
 
-    fn complete_slot(&mut self, slot: &mut Slot) {
+    pub(super) fn complete_slot(&mut self, slot: &mut Slot) {
         match &mut slot.value {
             Val::Record(inner) => *inner = Rc::new(self.complete(inner)),
             Val::Word { word, arguments } => {

@@ -21,6 +21,8 @@ mod modules;
 mod names;
 mod overrides;
 mod profile;
+mod random;
+mod random_field;
 mod records;
 mod seats;
 mod springs;
@@ -89,6 +91,7 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
         operands: 0,
         seat_places: None,
         asked: Asked::default(),
+        seed: 1,
     };
     let scenario = checker.scene(main);
     let mut diagnostics = checker.diagnostics;
@@ -132,6 +135,8 @@ struct Checker<'a> {
     seat_places: Option<Places>,
     /// Known before the track is read.
     asked: Asked,
+    /// Of everything random that has none of its own.
+    seed: u64,
 }
 
 /// Something that an object lacks.
@@ -288,6 +293,9 @@ impl Checker<'_> {
         let solve_record = self.only(main, "solve").unwrap_or_else(|| self.default_solve());
         self.asked = Asked::of(&solve_record, track_record, traffic_record.is_some(), &load_records);
         self.waits_for_grains(&solve_record, track_record, &load_records);
+        if let Some(seed) = solve_record.number("seed") {
+            self.seed = seed.value as u64;
+        }
         let track = self.track(track_record);
         let places = self.seat_places.clone();
         let traffic: Option<Traffic> = traffic_record.as_ref().and_then(|r| self.traffic(r));

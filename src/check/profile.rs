@@ -1,10 +1,11 @@
-//! Values that vary along the track, as written: `ramp`, `smooth`, lists keyed by places or spans, data files. Where their
+//! Values that vary along the track, as written: `ramp`, `smooth`, `random`, lists keyed by places or spans, data files. Where their
 //! places lie is for `seats` to find, once the track is laid out.
 
 use super::Checker;
 use super::arithmetic::{Raw, shape};
 use super::fit::with_unit;
 use super::modules::ScopeId;
+use super::random::Random;
 use super::value::{Number, Val};
 use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
 use crate::schema::{Form, Measure, Varies};
@@ -32,6 +33,8 @@ pub(super) enum ShapeKind {
     Points(Vec<(Number, Span, Number)>),
     /// Side by side.
     Spans(Vec<(Reach, Shape)>),
+    /// Scattered about a mean.
+    Random(Random),
     /// Chainage, m, and values of a data file, with the places of the first and the last row.
     Table {
         rows: Vec<(f64, Number)>,
@@ -103,7 +106,7 @@ impl Checker<'_> {
         if matches!(word.text.as_str(), "sqrt" | "abs" | "min" | "max") {
             return false;
         }
-        let Some(near) = nearest(&word.text, WORDS.into_iter().filter(|w| *w != "random")) else { return false };
+        let Some(near) = nearest(&word.text, WORDS) else { return false };
         self.report(
             Diagnostic::new(Code::E0408, format!("expected a number or a profile, found the word `{}`", word.text))
                 .at(word.span, "unknown word")
@@ -132,11 +135,8 @@ impl Checker<'_> {
             ValueKind::Call { word, arguments } if word.text == "file" => {
                 self.data_profile(measure, word, arguments, per, inner.span)?
             }
-            ValueKind::Call { word, .. } if word.text == "random" => {
-                self.report(
-                    Diagnostic::new(Code::E0411, "this version does not know `random` yet").at(word.span, "planned"),
-                );
-                return None;
+            ValueKind::Call { word, arguments } if word.text == "random" => {
+                self.random(measure, word, arguments, per, scope)?
             }
             ValueKind::List { entries, unit } if is_profile(inner) => {
                 self.keyed(measure, entries, unit.as_ref(), per, scope)?
@@ -341,6 +341,9 @@ impl Checker<'_> {
                 rows: rows.iter().map(|(x, n)| Some((*x, hold(*n)?))).collect::<Option<_>>()?,
                 ends: *ends,
             },
+            ShapeKind::Random(random) => {
+                ShapeKind::Random(Random { mean: hold(random.mean)?, measure, ..random.clone() })
+            }
             ShapeKind::Spans(spans) => {
                 let held = spans.iter().map(|(reach, inner)| Some((*reach, self.rehold(measure, inner, span)?)));
                 ShapeKind::Spans(held.collect::<Option<_>>()?)

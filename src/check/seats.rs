@@ -4,6 +4,7 @@
 use super::Checker;
 use super::geometry::Places;
 use super::profile::{Reach, Shape, ShapeKind};
+use super::random::Scatter;
 use super::value::{Number, Record, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Curve, Given, Origin, Piece, Profile};
@@ -91,6 +92,14 @@ impl Checker<'_> {
                     None => within.ramp,
                 };
                 self.ramp_curve(ramp, from.of_rail(), to.of_rail(), *smooth, shape.span)?
+            }
+            ShapeKind::Random(random) => {
+                let seats = cover.seats.as_ref().map(|seats| {
+                    let inside = |x: &f64| (within.start - TINY..=within.end + TINY).contains(x);
+                    places.seats[seats.clone()].iter().map(|seat| seat.0).filter(inside).collect()
+                });
+                let at = Scatter { start: within.start, end: within.end, seats, span: shape.span };
+                self.random_curve(random, cover, &at)?
             }
             ShapeKind::Points(points) => Curve::Linear(self.points(points, places, cover, within)?),
             ShapeKind::Table { rows, ends } => {

@@ -86,6 +86,7 @@ codes! {
     E0602 Error "axle counts that do not divide"
     E0603 Error "step too coarse to be stable"
     E0604 Warning "scene that only grains can run"
+    E0605 Error "random values beyond their range"
     E0701 Error "study of a scene without trains"
     E0702 Error "axle count between two exchanges"
     E0703 Error "wheel force that has run away"
@@ -105,6 +106,12 @@ codes! {
     L1007 Warning "sleeper passing near a vehicle resonance"
     L1008 Warning "sleepers below the threshold of their law"
     L1011 Warning "irregularity too sharp for a wheel"
+    L1012 Warning "sleeper passing near the resonance of a wheel on the track"
+    L1013 Warning "wheel that loses its load over the level of the rail"
+    L1014 Warning "rail foot stressed beyond the usual limit"
+    L1015 Warning "sleeper pressure beyond the usual limit"
+    L1016 Warning "support stiffness that has not been measured"
+    L1017 Warning "car body that bounces as none does"
 }
 
 impl Code {
@@ -125,6 +132,12 @@ impl Code {
             Code::L1007 => "passing_frequency",
             Code::L1008 => "below_threshold",
             Code::L1011 => "irregularity_too_sharp",
+            Code::L1012 => "wheel_on_track",
+            Code::L1013 => "wheel_unloading",
+            Code::L1014 => "rail_stress",
+            Code::L1015 => "ballast_pressure",
+            Code::L1016 => "support_stiffness",
+            Code::L1017 => "car_body_frequency",
             _ => return None,
         })
     }

@@ -2,15 +2,22 @@
 //!
 //! A rule is silenced by `scenario { allow = [rule: "reason"] }` and made an error by `deny`.
 
+mod ballast_pressure;
 mod below_threshold;
+mod car_body_frequency;
 mod coarse_time_step;
 mod critical_speed;
+mod dynamic;
 mod irregularity_too_sharp;
 mod law_outside_calibration;
 mod passing_frequency;
+mod rail_stress;
 mod stiffness_jump;
+mod support_stiffness;
 mod track_too_short;
 mod update_overshoot;
+mod wheel_on_track;
+mod wheel_unloading;
 mod winkler;
 
 pub use winkler::Winkler;
@@ -21,7 +28,7 @@ use crate::scenario::{Loading, Scenario, SettlementLaw};
 
 type Rule = fn(&Scenario, &Graph) -> Vec<Diagnostic>;
 
-const RULES: [Rule; 9] = [
+const RULES: [Rule; 15] = [
     stiffness_jump::check,
     critical_speed::check,
     track_too_short::check,
@@ -31,6 +38,12 @@ const RULES: [Rule; 9] = [
     passing_frequency::check,
     below_threshold::check,
     irregularity_too_sharp::check,
+    wheel_on_track::check,
+    wheel_unloading::check,
+    rail_stress::check,
+    ballast_pressure::check,
+    support_stiffness::check,
+    car_body_frequency::check,
 ];
 
 /// Applies every rule, at the level that the scene gives it.

@@ -52,6 +52,32 @@ pub(super) const fn either(ways: &'static [&'static [&'static str]]) -> Alternat
     Alternative { ways, default: None }
 }
 
+/// What scatters along the track. Its first argument, the mean, and `sd` are of the field that varies.
+pub static RANDOM: Word = Word {
+    name: "random",
+    doc: "scattered about a mean",
+    arguments: &[
+        optional(
+            "cov",
+            number("%", 0.1, 100.0),
+            "standard deviation over the mean; 10 % where `sd` is not given either",
+        ),
+        default("correlation", number("m", 0.2, 1000.0), "3 m", "distance over which values become unlike: exp(-1)"),
+        default(
+            "distribution",
+            Form::Words(&[word("normal", ""), word("log_normal", "positive; its logarithm is normal")]),
+            "normal",
+            "",
+        ),
+        optional(
+            "seed",
+            Form::Integer { min: 0, max: 1_000_000_000 },
+            "else drawn from `solve.seed` and the field's path",
+        ),
+    ],
+    planned: false,
+};
+
 const SLEEPER_OR_SEAT: Basis = Basis { names: &[("sleeper", 0.5), ("seat", 1.0)], assumed: Some("sleeper") };
 const SEAT_OR_SLEEPER: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: None };
 const RAIL_OR_TRACK: Basis = Basis { names: &[("rail", 1.0), ("track", 0.5)], assumed: None };

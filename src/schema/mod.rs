@@ -8,7 +8,7 @@ mod laws;
 mod materials;
 
 pub use docs::{index, page};
-pub use kinds::{COMMON, KINDS};
+pub use kinds::{COMMON, KINDS, RANDOM};
 
 /// A kind of declaration, or of a value that only stands inside one.
 #[derive(Debug)]

@@ -1,0 +1,47 @@
+//! L1014: the rail's foot is stressed more than design rules allow.
+//!
+//! Under one wheel a beam on springs bends by `M = Q / (4 lambda)`, speed amplifies it, and the foot's section modulus W makes
+//! `M / W` of it. AREMA allows 25 ksi, 172 MPa, in continuously welded rail (unchecked).
+
+use super::dynamic::amplification;
+use super::winkler::Winkler;
+use crate::diag::{Code, Diagnostic};
+use crate::graph::{Graph, Schedule};
+use crate::scenario::{Scenario, Vehicle};
+use crate::units::number;
+
+/// Pa.
+const LARGEST: f64 = 172e6;
+
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let (track, speed) = (&scenario.track, blocks.train.speed);
+    let heaviest = blocks.train.vehicles.iter().map(Vehicle::mass).fold(0.0, f64::max);
+    let wheel = heaviest / Vehicle::AXLES as f64 * *scenario.solve.gravity;
+    let factor = amplification(*speed);
+    let stress = |section: usize| {
+        let winkler = Winkler::of(track, section)?;
+        let moment = wheel / (4.0 * winkler.lambda());
+        Some((section, moment, factor * moment / track.sections[section].rail.foot_modulus()))
+    };
+    let worst = (0..track.sections.len()).filter_map(stress).max_by(|a, b| a.2.total_cmp(&b.2));
+    let Some((section, moment, stress)) = worst.filter(|(_, _, stress)| *stress > LARGEST) else { return Vec::new() };
+    let section = &track.sections[section];
+    let diagnostic = Diagnostic::new(
+        Code::L1014,
+        format!(
+            "the foot of the rail of `{}` is stressed by about {} MPa: {} kN m under a wheel of {} kN at rest, times {} at {} km/h",
+            section.name,
+            number((stress / 1e6).round()),
+            number((moment / 1e2).round() / 10.0),
+            number((wheel / 1e3).round()),
+            number((factor * 100.0).round() / 100.0),
+            number((*speed * 36.0).round() / 10.0)
+        ),
+    )
+    .help(format!("{} MPa are usual at most: a stiffer rail or support, lighter axles or less speed", LARGEST / 1e6));
+    vec![match section.rail.bending_stiffness.origin.span() {
+        Some(span) => diagnostic.at(span, "of this rail"),
+        None => diagnostic,
+    }]
+}

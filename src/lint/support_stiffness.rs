@@ -1,0 +1,45 @@
+//! L1016: a support is softer or stiffer than any that has been measured.
+//!
+//! Measured ballasted track has 20 .. 100 MN/m under half a sleeper; below 10 it is a swamp or a gap, above 200 a sleeper on
+//! concrete. Most often a value is of a whole sleeper, or of the whole track, and its `per` says otherwise.
+
+use crate::diag::{Code, Diagnostic};
+use crate::graph::Graph;
+use crate::scenario::{Foot, Given, Scenario, Seat};
+use crate::units::number;
+
+/// N/m per seat.
+const SOFTEST: f64 = 10e6;
+const STIFFEST: f64 = 200e6;
+
+pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
+    let track = &scenario.track;
+    let stiffness = |seat: &Seat| match &seat.foot {
+        Foot::Sleeper { support, .. } => Some(support.stiffness),
+        _ => None,
+    };
+    let mut found: Vec<Diagnostic> = Vec::new();
+    for (i, section) in track.sections.iter().enumerate() {
+        let supports = || track.seats.iter().filter(|seat| seat.section == i).filter_map(stiffness);
+        let soft = supports().filter(|k| **k < SOFTEST).min_by(|a, b| a.total_cmp(b));
+        let stiff = supports().filter(|k| **k > STIFFEST).max_by(|a, b| a.total_cmp(b));
+        let beyond = supports().filter(|k| !(SOFTEST..=STIFFEST).contains(&**k)).count();
+        let said = |what: &str, k: Given| {
+            let message = format!(
+                "{beyond} of {} supports of `{}` are {what} than measured ones: {} MN/m per seat",
+                supports().count(),
+                section.name,
+                number((*k / 1e5).round() / 10.0)
+            );
+            let diagnostic = Diagnostic::new(Code::L1016, message)
+                .help("20 .. 100 MN/m are usual under half a sleeper: is the value of a seat, a sleeper or the track?");
+            match k.origin.span() {
+                Some(span) => diagnostic.at(span, "this support"),
+                None => diagnostic,
+            }
+        };
+        found.extend(soft.map(|k| said("softer", k)));
+        found.extend(stiff.map(|k| said("stiffer", k)));
+    }
+    found
+}

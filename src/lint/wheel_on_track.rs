@@ -1,0 +1,55 @@
+//! L1012: sleepers pass at a rate near the resonance of a wheel on the track.
+//!
+//! Wheel and track in phase on the track's stiffness, `f = sqrt(K / (m_w + 3 m / (2 lambda))) / 2 pi`: K is that of a beam on
+//! springs at rail level, and `3 m / (2 lambda)` the mass of the bowl `exp(-lambda x) (cos lambda x + sin lambda x)` that moves
+//! with the wheel, of rail and sleepers m a metre.
+
+use super::winkler::Winkler;
+use crate::diag::{Code, Diagnostic};
+use crate::graph::{Graph, Schedule};
+use crate::scenario::Scenario;
+use crate::units::number;
+
+/// Frequencies closer than this share are near.
+const NEAR: f64 = 0.1;
+
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let (track, speed) = (&scenario.track, blocks.train.speed);
+    let mut found = Vec::new();
+    for (i, section) in track.sections.iter().enumerate() {
+        let Some(winkler) = Winkler::of(track, i) else { continue };
+        let passing = *speed / *section.spacing;
+        for vehicle in &blocks.train.vehicles {
+            let mass = *vehicle.wheel_mass + 1.5 * winkler.mass / winkler.lambda();
+            let frequency = (winkler.rail_stiffness() / mass).sqrt() / (2.0 * std::f64::consts::PI);
+            if (passing / frequency - 1.0).abs() > NEAR {
+                continue;
+            }
+            let bound = |share: f64| number((frequency * share * *section.spacing * 3.6).round());
+            let diagnostic = Diagnostic::new(
+                Code::L1012,
+                format!(
+                    "sleepers of `{}` pass at {} Hz, near the resonance of a wheel of `{}` on the track at {} Hz",
+                    section.name,
+                    number(passing.round()),
+                    vehicle.name,
+                    number(frequency.round())
+                ),
+            )
+            .help(format!(
+                "below {} km/h and above {} km/h they are apart",
+                bound(1.0 - NEAR),
+                bound(1.0 + NEAR)
+            ));
+            let diagnostic = match speed.origin.span() {
+                Some(span) => diagnostic.at(span, "this speed"),
+                None => diagnostic,
+            };
+            if !found.contains(&diagnostic) {
+                found.push(diagnostic);
+            }
+        }
+    }
+    found
+}

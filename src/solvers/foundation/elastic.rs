@@ -1,0 +1,119 @@
+//! Half a sleeper as a uniform pressure on a rectangle, on bonded elastic layers, with its neighbours beside it.
+//!
+//! The mean settlement of a rectangle of sides a and b is an integral over all waves k of its load,
+//!
+//! ```text
+//! F / (2 pi) int f(k) R(k) dk,   R(k) = (2 / pi) int_0^(pi/2) (sinc(kx a/2) sinc(ky b/2))^2 P(kx, ky) da
+//! ```
+//!
+//! where f is the [`Kernel`]'s settlement, `kx = k cos a`, `ky = k sin a`, and P adds a cosine for each neighbour. What a
+//! half-space of the first layer's material would do has a closed form, see [`super::rectangle`]; only the difference to
+//! it is integrated, and that dies out as `exp(-2 k h)` with the first layer's thickness h. A stiff sleeper settles less
+//! than the mean of a uniform pressure: by 7 % on a half-space, nothing on a thin layer.
+
+use super::kernel::Kernel;
+use super::rectangle::mean_settlement;
+use super::{Bearing, Below, Layer, Support};
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// Waves shorter than this over the first layer's thickness are not felt below it.
+const SHORTEST: f64 = 16.0;
+/// Nor do those matter that go so often into the shorter side, however thin the first layer is.
+const FINEST: f64 = 200.0;
+/// Nodes and weights of Gauss and Legendre on -1 .. 1, the positive half of six.
+const NODES: [[f64; 2]; 3] = [
+    [0.238_619_186_083_196_9, 0.467_913_934_572_691],
+    [0.661_209_386_466_264_5, 0.360_761_573_048_138_6],
+    [0.932_469_514_203_152_1, 0.171_324_492_379_170_4],
+];
+
+/// A loaded rectangle beside the one that is asked for.
+struct Neighbour {
+    /// Along and across, m.
+    apart: [f64; 2],
+    /// Its load over that of the one.
+    share: f64,
+}
+
+pub(super) fn support(bearing: &Bearing, layers: &[Layer], below: Below, neighbours: f64) -> Support {
+    // a layer that has run out is not there; its bottom lies where that of the one above does
+    let solid: Vec<Layer> = layers.iter().filter(|layer| layer.thickness > 0.0).copied().collect();
+    let sides = [bearing.width, bearing.length];
+    let around = around(bearing, neighbours);
+    let top = solid[0];
+    let endless = |n: &Neighbour| n.share * mean_settlement(sides, n.apart, top.youngs_modulus, top.poisson_ratio);
+    let (difference, below_axis) = integrals(sides, &around, &solid, below);
+    let compliance = around.iter().map(endless).sum::<f64>() + difference;
+    let at_sleeper = 1.0 / (bearing.width * bearing.length);
+    let mut deeper = below_axis.into_iter();
+    let mut pressures = vec![at_sleeper];
+    for layer in layers {
+        let above = pressures[pressures.len() - 1];
+        pressures.push(if layer.thickness > 0.0 { deeper.next().unwrap_or(above) } else { above });
+    }
+    Support { stiffness: 1.0 / compliance, masses: Vec::new(), pressures }
+}
+
+/// All that is loaded, the rectangle itself first.
+fn around(bearing: &Bearing, neighbours: f64) -> Vec<Neighbour> {
+    let [left, right] = bearing.spacings;
+    let along = [(0.0, 1.0), (-left, neighbours), (right, neighbours)];
+    let other_half = bearing.to_centre.map(|gap| bearing.length + 2.0 * gap);
+    let across = [Some(0.0), other_half];
+    across
+        .into_iter()
+        .flatten()
+        .flat_map(|y| along.map(|(x, share)| Neighbour { apart: [x, y], share }))
+        .filter(|n| n.share > 0.0)
+        .collect()
+}
+
+/// Settlement beyond that of the first layer's half-space, m/N, and pressure below the axis at the bottom of each layer,
+/// 1/m^2, for each newton of load.
+fn integrals(sides: [f64; 2], around: &[Neighbour], layers: &[Layer], below: Below) -> (f64, Vec<f64>) {
+    let [a, b] = sides;
+    let top = layers[0];
+    let endless = 2.0 * (1.0 - top.poisson_ratio * top.poisson_ratio) / top.youngs_modulus;
+    let kernel = Kernel::new(layers, below);
+    let reach = around.iter().map(|n| n.apart[0].abs() + n.apart[1]).fold(0.0, f64::max) + a + b;
+    let depth: f64 = layers.iter().map(|layer| layer.thickness).sum();
+    let last = (SHORTEST / top.thickness).min(FINEST / a.min(b));
+    let (mut settlement, mut pressures) = (0.0, vec![0.0; layers.len()]);
+    let mut from = 0.0;
+    while from < last {
+        // short panels where the depth of the whole is felt, later as long as the plan of the load allows
+        let to = f64::min(from + (0.5 * from).clamp(0.3 / depth.max(reach), 2.0 / reach), last);
+        for [node, weight] in NODES.iter().flat_map(|[x, w]| [[*x, *w], [-x, *w]]) {
+            let k = 0.5 * (from + to) + 0.5 * (to - from) * node;
+            let weight = 0.5 * (to - from) * weight / (2.0 * PI);
+            let answer = kernel.answer(k);
+            let [mean, axis] = averages(k, sides, around, reach);
+            settlement += weight * (answer.settlement - endless) * mean;
+            for (pressure, found) in pressures.iter_mut().zip(&answer.pressures) {
+                *pressure += weight * k * found * axis;
+            }
+        }
+        from = to;
+    }
+    (settlement, pressures)
+}
+
+/// Averages over all directions of a wave: of the load's plan seen by the mean of the rectangle, and by its middle. The
+/// midpoint rule over a period converges faster than any power once it resolves the plan.
+fn averages(k: f64, [a, b]: [f64; 2], around: &[Neighbour], reach: f64) -> [f64; 2] {
+    let points = 8 + (0.4 * k * reach).ceil() as usize;
+    let mut sums = [0.0; 2];
+    for i in 0..points {
+        let (sin, cos) = ((i as f64 + 0.5) / points as f64 * FRAC_PI_2).sin_cos();
+        let (kx, ky) = (k * cos, k * sin);
+        let plan = sinc(0.5 * kx * a) * sinc(0.5 * ky * b);
+        let others: f64 = around.iter().map(|n| n.share * (kx * n.apart[0]).cos() * (ky * n.apart[1]).cos()).sum();
+        sums[0] += plan * plan * others;
+        sums[1] += plan * others;
+    }
+    sums.map(|sum| sum / points as f64)
+}
+
+fn sinc(x: f64) -> f64 {
+    if x.abs() < 1e-4 { 1.0 - x * x / 6.0 } else { x.sin() / x }
+}

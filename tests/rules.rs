@@ -1,0 +1,150 @@
+//! What the physics rules say in numbers, against the closed forms they state.
+
+use trackbed::check::NoModules;
+use trackbed::compile;
+use trackbed::diag::Code;
+
+/// 42 m of one trackform under one train; each part may be replaced.
+#[derive(Clone, Copy)]
+struct Scene<'a> {
+    rail: &'a str,
+    sleeper: &'a str,
+    support: &'a str,
+    spacing: &'a str,
+    level: &'a str,
+    vehicle: &'a str,
+    speed: f64,
+}
+
+const SCENE: Scene<'_> = Scene {
+    rail: "rails.UIC60",
+    sleeper: "sleepers.B70",
+    support: "40 MN/m per seat",
+    spacing: "0.6 m",
+    level: "0 mm",
+    vehicle: "vehicles.ore_wagon_20t",
+    speed: 60.0,
+};
+
+impl Scene<'_> {
+    /// The messages of one rule.
+    fn says(self, code: Code) -> Vec<String> {
+        let Scene { rail, sleeper, support, spacing, level, vehicle, speed } = self;
+        let text = format!(
+            "use std
+trackform open {{
+  rail = {rail}, pad = {{ stiffness = 40 MN/m }}, sleeper = {sleeper}, spacing = {spacing}
+  support = {{ stiffness = {support} }}
+}}
+track line {{ sections = [open: 42 m], irregularity = {level} }}
+vehicle wagon : {vehicle}
+train ore {{ vehicles = wagon, speed = {speed} km/h }}
+traffic {{ trains = ore, total = 400 axles }}
+"
+        );
+        let compiled = compile("scene.track", &text, &NoModules, &[]);
+        let told = trackbed::diag::render::human(&compiled.diagnostics, &compiled.sources, false, 120);
+        assert!(compiled.diagnostics.iter().all(|d| !d.is_error()), "{told}");
+        compiled.diagnostics.iter().filter(|d| d.code == code).map(|d| d.message.clone()).collect()
+    }
+}
+
+/// `lambda` of the rail on pads of 40 MN/m and a support, N/m, 0.6 m apart.
+fn lambda(support: f64) -> f64 {
+    let modulus = 1.0 / (1.0 / 40e6 + 1.0 / support) / 0.6;
+    (modulus / (4.0 * 210e9 * 3038.3e-8)).powf(0.25)
+}
+
+#[test]
+fn a_wheel_on_the_track_has_its_frequency() {
+    let support = 20e6;
+    let modulus = 1.0 / (1.0 / 40e6 + 1.0 / support) / 0.6;
+    let mass = 1341.0 / 2.0 + 1.5 * (60.21 + 145.0 / 0.6) / lambda(support);
+    let frequency = (2.0 * modulus / lambda(support) / mass).sqrt() / (2.0 * std::f64::consts::PI);
+    let at = |share: f64| {
+        let speed = frequency * share * 0.6 * 3.6;
+        Scene { support: "20 MN/m per seat", speed, ..SCENE }.says(Code::L1012)
+    };
+    let said = format!(
+        "sleepers of `open` pass at {0:.0} Hz, near the resonance of a wheel of `wagon` on the track at {0:.0} Hz",
+        frequency.round()
+    );
+    assert_eq!(at(1.0), [said]);
+    assert!(!at(0.91).is_empty() && !at(1.09).is_empty() && at(0.89).is_empty() && at(1.11).is_empty());
+}
+
+#[test]
+fn crests_unload_a_wheel_by_their_curvature() {
+    // 4 mm over half a metre: z'' = 6 a / l^2 at the start of the fall
+    let share = |speed: f64| 670.5 * (speed / 3.6).powi(2) * 6.0 * 4e-3 / 0.25 / (10e3 * 9.81);
+    let at = |speed: f64| Scene { level: "smooth(0 .. 4 mm, over = 20 .. 20.5 m)", speed, ..SCENE }.says(Code::L1013);
+    let bearable = 120.0 * (0.6 / share(120.0)).sqrt();
+    assert!(at(bearable - 1.0).is_empty());
+    let said = format!("loses about {:.0} % of its load at 120 km/h", share(120.0) * 100.0);
+    let found = at(120.0);
+    assert!(found.len() == 1 && found[0].ends_with(&said), "{found:?}, expected {said}");
+    assert!(found[0].starts_with("over a crest of radius 10.4 m at x = 20 m a wheel of `wagon`"), "{found:?}");
+    // a rise has its crest where it ends
+    let rise = Scene { level: "smooth(4 .. 0 mm, over = 20 .. 20.5 m)", speed: 120.0, ..SCENE }.says(Code::L1013);
+    assert!(rise[0].contains("at x = 20.5 m"), "{rise:?}");
+}
+
+#[test]
+fn the_stress_of_the_rail_is_that_of_a_beam_on_springs() {
+    let modulus = 3038.3e-8 / 0.086;
+    let stress = |speed: f64| {
+        let moment = 10e3 * 9.81 / (4.0 * lambda(10e6));
+        (1.0 + 0.6 * (1.0 + (speed - 60.0) / 380.0)) * moment / modulus
+    };
+    let at = |speed| Scene { support: "10 MN/m per seat", speed, ..SCENE }.says(Code::L1014);
+    let limit = 60.0 + 380.0 * ((172e6 / stress(60.0) * 1.6 - 1.0) / 0.6 - 1.0);
+    assert!(at(limit - 2.0).is_empty());
+    let found = at(limit + 50.0);
+    assert!(
+        found.len() == 1 && found[0].contains(&format!("about {:.0} MPa: ", stress(limit + 50.0) / 1e6)),
+        "{found:?}"
+    );
+    let harder = Scene { rail: "rails.S49", support: "10 MN/m per seat", speed: limit - 2.0, ..SCENE };
+    assert_eq!(harder.says(Code::L1014).len(), 1);
+}
+
+#[test]
+fn the_pressure_on_the_ballast_is_the_seats_share_over_its_area() {
+    let small = Scene { sleeper: "sleepers.B70 { base_area = 0.3 m^2 }", vehicle: "vehicles.ore_wagon_30t", ..SCENE };
+    assert!(small.says(Code::L1015).is_empty());
+    let found = Scene { speed: 160.0, ..small }.says(Code::L1015);
+    let wheel = (111e3 + 2.0 * 800.0 + 4.0 * 1341.0) / 8.0 * 9.81;
+    let factor = 1.0 + 0.6 * (1.0 + 100.0 / 380.0);
+    let force = factor * wheel * lambda(40e6) * 0.3 + (60.21 * 0.6 + 145.0) * 9.81;
+    let said = format!("press with about {:.0} kPa on the ballast: {:.0} kN on 0.15 m^2", force / 150.0, force / 1e3);
+    assert!(found.len() == 1 && found[0].contains(&said), "{found:?}, expected {said}");
+    // another sleeper's area doubles, its pressure halves
+    assert!(
+        Scene { speed: 160.0, sleeper: "sleepers.B70 { base_area = 0.6 m^2 }", ..small }.says(Code::L1015).is_empty()
+    );
+}
+
+#[test]
+fn supports_are_counted_beyond_what_was_measured() {
+    let says = |support| Scene { support, ..SCENE }.says(Code::L1016);
+    assert!(says("10 MN/m per seat").is_empty() && says("200 MN/m per seat").is_empty());
+    // per sleeper is half per seat
+    assert!(says("390 MN/m per sleeper").is_empty());
+    assert_eq!(says("9 MN/m per seat"), ["70 of 70 supports of `open` are softer than measured ones: 9 MN/m per seat"]);
+    let ramp = says("ramp(100 .. 310 MN/m, over = 1 .. 70 sleepers) per seat");
+    assert_eq!(ramp, ["37 of 70 supports of `open` are stiffer than measured ones: 310 MN/m per seat"]);
+}
+
+#[test]
+fn a_car_body_bounces_on_its_springs_in_series() {
+    let with = |stiffness: &str| {
+        let vehicle = format!("vehicles.ore_wagon_20t {{ secondary.stiffness = {stiffness} MN/m per bogie }}");
+        Scene { vehicle: &vehicle, ..SCENE }.says(Code::L1017)
+    };
+    assert!(with("3.75").is_empty() && with("1").is_empty());
+    let body = (80e3 - 2.0 * 800.0 - 4.0 * 1341.0) / 2.0;
+    let spring: f64 = 1.0 / (1.0 / 0.1e6 + 1.0 / 30e6);
+    let frequency = (2.0 * spring / body).sqrt() / (2.0 * std::f64::consts::PI);
+    let said = format!("the car body of `wagon` bounces at {frequency:.2} Hz: {:.1} t over one rail", body / 1e3);
+    assert!(with("0.2")[0].starts_with(&said), "{:?}, expected {said}", with("0.2"));
+}
