@@ -15,8 +15,8 @@ pub use given::{Given, Origin};
 pub use law::{SettlementLaw, law_argument};
 pub use profile::{Cubic, Curve, Piece, Profile};
 pub use track::{
-    AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, Spring, Support, Track, Transition,
-    Usp,
+    AuxiliaryRailSpan, AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, SleeperBody,
+    Spring, Stretch, Support, Track, Transition, Usp,
 };
 pub use traffic::{Direction, StaticLoad, Target, Traffic, Train, Vehicle};
 
