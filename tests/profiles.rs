@@ -352,7 +352,7 @@ fn the_whole_physics_of_the_track_reaches_the_scene() {
     assert_eq!((*solve.beam, solve.integrator), (Beam::Timoshenko, Integrator::Hht { alpha: 0.1 }));
     assert!(matches!(solve.time_step, TimeStep::Adaptive { tolerance } if *tolerance == 1e-4));
     assert_eq!(scenario.track.rail_ends, RailEnds::Absorbing);
-    let rails = scenario.track.sections[0].auxiliary_rails.as_ref().unwrap();
+    let rails = &scenario.track.auxiliary_rails[0].rails;
     // two rails on the track are one beside each rail
     close(*rails.rail.mass, 49.39);
     close(*rails.rail.bending_stiffness, 210e9 * 1816e-8);
@@ -363,7 +363,7 @@ fn the_whole_physics_of_the_track_reaches_the_scene() {
     close(*seating.closure, 0.4e-3);
     let four = text.replace("count = 2", "count = 4");
     let scenario = with(&four, Files::default()).scenario.unwrap();
-    close(*scenario.track.sections[1].auxiliary_rails.as_ref().unwrap().rail.mass, 2.0 * 49.39);
+    close(*scenario.track.auxiliary_rails[1].rails.rail.mass, 2.0 * 49.39);
 }
 
 #[test]

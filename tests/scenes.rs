@@ -1,6 +1,6 @@
 //! The shipped transition zone, run as a library: what the paper says of it, and what must hold in any case.
 
-use trackbed::check::NoModules;
+use trackbed::check::{Folder, NoModules, Override};
 use trackbed::results::{self, RunRecorder, SleeperRow};
 use trackbed::{compile, graph};
 
@@ -76,6 +76,28 @@ fn a_uniform_track_keeps_its_wheel_forces() {
     let mean = wheels.iter().sum::<f64>() / wheels.len() as f64;
     assert!((mean / load - 1.0).abs() < 1e-4, "mean {mean} N");
     assert_eq!(scene.blocks.len(), 2);
+}
+
+/// Every shipped scene without a complaint, and a wagon over it.
+#[test]
+fn the_mitigations_that_come_with_the_program_run() {
+    for name in ["usp", "sleepers", "pads"] {
+        let path = format!("scenarios/{name}.track");
+        let text = std::fs::read_to_string(&path).unwrap();
+        let folder = Folder("scenarios".into());
+        let few = ["traffic.total=4 axles", "solve.elements_per_bay=2", "solve.time_step=2e-4 s"];
+        let few: Vec<Override> = few.iter().map(|set| Override::parse(set).unwrap()).collect();
+        let whole = compile(&path, &text, &folder, &[]);
+        assert!(whole.diagnostics.is_empty(), "{path}: {:?}", whole.diagnostics);
+        let compiled = compile(&path, &text, &folder, &few);
+        let (scenario, plan) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
+        assert!(!scenario.track.stretches.is_empty());
+        let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
+        graph::execute(&plan, &mut recorder, None).unwrap();
+        let settled: Vec<f64> =
+            recorder.tables.sleepers.iter().filter(|r| r.axles == 4).map(|r| r.settlement_m).collect();
+        assert!(settled.iter().any(|s| *s > 0.0), "{path}");
+    }
 }
 
 #[test]

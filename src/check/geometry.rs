@@ -14,10 +14,20 @@ use crate::units::{Dimension, number};
 pub(super) struct Plan {
     pub name: String,
     pub spacing: f64,
+    /// Bays of another spacing, counted inwards from its left and from its right boundary, m.
+    pub bays: [Vec<f64>; 2],
     /// m, or a number of sleepers.
     pub length: Number,
     /// Where the length stands.
     pub span: Span,
+}
+
+impl Plan {
+    /// Seats that it may hold at most.
+    pub fn most_seats(&self) -> usize {
+        let most = if self.length.dimension == Dimension::SLEEPERS { 1.0 } else { CLOSEST };
+        (self.length.value / most).ceil() as usize
+    }
 }
 
 /// The places of a track.
@@ -41,7 +51,8 @@ enum Edge {
     Stiff,
 }
 
-const MOST_SEATS: usize = 1_000_000;
+pub(super) const MOST_SEATS: usize = 1_000_000;
+const CLOSEST: f64 = 0.3; // m: the least spacing of the language
 const TINY: f64 = 1e-6; // m: two places closer than this are one
 
 impl Checker<'_> {
@@ -88,7 +99,7 @@ impl Checker<'_> {
             let start = places.sections[section].0;
             for (i, offset) in seats.iter().enumerate() {
                 let (transition, number) = count(i, seats.len(), section, start + offset, &places);
-                places.seats.push((round(start + offset), section, transition, number));
+                places.seats.push((tidy(start + offset), section, transition, number));
             }
         }
         Some(places)
@@ -96,83 +107,58 @@ impl Checker<'_> {
 
     /// Length of a section and the seats in it, as distances from its left end.
     fn section(&mut self, plan: &Plan, (left, right): (Edge, Edge)) -> Option<(f64, Vec<f64>)> {
-        let s = plan.spacing;
-        // spacings between the first seat and the left boundary, the last seat and the right one
-        let margin = |edge: Edge| match edge {
-            Edge::End => 1.0,
-            Edge::Soft => 1.0,
-            Edge::Stiff => 0.0,
-        };
         let alone = left == Edge::End && right == Edge::End;
+        // bays before the first seat and after the last
+        let [before, after] = if alone { [0, 0] } else { [left, right].map(|edge| usize::from(edge != Edge::Stiff)) };
+        let [from_left, from_right] = [0, 1].map(|end| Row::new(plan.spacing, &plan.bays[end]));
+        let changed = from_left.changed() + from_right.changed();
         if plan.length.dimension == Dimension::SLEEPERS {
-            let n = plan.length.value;
-            if n.fract() != 0.0 || n < 1.0 {
-                self.report(
-                    Diagnostic::new(
-                        Code::E0502,
-                        format!("a section holds a whole number of sleepers, found {}", number(n)),
-                    )
-                    .at(plan.span, "not a whole number"),
-                );
+            let n = self.whole_sleepers(plan)?;
+            let bays = n - 1 + before + after;
+            if changed > bays {
+                self.too_far(plan, bays);
                 return None;
             }
-            let first = if alone { 0.5 } else { margin(left) };
-            let bays = if alone { n } else { n - 1.0 + margin(left) + margin(right) };
-            let seats = (0..n as usize).map(|i| (first + i as f64) * s).collect();
-            return Some((bays * s, seats));
+            let ends = if alone { plan.spacing / 2.0 } else { 0.0 };
+            let usual = bays - changed;
+            let length =
+                from_left.reach(from_left.changed() + usual) + from_right.reach(from_right.changed()) + 2.0 * ends;
+            let place = |bay: usize| match bay + from_right.changed() <= bays {
+                true => ends + from_left.reach(bay),
+                false => length - ends - from_right.reach(bays - bay),
+            };
+            return Some((length, (before..before + n).map(place).collect()));
         }
         let length = plan.length.value;
-        let bays = length / s;
-        if bays < 1.0 - TINY {
-            self.report(
-                Diagnostic::new(
-                    Code::E0502,
-                    format!(
-                        "section `{}` of {} m is shorter than one bay of {} m",
-                        plan.name,
-                        number(length),
-                        number(s)
-                    ),
-                )
-                .at(plan.span, "too short"),
-            );
+        if length < plan.spacing * (1.0 - TINY) {
+            self.too_short(plan);
             return None;
         }
-        let seats = match (left, right) {
+        let seats: Vec<f64> = match (left, right) {
             (Edge::End, Edge::End) => {
-                let n = (bays + TINY).floor();
-                let first = (length - (n - 1.0) * s) / 2.0;
-                (0..n as usize).map(|i| first + i as f64 * s).collect()
+                let n = (1..).take_while(|n| from_left.reach(n - 1) + plan.spacing <= length + TINY).count();
+                let first = (length - from_left.reach(n - 1)) / 2.0;
+                (0..n).map(|i| first + from_left.reach(i)).collect()
             }
-            (_, Edge::End) => inside(margin(left), s, length).collect::<Vec<f64>>(),
+            (_, Edge::End) => from_left.inside(before, length).collect(),
             (Edge::End, _) => {
-                let mut seats: Vec<f64> = inside(margin(right), s, length).map(|d| length - d).collect();
+                let mut seats: Vec<f64> = from_right.inside(after, length).map(|d| length - d).collect();
                 seats.reverse();
                 seats
             }
             _ => {
-                let n = bays + 1.0 - margin(left) - margin(right);
-                if (n - n.round()).abs() > 1e-6 {
-                    let fits = |n: f64| number((n - 1.0 + margin(left) + margin(right)) * s);
-                    self.report(
-                        Diagnostic::new(
-                            Code::E0502,
-                            format!(
-                                "{} m do not hold a whole number of bays of {} m between two transitions",
-                                number(length),
-                                number(s)
-                            ),
-                        )
-                        .at(plan.span, "the counts from both transitions do not meet")
-                        .help(format!(
-                            "write `{} m` or `{} m`, or give the length in sleepers",
-                            fits(n.floor()),
-                            fits(n.ceil())
-                        )),
-                    );
+                let usual = (length - from_left.reach(from_left.changed()) - from_right.reach(from_right.changed()))
+                    / plan.spacing;
+                if (usual - usual.round()).abs() > 1e-6 || usual < -1e-6 {
+                    self.does_not_meet(plan, usual);
                     return None;
                 }
-                (0..n.round() as usize).map(|i| (margin(left) + i as f64) * s).collect()
+                let bays = usual.round() as usize + changed;
+                let place = |bay: usize| match bay + from_right.changed() <= bays {
+                    true => from_left.reach(bay),
+                    false => length - from_right.reach(bays - bay),
+                };
+                (before..(bays + 1).saturating_sub(after)).map(place).collect()
             }
         };
         if seats.is_empty() {
@@ -183,6 +169,58 @@ impl Checker<'_> {
             return None;
         }
         Some((length, seats))
+    }
+
+    /// The number of sleepers that a section holds.
+    fn whole_sleepers(&mut self, plan: &Plan) -> Option<usize> {
+        let n = plan.length.value;
+        if n.fract() != 0.0 || n < 1.0 {
+            self.report(
+                Diagnostic::new(
+                    Code::E0502,
+                    format!("a section holds a whole number of sleepers, found {}", number(n)),
+                )
+                .at(plan.span, "not a whole number"),
+            );
+            return None;
+        }
+        Some(n as usize)
+    }
+
+    fn too_short(&mut self, plan: &Plan) {
+        let (length, bay) = (number(plan.length.value), number(plan.spacing));
+        let message = format!("section `{}` of {length} m is shorter than one bay of {bay} m", plan.name);
+        self.report(Diagnostic::new(Code::E0502, message).at(plan.span, "too short"));
+    }
+
+    fn too_far(&mut self, plan: &Plan, bays: usize) {
+        let (changed, name) = (plan.bays[0].len() + plan.bays[1].len(), &plan.name);
+        let message = format!("stretches change the spacing of {changed} bays of section `{name}`, which has {bays}");
+        self.report(
+            Diagnostic::new(Code::E0502, message)
+                .at(plan.span, "too few sleepers")
+                .help("shorten the stretches that set `spacing`, or lengthen the section"),
+        );
+    }
+
+    fn does_not_meet(&mut self, plan: &Plan, usual: f64) {
+        let [bay, length] = [plan.spacing, plan.length.value];
+        let fits = |n: f64| number(tidy(length + (n - usual) * bay));
+        let more = if plan.bays.iter().all(Vec::is_empty) { "" } else { " beside those that stretches change" };
+        let message = format!(
+            "{} m do not hold a whole number of bays of {} m{more} between two transitions",
+            number(length),
+            number(bay)
+        );
+        self.report(
+            Diagnostic::new(Code::E0502, message).at(plan.span, "the counts from both transitions do not meet").help(
+                format!(
+                    "write `{} m` or `{} m`, or give the length in sleepers",
+                    fits(usual.floor().max(0.0)),
+                    fits(usual.ceil().max(0.0))
+                ),
+            ),
+        );
     }
 
     /// The transition that `from` names; the only one where nothing is named.
@@ -222,6 +260,11 @@ impl Checker<'_> {
         span: Span,
     ) -> Option<f64> {
         let transition = self.transition(places, from, span)?;
+        self.counted(places, at, transition, span)
+    }
+
+    /// Chainage of a place counted from a transition.
+    pub(super) fn counted(&mut self, places: &Places, at: Number, transition: usize, span: Span) -> Option<f64> {
         let (first, last) = (places.sections.first()?.0, places.sections.last()?.1);
         if at.dimension == Dimension::LENGTH {
             let x = match places.transitions.get(transition) {
@@ -345,9 +388,36 @@ fn edges(i: usize, n: usize, sides: &[(String, Side)]) -> (Edge, Edge) {
     (left, right)
 }
 
-/// Distances from an anchored boundary that fall strictly inside a section.
-fn inside(margin: f64, spacing: f64, length: f64) -> impl Iterator<Item = f64> {
-    (0..).map(move |i| (margin + f64::from(i)) * spacing).take_while(move |d| *d < length - TINY)
+/// Bays from one end of a section on: some of another spacing, then as usual.
+struct Row {
+    usual: f64,
+    /// What the first bays together are longer than usual, m: of none, of one, ..., of all that are of another spacing.
+    excess: Vec<f64>,
+}
+
+impl Row {
+    fn new(usual: f64, bays: &[f64]) -> Row {
+        let mut excess = vec![0.0];
+        for bay in bays {
+            excess.push(excess[excess.len() - 1] + bay - usual);
+        }
+        Row { usual, excess }
+    }
+
+    /// Bays of another spacing.
+    fn changed(&self) -> usize {
+        self.excess.len() - 1
+    }
+
+    /// Length of so many bays, m.
+    fn reach(&self, bays: usize) -> f64 {
+        bays as f64 * self.usual + self.excess[bays.min(self.changed())]
+    }
+
+    /// Distances of the seats that fall strictly inside a length.
+    fn inside(&self, before: usize, length: f64) -> impl Iterator<Item = f64> {
+        (before..).map(|bay| self.reach(bay)).take_while(move |d| *d < length - TINY)
+    }
 }
 
 /// Transition and number of the `i`-th of `n` seats of a section: counted from the nearer transition.
@@ -365,6 +435,6 @@ fn count(i: usize, n: usize, section: usize, x: f64, places: &Places) -> (usize,
 }
 
 /// Sums of spacings are cleaned of their last digits, so that a seat on a boundary lies on it.
-fn round(x: f64) -> f64 {
+fn tidy(x: f64) -> f64 {
     (x * 1e9).round() / 1e9
 }

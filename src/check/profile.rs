@@ -17,6 +17,25 @@ use crate::units::Dimension;
 pub(super) struct Shape {
     pub kind: ShapeKind,
     pub span: Span,
+    /// The transition from which its places count, where a stretch says it.
+    pub from: Option<usize>,
+    /// From where to where it runs, m, where a stretch says it.
+    pub runs: Option<[f64; 2]>,
+}
+
+impl Shape {
+    /// Puts it on the ground of the stretch that uses it; one that stands already stays.
+    pub fn settle(&mut self, from: usize, runs: [f64; 2]) {
+        self.runs.get_or_insert(runs);
+        self.count_from(from);
+    }
+
+    fn count_from(&mut self, transition: usize) {
+        self.from.get_or_insert(transition);
+        if let ShapeKind::Spans(spans) = &mut self.kind {
+            spans.iter_mut().for_each(|(_, inner)| inner.count_from(transition));
+        }
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -85,18 +104,13 @@ impl Checker<'_> {
             }
             return self.number(measure, value, scope).map(Val::Number);
         }
-        let mistake = match measure.varies {
-            Varies::Yes => {
-                return self.shape(measure, value, None, scope).map(|s| Val::Profile(std::rc::Rc::new(s)));
-            }
-            Varies::Planned => {
-                Diagnostic::new(Code::E0411, "this version does not vary this value along the track yet")
-                    .at(value.span, "planned")
-            }
-            Varies::No => Diagnostic::new(Code::E0406, "this value is one number; it cannot vary along the track")
+        if measure.varies == Varies::Yes {
+            return self.shape(measure, value, None, scope).map(|s| Val::Profile(std::rc::Rc::new(s)));
+        }
+        self.report(
+            Diagnostic::new(Code::E0406, "this value is one number; it cannot vary along the track")
                 .at(value.span, "a profile"),
-        };
-        self.report(mistake);
+        );
         None
     }
 
@@ -149,7 +163,7 @@ impl Checker<'_> {
             }
             _ => ShapeKind::Constant(self.held(measure, inner, per, scope)?),
         };
-        Some(Shape { kind, span: value.span })
+        Some(Shape { kind, span: value.span, from: None, runs: None })
     }
 
     /// A profile behind a name; the outer `None` where the name is of a number, or of nothing.
@@ -349,6 +363,6 @@ impl Checker<'_> {
                 ShapeKind::Spans(held.collect::<Option<_>>()?)
             }
         };
-        Some(Shape { kind, span })
+        Some(Shape { kind, span, ..*shape })
     }
 }

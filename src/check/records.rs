@@ -2,7 +2,7 @@
 
 use super::modules::ScopeId;
 use super::names::ItemId;
-use super::value::{Record, Slot, Val};
+use super::value::{Change, Record, Slot, Val};
 use super::{Checker, NAME};
 use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
 use crate::scenario::Origin;
@@ -140,7 +140,8 @@ impl Checker<'_> {
         match self.base(path, kind, scope) {
             Some(base) => {
                 let bases = std::iter::once(base.span).chain(base.bases.iter().copied()).collect();
-                Record { bases, fields: base.fields.clone(), partial: base.partial, ..empty }
+                let (fields, changes) = (base.fields.clone(), base.changes.clone());
+                Record { bases, fields, partial: base.partial, changes, ..empty }
             }
             None => Record { partial: true, ..empty },
         }
@@ -167,8 +168,17 @@ impl Checker<'_> {
         self.duplicates(fields);
         self.drop_rivals(record, fields);
         for field in fields {
+            if record.kind.changed_field(&field.path.names[0].text).is_some() {
+                record.changes.push(Change { field: field.clone(), scope });
+            }
             self.put(record, &field.path.names, field, scope);
         }
+    }
+
+    /// Puts one field into a record, as a block of its own would.
+    pub(super) fn change(&mut self, record: &mut Record, change: &Change) {
+        self.drop_rivals(record, std::slice::from_ref(&change.field));
+        self.put(record, &change.field.path.names, &change.field, change.scope);
     }
 
     /// A path twice in one block, or a path and a longer one inside it.
@@ -214,9 +224,12 @@ impl Checker<'_> {
 
     /// A field that is not known may stand for one that is: that one is not reported as missing too.
     fn excuse(&self, record: &mut Record, name: &Name, field: &Field) {
-        if record.kind.planned.contains(&name.text.as_str()) {
-            record.partial = true;
-        } else if let Some(near) = nearest(&name.text, record.kind.fields.iter().map(|f| f.name))
+        // nobody knows what else a stretch would have said
+        record.partial |= record.kind.plans(&name.text) || record.kind.changes().is_some();
+        if record.kind.plans(&name.text) {
+            return;
+        }
+        if let Some(near) = nearest(&name.text, record.kind.field_names())
             && let Some(known) = record.kind.field(near)
         {
             let origin = Origin::Written(field.span);
@@ -241,7 +254,10 @@ impl Checker<'_> {
             let inner = match record.fields.get(known.name).map(|s| &s.value) {
                 Some(Val::Record(inner)) => (**inner).clone(),
                 Some(Val::Error | Val::Hole) => return,
-                _ => Record { partial: record.partial, ..Record::empty(kind, kind.name, field.path.span) },
+                _ => Record {
+                    partial: record.partial || record.kind.changes().is_some(),
+                    ..Record::empty(kind, kind.name, field.path.span)
+                },
             };
             let mut inner = inner;
             let tail = Field { path: Path { names: rest.to_vec(), span: field.path.span }, ..field.clone() };
@@ -283,7 +299,8 @@ impl Checker<'_> {
                 }
             }
             Some(Val::Error | Val::Hole) => return,
-            _ if record.partial => return,
+            // what it is of is not known here
+            _ if record.partial || record.kind.changes().is_some() => return,
             _ => {}
         }
         self.report(
@@ -298,7 +315,7 @@ impl Checker<'_> {
         if let Some(field) = kind.field(&name.text) {
             return Some(field);
         }
-        if kind.planned.contains(&name.text.as_str()) {
+        if kind.plans(&name.text) {
             self.report(
                 Diagnostic::new(
                     Code::E0411,
@@ -308,7 +325,7 @@ impl Checker<'_> {
             );
             return None;
         }
-        let near = nearest(&name.text, kind.fields.iter().map(|f| f.name)).map(|n| format!("did you mean `{n}`?"));
+        let near = nearest(&name.text, kind.field_names()).map(|n| format!("did you mean `{n}`?"));
         let help = near.unwrap_or_else(|| format!("`trackbed docs {}` lists its fields", kind.name));
         self.report(
             Diagnostic::new(Code::E0402, format!("`{}` has no field `{}`", kind.name, name.text))

@@ -84,11 +84,12 @@ impl Checker<'_> {
 
     /// The part of a shape that lies in an interval.
     fn pieces(&mut self, shape: &Shape, places: &Places, cover: &Cover, within: Interval) -> Option<Vec<Piece>> {
+        let within = Interval { ramp: shape.runs.unwrap_or(within.ramp), ..within };
         let curve = match &shape.kind {
             ShapeKind::Constant(n) => Curve::constant(n.of_rail()),
             ShapeKind::Ramp { from, to, smooth, over } => {
                 let ramp = match over {
-                    Some(reach) => self.interval_of(places, reach)?.ramp,
+                    Some(reach) => self.interval_of(places, reach, shape.from)?.ramp,
                     None => within.ramp,
                 };
                 self.ramp_curve(ramp, from.of_rail(), to.of_rail(), *smooth, shape.span)?
@@ -101,14 +102,17 @@ impl Checker<'_> {
                 let at = Scatter { start: within.start, end: within.end, seats, span: shape.span };
                 self.random_curve(random, cover, &at)?
             }
-            ShapeKind::Points(points) => Curve::Linear(self.points(points, places, cover, within)?),
+            ShapeKind::Points(points) => {
+                let found = self.chainages_of(points, places, shape.from)?;
+                Curve::Linear(self.points(points, found, places, cover, within)?)
+            }
             ShapeKind::Table { rows, ends } => {
                 let ends = [(rows.first()?.0, ends[0]), (rows.last()?.0, ends[1])];
                 self.covers(cover, places, within, ends, Some(shape.span))?;
                 let points: Vec<[f64; 2]> = rows.iter().map(|(x, n)| [*x, n.of_rail()]).collect();
                 if cover.smooth { Curve::natural(&points) } else { Curve::Linear(points) }
             }
-            ShapeKind::Spans(spans) => return self.spans(spans, places, cover, within),
+            ShapeKind::Spans(spans) => return self.spans(spans, shape.from, places, cover, within),
         };
         Some(vec![Piece { start: within.start, end: within.end, curve }])
     }
@@ -128,18 +132,29 @@ impl Checker<'_> {
         Some(if smooth { Curve::Level(ends) } else { Curve::Linear(ends.to_vec()) })
     }
 
+    /// Places and values of points, as written.
+    fn chainages_of(
+        &mut self,
+        points: &[(Number, Span, Number)],
+        places: &Places,
+        from: Option<usize>,
+    ) -> Option<Vec<([f64; 2], Span)>> {
+        let mut found = Vec::with_capacity(points.len());
+        for (place, span, value) in points {
+            found.push(([self.profile_place(places, *place, from, *span)?.0, value.of_rail()], *span));
+        }
+        Some(found)
+    }
+
     /// Points by ascending chainage; in the text they run one way.
     fn points(
         &mut self,
         points: &[(Number, Span, Number)],
+        mut found: Vec<([f64; 2], Span)>,
         places: &Places,
         cover: &Cover,
         within: Interval,
     ) -> Option<Vec<[f64; 2]>> {
-        let mut found: Vec<([f64; 2], Span)> = Vec::with_capacity(points.len());
-        for (place, span, value) in points {
-            found.push(([self.profile_place(places, *place, *span)?.0, value.of_rail()], *span));
-        }
         if found.len() > 1 && found[0].0[0] > found[1].0[0] {
             found.reverse();
         }
@@ -169,13 +184,14 @@ impl Checker<'_> {
     fn spans(
         &mut self,
         spans: &[(Reach, Shape)],
+        from: Option<usize>,
         places: &Places,
         cover: &Cover,
         within: Interval,
     ) -> Option<Vec<Piece>> {
         let mut laid = Vec::with_capacity(spans.len());
         for (reach, shape) in spans {
-            laid.push((self.interval_of(places, reach)?, reach.span, shape));
+            laid.push((self.interval_of(places, reach, from)?, reach.span, shape));
         }
         laid.sort_by(|a, b| a.0.start.total_cmp(&b.0.start));
         for pair in laid.windows(2) {
@@ -267,9 +283,9 @@ impl Checker<'_> {
         None
     }
 
-    fn interval_of(&mut self, places: &Places, reach: &Reach) -> Option<Interval> {
-        let (a, first) = self.profile_place(places, reach.from, reach.span)?;
-        let (b, last) = self.profile_place(places, reach.to, reach.span)?;
+    fn interval_of(&mut self, places: &Places, reach: &Reach, from: Option<usize>) -> Option<Interval> {
+        let (a, first) = self.profile_place(places, reach.from, from, reach.span)?;
+        let (b, last) = self.profile_place(places, reach.to, from, reach.span)?;
         let (start, end) = match (first, last) {
             (Some(i), Some(j)) => (places.cell(i.min(j)).0, places.cell(i.max(j)).1),
             _ => (a.min(b), a.max(b)),
@@ -277,13 +293,19 @@ impl Checker<'_> {
         Some(Interval { start, end, ramp: [a, b] })
     }
 
-    /// Chainage of a place in a profile, and its seat where it is one: counted from the only transition; chainage in metres
-    /// where there are several.
-    fn profile_place(&mut self, places: &Places, at: Number, span: Span) -> Option<(f64, Option<usize>)> {
+    /// Chainage of a place in a profile, and its seat where it is one: counted from the transition of its stretch, or from
+    /// the only one; chainage in metres where there are several.
+    fn profile_place(
+        &mut self,
+        places: &Places,
+        at: Number,
+        from: Option<usize>,
+        span: Span,
+    ) -> Option<(f64, Option<usize>)> {
         let sleepers = at.dimension == Dimension::SLEEPERS;
-        if places.transitions.len() < 2 {
-            let x = self.chainage(places, at, None, span)?;
-            return Some((x, places.seat(0, at.value).filter(|_| sleepers)));
+        if let Some(transition) = from.or((places.transitions.len() < 2).then_some(0)) {
+            let x = self.counted(places, at, transition, span)?;
+            return Some((x, places.seat(transition, at.value).filter(|_| sleepers)));
         }
         if sleepers {
             self.report(
@@ -306,7 +328,7 @@ impl Checker<'_> {
 
 impl Places {
     /// From where to where the track is nearest to a seat.
-    fn cell(&self, seat: usize) -> (f64, f64) {
+    pub fn cell(&self, seat: usize) -> (f64, f64) {
         let middle = |i: usize, j: usize| (self.seats[i].0 + self.seats[j].0) / 2.0;
         let start = self.sections.first().map_or(0.0, |s| s.0);
         let end = self.sections.last().map_or(0.0, |s| s.1);

@@ -25,11 +25,16 @@ enum LaidFoot<'a> {
 }
 
 impl Checker<'_> {
-    /// The seats of a section, each with the values of its place. Whatever varies is laid out, even beside parts that are not
+    /// Some seats of a section, each with the values of its place. Whatever varies is laid out, even beside parts that are not
     /// understood.
-    pub(super) fn seats(&mut self, built: &Built, places: &Places, section: usize) -> Option<Vec<Seat>> {
+    pub(super) fn seats(
+        &mut self,
+        built: &Built,
+        places: &Places,
+        section: usize,
+        range: Range<usize>,
+    ) -> Option<Vec<Seat>> {
         let (start, end) = places.sections[section];
-        let range = places.seats_of(section);
         let cover = |what: &str| Cover {
             what: format!("the {what} of trackform `{}`", built.name),
             start,
@@ -57,9 +62,9 @@ impl Checker<'_> {
                 }
                 LaidFoot::Fixed(foot) => foot.clone(),
             };
-            let initial_settlement = *settlement.at(x);
+            let (initial_settlement, sleeper) = (*settlement.at(x), built.sleeper_body());
             let pad = Pad { stiffness, damping };
-            seats.push(Seat { number, transition, x, section, pad, foot, initial_settlement });
+            seats.push(Seat { number, transition, x, section, pad, foot, sleeper, initial_settlement });
         }
         Some(seats)
     }

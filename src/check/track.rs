@@ -3,10 +3,11 @@
 use super::Checker;
 use super::geometry::{Places, Plan};
 use super::seats::{Along, Cover};
-use super::trackform::{Built, base_area};
-use super::value::{Number, Record, Val};
+use super::stretch::described;
+use super::trackform::Built;
+use super::value::{Record, Val};
 use crate::diag::{Code, Diagnostic};
-use crate::scenario::{Curve, Given, Layer, Origin, Piece, Profile, RailEnds, Section, Side, Track};
+use crate::scenario::{AuxiliaryRailSpan, Curve, Given, Layer, Origin, Piece, Profile, RailEnds, Section, Side, Track};
 use crate::units::number;
 use std::rc::Rc;
 
@@ -30,14 +31,17 @@ impl Checker<'_> {
     pub(super) fn track(&mut self, record: &Record) -> Option<Track> {
         let Val::Pairs(pairs) = &record.get("sections")?.value else { return None };
         let sides = self.sides(record, pairs.len());
+        let (stretches, mut sound) = self.listed(record);
         let mut forms: Vec<Rc<Record>> = Vec::new();
         let mut plans = Vec::new();
         let lengths: Vec<Origin> = pairs.iter().map(|(_, length)| length.origin).collect();
         for (key, length) in pairs {
             let Val::Record(form) = &key.value else { continue };
             forms.push(form.clone());
+            self.one_spacing(form);
             if let (Some(spacing), Val::Number(n)) = (form.number("spacing"), &length.value) {
-                plans.push(Plan { name: form.name.clone(), spacing: spacing.value, length: *n, span: length.span });
+                let (name, spacing, span) = (form.name.clone(), spacing.value, length.span);
+                plans.push(Plan { name, spacing, bays: Default::default(), length: *n, span });
             }
         }
         let built: Vec<Built> = forms.iter().map(|form| self.trackform(form)).collect();
@@ -49,21 +53,36 @@ impl Checker<'_> {
             }
             return None;
         }
-        let places = self.lay_out(&plans, &sides?)?;
+        let sides = sides?;
+        self.spread(&mut plans, &sides, &stretches)?;
+        let places = self.lay_out(&plans, &sides)?;
         self.seat_places = Some(places.clone());
         let irregularity = self.irregularity(record, &places);
         let bed = self.bed(record, &built);
+        let stood = self.stand(&stretches, &places);
+        sound &= stood.is_some();
+        let stood = stood.unwrap_or_default();
         let mut seats = Vec::with_capacity(places.seats.len());
         let mut sections = Vec::new();
-        let mut sound = true;
+        let mut beside = Vec::new();
         for (i, built) in built.iter().enumerate() {
             let layers = self.lay_layers(built, &places, i);
             let section = layers.and_then(|layers| section(built, places.sections[i], lengths[i], layers));
-            let laid = self.seats(built, &places, i);
-            sound &= laid.is_some() && section.is_some();
+            let mut laid = self.seats(built, &places, i, places.seats_of(i));
+            if let Some(laid) = &mut laid {
+                sound &= self.change_seats(&forms[i], &stood, &places, i, laid);
+            }
+            sound &= laid.is_some() && section.is_some() && built.auxiliary_rails.is_some();
             seats.extend(laid.unwrap_or_default());
             sections.extend(section);
+            let (start, end) = places.sections[i];
+            let rails = built.auxiliary_rails.clone().flatten();
+            beside.extend(rails.map(|rails| AuxiliaryRailSpan { start, end, rails }));
         }
+        if !sound {
+            return None;
+        }
+        let auxiliary_rails = self.auxiliary_spans(&forms, &stood, &places, beside)?;
         let rail_ends = match record.word("rail_ends") {
             Some("pinned") => RailEnds::Pinned,
             Some("free") => RailEnds::Free,
@@ -71,10 +90,17 @@ impl Checker<'_> {
             _ => RailEnds::Clamped,
         };
         let irregularity = irregularity?;
-        let transitions = places.transitions;
-        let (name, bed) = (record.name.clone(), bed?);
-        let track = Track { name, sections, transitions, seats, rail_ends, irregularity, bed };
-        Some(track).filter(|_| sound)
+        Some(Track {
+            name: record.name.clone(),
+            sections,
+            transitions: places.transitions,
+            seats,
+            auxiliary_rails,
+            stretches: described(&stood),
+            rail_ends,
+            irregularity,
+            bed: bed?,
+        })
     }
 
     /// Name and side of every boundary.
@@ -182,8 +208,6 @@ impl Checker<'_> {
 
 /// What a section is made of, as far as it does not vary.
 fn section(built: &Built, (start, end): (f64, f64), length_origin: Origin, layers: Vec<Layer>) -> Option<Section> {
-    let sleeper = |field: &str| built.sleeper.as_ref()?.number(field).map(|n: Number| n.value);
-    let size = || Some([sleeper("length")?, sleeper("base_width")?, sleeper("height")?]);
     Some(Section {
         name: built.name.clone(),
         start,
@@ -192,10 +216,6 @@ fn section(built: &Built, (start, end): (f64, f64), length_origin: Origin, layer
         rail: built.rail.clone()?,
         spacing: built.spacing?,
         slab: built.slab.clone(),
-        sleeper_size: size(),
-        sleeper_base_area: built.sleeper.as_ref().and_then(|r| base_area(r)),
-        seat_distance: sleeper("seat_distance"),
-        auxiliary_rails: built.auxiliary_rails.clone()?,
         layers,
     })
 }

@@ -7,7 +7,7 @@ use super::tier::{has_layers, stands_on_layers};
 use super::track::given;
 use super::value::{Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::scenario::{AuxiliaryRails, Beam, Given, Pad, Rail, Seating, Slab};
+use crate::scenario::{AuxiliaryRails, Beam, Given, Pad, Rail, Seating, Slab, SleeperBody};
 use crate::units::number;
 use std::rc::Rc;
 
@@ -68,8 +68,23 @@ fn under_sleepers(form: &Record) -> &'static str {
     }
 }
 
+impl Built {
+    /// Size of its sleepers, as far as it is known.
+    pub fn sleeper_body(&self) -> Option<SleeperBody> {
+        let sleeper = self.sleeper.as_ref()?;
+        let of = |field: &str| sleeper.number(field).map(|n| n.value);
+        Some(SleeperBody {
+            length: of("length")?,
+            base_width: of("base_width")?,
+            height: of("height")?,
+            base_area: base_area(sleeper)?,
+            seat_distance: of("seat_distance")?,
+        })
+    }
+}
+
 /// Bearing area of a sleeper, m^2.
-pub(super) fn base_area(sleeper: &Record) -> Option<f64> {
+fn base_area(sleeper: &Record) -> Option<f64> {
     let of = |field: &str| sleeper.number(field).map(|n| n.value);
     of("base_area").or_else(|| Some(of("length")? * of("base_width")?))
 }
@@ -205,7 +220,7 @@ impl Checker<'_> {
     }
 
     /// `Some(None)` where there are none.
-    fn auxiliary_rails(&mut self, form: &Record) -> Option<Option<AuxiliaryRails>> {
+    pub(super) fn auxiliary_rails(&mut self, form: &Record) -> Option<Option<AuxiliaryRails>> {
         let Some(record) = form.record("auxiliary_rails").cloned() else {
             return (!form.unknown("auxiliary_rails")).then_some(None);
         };
@@ -222,7 +237,7 @@ impl Checker<'_> {
         });
         if let Some(span) = varies {
             self.report(
-                Diagnostic::new(Code::E0406, "the pads of auxiliary rails are the same along their section")
+                Diagnostic::new(Code::E0406, "the pads of auxiliary rails are the same all along them")
                     .at(span, "a profile"),
             );
             return None;

@@ -1,10 +1,12 @@
 //! Checked values: what a field holds once its text has been understood.
 
+use super::modules::ScopeId;
 use super::profile::Shape;
 use crate::diag::Span;
 use crate::scenario::Origin;
 use crate::scenario::response::{Expectation, Response};
 use crate::schema::{Kind, Word};
+use crate::syntax::tree::Field;
 use crate::units::Dimension;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -88,12 +90,23 @@ pub(super) struct Record {
     pub bases: Vec<Span>,
     /// Part of it could not be understood and has been reported, so that nobody knows what is missing.
     pub partial: bool,
+    /// What it says of objects of another kind, in order, those of what it extends first.
+    pub changes: Vec<Change>,
+}
+
+/// A field as written, to be put into an object later.
+#[derive(Debug, Clone)]
+pub(super) struct Change {
+    pub field: Field,
+    /// Where its names are looked up.
+    pub scope: ScopeId,
 }
 
 impl Record {
     /// An object that says nothing yet.
     pub fn empty(kind: &'static Kind, name: &str, span: Span) -> Record {
-        Record { kind, name: name.to_string(), span, fields: BTreeMap::new(), bases: Vec::new(), partial: false }
+        let (fields, bases, changes) = (BTreeMap::new(), Vec::new(), Vec::new());
+        Record { kind, name: name.to_string(), span, fields, bases, partial: false, changes }
     }
 
     pub fn get(&self, name: &str) -> Option<&Slot> {

@@ -1,7 +1,7 @@
 //! From the track and train of the scene to those of the solver: plain numbers of one rail.
 
 use super::TrackNode;
-use crate::scenario::{self, Beam, Foot, Integrator, Piece, Profile, RailEnds, Section, Track};
+use crate::scenario::{self, AuxiliaryRailSpan, Beam, Foot, Integrator, Piece, Profile, RailEnds, Section, Track};
 use crate::solvers::track as solver;
 
 /// The solver's model of a track.
@@ -12,7 +12,7 @@ pub fn model(node: &TrackNode) -> solver::TrackModel {
         rail: track.sections.iter().map(|section| rail(section, node.beam)).collect(),
         seats: track.seats.iter().map(seat).collect(),
         slabs: track.sections.iter().filter_map(slab).collect(),
-        auxiliary_rails: track.sections.iter().filter_map(auxiliary_rail).collect(),
+        auxiliary_rails: track.auxiliary_rails.iter().map(auxiliary_rail).collect(),
         joints: Vec::new(),
         rail_ends: match track.rail_ends {
             RailEnds::Clamped => solver::RailEnds::Clamped,
@@ -79,15 +79,15 @@ fn slab(section: &Section) -> Option<solver::Slab> {
     })
 }
 
-fn auxiliary_rail(section: &Section) -> Option<solver::AuxiliaryRail> {
-    section.auxiliary_rails.as_ref().map(|rails| solver::AuxiliaryRail {
-        start: section.start,
-        end: section.end,
-        mass: *rails.rail.mass,
-        bending_stiffness: *rails.rail.bending_stiffness,
-        pad_stiffness: *rails.pad.stiffness,
-        pad_damping: *rails.pad.damping,
-    })
+fn auxiliary_rail(span: &AuxiliaryRailSpan) -> solver::AuxiliaryRail {
+    solver::AuxiliaryRail {
+        start: span.start,
+        end: span.end,
+        mass: *span.rails.rail.mass,
+        bending_stiffness: *span.rails.rail.bending_stiffness,
+        pad_stiffness: *span.rails.pad.stiffness,
+        pad_damping: *span.rails.pad.damping,
+    }
 }
 
 /// The solver's train.
@@ -139,21 +139,19 @@ pub fn scheme(integrator: Integrator, time_step: f64) -> Result<solver::Scheme, 
 /// stayed at the level as built would grow a second transition at the end of the model.
 pub fn level(node: &TrackNode, settlement: &[f64]) -> solver::TrackLevel {
     let track = &node.track;
-    let end =
-        |section: usize, seat: Option<usize>| seat.map_or(0.0, |i| settlement[i]) + sag(track, section, node.gravity);
-    let last = track.seats.len().checked_sub(1);
-    let first = (!track.seats.is_empty()).then_some(0);
-    let sections = track.sections.len().saturating_sub(1);
-    solver::TrackLevel { settlements: settlement.to_vec(), ends: [end(0, first), end(sections, last)] }
+    let end = |seat: usize| settlement.get(seat).map_or(0.0, |settled| settled + sag(track, seat, node.gravity));
+    let last = track.seats.len().saturating_sub(1);
+    solver::TrackLevel { settlements: settlement.to_vec(), ends: [end(0), end(last)] }
 }
 
-/// Deflection of the rail of a long uniform track under gravity, m.
-fn sag(track: &Track, section: usize, gravity: f64) -> f64 {
-    let Some(seat) = track.seats.iter().find(|s| s.section == section) else { return 0.0 };
-    let form = &track.sections[section];
-    let per_seat = *form.spacing * gravity;
+/// Deflection of the rail under gravity, m, of a long track that is everywhere as at one seat.
+fn sag(track: &Track, seat: usize, gravity: f64) -> f64 {
+    let per_seat = track.bay(seat) * gravity;
+    let seat = &track.seats[seat];
+    let form = &track.sections[seat.section];
     let rail = *form.rail.mass * per_seat; // N a seat
-    let beside = form.auxiliary_rails.as_ref().map_or(0.0, |rails| *rails.rail.mass * per_seat);
+    let above = track.auxiliary_rails.iter().find(|span| (span.start..=span.end).contains(&seat.x));
+    let beside = above.map_or(0.0, |span| *span.rails.rail.mass * per_seat);
     let below = match (&seat.foot, &form.slab) {
         (Foot::Sleeper { mass, support }, _) => support.spring().compression(rail + beside + **mass * gravity),
         (Foot::Slab, Some(slab)) => *form.rail.mass * gravity / *slab.foundation_stiffness,

@@ -65,6 +65,6 @@ fn sleeper(scenario: &Scenario) -> f64 {
 }
 
 fn passing(scenario: &Scenario, blocks: &Blocks) -> f64 {
-    let shortest = scenario.track.sections.iter().map(|s| *s.spacing).fold(f64::INFINITY, f64::min);
+    let shortest = scenario.track.shortest_bay();
     *blocks.train.speed / shortest
 }

@@ -4,7 +4,7 @@
 
 use crate::diag::{Code, Diagnostic};
 use crate::graph::{Graph, Schedule};
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Track};
 use crate::units::number;
 
 /// Frequencies closer than this share are near.
@@ -15,11 +15,12 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let speed = blocks.train.speed;
     let mut found = Vec::new();
     for (i, section) in scenario.track.sections.iter().enumerate() {
+        let spacing = usual_bay(&scenario.track, i);
         // sleepers as far apart have been heard before
-        if scenario.track.sections[..i].iter().any(|s| *s.spacing == *section.spacing) {
+        if (0..i).any(|s| usual_bay(&scenario.track, s) == spacing) {
             continue;
         }
-        let passing = *speed / *section.spacing;
+        let passing = *speed / spacing;
         for vehicle in &blocks.train.vehicles {
             let stiffness = 2.0 * *vehicle.primary_stiffness;
             let half = *vehicle.wheelset_spacing / 2.0;
@@ -41,8 +42,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
                 )
                 .help(format!(
                     "below {} km/h and above {} km/h they are apart",
-                    number((frequency * (1.0 - NEAR) * *section.spacing * 3.6).floor()),
-                    number((frequency * (1.0 + NEAR) * *section.spacing * 3.6).ceil())
+                    number((frequency * (1.0 - NEAR) * spacing * 3.6).floor()),
+                    number((frequency * (1.0 + NEAR) * spacing * 3.6).ceil())
                 ));
                 let diagnostic = match speed.origin.span() {
                     Some(span) => diagnostic.at(span, "this speed"),
@@ -55,4 +56,12 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         }
     }
     found
+}
+
+/// The median distance of the seats of a section, m.
+fn usual_bay(track: &Track, section: usize) -> f64 {
+    let seats = (0..track.seats.len()).filter(|i| track.seats[*i].section == section);
+    let mut bays: Vec<f64> = seats.map(|seat| track.bay(seat)).collect();
+    bays.sort_by(f64::total_cmp);
+    bays.get(bays.len() / 2).copied().unwrap_or(*track.sections[section].spacing)
 }

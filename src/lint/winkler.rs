@@ -15,7 +15,7 @@ pub struct Winkler {
 }
 
 impl Winkler {
-    /// A seat is pad and support in series; a slab adds its foundation over one spacing. Where they vary, those of the
+    /// A seat is pad and support in series; a slab adds its foundation over one bay. Where they vary, those of the
     /// section's left end.
     pub fn of(track: &Track, section: usize) -> Option<Winkler> {
         Winkler::beside(track, section, track.sections[section].start)
@@ -23,17 +23,18 @@ impl Winkler {
 
     /// As at the seat of a section that is nearest to a chainage.
     pub fn beside(track: &Track, section: usize, x: f64) -> Option<Winkler> {
-        let Section { rail, spacing, slab, .. } = &track.sections[section];
-        let seats = track.seats.iter().filter(|s| s.section == section);
-        let seat = seats.min_by(|a, b| (a.x - x).abs().total_cmp(&(b.x - x).abs()))?;
+        let Section { rail, slab, .. } = &track.sections[section];
+        let seats = track.seats.iter().enumerate().filter(|(_, s)| s.section == section);
+        let (index, seat) = seats.min_by(|(_, a), (_, b)| (a.x - x).abs().total_cmp(&(b.x - x).abs()))?;
+        let spacing = track.bay(index);
         let (below, mass) = match (&seat.foot, slab) {
-            (Foot::Sleeper { mass, support }, _) => (1.0 / support.spring().stiffness, **mass / **spacing),
-            (Foot::Slab, Some(slab)) => (1.0 / (*slab.foundation_stiffness * **spacing), 0.0),
+            (Foot::Sleeper { mass, support }, _) => (1.0 / support.spring().stiffness, **mass / spacing),
+            (Foot::Slab, Some(slab)) => (1.0 / (*slab.foundation_stiffness * spacing), 0.0),
             _ => (0.0, 0.0),
         };
         let stiffness = 1.0 / (1.0 / *seat.pad.stiffness + below);
         Some(Winkler {
-            modulus: stiffness / **spacing,
+            modulus: stiffness / spacing,
             bending_stiffness: *rail.bending_stiffness,
             mass: *rail.mass + mass,
         })
@@ -78,9 +79,10 @@ pub(super) fn seat_loads(scenario: &Scenario, blocks: &Blocks) -> Vec<SeatLoad> 
     let heaviest = blocks.train.vehicles.iter().map(Vehicle::mass).fold(0.0, f64::max);
     let wheel = heaviest / Vehicle::AXLES as f64 * *scenario.solve.gravity;
     let of_section = |section: usize| {
-        let seat = track.seats.iter().find(|s| s.section == section && s.is_ballasted())?;
+        let first = track.seats.iter().position(|s| s.section == section && s.is_ballasted())?;
+        let seat = &track.seats[first];
         let winkler = Winkler::of(track, section)?;
-        let spacing = *track.sections[section].spacing;
+        let spacing = track.bay(first);
         let Foot::Sleeper { support, .. } = &seat.foot else { return None };
         let weight = winkler.mass * spacing * *scenario.solve.gravity;
         let force = wheel * winkler.seat_share(spacing) + weight;

@@ -115,7 +115,7 @@ fn ends(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<(f64, f64
 
 /// Seconds in which a wheel runs over the shortest element.
 fn transit(scenario: &Scenario, train: &Train) -> f64 {
-    let spacing = scenario.track.sections.iter().map(|s| *s.spacing).fold(f64::INFINITY, f64::min);
+    let spacing = scenario.track.shortest_bay();
     spacing / f64::from(*scenario.solve.elements_per_bay) / *train.speed
 }
 

@@ -5,7 +5,7 @@ use super::number::plain;
 use super::scene::WIDTH;
 use super::svg::{Anchor, Frame, Svg};
 use super::symbols::{draw_dimension, draw_stones};
-use crate::scenario::{Scenario, Section};
+use crate::scenario::{Scenario, Section, SleeperBody};
 
 /// Sections side by side, at most.
 const COLUMNS: usize = 3;
@@ -38,11 +38,12 @@ impl Place {
 
 /// Draws each kind of section that has sleepers; gives the height.
 pub(super) fn draw(svg: &mut Svg, scenario: &Scenario) -> f64 {
-    let mut sections: Vec<&Section> = Vec::new();
-    for section in scenario.track.sections.iter().filter(|s| s.sleeper_size.is_some()) {
-        let same = |known: &&&Section| known.sleeper_size == section.sleeper_size && known.layers == section.layers;
-        if sections.iter().find(same).is_none() {
-            sections.push(section);
+    let track = &scenario.track;
+    let mut sections: Vec<(&Section, &SleeperBody)> = Vec::new();
+    for seat in &track.seats {
+        let (section, Some(sleeper)) = (&track.sections[seat.section], &seat.sleeper) else { continue };
+        if !sections.iter().any(|(other, body)| other.layers == section.layers && *body == sleeper) {
+            sections.push((section, sleeper));
         }
     }
     if sections.is_empty() {
@@ -51,25 +52,30 @@ pub(super) fn draw(svg: &mut Svg, scenario: &Scenario) -> f64 {
     svg.text("strong", (6.0, 18.0), Anchor::Start, "Across the track, to scale");
     let columns = sections.len().min(COLUMNS) as f64;
     let room = (WIDTH - 2.0 * MARGIN) / columns;
-    let widest = sections.iter().map(|s| 2.0 * half_width(scenario, s)).fold(0.0, f64::max);
+    let widest = sections.iter().map(|(_, sleeper)| 2.0 * half_width(scenario, sleeper)).fold(0.0, f64::max);
     let scale = ((room - NAMES - 20.0) / widest).min(110.0);
     let mut bottom: f64 = 0.0;
-    for (index, section) in sections.iter().take(COLUMNS).enumerate() {
+    for (index, (section, sleeper)) in sections.iter().take(COLUMNS).enumerate() {
         let centre = MARGIN + room * index as f64 + 0.5 * (room - NAMES);
-        bottom = bottom.max(draw_section(svg, scenario, section, &Place { centre, top: 70.0, scale }));
+        bottom = bottom.max(draw_section(svg, scenario, (section, sleeper), &Place { centre, top: 70.0, scale }));
     }
     bottom + 20.0
 }
 
 /// Half the width of the bed, m.
-fn half_width(scenario: &Scenario, section: &Section) -> f64 {
-    let sleeper = section.sleeper_size.map_or(2.6, |[length, ..]| length);
-    scenario.track.bed.half_width.map_or(0.5 * sleeper, |half| *half).max(0.5 * sleeper)
+fn half_width(scenario: &Scenario, sleeper: &SleeperBody) -> f64 {
+    let least = 0.5 * sleeper.length;
+    scenario.track.bed.half_width.map_or(least, |half| *half).max(least)
 }
 
-fn draw_section(svg: &mut Svg, scenario: &Scenario, section: &Section, place: &Place) -> f64 {
-    let Some([length, _, height]) = section.sleeper_size else { return 0.0 };
-    let (half, gauge) = (half_width(scenario, section), section.seat_distance.unwrap_or(1.5));
+fn draw_section(
+    svg: &mut Svg,
+    scenario: &Scenario,
+    (section, sleeper): (&Section, &SleeperBody),
+    place: &Place,
+) -> f64 {
+    let (half, length, height) = (half_width(scenario, sleeper), sleeper.length, sleeper.height);
+    let gauge = sleeper.seat_distance;
     svg.text("small halo", (place.centre, place.top - 34.0), Anchor::Middle, &section.name);
     let (foot, rail) = (section.rail.height + PAD, section.rail.height);
     let mut depth = foot + height;

@@ -4,7 +4,7 @@ use super::number::plain;
 use super::scene::{View, WIDTH};
 use super::svg::{Anchor, Frame, Svg, text_width};
 use super::symbols::draw_stones;
-use crate::scenario::{Foot, Layer, Material, Scenario, Section};
+use crate::scenario::{Layer, Material, Scenario, Section};
 
 const MARGIN: f64 = 26.0;
 /// Half the length that is shown at each transition, m.
@@ -42,13 +42,14 @@ fn draw_place(svg: &mut Svg, scenario: &Scenario, (place, title): (f64, &str), i
     let (start, end) = ((place - HALF).max(track.start()), (place + HALF).min(track.end()));
     let view = View { start, end, scale: ((WIDTH - 2.0 * MARGIN) / (end - start)).min(90.0), rail: top + 40.0 };
     svg.text("strong", (6.0, top + 18.0), Anchor::Start, title);
-    let shown = |section: &&Section| section.end > start && section.start < end;
-    let deepest = track.sections.iter().filter(shown).map(|s| base(s) + depth(s, start, end)).fold(0.0, f64::max);
+    let shown = |section: &Section| section.end > start && section.start < end;
+    let sections = || track.sections.iter().enumerate().filter(|(_, section)| shown(section));
+    let deepest = sections().map(|(n, s)| base(scenario, n) + depth(s, start, end)).fold(0.0, f64::max);
     let bottom = view.y(deepest) + 2.0;
     let frame =
         Frame { x: MARGIN, y: view.rail - 4.0, width: (end - start) * view.scale, height: bottom - view.rail + 4.0 };
     svg.clipped(&format!("layers-{index}"), frame, |svg| {
-        for (number, section) in track.sections.iter().enumerate().filter(|(_, s)| shown(s)) {
+        for (number, section) in sections() {
             draw_section(svg, scenario, &view, number, section);
         }
     });
@@ -60,8 +61,10 @@ fn draw_place(svg: &mut Svg, scenario: &Scenario, (place, title): (f64, &str), i
 }
 
 /// Depth of the sleepers' base below the rail's top, m.
-fn base(section: &Section) -> f64 {
-    section.rail.height + PAD + section.sleeper_size.map_or(SLAB, |[_, _, height]| height)
+fn base(scenario: &Scenario, number: usize) -> f64 {
+    let sleeper =
+        scenario.track.seats.iter().filter(|seat| seat.section == number).find_map(|seat| seat.sleeper.as_ref());
+    scenario.track.sections[number].rail.height + PAD + sleeper.map_or(SLAB, |sleeper| sleeper.height)
 }
 
 /// Depth of a section's layers below the sleepers where it is drawn, m.
@@ -75,7 +78,7 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, view: &View, number: usize, 
     let (start, end) = (section.start.max(view.start), section.end.min(view.end));
     let steps = (POINTS * (end - start)).ceil().max(1.0);
     let places: Vec<f64> = (0..=steps as usize).map(|k| start + (end - start) * k as f64 / steps).collect();
-    let under = base(section);
+    let under = base(scenario, number);
     let mut upper: Vec<f64> = vec![under; places.len()];
     for layer in &section.layers {
         let lower: Vec<f64> =
@@ -87,8 +90,9 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, view: &View, number: usize, 
         svg.rect("slab", view.area(start, end, under - SLAB, under));
     }
     for seat in scenario.track.seats.iter().filter(|s| s.section == number && s.x >= start - 0.3 && s.x <= end + 0.3) {
-        if let (Foot::Sleeper { .. } | Foot::Rigid, Some([_, width, height])) = (&seat.foot, section.sleeper_size) {
-            svg.rect("sleeper", view.area(seat.x - 0.5 * width, seat.x + 0.5 * width, under - height, under));
+        if let Some(sleeper) = &seat.sleeper {
+            let half = 0.5 * sleeper.base_width;
+            svg.rect("sleeper", view.area(seat.x - half, seat.x + half, under - sleeper.height, under));
         }
     }
     svg.rect("steel", view.area(start, end, 0.0, section.rail.height));

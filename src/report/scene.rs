@@ -102,7 +102,8 @@ fn draw_whole(svg: &mut Svg, scenario: &Scenario) -> f64 {
         let name = if transition.name.is_empty() { "transition" } else { &transition.name };
         svg.text("small halo", (x, 38.0), Anchor::Middle, name);
     }
-    let bottom = draw_spans(svg, scenario, &view, bottom + 12.0);
+    let bottom = draw_stretches(svg, scenario, &view, bottom + 12.0);
+    let bottom = draw_spans(svg, scenario, &view, bottom);
     draw_chainage(svg, &view, bottom)
 }
 
@@ -146,14 +147,16 @@ fn draw_key(svg: &mut Svg, y: f64) {
     }
 }
 
-fn sleeper_size(section: &Section) -> (f64, f64) {
-    section.sleeper_size.map_or((0.26, 0.2), |[_, width, height]| (width, height))
+/// Width and height of a seat's sleeper.
+fn sleeper_size(seat: &Seat) -> (f64, f64) {
+    seat.sleeper.map_or((0.26, 0.2), |sleeper| (sleeper.base_width, sleeper.height))
 }
 
 /// Depth of the ground below the rail's top, m: one level for the whole track.
 fn ground(scenario: &Scenario) -> f64 {
-    let depth = |section: &Section| section.rail.height + PAD + sleeper_size(section).1.max(SLAB) + BED;
-    scenario.track.sections.iter().map(depth).fold(0.0, f64::max)
+    let track = &scenario.track;
+    let depth = |seat: &Seat| track.sections[seat.section].rail.height + PAD + sleeper_size(seat).1.max(SLAB) + BED;
+    track.seats.iter().map(depth).fold(0.0, f64::max)
 }
 
 fn draw_track(svg: &mut Svg, scenario: &Scenario, view: &View) {
@@ -164,8 +167,8 @@ fn draw_track(svg: &mut Svg, scenario: &Scenario, view: &View) {
         }
         let base = section.rail.height + PAD;
         let seats: Vec<&Seat> = scenario.track.seats.iter().filter(|s| s.section == index && view.shows(s.x)).collect();
-        if seats.iter().any(|seat| seat.is_ballasted()) {
-            let (_, height) = sleeper_size(section);
+        if let Some(seat) = seats.iter().find(|seat| seat.is_ballasted()) {
+            let (_, height) = sleeper_size(seat);
             let area = view.area(section.start, section.end, base + 0.5 * height, ground);
             svg.rect("stones", area);
             draw_stones(svg, area, view.scale);
@@ -190,7 +193,7 @@ fn draw_track(svg: &mut Svg, scenario: &Scenario, view: &View) {
 
 fn draw_seat(svg: &mut Svg, view: &View, section: &Section, seat: &Seat, ground: f64) {
     let base = section.rail.height + PAD;
-    let (width, height) = sleeper_size(section);
+    let (width, height) = sleeper_size(seat);
     let close = view.scale > 30.0;
     if close {
         svg.rect("pad", view.area(seat.x - 0.08, seat.x + 0.08, section.rail.height, base));
@@ -285,21 +288,48 @@ fn carried(section: &Section, seats: &[&Seat]) -> String {
     text
 }
 
+/// Name, length and content of each stretch, one below the other where they overlap.
+fn draw_stretches(svg: &mut Svg, scenario: &Scenario, view: &View, y: f64) -> f64 {
+    let mut rows: Vec<f64> = Vec::new(); // right ends
+    for stretch in &scenario.track.stretches {
+        let (a, b) = (view.x(stretch.start), view.x(stretch.end));
+        let text = format!("{}: {} m, {}", stretch.name, plain(stretch.end - stretch.start, 3), stretch.changes);
+        let half = 0.5 * text_width(&text).max(b - a);
+        let middle = (0.5 * (a + b)).clamp(MARGIN + half, (WIDTH - MARGIN - half).max(MARGIN + half));
+        let row = rows.iter().position(|end| *end < middle - half - 4.0).unwrap_or(rows.len());
+        rows.resize(rows.len().max(row + 1), 0.0);
+        rows[row] = middle + half;
+        let y = y + 24.0 * row as f64;
+        draw_dimension(svg, a, b, y);
+        svg.text("small", (middle, y + 15.0), Anchor::Middle, &text);
+    }
+    y + 24.0 * rows.len() as f64
+}
+
 /// Name, length and seats of each section.
 fn draw_spans(svg: &mut Svg, scenario: &Scenario, view: &View, y: f64) -> f64 {
     for (index, section) in scenario.track.sections.iter().enumerate() {
         let (a, b) = (view.x(section.start), view.x(section.end));
         draw_dimension(svg, a, b, y);
         let seats = scenario.track.seats.iter().filter(|seat| seat.section == index).count();
+        let spacing = spacings(scenario, index);
         let length = plain(section.end - section.start, 3);
-        let full =
-            format!("{}: {length} m, {} seats at {} m", section.name, whole(seats as u64), plain(*section.spacing, 3));
+        let full = format!("{}: {length} m, {} seats at {spacing} m", section.name, whole(seats as u64));
         let short = [full, format!("{}: {length} m", section.name), format!("{length} m")];
         if let Some(text) = short.iter().find(|text| 0.9 * text_width(text) < b - a) {
             svg.text("small", ((a + b) / 2.0, y + 15.0), Anchor::Middle, text);
         }
     }
     y + 22.0
+}
+
+/// `0.6`, or `0.5 to 0.65` where it varies.
+fn spacings(scenario: &Scenario, section: usize) -> String {
+    let track = &scenario.track;
+    let bays = (0..track.seats.len()).filter(|i| track.seats[*i].section == section).map(|i| track.bay(i));
+    let (low, high) = bays.fold((f64::INFINITY, 0.0_f64), |(low, high), bay| (low.min(bay), high.max(bay)));
+    let show = |bay: f64| plain(bay, 3);
+    if high - low > 1e-6 { format!("{} to {}", show(low), show(high)) } else { show(*track.sections[section].spacing) }
 }
 
 fn draw_chainage(svg: &mut Svg, view: &View, y: f64) -> f64 {

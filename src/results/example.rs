@@ -65,19 +65,19 @@ fn vehicle() -> Vehicle {
     }
 }
 
+fn sleeper() -> SleeperBody {
+    SleeperBody { length: 2.6, base_width: 0.3, height: 0.2, base_area: 2.6 * 0.3, seat_distance: 1.5 }
+}
+
 /// Ballast of 69 sleepers meeting a slab of 40 seats under 125 wagons: a dip of 3 mm over a uniform 1.2 mm.
 pub(crate) fn transition() -> Run {
-    let section = |name: &str, start, end, slab, sleeper_size| Section {
+    let section = |name: &str, start, end, slab| Section {
         name: name.to_owned(),
         start,
         end,
         rail: rail(),
         spacing: given(0.6),
         slab,
-        sleeper_size,
-        sleeper_base_area: None,
-        seat_distance: None,
-        auxiliary_rails: None,
         layers: vec![],
         length_origin: Origin::Default,
     };
@@ -96,6 +96,7 @@ pub(crate) fn transition() -> Run {
         section: usize::from(number > 0),
         pad: pad(),
         foot: if number < 0 { ballast.clone() } else { Foot::Slab },
+        sleeper: (number < 0).then(sleeper),
         initial_settlement: 0.0,
     };
     let expectation = |text: &str, low: f64, high: f64, reduction, response, unit: (&str, f64)| Expectation {
@@ -113,12 +114,11 @@ pub(crate) fn transition() -> Run {
         title: "Ballast meets slab: 125 wagons at 200 km/h".to_owned(),
         track: Track {
             name: "line".to_owned(),
-            sections: vec![
-                section("ballasted", -42.0, 0.0, None, Some([2.6, 0.3, 0.2])),
-                section("slab_track", 0.0, 24.0, Some(slab), None),
-            ],
+            sections: vec![section("ballasted", -42.0, 0.0, None), section("slab_track", 0.0, 24.0, Some(slab))],
             transitions: vec![Transition { name: String::new(), x: 0.0, side: Side::SoftToStiff }],
             seats: (-69..=40).filter(|n| *n != 0).map(seat).collect(),
+            auxiliary_rails: vec![],
+            stretches: vec![],
             rail_ends: RailEnds::Clamped,
             irregularity: None,
             bed: Bed::default(),
@@ -291,6 +291,7 @@ pub(crate) fn bench() -> Run {
             section: 0,
             pad: pad(),
             foot: Foot::Rigid,
+            sleeper: Some(sleeper()),
             initial_settlement: 0.0,
         })
         .collect();
@@ -306,15 +307,13 @@ pub(crate) fn bench() -> Run {
                 rail: rail(),
                 spacing: given(0.6),
                 slab: None,
-                sleeper_size: Some([2.6, 0.3, 0.2]),
-                sleeper_base_area: None,
-                seat_distance: None,
-                auxiliary_rails: None,
                 layers: vec![],
                 length_origin: Origin::Default,
             }],
             transitions: vec![],
             seats,
+            auxiliary_rails: vec![],
+            stretches: vec![],
             rail_ends: RailEnds::Free,
             irregularity: None,
             bed: Bed::default(),

@@ -21,8 +21,8 @@ pub use law::{SettlementLaw, law_argument};
 pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soil, Strength};
 pub use profile::{Cubic, Curve, Piece, Profile, Varying};
 pub use track::{
-    AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, Spring, Support, Track, Transition,
-    Usp,
+    AuxiliaryRailSpan, AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, SleeperBody,
+    Spring, Stretch, Support, Track, Transition, Usp,
 };
 pub use traffic::{Direction, StaticLoad, Target, Traffic, Train, Vehicle};
 

@@ -13,6 +13,10 @@ pub struct Track {
     pub transitions: Vec<Transition>,
     /// Left to right; every seat belongs to one section.
     pub seats: Vec<Seat>,
+    /// Rails beside the running rails, left to right, without overlap.
+    pub auxiliary_rails: Vec<AuxiliaryRailSpan>,
+    /// What was said of parts of it: seats and rails have it already.
+    pub stretches: Vec<Stretch>,
     pub rail_ends: RailEnds,
     /// Level of the rail as built, m, positive down, over the whole track; `None` is level.
     pub irregularity: Option<Profile>,
@@ -30,7 +34,18 @@ pub enum RailEnds {
     Absorbing,
 }
 
-/// A stretch of track of one trackform.
+/// What differs along a part of the track, for its drawing.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Stretch {
+    pub name: String,
+    /// Chainage of its ends, m.
+    pub start: f64,
+    pub end: f64,
+    /// The paths that it sets: `usp`, `pad.stiffness`.
+    pub changes: String,
+}
+
+/// A part of the track of one trackform.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Section {
     /// The name of its trackform.
@@ -41,16 +56,9 @@ pub struct Section {
     /// Where its length is given.
     pub length_origin: Origin,
     pub rail: Rail,
-    /// Sleeper or seat spacing, m.
+    /// Sleeper or seat spacing where no stretch says another, m.
     pub spacing: Given,
     pub slab: Option<Slab>,
-    /// Sleeper dimensions for the drawing: length, base width and height, m.
-    pub sleeper_size: Option<[f64; 3]>,
-    /// Bearing area of a whole sleeper, m^2, and distance of its rail seats, m.
-    pub sleeper_base_area: Option<f64>,
-    pub seat_distance: Option<f64>,
-    /// Rails beside the running rails, from one end of the section to the other.
-    pub auxiliary_rails: Option<AuxiliaryRails>,
     /// Under the sleepers, downwards; none where the scene has only their supports.
     pub layers: Vec<Layer>,
 }
@@ -98,7 +106,24 @@ impl Rail {
     }
 }
 
-/// Auxiliary rails of a section as **one rail** carries them: half of what they are of the whole track.
+/// Auxiliary rails from one chainage to another, m, with free ends.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AuxiliaryRailSpan {
+    pub start: f64,
+    pub end: f64,
+    pub rails: AuxiliaryRails,
+}
+
+impl AuxiliaryRailSpan {
+    /// What is left of it outside of a span.
+    pub fn without(self, start: f64, end: f64) -> Vec<AuxiliaryRailSpan> {
+        let left = AuxiliaryRailSpan { end: self.end.min(start), ..self.clone() };
+        let right = AuxiliaryRailSpan { start: self.start.max(end), ..self };
+        [left, right].into_iter().filter(|span| span.end > span.start).collect()
+    }
+}
+
+/// Auxiliary rails as **one rail** carries them: half of what they are of the whole track.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AuxiliaryRails {
     /// Of the whole track.
@@ -213,6 +238,11 @@ impl Spring {
     }
 }
 
+/// A difference of two places without the last digits of their sums.
+fn tidy(x: f64) -> f64 {
+    (x * 1e9).round() / 1e9
+}
+
 /// A rail seat: the pad under the rail and what it stands on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Seat {
@@ -226,8 +256,23 @@ pub struct Seat {
     pub section: usize,
     pub pad: Pad,
     pub foot: Foot,
+    /// The whole sleeper, where there is one whose size is known.
+    pub sleeper: Option<SleeperBody>,
     /// Permanent settlement of its support at the start, m; 0 where nothing settles.
     pub initial_settlement: f64,
+}
+
+/// Size of a whole sleeper.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct SleeperBody {
+    /// Across and along the track, and height, m.
+    pub length: f64,
+    pub base_width: f64,
+    pub height: f64,
+    /// That bears on the ballast, m^2.
+    pub base_area: f64,
+    /// Between the rails, m.
+    pub seat_distance: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -258,10 +303,27 @@ impl Track {
 
     /// Area on which half a sleeper lies, m^2; `None` for a seat without a sleeper or with one of unknown size.
     pub fn bearing_area(&self, seat: &Seat) -> Option<f64> {
-        let section = self.sections.get(seat.section)?;
-        let [length, base_width, _] = section.sleeper_size?;
-        let area = section.sleeper_base_area.unwrap_or(length * base_width);
-        seat.is_ballasted().then_some(area / 2.0)
+        seat.sleeper.filter(|_| seat.is_ballasted()).map(|sleeper| sleeper.base_area / 2.0)
+    }
+
+    /// Distance between two neighbouring seats, m, the shortest of all.
+    pub fn shortest_bay(&self) -> f64 {
+        let bays = self.seats.windows(2).map(|pair| tidy(pair[1].x - pair[0].x)).reduce(f64::min);
+        bays.unwrap_or_else(|| self.sections.iter().map(|s| *s.spacing).fold(f64::INFINITY, f64::min))
+    }
+
+    /// Length of track that a seat carries, m: the mean distance to its neighbours in its section.
+    pub fn bay(&self, seat: usize) -> f64 {
+        let Some(here) = self.seats.get(seat) else { return 0.0 };
+        let beside = |i: Option<usize>| {
+            let other = self.seats.get(i?).filter(|other| other.section == here.section)?;
+            Some(tidy((other.x - here.x).abs()))
+        };
+        let bays: Vec<f64> = [seat.checked_sub(1), seat.checked_add(1)].into_iter().filter_map(beside).collect();
+        match bays.len() {
+            0 => *self.sections[here.section].spacing,
+            n => bays.iter().sum::<f64>() / n as f64,
+        }
     }
 
     /// What a table calls a seat: its number, led by the transition's name where there are several.

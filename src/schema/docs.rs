@@ -23,6 +23,14 @@ pub fn page(kind: &Kind) -> String {
     for field in kind.fields.iter().chain(COMMON) {
         describe(&mut out, field, 2);
     }
+    if let Some(changed) = kind.changes() {
+        let names: Vec<&str> = changed.fields.iter().map(|f| f.name).collect();
+        out.push_str(&format!(
+            "  Any field or path of a {}: {}. `trackbed docs {0}` describes them.\n",
+            changed.name,
+            names.join(", ")
+        ));
+    }
     for alternative in kind.alternatives {
         let ways: Vec<String> = alternative.ways.iter().map(|way| format!("`{}`", way.join("` and `"))).collect();
         out.push_str(&format!("  Give {}", crate::diag::or_list(&ways)));

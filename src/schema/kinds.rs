@@ -32,10 +32,6 @@ pub(super) const fn per(unit: &'static str, min: f64, max: f64, basis: &'static 
 pub(super) const fn along(form: Form) -> Form {
     varying(form, Varies::Yes)
 }
-/// A number that will vary along the track in a later version.
-const fn along_later(form: Form) -> Form {
-    varying(form, Varies::Planned)
-}
 const fn varying(form: Form, varies: Varies) -> Form {
     match form {
         Form::Number(m) => Form::Number(Measure { varies, ..m }),
@@ -332,7 +328,11 @@ pub const KINDS: &[Kind] = &[
             optional("pad", PAD, ""),
             optional("sleeper", SLEEPER, "a slab has none"),
             optional("usp", USP, "under the sleepers, in series with the support"),
-            required("spacing", along_later(number("m", 0.3, 1.2)), "of sleepers or seats"),
+            required(
+                "spacing",
+                along(number("m", 0.3, 1.2)),
+                "of sleepers or seats: at each the distance to its neighbour away from the transition; varies in a stretch",
+            ),
             optional(
                 "slab",
                 SLAB,
@@ -372,6 +372,21 @@ pub const KINDS: &[Kind] = &[
         ],
         alternatives: &[],
         planned: &[],
+    },
+    Kind {
+        name: "stretch",
+        doc: "What differs over a span of the track: it extends the trackform there. A mitigation, or a defect.",
+        role: Role::Changes("trackform"),
+        fields: &[
+            required("over", Form::Span, "from its first to its last end; profiles in it run over it"),
+            optional(
+                "from",
+                Form::List(&Form::Name),
+                "the transitions from which `over` counts, mirrored at each; needed where there are several",
+            ),
+        ],
+        alternatives: &[],
+        planned: &["approach_slab"],
     },
     Kind {
         name: "track",
@@ -433,9 +448,15 @@ pub const KINDS: &[Kind] = &[
                 "0 mm",
                 "level of the rail as built, positive down; a file of it is read as a smooth curve",
             ),
+            default(
+                "stretches",
+                Form::List(&Form::Object("stretch")),
+                "[]",
+                "what differs along it; where two overlap they set different things",
+            ),
         ],
         alternatives: &[],
-        planned: &["stretches"],
+        planned: &[],
     },
     Kind {
         name: "vehicle",

@@ -32,6 +32,8 @@ pub enum Role {
         /// At most one a scene.
         once: bool,
     },
+    /// A thing that others name, and that says what differs in a thing of that kind: it has its fields too, none needed.
+    Changes(&'static str),
     /// Stands only as the value of a field.
     Nested,
 }
@@ -103,8 +105,6 @@ pub struct Measure {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Varies {
     No,
-    /// In the language, not in this version.
-    Planned,
     Yes,
 }
 
@@ -138,7 +138,7 @@ pub struct Alternative {
 }
 
 /// Kinds of the language that this version does not read yet.
-pub const PLANNED_KINDS: &[&str] = &["stretch", "tamping", "study"];
+pub const PLANNED_KINDS: &[&str] = &["tamping", "study"];
 
 /// The kind of that name, nested ones included.
 pub fn kind(name: &str) -> Option<&'static Kind> {
@@ -152,7 +152,31 @@ pub fn word(name: &str) -> Option<&'static Word> {
 
 impl Kind {
     pub fn field(&self, name: &str) -> Option<&'static Field> {
-        self.fields.iter().chain(COMMON).find(|f| f.name == name)
+        let own = self.fields.iter().chain(COMMON).find(|f| f.name == name);
+        own.or_else(|| self.changed_field(name))
+    }
+
+    /// The kind of which it says what differs.
+    pub fn changes(&self) -> Option<&'static Kind> {
+        match self.role {
+            Role::Changes(of) => kind(of),
+            _ => None,
+        }
+    }
+
+    /// A field of the kind of which it says what differs.
+    pub fn changed_field(&self, name: &str) -> Option<&'static Field> {
+        self.changes()?.fields.iter().find(|f| f.name == name)
+    }
+
+    /// Names of its fields, and of those that it may change.
+    pub fn field_names(&self) -> impl Iterator<Item = &'static str> {
+        self.fields.iter().chain(self.changes().into_iter().flat_map(|k| k.fields)).map(|f| f.name)
+    }
+
+    /// Whether the language has such a field, and this version does not read it.
+    pub fn plans(&self, name: &str) -> bool {
+        self.planned.contains(&name) || self.changes().is_some_and(|k| k.plans(name))
     }
 }
 

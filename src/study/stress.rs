@@ -168,7 +168,7 @@ fn supports(scenario: &mut Scenario, factor: f64) {
 }
 
 fn coarsest(scenario: &mut Scenario, transits: f64) {
-    let spacing = scenario.track.sections.iter().map(|s| *s.spacing).fold(f64::INFINITY, f64::min);
+    let spacing = scenario.track.shortest_bay();
     let Some(Loading::Traffic(traffic)) = &scenario.loading else { return };
     let transit = spacing / f64::from(*scenario.solve.elements_per_bay) / *traffic.train.speed;
     scenario.solve.time_step = TimeStep::Fixed(Given::derived(transit * transits * (1.0 - 1e-9)));

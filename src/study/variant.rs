@@ -105,7 +105,7 @@ impl Case {
 
     /// Time in which a wheel crosses one element, s.
     pub fn transit(&self, elements_per_bay: u32) -> f64 {
-        let spacing = self.node.track.sections.iter().map(|s| *s.spacing).fold(f64::INFINITY, f64::min);
+        let spacing = self.node.track.shortest_bay();
         spacing / f64::from(elements_per_bay) / *self.train.speed
     }
 }
