@@ -21,6 +21,7 @@ mod profile;
 mod random;
 mod random_field;
 mod records;
+mod scatter;
 mod seats;
 mod springs;
 mod table;
