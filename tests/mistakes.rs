@@ -218,6 +218,8 @@ const PLANTED: &[Planted] = &[
     plant("a random profile of something else", "settlement = ramp(0 .. 2 mm, over = -6 .. 0 m)", "settlement = random(2 kN)", Code::E0302),
     plant("a scatter of something else", "settlement = ramp(0 .. 2 mm, over = -6 .. 0 m)", "settlement = random(2 mm, sd = 1 kN)", Code::E0302),
     plant("a scatter said twice", "settlement = ramp(0 .. 2 mm, over = -6 .. 0 m)", "settlement = random(2 mm, 20 %, sd = 1 mm)", Code::E0407),
+    plant("a scatter given twice", "settlement = ramp(0 .. 2 mm, over = -6 .. 0 m)", "settlement = random(2 mm, sd = 1 mm, sd = 2 mm)", Code::E0404),
+    plant("a scatter below zero", "settlement = ramp(0 .. 2 mm, over = -6 .. 0 m)", "settlement = random(2 mm, sd = -1 mm)", Code::E0405),
     plant("a share of nothing", "settlement = ramp(0 .. 2 mm, over = -6 .. 0 m)", "settlement = random(0 mm, cov = 20 %)", Code::E0405),
     plant("a positive value that is not", "settlement = ramp(0 .. 2 mm, over = -6 .. 0 m)", "settlement = random(-1 mm, distribution = log_normal)", Code::E0405),
     plant("an unknown distribution", "settlement = ramp(0 .. 2 mm, over = -6 .. 0 m)", "settlement = random(2 mm, distribution = log_norml)", Code::E0408),

@@ -24,6 +24,7 @@ mod profile;
 mod random;
 mod random_field;
 mod records;
+mod scatter;
 mod seats;
 mod spacing;
 mod springs;

@@ -4,7 +4,7 @@
 use super::Checker;
 use super::geometry::Places;
 use super::profile::{Reach, Shape, ShapeKind};
-use super::random::Scatter;
+use super::scatter::Scatter;
 use super::value::{Number, Record, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Curve, Given, Origin, Piece, Profile};

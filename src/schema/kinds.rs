@@ -53,11 +53,7 @@ pub static RANDOM: Word = Word {
     name: "random",
     doc: "scattered about a mean",
     arguments: &[
-        optional(
-            "cov",
-            number("%", 0.1, 100.0),
-            "standard deviation over the mean; 10 % where `sd` is not given either",
-        ),
+        default("cov", number("%", 0.1, 100.0), "10 %", "standard deviation over the mean; `sd` gives it as a value"),
         default("correlation", number("m", 0.2, 1000.0), "3 m", "distance over which values become unlike: exp(-1)"),
         default(
             "distribution",
