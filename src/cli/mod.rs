@@ -17,6 +17,8 @@ mod run;
 mod scene;
 mod stability;
 mod study;
+mod study_folder;
+mod subject;
 mod terminal;
 
 use clap::{Parser, Subcommand, ValueEnum};
@@ -35,6 +37,7 @@ enum Command {
     Check(check::Arguments),
     Plan(plan::Arguments),
     Run(run::Arguments),
+    Study(study::Arguments),
     Calibrate(calibrate::Arguments),
     Report(report::Arguments),
     Chart(chart::Arguments),
@@ -77,6 +80,7 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Study(arguments) => study::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),

@@ -8,12 +8,14 @@ mod given;
 mod law;
 mod profile;
 pub mod response;
+mod study;
 mod track;
 mod traffic;
 
 pub use given::{Given, Origin};
 pub use law::{SettlementLaw, law_argument};
 pub use profile::{Cubic, Curve, Piece, Profile};
+pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spread, Study, Values};
 pub use track::{
     AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, Spring, Support, Track, Transition,
     Usp,
