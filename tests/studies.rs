@@ -127,7 +127,7 @@ fn mistakes_of_a_study_are_told_at_their_place() {
     near(&vary("opn.spacing: [0.6, 0.65] m"), Code::E0704, "opn", "did you mean `open`");
     near(&vary("open.pad.stifness: [20, 40] MN/m"), Code::E0704, "stifness", "did you mean `stiffness`");
     near(&vary("pads.soft.stiffness: [20, 40] MN/m"), Code::E0704, "pads", "is a module");
-    near(&vary("open: [stiff]"), Code::E0704, "open", "name a field");
+    near(&vary("open: [stiff]"), Code::E0704, "open", "such as `open.rail`");
     near(&vary("open.pad.stiffness: [20] kN"), Code::E0302, "20", "a stiffness in `MN/m`");
     near(&vary("open.pad.stiffness: [20, 4000] MN/m"), Code::E0405, "4000", "5 .. 3000");
     near(&vary("ground: [20] kN per seat"), Code::E0302, "20", "expected a stiffness");
@@ -164,6 +164,31 @@ fn illegal_points_are_told_once_with_the_first() {
         assert!(message.contains("2 of 8 points of study `s` cannot run") && message.contains("E0603"), "{message}");
         assert!(message.contains(&format!("solve.time_step = {value} s, ore.direction = forward")), "{message}");
     }
+}
+
+#[test]
+fn repeats_need_a_seed_to_change() {
+    let study = "study s { vary = [ore.direction: [forward, backward]], minimise = dip, repeats = 3 }";
+    let (plan, _) = planned(study);
+    assert!(plan.diagnostics.is_empty(), "{:#?}", plan.diagnostics);
+    let once = planned(&study.replace(", repeats = 3", "")).0;
+    assert!((plan.seconds() / once.seconds() - 3.0).abs() < 1e-9);
+    let text = with(study).replace("solve {", "solve mine {");
+    let compiled = compiled(&text);
+    let scene = Scene { name: "small.track", text: &text, modules: &NoModules, set: &[] };
+    let found = trackbed::study::plan(scene, &compiled, &compiled.studies[0]).diagnostics;
+    assert!(matches!(found.as_slice(), [d] if d.code == Code::E0705 && d.message.contains("seed")), "{found:#?}");
+}
+
+/// What no run keeps is asked for in vain, and that is known before the first one.
+#[test]
+fn responses_that_are_not_kept_are_told_before_a_run() {
+    let (plan, _) = planned(
+        "study s { vary = [ore.direction: [forward, backward]], minimise = max(rail_displacement), report = dip }",
+    );
+    let [only] = plan.diagnostics.as_slice() else { panic!("{:#?}", plan.diagnostics) };
+    assert_eq!(only.code, Code::E0705);
+    assert!(only.message.contains("2 of 2 points") && only.message.contains("`rail_displacement`"), "{}", only.message);
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! Runs one point of a study, as often as it is repeated, and keeps what was asked for.
 
 use super::plan::{PlannedPoint, Scene};
-use crate::check::Override;
 use crate::diag::Diagnostic;
 use crate::graph;
 use crate::results::{self, RunRecorder, Tables, Verdict};
@@ -59,12 +58,7 @@ pub(super) fn condition(comparison: &Expectation) -> Option<bool> {
 type OneRun = (Vec<f64>, Vec<bool>);
 
 fn run(scene: Scene<'_>, study: &Study, point: &PlannedPoint, repeat: u32) -> Result<OneRun, PointOutcome> {
-    let mut overrides = point.overrides.clone();
-    if repeat > 0 {
-        let seed = point.seed + u64::from(repeat);
-        overrides.push(Override { path: "solve.seed".into(), value: seed.to_string() });
-    }
-    let compiled = scene.compile(&overrides);
+    let compiled = scene.compile(&point.overrides_of(repeat));
     if let Some(mistake) = compiled.diagnostics.iter().find(|d| d.is_error()) {
         return Err(failed(mistake));
     }

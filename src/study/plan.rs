@@ -54,6 +54,15 @@ impl Scene<'_> {
     }
 }
 
+impl PlannedPoint {
+    /// The lines of one of its runs: the first has the seed of the scene, each further one the next.
+    pub fn overrides_of(&self, repeat: u32) -> Vec<Override> {
+        let seed = self.seed + u64::from(repeat);
+        let further = (repeat > 0).then(|| Override { path: "solve.seed".into(), value: seed.to_string() });
+        self.overrides.iter().cloned().chain(further).collect()
+    }
+}
+
 impl Plan {
     /// Time of all runs on one core, estimated, s.
     pub fn seconds(&self) -> f64 {
@@ -101,6 +110,7 @@ pub fn plan(scene: Scene<'_>, base: &Compiled, study: &Study) -> Plan {
     }
     plan.diagnostics = found.told(study, all);
     plan.diagnostics.extend(against_the_whole(&plan, all));
+    plan.diagnostics.extend(without_seed(scene, &plan));
     plan
 }
 
@@ -170,6 +180,17 @@ fn against_the_whole(plan: &Plan, all: usize) -> Option<Diagnostic> {
             .at(span, "the budget")
             .help("take fewer points or axles, or raise the budget")
     })
+}
+
+/// Repeats differ by their seed, which needs a line to stand in.
+fn without_seed(scene: Scene<'_>, plan: &Plan) -> Option<Diagnostic> {
+    let point = plan.points.first().filter(|_| plan.study.repeats > 1)?;
+    let compiled = scene.compile(&point.overrides_of(1));
+    let mistake = compiled.diagnostics.iter().find(|d| d.is_error())?;
+    let name = &plan.study.name;
+    let message = format!("study `{name}` cannot be repeated with another seed: {}", mistake.message);
+    let help = "declare a `solve` without a name, `solve { seed = 1 }`";
+    Some(Diagnostic::new(Code::E0705, message).at(plan.study.span, "has `repeats`").help(help))
 }
 
 /// Finds places of a point's sources in those of the scene.

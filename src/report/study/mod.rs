@@ -184,7 +184,7 @@ fn status(answer: &Answer, row: &Row, best: bool) -> (&'static str, String) {
             let broken: Vec<&str> = broken.map(|(c, _)| c.text.as_str()).collect();
             ("", format!("misses {}", broken.join(", ")))
         }
-        PointOutcome::Done { .. } if best => ("good", "\u{2713} best".to_owned()),
+        PointOutcome::Done { .. } if best => ("good", "\u{2713}\u{a0}best".to_owned()),
         PointOutcome::Done { .. } => ("", String::new()),
     }
 }
