@@ -51,7 +51,7 @@ pub mod cli;
 use check::{Modules, Override};
 use diag::{Code, Diagnostic, Severity, Sources};
 use graph::Graph;
-use scenario::Scenario;
+use scenario::{Scenario, Study};
 use sha2::{Digest, Sha256};
 
 /// What became of a text: every diagnostic, and the scene and its graph where they could be made.
@@ -63,6 +63,8 @@ pub struct Compiled {
     pub scenario: Option<Scenario>,
     /// `None` where nothing acts on the track, too, and where only grains could answer.
     pub graph: Option<Graph>,
+    /// The studies of the file that have no mistake of their own.
+    pub studies: Vec<Study>,
 }
 
 impl Compiled {
@@ -92,7 +94,13 @@ pub fn compile(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overr
         }
     }
     diag::sort(&mut diagnostics);
-    Compiled { sources: checked.sources, diagnostics, scenario: checked.scenario.filter(|_| checked.sound), graph }
+    Compiled {
+        sources: checked.sources,
+        diagnostics,
+        scenario: checked.scenario.filter(|_| checked.sound),
+        graph,
+        studies: checked.studies,
+    }
 }
 
 /// SHA-256 over every text that a scene is made of, overrides included, in hexadecimal.

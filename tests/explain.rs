@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use trackbed::check::Modules;
+use trackbed::check::{Modules, NoModules};
 use trackbed::diag::{Code, Severity};
+use trackbed::study::{Scene, plan};
 use trackbed::{Compiled, compile};
 
 /// Codes that no text alone can show, and what shows them instead.
-const RUN_TIME: [(Code, &str); 7] = [
+const RUN_TIME: [(Code, &str); 9] = [
     (Code::E0701, "a chart of a scene without trains: `tests/study.rs`"),
     (Code::E0702, "a chart after a count that is not known: `tests/study.rs`"),
     (Code::E0802, "a run into a directory that is taken: `tests/cli.rs`"),
@@ -15,6 +16,8 @@ const RUN_TIME: [(Code, &str); 7] = [
     (Code::E0804, "a finished run that misses an expectation: `tests/cli.rs`"),
     (Code::E0805, "a measured curve beside the scene: `tests/calibrate.rs`"),
     (Code::E0806, "a measured curve beside the scene: `tests/calibrate.rs`"),
+    (Code::E0808, "a study with a point that fails: `tests/studies.rs`"),
+    (Code::E0809, "a study resumed after a change: `tests/studies.rs`"),
 ];
 
 /// Pages whose failing example is no scene: the bytes of the file are the mistake.
@@ -73,6 +76,15 @@ fn told(compiled: &Compiled) -> String {
     trackbed::diag::render::human(&compiled.diagnostics, &compiled.sources, false, 120)
 }
 
+/// What stands against the points of the studies of a block.
+fn studied(text: &str) -> Vec<Code> {
+    let compiled = compiled(text);
+    assert!(codes(&compiled).is_empty() && !compiled.studies.is_empty(), "{}", told(&compiled));
+    let scene = Scene { name: "main.track", text, modules: &NoModules, set: &[] };
+    let plans = compiled.studies.iter().map(|study| plan(scene, &compiled, study));
+    plans.flat_map(|plan| plan.diagnostics).map(|d| d.code).collect()
+}
+
 /// Runs a block in memory and says how it ended.
 fn outcome(text: &str) -> Result<(), Code> {
     let compiled = compiled(text);
@@ -129,6 +141,7 @@ fn what_fails_gives_its_code_alone() {
                     assert!(compiled.diagnostics.len() == 1 || code.rule().is_some(), "{code}:\n{}", told(&compiled));
                 }
                 "track run" => assert_eq!(outcome(block.text), Err(*code), "{code}"),
+                "track study" => assert_eq!(studied(block.text), [*code]),
                 kind => {
                     assert_eq!(kind, "console", "{code}");
                     assert!(RUN_TIME.iter().any(|(c, _)| c == code), "{code} needs an example that can be tested");
@@ -148,6 +161,7 @@ fn what_passes_gives_nothing() {
                     assert!(codes(&compiled).is_empty(), "{code}:\n{}", told(&compiled));
                 }
                 "track run" => assert_eq!(outcome(block.text), Ok(()), "{code}"),
+                "track study" => assert_eq!(studied(block.text), [], "{code}"),
                 kind => assert_eq!(kind, "console", "{code}"),
             }
         }

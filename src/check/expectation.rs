@@ -10,7 +10,7 @@ use crate::syntax::tree::{Argument, BinaryOp, Item, Name, Path, Value, ValueKind
 use crate::units::{Dimension, parse_unit};
 
 /// An expression with its dimension.
-type Typed = (Expression, Dimension);
+pub(super) type Typed = (Expression, Dimension);
 
 /// What a value in a comparison may be of, with its factor to the value of one rail or seat.
 const BASES: [(&str, f64); 7] = [
@@ -66,7 +66,7 @@ impl Checker<'_> {
         })
     }
 
-    fn expression(&mut self, value: &Value, scope: ScopeId) -> Option<Typed> {
+    pub(super) fn expression(&mut self, value: &Value, scope: ScopeId) -> Option<Typed> {
         self.operands += 1;
         if self.operands > MOST_OPERANDS {
             if self.operands == MOST_OPERANDS + 1 {
@@ -250,7 +250,7 @@ impl Checker<'_> {
 }
 
 /// The first unit written in an operand.
-fn unit_of(value: &Value) -> Option<String> {
+pub(super) fn unit_of(value: &Value) -> Option<String> {
     match &value.kind {
         ValueKind::Number { unit: Some(unit), .. } => Some(unit.text.clone()),
         ValueKind::Negate(inner) | ValueKind::Per(inner, _) => unit_of(inner),

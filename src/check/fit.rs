@@ -168,6 +168,9 @@ impl Checker<'_> {
             (Form::Comparison, ValueKind::Compare { .. } | ValueKind::Path(_)) => {
                 self.comparison(value, scope).map(Val::Comparison)
             }
+            (Form::Expression, _) => self.measured(value, scope).map(Val::Measured),
+            (Form::Axes, _) => self.axes(value, scope).map(|axes| Val::Axes(axes.into())),
+            (Form::Settings, _) => self.settings(value, scope).map(|settings| Val::Settings(settings.into())),
             (Form::Number(measure), _) => self.number_or_profile(measure, value, scope),
             (Form::Integer { min, max }, _) => self.integer(*min, *max, value, scope).map(Val::Number),
             (Form::Interval(measure), _) => self.interval(measure, value, scope),
@@ -383,7 +386,8 @@ pub(super) fn with_unit(value: &Value, unit: Option<&UnitText>) -> Value {
 /// Whether a bare name is read by the form itself, not looked up.
 fn reads_names(form: &Form) -> bool {
     match form {
-        Form::Name | Form::Response | Form::Rule | Form::Comparison => true,
+        Form::Name | Form::Response | Form::Rule | Form::Comparison | Form::Expression => true,
+        Form::Axes | Form::Settings => true,
         Form::List(item) => reads_names(item),
         _ => false,
     }

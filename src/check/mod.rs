@@ -29,11 +29,13 @@ mod seats;
 mod spacing;
 mod springs;
 mod stretch;
+mod study;
 mod table;
 mod tier;
 mod track;
 mod trackform;
 mod value;
+mod vary;
 mod vehicle;
 mod words;
 
@@ -42,7 +44,7 @@ pub use modules::{DataError, Folder, LARGEST_DATA_FILE, Modules, NoModules};
 pub use overrides::Override;
 
 use crate::diag::{self, Code, Diagnostic, FileId, Sources, Span};
-use crate::scenario::{Loading, Scenario, Traffic};
+use crate::scenario::{Loading, Scenario, Study, Traffic};
 use crate::schema::{self, Role};
 use crate::syntax::tree::{Item, Value};
 use geometry::Places;
@@ -62,6 +64,8 @@ pub struct Checked {
     /// `None` for a library, and where a mistake or a hole leaves a part unknown. Beside errors it serves to find more of
     /// them; it is not to be run.
     pub scenario: Option<Scenario>,
+    /// The studies of the main file; those without a mistake.
+    pub studies: Vec<Study>,
     /// Whether nothing stands against a run.
     pub sound: bool,
 }
@@ -96,11 +100,11 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
         asked: Asked::default(),
         seed: 1,
     };
-    let scenario = checker.scene(main);
+    let (scenario, studies) = checker.scene(main);
     let mut diagnostics = checker.diagnostics;
     diag::sort(&mut diagnostics);
     let sound = !diagnostics.iter().any(|d| d.is_error() || d.code == Code::E0410);
-    Checked { sources: checker.loader.sources, diagnostics, scenario, sound }
+    Checked { sources: checker.loader.sources, diagnostics, scenario, studies, sound }
 }
 
 /// The state of a check.
@@ -150,6 +154,9 @@ struct Missing {
     diagnostic: Diagnostic,
 }
 
+/// Kinds that are read once the places along the track are known: they count from transitions.
+const AFTER_PLACES: [&str; 2] = ["expect", "study"];
+
 /// Values that lead to values: deeper than people write, shallow enough for any stack.
 const DEEPEST: usize = 1_200;
 /// What following a name costs of that.
@@ -193,7 +200,7 @@ impl Checker<'_> {
     }
 
     /// Evaluates every declaration of the user's files, then builds the scene.
-    fn scene(&mut self, main: ScopeId) -> Option<Scenario> {
+    fn scene(&mut self, main: ScopeId) -> (Option<Scenario>, Vec<Study>) {
         let tree = self.scopes[main].tree.clone();
         if tree.items.is_empty() {
             if !diag::has_errors(&self.diagnostics) {
@@ -203,23 +210,24 @@ impl Checker<'_> {
                         .help("`trackbed new` writes a scene to begin with"),
                 );
             }
-            return None;
+            return (None, Vec::new());
         }
         let roots = self.evaluate_all(main);
         let track_record = self.only(main, "track");
         let scenario = track_record.as_ref().and_then(|record| self.build(main, record));
         self.expectations_elsewhere(main);
+        let studies = if track_record.is_some() { self.studies(main) } else { Vec::new() };
         self.idle_lets();
         self.say_missing();
         // what is misspelt or unread may be what would have used it
         if track_record.is_some() && !diag::has_errors(&self.diagnostics) {
             self.unused(main, &roots);
         }
-        scenario
+        (scenario, studies)
     }
 
-    /// Evaluates declarations, the main file's last, and returns those that act by themselves. Expectations wait
-    /// until places are known.
+    /// Evaluates declarations, the main file's last, and returns those that act by themselves. Expectations and
+    /// studies wait until places are known.
     fn evaluate_all(&mut self, main: ScopeId) -> Vec<ItemId> {
         let mut roots = Vec::new();
         let mine: Vec<ScopeId> = (0..self.scopes.len()).filter(|s| !self.scopes[*s].library).collect();
@@ -232,7 +240,7 @@ impl Checker<'_> {
                 if acts && scope == main {
                     roots.push(id);
                 }
-                if d.kind.text != "expect" {
+                if !AFTER_PLACES.contains(&d.kind.text.as_str()) {
                     let used = self.used.contains(&id);
                     self.record(id, d.span);
                     if !used && !acts {
@@ -258,12 +266,12 @@ impl Checker<'_> {
         }
     }
 
-    /// Expectations of a file without a track are read all the same.
+    /// Expectations and studies of a file without a track are read all the same.
     fn expectations_elsewhere(&mut self, main: ScopeId) {
         let tree = self.scopes[main].tree.clone();
         for (item, declaration) in tree.items.iter().enumerate() {
             if let Item::Declaration(d) = declaration
-                && d.kind.text == "expect"
+                && AFTER_PLACES.contains(&d.kind.text.as_str())
             {
                 self.record(ItemId { scope: main, item }, d.span);
             }

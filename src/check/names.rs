@@ -94,7 +94,7 @@ impl Checker<'_> {
     }
 
     /// Whether a name may have been declared where the text could not be read.
-    fn unread_word(&self, name: &Name) -> bool {
+    pub(super) fn unread_word(&self, name: &Name) -> bool {
         let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
         self.unreadable.iter().any(|s| {
             s.file == name.span.file && self.loader.sources.text(*s).split(|c| !word(c)).any(|w| w == name.text)

@@ -347,7 +347,7 @@ fn and_list(names: &[String]) -> String {
 }
 
 /// The kind of object that a field holds.
-fn object_kind(form: &Form) -> Option<&'static Kind> {
+pub(super) fn object_kind(form: &Form) -> Option<&'static Kind> {
     match form {
         Form::Object(kind) => schema::kind(kind),
         Form::OneOf(forms) => forms.iter().find_map(object_kind),

@@ -3,8 +3,8 @@
 use super::modules::ScopeId;
 use super::profile::Shape;
 use crate::diag::Span;
-use crate::scenario::Origin;
 use crate::scenario::response::{Expectation, Response};
+use crate::scenario::{Axis, Measured, Origin, Setting};
 use crate::schema::{Kind, Word};
 use crate::syntax::tree::Field;
 use crate::units::Dimension;
@@ -35,6 +35,9 @@ pub(super) enum Val {
     Profile(Rc<Shape>),
     Response(Response),
     Comparison(Expectation),
+    Measured(Measured),
+    Axes(Rc<[Axis]>),
+    Settings(Rc<[Setting]>),
     /// `?`, reported as a warning.
     Hole,
     /// Reported already.
@@ -49,11 +52,12 @@ impl Val {
             Val::Text(_) => "text",
             Val::Word { .. } => "a word",
             Val::Record(_) => "an object",
-            Val::List(_) | Val::Pairs(_) => "a list",
+            Val::List(_) | Val::Pairs(_) | Val::Axes(_) | Val::Settings(_) => "a list",
             Val::Range(..) => "a range",
             Val::Profile(_) => "a profile along the track",
             Val::Response(_) => "a response",
             Val::Comparison(_) => "a comparison",
+            Val::Measured(_) => "an expression",
             Val::Hole => "a hole",
             Val::Error => "something unreadable",
         }

@@ -1,6 +1,6 @@
 //! `trackbed bench`: how fast the solvers are on this machine. `grains` is the first of its kind.
 
-use super::{Format, Outcome, progress, study, terminal};
+use super::{Format, Outcome, progress, subject, terminal};
 use crate::report::{self, BedView, Colour, Side};
 use crate::results;
 use crate::solvers::granular::Real;
@@ -193,7 +193,7 @@ impl Grains {
                 terminal::out(&self.text(&measured));
                 Outcome::Fine
             }
-            Format::Json => study::json(&measured),
+            Format::Json => subject::json(&measured),
         }
     }
 

@@ -1,7 +1,7 @@
 //! `trackbed chart`: what a passage costs and how exact it is, over integrators, steps, meshes and beam theories.
 
 use super::scene::SceneArguments;
-use super::study::{self, Subject};
+use super::subject::{self, Subject};
 use super::{Format, Outcome, progress, terminal};
 use crate::report;
 use crate::study::chart::{Request, chart};
@@ -28,7 +28,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
-    let compiled = match study::compile(&arguments.scene) {
+    let compiled = match subject::compile(&arguments.scene) {
         Ok(compiled) => compiled,
         Err(outcome) => return outcome,
     };
@@ -61,12 +61,12 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Err(cause) => return subject.failed(cause, settled.axles),
     };
     let files = [("chart.csv", chart_csv(&chart)), ("chart.svg", report::chart_svg(&chart))];
-    if let Err(outcome) = study::write(arguments.out.as_deref(), &files) {
+    if let Err(outcome) = subject::write(arguments.out.as_deref(), &files) {
         return outcome;
     }
     match arguments.format {
         Format::Human => terminal::out(&text(&chart)),
-        Format::Json => return study::json(&chart),
+        Format::Json => return subject::json(&chart),
     }
     Outcome::Fine
 }

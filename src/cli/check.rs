@@ -1,7 +1,7 @@
-//! `trackbed check`: every diagnostic of a scene.
+//! `trackbed check`: every diagnostic of a scene, and of the points of its studies.
 
 use super::scene::{SceneArguments, failed, show};
-use super::{Format, Outcome, terminal};
+use super::{Format, Outcome, study, terminal};
 use crate::diag::render;
 
 /// Show every mistake of a scene, without running it
@@ -14,7 +14,12 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
-    let Some(compiled) = arguments.scene.compile() else { return Outcome::Usage };
+    let Some(mut compiled) = arguments.scene.compile() else { return Outcome::Usage };
+    if !failed(&compiled) {
+        // every point of a study is a scene too
+        let found = study::diagnostics(&arguments.scene, &compiled);
+        compiled.diagnostics.extend(found);
+    }
     match arguments.format {
         Format::Human => show(&compiled),
         Format::Json => terminal::out(&format!("{:#}\n", render::json(&compiled.diagnostics, &compiled.sources))),

@@ -18,6 +18,8 @@ mod run;
 mod scene;
 mod stability;
 mod study;
+mod study_folder;
+mod subject;
 mod terminal;
 
 use clap::{Parser, Subcommand, ValueEnum};
@@ -37,6 +39,7 @@ enum Command {
     Draw(draw::Arguments),
     Plan(plan::Arguments),
     Run(run::Arguments),
+    Study(study::Arguments),
     Calibrate(calibrate::Arguments),
     Report(report::Arguments),
     Chart(chart::Arguments),
@@ -80,6 +83,7 @@ pub fn main() -> ExitCode {
         Command::Draw(arguments) => draw::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
+        Command::Study(arguments) => study::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),

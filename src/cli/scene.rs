@@ -30,9 +30,13 @@ impl SceneArguments {
         let folder = Folder(self.file.parent().unwrap_or(Path::new("")).to_path_buf());
         Some(match syntax::decode(&name, &bytes) {
             Ok(text) => compile(&name, &text, &folder, &self.set),
-            Err(mistake) => {
-                Compiled { sources: Sources::default(), diagnostics: vec![mistake], scenario: None, graph: None }
-            }
+            Err(mistake) => Compiled {
+                sources: Sources::default(),
+                diagnostics: vec![mistake],
+                scenario: None,
+                graph: None,
+                studies: Vec::new(),
+            },
         })
     }
 }

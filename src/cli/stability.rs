@@ -1,7 +1,7 @@
 //! `trackbed stability`: where a passage fails, and whether it says so.
 
 use super::scene::SceneArguments;
-use super::study::{self, Subject};
+use super::subject::{self, Subject};
 use super::{Format, Outcome, progress, terminal};
 use crate::report;
 use crate::study::stability::stability;
@@ -21,7 +21,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
-    let compiled = match study::compile(&arguments.scene) {
+    let compiled = match subject::compile(&arguments.scene) {
         Ok(compiled) => compiled,
         Err(outcome) => return outcome,
     };
@@ -40,7 +40,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Err(cause) => return subject.failed(cause, 0),
     };
     let files = [("stability.csv", stability_csv(&stability)), ("stability.svg", report::stability_svg(&stability))];
-    if let Err(outcome) = study::write(arguments.out.as_deref(), &files) {
+    if let Err(outcome) = subject::write(arguments.out.as_deref(), &files) {
         return outcome;
     }
     let outcome = match arguments.format {
@@ -48,7 +48,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             terminal::out(&text(&stability));
             Outcome::Fine
         }
-        Format::Json => study::json(&stability),
+        Format::Json => subject::json(&stability),
     };
     if stability.wrong() > 0 { Outcome::Failed } else { outcome }
 }

@@ -1,103 +1,277 @@
-//! What the commands that study a scene share: the scene, its state after some axles, and their files.
+//! `trackbed study`: runs the points of a study, several at once, and says which design is best.
 
 use super::scene::{SceneArguments, failed, not_yet, show};
-use super::{Outcome, terminal};
-use crate::Compiled;
-use crate::diag::{Code, Diagnostic, render};
-use crate::graph::{Blocks, Graph, RunError, Schedule};
-use crate::results;
-use crate::scenario::Scenario;
-use crate::solvers::track::TrackError;
-use crate::study::{self, NotSettled, Settled};
-use serde::Serialize;
-use std::path::Path;
+use super::study_folder::{StudyFolder, Taken};
+use super::{Outcome, progress, terminal};
+use crate::check::Folder;
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, has_errors, or_list, render};
+use crate::scenario::Study;
+use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Scene};
+use crate::units::number;
+use crate::{Compiled, report};
+use clap::ValueEnum;
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::time::Instant;
 
-/// A scene with traffic.
-pub(super) struct Subject<'a> {
-    compiled: &'a Compiled,
-    pub scenario: &'a Scenario,
-    pub graph: &'a Graph,
-    pub blocks: &'a Blocks,
+/// Run a study of a scene: its points, its best design
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Which study of the file; needed where there are several.
+    name: Option<String>,
+    /// The directory for results; made where it does not exist.
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Points at a time; all cores where it is not given. The results do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Go on where an interrupted study of the same scene stopped.
+    #[arg(long)]
+    resume: bool,
+    /// Replace the results of another study in that directory.
+    #[arg(long)]
+    force: bool,
+    /// Where points run.
+    #[arg(long, value_enum, default_value = "local")]
+    executor: Executor,
 }
 
-/// Compiles the scene of a study.
-pub(super) fn compile(scene: &SceneArguments) -> Result<Compiled, Outcome> {
-    let Some(compiled) = scene.compile().map(Compiled::to_run) else { return Err(Outcome::Usage) };
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Executor {
+    /// On this machine.
+    Local,
+    /// On a cluster; not in this version.
+    Slurm,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Outcome {
+    if arguments.executor == Executor::Slurm {
+        terminal::error("this version runs studies on this machine only; leave out `--executor slurm`");
+        return Outcome::Usage;
+    }
+    let Some(compiled) = arguments.scene.compile().map(Compiled::to_run) else { return Outcome::Usage };
     show(&compiled);
-    if failed(&compiled) { Err(Outcome::Failed) } else { Ok(compiled) }
-}
-
-impl<'a> Subject<'a> {
-    pub fn of(compiled: &'a Compiled, command: &str) -> Result<Subject<'a>, Outcome> {
-        let (Some(scenario), Some(graph)) = (&compiled.scenario, &compiled.graph) else {
-            return Err(not_yet(compiled));
-        };
-        match &graph.schedule {
-            Schedule::Blocks(blocks) => Ok(Subject { compiled, scenario, graph, blocks }),
-            Schedule::Static { .. } => Err(stop(
-                compiled,
-                Diagnostic::new(
-                    Code::E0701,
-                    format!("`{command}` compares passages, and no train passes in this scene"),
-                )
-                .help("give the scene a `train` and a `traffic`"),
-            )),
+    if failed(&compiled) {
+        return Outcome::Failed;
+    }
+    if compiled.scenario.is_none() || compiled.graph.is_none() {
+        return not_yet(&compiled);
+    }
+    let study = match chosen(&compiled, arguments.name.as_deref()) {
+        Ok(study) => study,
+        Err(message) => {
+            terminal::error(&message);
+            return Outcome::Usage;
         }
-    }
-
-    /// The track after some axles, or after all of them.
-    pub fn settled(&self, after: Option<u64>, progress: &mut dyn FnMut(u64, u64)) -> Result<Settled, Outcome> {
-        study::settled(self.graph, after, progress).map_err(|why| match why {
-            NotSettled::Run(error) => stop(self.compiled, results::diagnose(&error, self.scenario, self.graph)),
-            NotSettled::Between { below, above } => {
-                let known: Vec<String> = [below, above].into_iter().flatten().map(|n| n.to_string()).collect();
-                let wanted = after.unwrap_or_default();
-                let message = format!("forces and settlement are not exchanged after {wanted} axles");
-                let diagnostic = Diagnostic::new(Code::E0702, message)
-                    .help(format!("write `--after {}`", known.join("` or `--after ")));
-                stop(self.compiled, diagnostic)
-            }
-        })
-    }
-
-    /// A passage that the study needs has failed.
-    pub fn failed(&self, cause: TrackError, axles: u64) -> Outcome {
-        let error = RunError::Track { axles, cause };
-        stop(self.compiled, results::diagnose(&error, self.scenario, self.graph))
-    }
-}
-
-fn stop(compiled: &Compiled, diagnostic: Diagnostic) -> Outcome {
-    terminal::note(&render::human(&[diagnostic], &compiled.sources, terminal::colour(), terminal::width()));
-    Outcome::Failed
-}
-
-/// Writes the files of a study where a directory is given.
-pub(super) fn write(directory: Option<&Path>, files: &[(&str, String)]) -> Result<(), Outcome> {
-    let Some(directory) = directory else { return Ok(()) };
-    let written = std::fs::create_dir_all(directory).map_err(|e| e.to_string()).and_then(|()| {
-        files.iter().try_for_each(|(name, text)| {
-            results::write_atomically(&directory.join(name), text.as_bytes()).map_err(|e| e.to_string())
-        })
-    });
-    written.map_err(|cause| {
-        let diagnostic = Diagnostic::new(Code::E0802, format!("cannot write into `{}`: {cause}", directory.display()))
-            .help("give another `--out`");
-        terminal::note(&render::human(&[diagnostic], &Default::default(), terminal::colour(), terminal::width()));
-        Outcome::Failed
-    })
-}
-
-/// Prints an answer for a program.
-pub(super) fn json(answer: &impl Serialize) -> Outcome {
-    match serde_json::to_string_pretty(answer) {
-        Ok(json) => {
-            terminal::out(&format!("{json}\n"));
-            Outcome::Fine
-        }
+    };
+    let threads = arguments.jobs.map_or(0, usize::from);
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(|| in_pool(arguments, &compiled, study)),
         Err(error) => {
-            terminal::error(&format!("cannot write the answer as JSON: {error}"));
+            terminal::error(&format!("cannot start {threads} threads: {error}"));
             Outcome::Failed
         }
     }
+}
+
+/// The study of that name, or the only one.
+fn chosen<'a>(compiled: &'a Compiled, name: Option<&str>) -> Result<&'a Study, String> {
+    let names: Vec<String> = compiled.studies.iter().map(|s| format!("`{}`", s.name)).collect();
+    match (name, compiled.studies.as_slice()) {
+        (_, []) => Err("the file has no `study`; `trackbed docs study` says how to write one".into()),
+        (None, [only]) => Ok(only),
+        (None, _) => Err(format!("the file has several studies: name {}", or_list(&names))),
+        (Some(name), studies) => studies.iter().find(|s| s.name == name).ok_or_else(|| {
+            let near = nearest(name, studies.iter().map(|s| s.name.as_str()));
+            match near {
+                Some(near) => format!("the file has no study `{name}`; did you mean `{near}`?"),
+                None => format!("the file has no study `{name}`, but {}", or_list(&names)),
+            }
+        }),
+    }
+}
+
+/// Diagnostics of every study of a scene, for `check`.
+pub(super) fn diagnostics(arguments: &SceneArguments, compiled: &Compiled) -> Vec<Diagnostic> {
+    let plan = |study: &Study| with_scene(arguments, compiled, |scene| study::plan(scene, compiled, study).diagnostics);
+    compiled.studies.iter().flat_map(plan).collect()
+}
+
+fn with_scene<T>(arguments: &SceneArguments, compiled: &Compiled, f: impl FnOnce(Scene<'_>) -> T) -> T {
+    let name = arguments.file.display().to_string();
+    let folder = Folder(arguments.file.parent().unwrap_or(Path::new("")).to_path_buf());
+    let text = compiled.sources.iter().next().map_or("", |(_, source)| source.text.as_str());
+    f(Scene { name: &name, text, modules: &folder, set: &arguments.set })
+}
+
+fn in_pool(arguments: &Arguments, compiled: &Compiled, study: &Study) -> Outcome {
+    with_scene(&arguments.scene, compiled, |scene| {
+        let plan = study::plan(scene, compiled, study);
+        say(&plan.diagnostics, compiled);
+        if has_errors(&plan.diagnostics) {
+            return Outcome::Failed;
+        }
+        let folder = match StudyFolder::prepare(&arguments.out, &plan, compiled, arguments.resume, arguments.force) {
+            Ok(folder) => folder,
+            Err(taken) => {
+                say(&[refused(&taken)], compiled);
+                return Outcome::Failed;
+            }
+        };
+        announce(&plan);
+        let started = Instant::now();
+        let results = match perform(scene, &plan, &folder) {
+            Ok(results) => results,
+            Err(message) => {
+                say(&[Diagnostic::new(Code::E0802, message).help("go on with `--resume`")], compiled);
+                return Outcome::Failed;
+            }
+        };
+        let title = compiled.scenario.as_ref().map_or("", |s| s.title.as_str());
+        let answer = Answer::new(title, &plan, results);
+        let name = arguments.scene.file.file_name().unwrap_or_default().to_string_lossy();
+        let page = report::study_page(&answer, &name);
+        if let Err(message) = folder.finish(&answer, &page, compiled, started.elapsed().as_secs_f64()) {
+            say(&[Diagnostic::new(Code::E0802, message)], compiled);
+            return Outcome::Failed;
+        }
+        summary(&answer, &arguments.out, started.elapsed().as_secs_f64());
+        failures(&answer, compiled)
+    })
+}
+
+fn refused(taken: &Taken) -> Diagnostic {
+    match taken {
+        Taken::ByAnother(message) => Diagnostic::new(Code::E0809, message)
+            .help("run it without `--resume` into another `--out`, or replace what is there with `--force`"),
+        Taken::Unusable(message) => {
+            Diagnostic::new(Code::E0802, message).help("give another `--out`, or `--resume` or `--force`")
+        }
+    }
+}
+
+fn say(diagnostics: &[Diagnostic], compiled: &Compiled) {
+    if !diagnostics.is_empty() {
+        terminal::note(&render::human(diagnostics, &compiled.sources, terminal::colour(), terminal::width()));
+    }
+}
+
+/// What is about to run.
+fn announce(plan: &Plan) {
+    let runs = plan.points.len() * plan.study.repeats as usize;
+    let left_out = match plan.left_out {
+        0 => String::new(),
+        n => format!(" ({n} of the design break a condition and are left out)"),
+    };
+    let repeats = if plan.study.repeats > 1 { format!(", {runs} runs") } else { String::new() };
+    terminal::note(&format!(
+        "study `{}`: {} points{left_out}{repeats}, about {} of computing, {} at a time\n",
+        plan.study.name,
+        plan.points.len(),
+        duration(plan.seconds()),
+        rayon::current_num_threads()
+    ));
+}
+
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 90.0 => format!("{} s", number(s.ceil())),
+        s if s < 5400.0 => format!("{} min", number((s / 60.0).round())),
+        s => format!("{} h", number((s / 360.0).round() / 10.0)),
+    }
+}
+
+/// Runs what has not run yet and keeps each point as soon as it is there. The order of the answer is that of the design.
+fn perform(scene: Scene<'_>, plan: &Plan, folder: &StudyFolder) -> Result<Vec<PointResult>, String> {
+    let bar = progress::share();
+    bar.set_message(format!("{} points", plan.points.len()));
+    let done = Mutex::new(0.0);
+    let whole = plan.seconds().max(1e-9);
+    let one = |point: &PlannedPoint| {
+        let result = match folder.known(point) {
+            Some(result) => result,
+            None => {
+                let result = study::perform(scene, &plan.study, point);
+                folder.keep(&result)?;
+                result
+            }
+        };
+        advance(&bar, &done, point.seconds * f64::from(plan.study.repeats) / whole);
+        Ok(result)
+    };
+    let results = plan.points.par_iter().map(one).collect();
+    bar.finish_and_clear();
+    results
+}
+
+/// Points differ in cost: the bar counts thousandths of the estimate.
+fn advance(bar: &ProgressBar, done: &Mutex<f64>, share: f64) {
+    if let Ok(mut done) = done.lock() {
+        *done += share;
+        progress::at(bar, (*done * 1e3) as u64, 1000);
+    }
+}
+
+/// The best design, or the Pareto front.
+fn summary(answer: &Answer, out: &Path, seconds: f64) {
+    let measured = answer.study.measured();
+    let mut text = format!("{}, study `{}`\n", answer.title, answer.study.name);
+    let best = answer.best();
+    let objectives = answer.study.objectives.len();
+    match (objectives, best.len()) {
+        (0, _) => {}
+        (_, 0) => text.push_str("  no design runs and meets every constraint\n"),
+        (1, _) => text.push_str("  best design\n"),
+        (_, n) => text.push_str(&format!("  {n} designs that no other beats\n")),
+    }
+    const MOST: usize = 8;
+    let shown = if objectives == 1 { 1 } else { MOST };
+    for index in best.iter().take(shown) {
+        let row = &answer.rows[*index];
+        text.push_str(&format!("  point {:<4} {}\n", row.number, answer.lines(row).join(", ")));
+        for (m, value) in measured.iter().zip(row.values().unwrap_or_default()) {
+            let value = number(rounded(value / m.unit.1));
+            text.push_str(&format!("             {} {value} {}\n", m.text, m.unit.0));
+        }
+    }
+    if objectives > 1 && best.len() > MOST {
+        text.push_str(&format!("  and {} more\n", best.len() - MOST));
+    }
+    text.push_str(&format!("{} ({} s)\n", out.join("study.html").display(), number((seconds * 10.0).round() / 10.0)));
+    terminal::out(&text);
+}
+
+/// Four digits.
+fn rounded(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
+}
+
+/// Points that failed are named once a reason.
+fn failures(answer: &Answer, compiled: &Compiled) -> Outcome {
+    let mut reasons: Vec<(&str, Vec<usize>)> = Vec::new();
+    for row in answer.failures() {
+        let reason = row.failed().unwrap_or_default();
+        match reasons.iter_mut().find(|(known, _)| *known == reason) {
+            Some((_, points)) => points.push(row.number),
+            None => reasons.push((reason, vec![row.number])),
+        }
+    }
+    let diagnostics: Vec<Diagnostic> = reasons
+        .into_iter()
+        .map(|(reason, points)| {
+            let (first, count) = (points[0], points.len());
+            let which =
+                if count == 1 { format!("point {first}") } else { format!("{count} points, the first {first},") };
+            Diagnostic::new(Code::E0808, format!("{which} of study `{}` failed: {reason}", answer.study.name))
+                .at(answer.study.span, "the other points stand")
+                .help("its row in `study.csv` has the values; run it alone with `trackbed run` and `--set`")
+        })
+        .collect();
+    say(&diagnostics, compiled);
+    if diagnostics.is_empty() { Outcome::Fine } else { Outcome::Failed }
 }

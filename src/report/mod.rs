@@ -30,6 +30,7 @@ mod scene;
 mod seat_clock;
 mod stability;
 mod stiffness;
+mod study;
 mod svg;
 mod symbols;
 mod thin;
@@ -42,6 +43,7 @@ pub use drawing::drawing_svg;
 pub use page::page;
 pub use scene::scene_svg;
 pub use stability::stability_svg;
+pub use study::study_page;
 pub use work_precision::chart_svg;
 
 use crate::results::Run;

@@ -10,20 +10,7 @@ use std::fmt::Write;
 
 /// Makes the whole page.
 pub fn page(run: &Run) -> String {
-    let title = escape(&run.scenario.title);
-    let mut html = format!(
-        concat!(
-            "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">",
-            "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">",
-            "<meta name=\"color-scheme\" content=\"light dark\">",
-            "<title>{title}</title><style>{page}{figures}</style></head><body><main>\n",
-            "<header><h1>{title}</h1><p class=\"sub\">{subtitle}</p></header>\n"
-        ),
-        title = title,
-        page = include_str!("page.css"),
-        figures = STYLE,
-        subtitle = escape(&subtitle(&run.scenario))
-    );
+    let mut html = opening(&run.scenario.title, &subtitle(&run.scenario));
     let figures = figures(run);
     headline(&mut html, run);
     laws::remarks(&mut html, run);
@@ -34,6 +21,23 @@ pub fn page(run: &Run) -> String {
     provenance(&mut html, run);
     html += "</main></body></html>\n";
     html
+}
+
+/// The head of a page: its style, title and what it is about.
+pub(super) fn opening(title: &str, subtitle: &str) -> String {
+    format!(
+        concat!(
+            "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">",
+            "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">",
+            "<meta name=\"color-scheme\" content=\"light dark\">",
+            "<title>{title}</title><style>{page}{figures}</style></head><body><main>\n",
+            "<header><h1>{title}</h1><p class=\"sub\">{subtitle}</p></header>\n"
+        ),
+        title = escape(title),
+        page = include_str!("page.css"),
+        figures = STYLE,
+        subtitle = escape(subtitle)
+    )
 }
 
 /// `wagon: 1 vehicle at 200 km/h, 500 axles. Track line, 66 m: ballasted 42 m, slab_track 24 m.`

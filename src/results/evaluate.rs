@@ -4,6 +4,7 @@
 //! time); velocities and accelerations come from histories, as do the wheels' and the rail's responses.
 
 use super::{BlockRow, HistoryRow, RailRow, Scalar, SleeperRow, Verdict};
+use crate::graph::{Graph, Schedule};
 use crate::scenario::response::{Expectation, Expression, Measure, Place, Reduction, Response};
 use crate::scenario::{Scenario, Track};
 use crate::syntax::tree::{BinaryOp, Comparison};
@@ -38,14 +39,10 @@ pub fn evaluate(expression: &Expression, tables: Tables<'_>) -> Result<f64, Stri
         Expression::Negate(inner) => -evaluate(inner, tables)?,
         Expression::Binary(left, operator, right) => {
             let (left, right) = (evaluate(left, tables)?, evaluate(right, tables)?);
-            match operator {
-                BinaryOp::Add => left + right,
-                BinaryOp::Subtract => left - right,
-                BinaryOp::Multiply => left * right,
-                BinaryOp::Divide if right == 0.0 => return Err("divided by zero".to_owned()),
-                BinaryOp::Divide => left / right,
-                BinaryOp::Power => left.powf(right),
+            if *operator == BinaryOp::Divide && right == 0.0 {
+                return Err("divided by zero".to_owned());
             }
+            combine(left, *operator, right)
         }
     };
     if value.is_finite() { Ok(value) } else { Err("the value is not a finite number".to_owned()) }
@@ -56,7 +53,8 @@ pub fn verdicts(scenario: &Scenario, tables: Tables<'_>) -> Vec<Verdict> {
     scenario.expectations.iter().map(|expectation| verdict(expectation, tables)).collect()
 }
 
-fn verdict(expectation: &Expectation, tables: Tables<'_>) -> Verdict {
+/// A comparison against the tables.
+pub fn verdict(expectation: &Expectation, tables: Tables<'_>) -> Verdict {
     let operands: Result<Vec<f64>, String> = expectation.operands.iter().map(|e| evaluate(e, tables)).collect();
     let (unit, size) = &expectation.unit;
     let (met, values, problem) = match operands {
@@ -70,7 +68,33 @@ fn verdict(expectation: &Expectation, tables: Tables<'_>) -> Verdict {
     Verdict { text: expectation.text.clone(), met, values, unit: unit.clone(), problem }
 }
 
-fn holds(left: f64, operator: Comparison, right: f64) -> bool {
+/// The value of an expression that asks nothing of a run.
+pub fn known(expression: &Expression) -> Option<f64> {
+    match expression {
+        Expression::Number(value) => Some(*value),
+        Expression::Measure(_) => None,
+        Expression::Negate(inner) => Some(-known(inner)?),
+        Expression::Binary(left, operator, right) => {
+            let (left, right) = (known(left)?, known(right)?);
+            match operator {
+                BinaryOp::Divide if right == 0.0 => None,
+                _ => Some(combine(left, *operator, right)),
+            }
+        }
+    }
+}
+
+fn combine(left: f64, operator: BinaryOp, right: f64) -> f64 {
+    match operator {
+        BinaryOp::Add => left + right,
+        BinaryOp::Subtract => left - right,
+        BinaryOp::Multiply => left * right,
+        BinaryOp::Divide => left / right,
+        BinaryOp::Power => left.powf(right),
+    }
+}
+
+pub fn holds(left: f64, operator: Comparison, right: f64) -> bool {
     match operator {
         Comparison::Less => left < right,
         Comparison::LessOrEqual => left <= right,
@@ -108,6 +132,33 @@ fn peak(measure: &Measure, tables: Tables<'_>) -> Option<f64> {
     };
     let scalar = tables.scalars.get(&format!("{prefix}_{}", measure.response.name()));
     scalar.filter(|_| everywhere_at_last).map(|s| s.value)
+}
+
+/// What an expression asks for and a run of `graph` will not have; `None` where it has all of it.
+pub fn not_kept(expression: &Expression, graph: &Graph) -> Option<String> {
+    match expression {
+        Expression::Number(_) => None,
+        Expression::Measure(measure) => (!kept(measure, graph)).then(|| absent(measure)),
+        Expression::Negate(inner) => not_kept(inner, graph),
+        Expression::Binary(left, _, right) => not_kept(left, graph).or_else(|| not_kept(right, graph)),
+    }
+}
+
+/// Whether tables, peaks or histories of a run hold a response.
+fn kept(measure: &Measure, graph: &Graph) -> bool {
+    let response = measure.response;
+    let whole = measure.over.is_none() && measure.after.is_none();
+    let peaks = whole && measure.reduction == Reduction::Max && response == Response::RailMoment;
+    match response.place() {
+        Place::Scene | Place::Wheel => true,
+        // only grains fill volumes, and no tier has them yet
+        Place::Volume => false,
+        Place::Rail => {
+            response == Response::RailStiffness || peaks || matches!(graph.schedule, Schedule::Static { .. })
+        }
+        Place::Seat if response == Response::ContactPressure || sleeper_column(response).is_some() => true,
+        Place::Seat => graph.records.iter().any(|record| record.quantities.contains(&response)),
+    }
 }
 
 fn absent(measure: &Measure) -> String {

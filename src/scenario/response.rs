@@ -102,6 +102,18 @@ pub enum Expression {
     Negate(Box<Expression>),
 }
 
+impl Expression {
+    /// Whether a run has to say something for it; else it is known from the text.
+    pub fn needs_a_run(&self) -> bool {
+        match self {
+            Expression::Number(_) => false,
+            Expression::Measure(_) => true,
+            Expression::Binary(left, _, right) => left.needs_a_run() || right.needs_a_run(),
+            Expression::Negate(inner) => inner.needs_a_run(),
+        }
+    }
+}
+
 /// A comparison that must hold after the run: one more operand than operators.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Expectation {

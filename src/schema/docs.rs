@@ -93,5 +93,8 @@ fn form(form: &Form) -> String {
         Form::Response => "response".into(),
         Form::Rule => "physics rule".into(),
         Form::Comparison => "comparison".into(),
+        Form::Expression => "expression of responses".into(),
+        Form::Axes => "[path: list | range | steps | distribution]".into(),
+        Form::Settings => "[path: value]".into(),
     }
 }

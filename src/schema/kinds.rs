@@ -44,6 +44,10 @@ pub(super) const fn word(name: &'static str, doc: &'static str) -> Word {
 const fn planned(name: &'static str) -> Word {
     Word { name, doc: "not in this version", arguments: &[], planned: true }
 }
+const fn sampled(name: &'static str, doc: &'static str) -> Word {
+    const POINTS: &[Field] = &[required("points", Form::Integer { min: 1, max: 100_000 }, "how many")];
+    Word { name, doc, arguments: POINTS, planned: false }
+}
 pub(super) const fn either(ways: &'static [&'static [&'static str]]) -> Alternative {
     Alternative { ways, default: None }
 }
@@ -879,6 +883,47 @@ pub const KINDS: &[Kind] = &[
         doc: "What the run must show; a miss is named and sets the exit code.",
         role: Role::Scene { once: false },
         fields: &[required("that", Form::List(&Form::Comparison), "comparisons of responses")],
+        alternatives: &[],
+        planned: &[],
+    },
+    Kind {
+        name: "study",
+        doc: "Runs of the scene with some of its lines edited, one a point: `trackbed study`.",
+        role: Role::Scene { once: false },
+        fields: &[
+            required(
+                "vary",
+                Form::Axes,
+                "`[values]`, `a .. b`, `steps(a .. b, by = c)` or `count = n`, `uniform(a .. b)`, `normal(mean, sd)`, \
+                 `log_normal(median, cov)`",
+            ),
+            default(
+                "sampling",
+                Form::Words(&[
+                    word("grid", "every combination; lists and steps only"),
+                    sampled("latin_hypercube", "one point in each stratum of every value"),
+                    sampled("sobol", "low discrepancy; best for powers of two"),
+                ]),
+                "grid",
+                "how points are chosen",
+            ),
+            optional("set", Form::Settings, "lines edited alike in every point"),
+            default(
+                "repeats",
+                Form::Integer { min: 1, max: 1000 },
+                "1",
+                "runs of each point, each with a further seed",
+            ),
+            optional("budget", number("h", 1e-4, 1e5), "of computing on one core; a study above it is refused"),
+            optional("minimise", Form::List(&Form::Expression), "several objectives give a Pareto front"),
+            optional("maximise", Form::List(&Form::Expression), ""),
+            optional("report", Form::List(&Form::Expression), "shown beside the objectives"),
+            optional(
+                "subject_to",
+                Form::List(&Form::Comparison),
+                "what a design must hold; points that break one without a response are left out",
+            ),
+        ],
         alternatives: &[],
         planned: &[],
     },

@@ -88,6 +88,12 @@ pub enum Form {
     Response,
     Rule,
     Comparison,
+    /// An expression of responses.
+    Expression,
+    /// `[path: list, range, steps or distribution]`
+    Axes,
+    /// `[path: value]`
+    Settings,
 }
 
 /// A number with its unit, range and basis.
@@ -138,7 +144,7 @@ pub struct Alternative {
 }
 
 /// Kinds of the language that this version does not read yet.
-pub const PLANNED_KINDS: &[&str] = &["tamping", "study"];
+pub const PLANNED_KINDS: &[&str] = &["tamping"];
 
 /// The kind of that name, nested ones included.
 pub fn kind(name: &str) -> Option<&'static Kind> {
@@ -225,6 +231,9 @@ impl Form {
             Form::Response => "a response such as `rail_seat_load`".into(),
             Form::Rule => "the name of a physics rule".into(),
             Form::Comparison => "a comparison such as `max(settlement) < 3 mm`".into(),
+            Form::Expression => "an expression of responses such as `max(settlement)`".into(),
+            Form::Axes => "a list of pairs, path: values".into(),
+            Form::Settings => "a list of pairs, path: value".into(),
         }
     }
 

@@ -1,0 +1,142 @@
+//! Main effects: the mean of what is measured over the points that share a value, for every value that varies.
+
+use super::plane::{Plane, cut, range, titled};
+use crate::report::svg::{Anchor, Frame, Svg};
+use crate::scenario::Measured;
+use crate::study::Answer;
+
+const WIDTH: f64 = 960.0;
+const GAP: f64 = 14.0;
+const HEIGHT: f64 = 232.0;
+/// Panels beside each other, at most.
+const ACROSS: usize = 3;
+/// Pieces into which a value without a list is cut.
+const BINS: usize = 6;
+/// Characters of a level's name below a panel.
+const NAME: usize = 14;
+
+/// Points that share a value.
+struct Group {
+    label: String,
+    /// On the level scale.
+    x: f64,
+    rows: Vec<usize>,
+}
+
+/// The picture with its caption; none where fewer than two points ran.
+pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
+    let measured = answer.study.measured();
+    let done = answer.rows.iter().filter(|row| row.values().is_some()).count();
+    if done < 2 || measured.is_empty() {
+        return None;
+    }
+    let axes = answer.study.axes.len();
+    // what is measured of one value that varies lies side by side, else the values do
+    let panels: Vec<(usize, usize)> = (0..measured.len()).flat_map(|m| (0..axes).map(move |a| (m, a))).collect();
+    let beside = if axes == 1 { panels.len() } else { axes }.min(ACROSS);
+    let each = if axes == 1 { panels.len() } else { axes };
+    let rows_each = each.div_ceil(beside);
+    let width = (WIDTH - GAP * (beside - 1) as f64) / beside as f64;
+    let mut svg = Svg::default();
+    for (index, (m, axis)) in panels.iter().enumerate() {
+        let (block, within) = (index / each, index % each);
+        let frame = Frame {
+            x: (within % beside) as f64 * (width + GAP),
+            y: (block * rows_each + within / beside) as f64 * (HEIGHT + GAP),
+            width,
+            height: HEIGHT,
+        };
+        panel(&mut svg, answer, *m, measured[*m], *axis, frame);
+    }
+    let height = (panels.len() / each * rows_each) as f64 * (HEIGHT + GAP);
+    let caption = "Dots: the mean over all points that share a value (or lie in one of six pieces of its range). \
+                   Bars: from the smallest to the largest of them. Rings: the points. A level line says that the value \
+                   hardly matters."
+        .to_owned();
+    Some((svg.finish(WIDTH, height, "Main effects of what varies"), caption))
+}
+
+fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize, frame: Frame) {
+    let value = |row: usize| answer.rows[row].values().map(|v| v[m] / what.unit.1);
+    let groups = groups(answer, axis);
+    let own = &answer.study.axes[axis];
+    let numbers = place(answer, axis);
+    svg.text("strong", (frame.x + 4.0, frame.y + 13.0), Anchor::Start, &cut(&titled(&what.text, &what.unit.0), 42));
+    let xs = groups.iter().flat_map(|g| g.rows.iter().map(|row| numbers(*row)));
+    let plane = Plane {
+        frame: Frame { x: frame.x + 58.0, y: frame.y + 26.0, width: frame.width - 66.0, height: frame.height - 72.0 },
+        x: range(xs),
+        y: range((0..answer.rows.len()).filter_map(value)),
+    };
+    plane.upright_scale(svg);
+    if groups.iter().any(|g| !g.label.is_empty()) {
+        let most = (NAME * 4 / groups.len().max(4)).max(3);
+        groups.iter().for_each(|g| plane.mark(svg, g.x, &cut(&g.label, most)));
+    } else {
+        plane.level_scale(svg);
+    }
+    let middle = plane.frame.x + plane.frame.width / 2.0;
+    let title = cut(&titled(&own.path, &own.unit), 44);
+    svg.text("", (middle, frame.y + frame.height - 8.0), Anchor::Middle, &title);
+    let mut means = Vec::new();
+    for group in &groups {
+        let values: Vec<f64> = group.rows.iter().filter_map(|row| value(*row)).collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let (low, high) = values.iter().fold((mean, mean), |(low, high), v| (low.min(*v), high.max(*v)));
+        svg.line("line s0", plane.at((group.x, low)), plane.at((group.x, high)));
+        means.push((plane.at((group.x, mean)), mean, values.len()));
+    }
+    for row in groups.iter().flat_map(|g| &g.rows) {
+        if let Some(y) = value(*row) {
+            let text = format!("point {}", answer.rows[*row].number);
+            svg.circle("faint", plane.at((numbers(*row), y)), 2.5, &text);
+        }
+    }
+    let places: Vec<(f64, f64)> = means.iter().map(|(at, ..)| *at).collect();
+    svg.path("line s0", &places, false, "");
+    for (at, mean, count) in means {
+        let text = format!("mean of {count}: {} {}", crate::report::number::significant(mean, 4), what.unit.0);
+        svg.circle("dot s0", at, 4.0, &text);
+    }
+}
+
+/// Where a row stands on the level scale of an axis: its number, else the place of its value in the list.
+fn place(answer: &Answer, axis: usize) -> impl Fn(usize) -> f64 + '_ {
+    let numeric = answer.rows.iter().all(|row| row.levels[axis].number.is_some());
+    move |row: usize| {
+        let level = &answer.rows[row].levels[axis];
+        let listed = level.choice.unwrap_or(0) as f64;
+        if numeric { level.number.unwrap_or(listed) } else { listed }
+    }
+}
+
+fn groups(answer: &Answer, axis: usize) -> Vec<Group> {
+    let place = place(answer, axis);
+    let numeric = answer.rows.iter().all(|row| row.levels[axis].number.is_some());
+    let done: Vec<usize> = (0..answer.rows.len()).filter(|row| answer.rows[*row].values().is_some()).collect();
+    let listed = answer.rows.iter().all(|row| row.levels[axis].choice.is_some());
+    let mut groups: Vec<Group> = Vec::new();
+    if listed {
+        for row in done {
+            let x = place(row);
+            match groups.iter_mut().find(|g| g.x == x) {
+                Some(group) => group.rows.push(row),
+                None => {
+                    let text = &answer.rows[row].levels[axis].text;
+                    let label = if numeric { String::new() } else { text.clone() };
+                    groups.push(Group { label, x, rows: vec![row] });
+                }
+            }
+        }
+    } else {
+        let (low, high) = done.iter().map(|r| place(*r)).fold((f64::MAX, f64::MIN), |(l, h), x| (l.min(x), h.max(x)));
+        let width = ((high - low) / BINS as f64).max(f64::MIN_POSITIVE);
+        let bin = |x: f64| (((x - low) / width) as usize).min(BINS - 1);
+        let middle = |bin: usize| low + (bin as f64 + 0.5) * width;
+        groups = (0..BINS).map(|b| Group { label: String::new(), x: middle(b), rows: Vec::new() }).collect();
+        done.iter().for_each(|row| groups[bin(place(*row))].rows.push(*row));
+        groups.retain(|g| !g.rows.is_empty());
+    }
+    groups.sort_by(|a, b| a.x.total_cmp(&b.x));
+    groups
+}

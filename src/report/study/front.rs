@@ -1,0 +1,58 @@
+//! The Pareto front of the first two objectives.
+
+use super::plane::{Plane, range, titled};
+use crate::report::svg::{Anchor, Frame, Svg};
+use crate::scenario::{Goal, Objective};
+use crate::study::{Answer, Row};
+
+const SIZE: (f64, f64) = (960.0, 430.0);
+
+/// The picture with its caption; none where there is one objective.
+pub(super) fn pareto(answer: &Answer) -> Option<(String, String)> {
+    let [first, second, ..] = answer.study.objectives.as_slice() else { return None };
+    let measured = answer.study.measured();
+    let index = |o: &Objective| measured.iter().position(|m| m.text == o.of.text);
+    let (a, b) = (index(first)?, index(second)?);
+    let at = |row: &Row| row.values().map(|v| (v[a] / first.of.unit.1, v[b] / second.of.unit.1));
+    let places: Vec<(f64, f64)> = answer.rows.iter().filter_map(at).collect();
+    if places.is_empty() {
+        return None;
+    }
+    let mut svg = Svg::default();
+    let plane = Plane {
+        frame: Frame { x: 70.0, y: 34.0, width: SIZE.0 - 90.0, height: SIZE.1 - 86.0 },
+        x: range(places.iter().map(|p| p.0)),
+        y: range(places.iter().map(|p| p.1)),
+    };
+    svg.text("strong", (6.0, 16.0), Anchor::Start, &aimed(second));
+    plane.upright_scale(&mut svg);
+    plane.level_scale(&mut svg);
+    let below = (plane.frame.x + plane.frame.width / 2.0, SIZE.1 - 12.0);
+    svg.text("strong", below, Anchor::Middle, &aimed(first));
+    let best = answer.best();
+    let front: Vec<(f64, f64)> = best.iter().filter_map(|i| at(&answer.rows[*i])).map(|p| plane.at(p)).collect();
+    svg.path("frontier", &front, false, "");
+    for (index, row) in answer.rows.iter().enumerate() {
+        let Some(place) = at(row) else { continue };
+        let text = format!("point {}: {}", row.number, answer.lines(row).join(", "));
+        let (x, y) = plane.at(place);
+        match (best.contains(&index), row.feasible()) {
+            (true, _) => {
+                svg.circle("dot s1", (x, y), 5.5, &text);
+                svg.text("small halo", (x + 9.0, y - 7.0), Anchor::Start, &row.number.to_string());
+            }
+            (false, true) => svg.circle("dot s0", (x, y), 3.5, &text),
+            (false, false) => svg.circle("hollow s0", (x, y), 3.5, &text),
+        }
+    }
+    let caption = "Every point by its first two objectives. Large dots with their number: no other point is better in \
+                   every objective. Hollow dots miss a constraint."
+        .to_owned();
+    Some((svg.finish(SIZE.0, SIZE.1, "Pareto front"), caption))
+}
+
+/// `max(settlement) [mm], the smaller the better`
+fn aimed(objective: &Objective) -> String {
+    let better = if objective.goal == Goal::Minimise { "smaller" } else { "larger" };
+    format!("{}, the {better} the better", titled(&objective.of.text, &objective.of.unit.0))
+}

@@ -1,0 +1,115 @@
+//! Runs one point of a study, as often as it is repeated, and keeps what was asked for.
+
+use super::plan::{PlannedPoint, Scene};
+use crate::diag::Diagnostic;
+use crate::graph;
+use crate::results::{self, RunRecorder, Tables, Verdict};
+use crate::scenario::Study;
+use crate::scenario::response::Expectation;
+use crate::syntax::tree::Comparison;
+use serde::{Deserialize, Serialize};
+
+/// A point that has run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PointResult {
+    pub number: usize,
+    pub outcome: PointOutcome,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PointOutcome {
+    Done {
+        /// What is measured, SI, in the order of [`Study::measured`]; means over the repeats.
+        values: Vec<f64>,
+        /// Standard deviations over the repeats, 0 for one of them.
+        deviations: Vec<f64>,
+        /// Whether every run met each constraint.
+        met: Vec<bool>,
+    },
+    Failed {
+        code: Option<String>,
+        reason: String,
+    },
+}
+
+/// Runs a point.
+pub fn perform(scene: Scene<'_>, study: &Study, point: &PlannedPoint) -> PointResult {
+    let runs: Result<Vec<OneRun>, PointOutcome> =
+        (0..study.repeats).map(|repeat| run(scene, study, point, repeat)).collect();
+    let outcome = match runs {
+        Ok(runs) => gathered(&runs),
+        Err(failed) => failed,
+    };
+    PointResult { number: point.number, outcome }
+}
+
+/// What a comparison that needs no run says; `None` for the others.
+pub(super) fn condition(comparison: &Expectation) -> Option<bool> {
+    if comparison.operands.iter().any(|e| e.needs_a_run()) {
+        return None;
+    }
+    let values: Vec<f64> = comparison.operands.iter().map(results::known).collect::<Option<_>>()?;
+    let holds = |(pair, operator): (&[f64], &Comparison)| results::holds(pair[0], *operator, pair[1]);
+    Some(values.windows(2).zip(&comparison.operators).all(holds))
+}
+
+/// What one run says: what is measured, and whether each constraint is met.
+type OneRun = (Vec<f64>, Vec<bool>);
+
+fn run(scene: Scene<'_>, study: &Study, point: &PlannedPoint, repeat: u32) -> Result<OneRun, PointOutcome> {
+    let compiled = scene.compile(&point.overrides_of(repeat));
+    if let Some(mistake) = compiled.diagnostics.iter().find(|d| d.is_error()) {
+        return Err(failed(mistake));
+    }
+    let nothing = || fail("there is nothing to run");
+    let (Some(scenario), Some(graph)) = (&compiled.scenario, &compiled.graph) else { return Err(nothing()) };
+    // places and counts of the point's own track
+    let own = compiled.studies.iter().find(|s| s.name == study.name).ok_or_else(nothing)?;
+    let mut recorder = RunRecorder::new(scenario, None, |_, _| {});
+    graph::execute(graph, &mut recorder, None).map_err(|error| failed(&results::diagnose(&error, scenario, graph)))?;
+    let (tables, histories) = (&recorder.tables, recorder.all_histories());
+    let scalars = results::summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+    let view = Tables {
+        sleepers: &tables.sleepers,
+        blocks: &tables.blocks,
+        rail: &tables.rail,
+        histories: &histories,
+        scalars: &scalars,
+        track: &scenario.track,
+    };
+    let measure = |m: &crate::scenario::Measured| {
+        results::evaluate(&m.expression, view).map_err(|why| fail(&format!("`{}`: {why}", m.text)))
+    };
+    let values: Vec<f64> = own.measured().into_iter().map(measure).collect::<Result<_, _>>()?;
+    let verdicts = own.constraints.iter().map(|c| results::verdict(c, view));
+    let met: Vec<bool> = verdicts.map(held).collect::<Result<_, _>>()?;
+    Ok((values, met))
+}
+
+fn held(verdict: Verdict) -> Result<bool, PointOutcome> {
+    match verdict.problem {
+        Some(why) => Err(fail(&format!("`{}`: {why}", verdict.text))),
+        None => Ok(verdict.met),
+    }
+}
+
+fn failed(mistake: &Diagnostic) -> PointOutcome {
+    PointOutcome::Failed { code: Some(mistake.code.to_string()), reason: mistake.message.clone() }
+}
+
+fn fail(reason: &str) -> PointOutcome {
+    PointOutcome::Failed { code: None, reason: reason.to_string() }
+}
+
+/// Mean and standard deviation of every value, and what all runs met.
+fn gathered(runs: &[OneRun]) -> PointOutcome {
+    let n = runs.len() as f64;
+    let count = runs.first().map_or(0, |(values, _)| values.len());
+    let values: Vec<f64> = (0..count).map(|i| runs.iter().map(|(v, _)| v[i]).sum::<f64>() / n).collect();
+    let squares = |i: usize| runs.iter().map(|(v, _)| (v[i] - values[i]).powi(2)).sum::<f64>();
+    let deviations = (0..count).map(|i| (squares(i) / (n - 1.0).max(1.0)).sqrt()).collect();
+    let constraints = runs.first().map_or(0, |(_, met)| met.len());
+    let met = (0..constraints).map(|i| runs.iter().all(|(_, met)| met[i])).collect();
+    PointOutcome::Done { values, deviations, met }
+}

@@ -1,0 +1,371 @@
+//! Studies: what is wrong with them is told before anything runs; they run, are killed, go on, and say which design is best.
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use trackbed::check::NoModules;
+use trackbed::diag::{Code, Diagnostic};
+use trackbed::study::{Plan, Scene, plan, values};
+use trackbed::{Compiled, compile};
+
+/// 21 m of track under one wagon.
+const SMALL: &str = r#"use std
+scenario { title = "small", allow = [stiffness_jump: "small", track_too_short: "small", critical_speed: "small"] }
+let ground = 50 MN/m per seat
+let first = 0.1 N/mm^3
+let last = 0.3 N/mm^3
+trackform open {
+  rail = rails.UIC60, pad = pads.ahmadi_2026, sleeper = sleepers.B70, spacing = 0.6 m
+  support = { stiffness = ground, damping_time = 1 ms }
+  usp = { bedding_modulus = ramp(first .. last) }
+}
+trackform stiff : open { sleeper = none, support = none, usp = none, slab = slabs.half_width_1600 }
+track line { sections = [open: 12 m, stiff: 9 m] }
+train ore { vehicles = vehicles.ore_wagon_20t, speed = 200 km/h }
+traffic { trains = ore, total = 8 axles }
+solve { update_every = 4 axles, elements_per_bay = 2, time_step = 2e-4 s, law = laws.varandas_2014 }
+let dip = max(settlement) - mean(settlement, over = -12 .. -8 m)
+"#;
+
+fn with(study: &str) -> String {
+    format!("{SMALL}{study}\n")
+}
+
+fn compiled(text: &str) -> Compiled {
+    compile("small.track", text, &NoModules, &[])
+}
+
+/// The one mistake of a study: its code, the text under it and its message with the help.
+fn mistake(study: &str) -> (Code, String, String) {
+    let compiled = compiled(&with(study));
+    let [only] = compiled.diagnostics.as_slice() else { panic!("{study}\n{:#?}", compiled.diagnostics) };
+    told(only, &compiled)
+}
+
+fn told(diagnostic: &Diagnostic, compiled: &Compiled) -> (Code, String, String) {
+    let under = compiled.sources.text(diagnostic.labels[0].span).to_string();
+    (diagnostic.code, under, format!("{}; {}", diagnostic.message, diagnostic.help.clone().unwrap_or_default()))
+}
+
+fn planned(study: &str) -> (Plan, Compiled) {
+    let text = with(study);
+    let compiled = compiled(&text);
+    assert!(compiled.diagnostics.is_empty(), "{:#?}", compiled.diagnostics);
+    let scene = Scene { name: "small.track", text: &text, modules: &NoModules, set: &[] };
+    (plan(scene, &compiled, &compiled.studies[0]), compiled)
+}
+
+fn designs(plan: &Plan) -> Vec<String> {
+    plan.points.iter().map(|p| values(&plan.study, &p.levels)).collect()
+}
+
+#[test]
+fn every_form_of_values_is_read() {
+    for (vary, points) in [
+        ("ground: [20, 40.5] MN/m per seat", vec!["ground = 20 MN/m per seat", "ground = 40.5 MN/m per seat"]),
+        (
+            "ground: steps(20 .. 40 MN/m, by = 10 MN/m) per seat",
+            vec!["ground = 20 MN/m per seat", "ground = 30 MN/m per seat", "ground = 40 MN/m per seat"],
+        ),
+        ("ore.speed: steps(110 .. 140 km/h, count = 2)", vec!["ore.speed = 110 km/h", "ore.speed = 140 km/h"]),
+        (
+            "stiff.pad: [pads.soft, pads.soft { stiffness = 70 MN/m }]",
+            vec!["stiff.pad = pads.soft", "stiff.pad = pads.soft { stiffness = 70 MN/m }"],
+        ),
+        ("ore.direction: [forward, backward]", vec!["ore.direction = forward", "ore.direction = backward"]),
+        ("line.sections.open: [12, 12.6] m", vec!["line.sections.open = 12 m", "line.sections.open = 12.6 m"]),
+        (
+            "open.usp.bedding_modulus: [ramp(first .. last), smooth(first .. last)]",
+            vec!["open.usp.bedding_modulus = ramp(first .. last)", "open.usp.bedding_modulus = smooth(first .. last)"],
+        ),
+        (
+            "solve.elements_per_bay: [1, 2], ore.direction: [forward, backward]",
+            vec![
+                "solve.elements_per_bay = 1, ore.direction = forward",
+                "solve.elements_per_bay = 1, ore.direction = backward",
+                "solve.elements_per_bay = 2, ore.direction = forward",
+                "solve.elements_per_bay = 2, ore.direction = backward",
+            ],
+        ),
+    ] {
+        let (plan, _) = planned(&format!("study s {{ vary = [{vary}], minimise = dip }}"));
+        assert!(plan.diagnostics.is_empty(), "{vary}: {:#?}", plan.diagnostics);
+        assert_eq!(designs(&plan), points);
+        assert!(plan.seconds() > 0.0);
+    }
+}
+
+#[test]
+fn samples_lie_where_they_are_asked_for() {
+    for sampling in ["sobol(16)", "latin_hypercube(16)"] {
+        let study = format!(
+            "study s {{ vary = [ground: log_normal(50 MN/m, cov = 20 %) per seat, ore.speed: 110 .. 180 km/h], \
+             sampling = {sampling}, minimise = dip }}"
+        );
+        let (plan, _) = planned(&study);
+        assert!(plan.diagnostics.is_empty(), "{:#?}", plan.diagnostics);
+        let numbers = |axis: usize| plan.points.iter().map(|p| p.levels[axis].number.unwrap()).collect::<Vec<_>>();
+        let below = numbers(0).iter().filter(|x| **x < 50.0).count();
+        assert_eq!(below, 8, "half of the points lie below the median");
+        let slow = numbers(1).iter().filter(|x| (110.0..145.0).contains(*x)).count();
+        assert_eq!(slow, 8);
+        assert!(numbers(1).iter().all(|x| (110.0..=180.0).contains(x)));
+        assert_eq!(designs(&plan), designs(&planned(&study).0));
+    }
+}
+
+#[test]
+fn mistakes_of_a_study_are_told_at_their_place() {
+    let near = |study: &str, code: Code, under: &str, says: &str| {
+        let (found, place, message) = mistake(study);
+        assert_eq!((found, place.as_str()), (code, under), "{study}: {message}");
+        assert!(message.contains(says), "{study}: {message}");
+    };
+    let vary = |vary: &str| format!("study s {{ vary = [{vary}], minimise = dip }}");
+    near(&vary("opn.spacing: [0.6, 0.65] m"), Code::E0704, "opn", "did you mean `open`");
+    near(&vary("open.pad.stifness: [20, 40] MN/m"), Code::E0704, "stifness", "did you mean `stiffness`");
+    near(&vary("pads.soft.stiffness: [20, 40] MN/m"), Code::E0704, "pads", "is a module");
+    near(&vary("open: [stiff]"), Code::E0704, "open", "such as `open.rail`");
+    near(&vary("open.pad.stiffness: [20] kN"), Code::E0302, "20", "a stiffness in `MN/m`");
+    near(&vary("open.pad.stiffness: [20, 4000] MN/m"), Code::E0405, "4000", "5 .. 3000");
+    near(&vary("ground: [20] kN per seat"), Code::E0302, "20", "expected a stiffness");
+    near(&vary("open.pad.stiffness: 40 MN/m"), Code::E0406, "40 MN/m", "expected a list");
+    near(&vary("open.pad.stiffness: 60 .. 40 MN/m"), Code::E0505, "60 .. 40 MN/m", "ascend");
+    near(&vary("open.pad.stiffness: 20 .. 40 MN/m"), Code::E0706, "open.pad.stiffness", "a grid needs");
+    near(&vary("ore.speed: steps(60 .. 90 km/h, by = 20 km/h)"), Code::E0706, "20 km/h", "1.5 steps");
+    near(&vary("ore.speed: steps(60 .. 90 km/h)"), Code::E0406, "steps", "count = 4");
+    near(&vary("open.pad: [pads.soft], open.pad.stiffness: [20] MN/m"), Code::E0707, "open.pad.stiffness", "overlap");
+    near(&vary("ore.direction: [forward, sideways]"), Code::E0408, "sideways", "expected");
+    near("study s { vary = [ore.speed: [60, 90] km/h] }", Code::E0403, "study s", "asks for nothing");
+    near("study s { minimise = dip }", Code::E0403, "study s", "needs `vary`");
+    near(
+        "study s { vary = [ore.speed: [60] km/h], minimise = max(setlement) }",
+        Code::E0408,
+        "setlement",
+        "settlement",
+    );
+    let wrong = "study s { vary = [ore.speed: [60] km/h], minimise = dip, subject_to = dip < 3 kN }";
+    near(wrong, Code::E0305, "3 kN", "same dimension");
+    let wrong = "study s { vary = [ore.speed: [60] km/h], minimise = max(settlement) - max(contact_force) }";
+    near(wrong, Code::E0305, "max(settlement)", "same dimension");
+}
+
+#[test]
+fn illegal_points_are_told_once_with_the_first() {
+    let (plan, compiled) = planned(
+        "study s { vary = [solve.time_step: [1e-4, 2e-4, 6e-3, 8e-3] s, ore.direction: [forward, backward]], minimise = dip }",
+    );
+    let told: Vec<_> = plan.diagnostics.iter().map(|d| told(d, &compiled)).collect();
+    assert_eq!(told.len(), 2, "{told:#?}");
+    for ((code, under, message), value) in told.iter().zip(["6e-3", "8e-3"]) {
+        assert_eq!((*code, under.as_str()), (Code::E0705, value));
+        assert!(message.contains("2 of 8 points of study `s` cannot run") && message.contains("E0603"), "{message}");
+        assert!(message.contains(&format!("solve.time_step = {value} s, ore.direction = forward")), "{message}");
+    }
+}
+
+#[test]
+fn repeats_need_a_seed_to_change() {
+    let study = "study s { vary = [ore.direction: [forward, backward]], minimise = dip, repeats = 3 }";
+    let (plan, _) = planned(study);
+    assert!(plan.diagnostics.is_empty(), "{:#?}", plan.diagnostics);
+    let once = planned(&study.replace(", repeats = 3", "")).0;
+    assert!((plan.seconds() / once.seconds() - 3.0).abs() < 1e-9);
+    let text = with(study).replace("solve {", "solve mine {");
+    let compiled = compiled(&text);
+    let scene = Scene { name: "small.track", text: &text, modules: &NoModules, set: &[] };
+    let found = trackbed::study::plan(scene, &compiled, &compiled.studies[0]).diagnostics;
+    assert!(matches!(found.as_slice(), [d] if d.code == Code::E0705 && d.message.contains("seed")), "{found:#?}");
+}
+
+/// What no run keeps is asked for in vain, and that is known before the first one.
+#[test]
+fn responses_that_are_not_kept_are_told_before_a_run() {
+    let (plan, _) = planned(
+        "study s { vary = [ore.direction: [forward, backward]], minimise = max(rail_displacement), report = dip }",
+    );
+    let [only] = plan.diagnostics.as_slice() else { panic!("{:#?}", plan.diagnostics) };
+    assert_eq!(only.code, Code::E0705);
+    assert!(only.message.contains("2 of 2 points") && only.message.contains("`rail_displacement`"), "{}", only.message);
+}
+
+#[test]
+fn a_condition_leaves_points_out() {
+    let study = "study s { vary = [first: 0.1 .. 0.3 N/mm^3, last: 0.1 .. 0.3 N/mm^3], sampling = sobol(16), \
+                 minimise = dip, subject_to = [first <= last, dip < 3 mm] }";
+    let (plan, _) = planned(study);
+    assert!(plan.diagnostics.is_empty(), "{:#?}", plan.diagnostics);
+    assert_eq!(plan.points.len() + plan.left_out, 16);
+    assert!((6..=10).contains(&plan.left_out), "{} left out", plan.left_out);
+    assert!(plan.points.iter().all(|p| p.levels[0].number <= p.levels[1].number));
+}
+
+fn trackbed(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_trackbed")).args(arguments).env("NO_COLOR", "1").output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+fn write(dir: &Path, text: &str) -> PathBuf {
+    let path = dir.join("small.track");
+    fs::write(&path, text).unwrap();
+    path
+}
+
+fn rows(out: &Path) -> Vec<HashMap<String, String>> {
+    csv::Reader::from_path(out.join("study.csv")).unwrap().deserialize().map(Result::unwrap).collect()
+}
+
+const PADS: &str = "study slab_pads {
+  vary = [stiff.pad.stiffness: [20, 40, 80] MN/m, ore.direction: [forward, backward]]
+  minimise = [dip, max(rail_seat_load)], report = max(wheel_force), subject_to = max(rail_seat_load) < 200 kN per seat
+}";
+
+#[test]
+fn a_study_runs_and_names_its_best_designs() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = write(dir.path(), &with(PADS));
+    let run = |name: &str, jobs: &str| {
+        let out = dir.path().join(name);
+        let output = trackbed(&["study", file.to_str().unwrap(), "--out", out.to_str().unwrap(), "--jobs", jobs]);
+        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        (out, said(&output))
+    };
+    let ((one, text), (two, _)) = (run("one", "1"), run("two", "2"));
+    for name in ["study.csv", "study.json", "study.html", "design.json"] {
+        assert!(fs::read(one.join(name)).unwrap() == fs::read(two.join(name)).unwrap(), "{name}");
+    }
+    assert!(text.contains("6 points") && text.contains("stiff.pad.stiffness = "), "{text}");
+    let rows = rows(&one);
+    assert_eq!(rows.len(), 6);
+    let number = |row: &HashMap<String, String>, name: &str| row[name].parse::<f64>().unwrap();
+    for row in &rows {
+        assert_eq!((row["status"].as_str(), row["constraints_met"].as_str()), ("done", "yes"));
+        assert!(number(row, "dip [mm]") > 0.0 && number(row, "max(wheel_force) [kN]") > 90.0);
+        let beaten = rows.iter().any(|other| {
+            let less = |name: &str| number(other, name) < number(row, name);
+            less("dip [mm]") && less("max(rail_seat_load) [kN]")
+        });
+        assert!(!(beaten && row["best"] == "yes"), "{row:?}");
+    }
+    let found: serde_json::Value = serde_json::from_slice(&fs::read(one.join("study.json")).unwrap()).unwrap();
+    let best = rows.iter().filter(|r| r["best"] == "yes").count();
+    assert_eq!(found["best"].as_array().unwrap().len(), best);
+    assert_eq!(found["provenance"]["file"], "small.track");
+    let page = fs::read_to_string(one.join("study.html")).unwrap();
+    assert!(page.contains("Pareto front") && page.contains("Main effects") && !page.contains("NaN"));
+    for svg in page.split("<svg").skip(1) {
+        let svg = format!("<svg{}</svg>", svg.split("</svg>").next().unwrap());
+        roxmltree::Document::parse(&svg).unwrap();
+    }
+    // a point is the scene with those lines edited
+    let point = dir.path().join("point");
+    let set = ["stiff.pad.stiffness=20 MN/m", "ore.direction=backward"];
+    let arguments = ["run", file.to_str().unwrap(), "--out", point.to_str().unwrap(), "--set", set[0], "--set", set[1]];
+    assert_eq!(trackbed(&arguments).status.code(), Some(0));
+    let summary: serde_json::Value = serde_json::from_slice(&fs::read(point.join("summary.json")).unwrap()).unwrap();
+    assert_eq!(summary["max_wheel_force"]["value"].as_f64().unwrap() / 1e3, number(&rows[1], "max(wheel_force) [kN]"));
+}
+
+#[test]
+fn a_killed_study_goes_on_to_the_same_answer() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = write(dir.path(), &with(PADS));
+    let (whole, cut) = (dir.path().join("whole"), dir.path().join("cut"));
+    let arguments =
+        |out: &Path| ["study", file.to_str().unwrap(), "--jobs", "1", "--out", out.to_str().unwrap()].map(String::from);
+    let run = |out: &Path, more: &[&str]| {
+        let arguments = arguments(out);
+        let all: Vec<&str> = arguments.iter().map(String::as_str).chain(more.iter().copied()).collect();
+        trackbed(&all)
+    };
+    assert_eq!(run(&whole, &[]).status.code(), Some(0));
+
+    let mut child = Command::new(env!("CARGO_BIN_EXE_trackbed"))
+        .args(arguments(&cut))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let kept = || fs::read_dir(cut.join("points")).map_or(0, |entries| entries.count());
+    let started = Instant::now();
+    while kept() < 2 && started.elapsed() < Duration::from_secs(120) {
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(kept() >= 1);
+    // without `--resume` what is there is not touched, and another scene does not take it up
+    let output = run(&cut, &[]);
+    assert!(output.status.code() == Some(1) && said(&output).contains("E0802"), "{}", said(&output));
+    let output = run(&cut, &["--resume", "--set", "ore.speed=190 km/h"]);
+    assert!(output.status.code() == Some(1) && said(&output).contains("E0809"), "{}", said(&output));
+    // a point that was kept is not run again
+    let first =
+        fs::read_dir(cut.join("points")).unwrap().map(|e| e.unwrap().path()).find(|p| p.ends_with("000001.json"));
+    let before = fs::metadata(first.as_ref().unwrap()).unwrap().modified().unwrap();
+    let output = run(&cut, &["--resume"]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert_eq!(fs::metadata(first.unwrap()).unwrap().modified().unwrap(), before);
+    for name in ["study.csv", "study.json", "study.html"] {
+        assert!(fs::read(whole.join(name)).unwrap() == fs::read(cut.join(name)).unwrap(), "{name}");
+    }
+}
+
+#[test]
+fn a_point_that_fails_is_kept_and_stops_nothing() {
+    let dir = tempfile::tempdir().unwrap();
+    // a soft track, and a train that outruns its waves
+    let text = with(
+        "study speeds { vary = [ore.speed: [100, 450, 120] km/h], set = [ground: 1 MN/m per seat, open.usp: none], \
+         minimise = max(wheel_force) }",
+    )
+    .replace("open: 12 m, stiff: 9 m", "open: 36 m, stiff: 24 m")
+    .replace(", track_too_short: \"small\"", "");
+    let file = write(dir.path(), &text);
+    let out = dir.path().join("out");
+    let output = trackbed(&["study", file.to_str().unwrap(), "speeds", "--out", out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    assert!(said(&output).contains("E0808") && said(&output).contains("point 2"), "{}", said(&output));
+    let rows = rows(&out);
+    let status: Vec<&str> = rows.iter().map(|r| r["status"].as_str()).collect();
+    assert_eq!(status, ["done", "failed", "done"]);
+    assert!(rows[1]["reason"].contains("wheel") && rows[1]["max(wheel_force) [kN]"].is_empty(), "{:?}", rows[1]);
+    assert_eq!(rows.iter().filter(|r| r["best"] == "yes").count(), 1);
+}
+
+#[test]
+fn a_study_is_chosen_by_its_name() {
+    let dir = tempfile::tempdir().unwrap();
+    let file =
+        write(dir.path(), &with(&format!("{PADS}\nstudy speeds {{ vary = [ore.speed: [120] km/h], report = dip }}")));
+    let out = dir.path().join("out");
+    let run = |more: &[&str]| {
+        let arguments = [&["study", file.to_str().unwrap(), "--out", out.to_str().unwrap()], more].concat();
+        let output = trackbed(&arguments);
+        (output.status.code(), said(&output))
+    };
+    let (code, text) = run(&[]);
+    assert!(code == Some(2) && text.contains("name `slab_pads` or `speeds`"), "{text}");
+    let (code, text) = run(&["speed"]);
+    assert!(code == Some(2) && text.contains("did you mean `speeds`"), "{text}");
+    let (code, text) = run(&["speeds", "--executor", "slurm"]);
+    assert!(code == Some(2) && text.contains("this machine only"), "{text}");
+    assert!(!out.exists());
+    let (code, text) = run(&["speeds"]);
+    assert_eq!(code, Some(0), "{text}");
+}
+
+/// `check` looks at every point of the shipped studies.
+#[test]
+fn the_shipped_studies_are_without_a_mistake() {
+    for name in ["study_speed", "study_pads", "study_support"] {
+        let file = format!("scenarios/{name}.track");
+        let output = trackbed(&["check", &file]);
+        assert_eq!((output.status.code(), said(&output)), (Some(0), format!("{file}: no errors\n")));
+    }
+}
