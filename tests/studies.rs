@@ -12,7 +12,7 @@ use trackbed::{Compiled, compile};
 
 /// 21 m of track under one wagon.
 const SMALL: &str = r#"use std
-scenario { title = "small", allow = [stiffness_jump: "small", track_too_short: "small", critical_speed: "small"] }
+scenario { title = "small", allow = [stiffness_jump: "small", track_too_short: "small", critical_speed: "small", wheel_on_track: "small"] }
 let ground = 50 MN/m per seat
 let first = 0.1 N/mm^3
 let last = 0.3 N/mm^3
@@ -363,7 +363,7 @@ fn a_study_is_chosen_by_its_name() {
 /// `check` looks at every point of the shipped studies.
 #[test]
 fn the_shipped_studies_are_without_a_mistake() {
-    for name in ["study_speed", "study_pads", "study_support"] {
+    for name in ["study_speed", "study_pads", "study_support", "study_usp"] {
         let file = format!("scenarios/{name}.track");
         let output = trackbed(&["check", &file]);
         assert_eq!((output.status.code(), said(&output)), (Some(0), format!("{file}: no errors\n")));

@@ -114,8 +114,11 @@ fn draw_section(
     }
     draw_widths(svg, place, &[(gauge, place.top - 12.0)]);
     let bottom = place.top + depth * place.scale;
-    draw_widths(svg, place, &[(length, bottom + 16.0), (2.0 * half, bottom + 38.0)]);
-    bottom + 46.0
+    draw_widths(svg, place, &[(length, bottom + 24.0)]);
+    if 2.0 * half > length + 1e-6 {
+        draw_widths(svg, place, &[(2.0 * half, bottom + 50.0)]);
+    }
+    bottom + 58.0
 }
 
 /// Dimension lines of widths \[m\] about the centre line, with their texts.
@@ -123,6 +126,6 @@ fn draw_widths(svg: &mut Svg, place: &Place, widths: &[(f64, f64)]) {
     for (width, y) in widths {
         let (a, b) = (place.centre - 0.5 * width * place.scale, place.centre + 0.5 * width * place.scale);
         draw_dimension(svg, a, b, *y);
-        svg.text("small halo", (place.centre, y + 4.0), Anchor::Middle, &format!("{} m", plain(*width, 3)));
+        svg.text("small halo", (place.centre, y - 5.0), Anchor::Middle, &format!("{} m", plain(*width, 3)));
     }
 }
