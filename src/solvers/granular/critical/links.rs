@@ -16,7 +16,7 @@ pub const GROUND: u32 = u32::MAX;
 /// A spring and a dashpot between two bodies, or a body and the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Link {
-    /// Places in the bed.
+    /// Numbers of the bodies.
     pub bodies: [u32; 2],
     /// From the second to the first.
     pub normal: Vec3,
@@ -90,11 +90,23 @@ pub fn reduced(first: f64, second: f64) -> f64 {
 }
 
 impl<R: Real> Bed<R> {
-    /// Contacts of pairs up to `gap` \[m\] apart now, in the order of the lists.
+    /// Contacts of pairs up to `gap` \[m\] apart now, in an order that depends on who touches and not on the lists: sums over
+    /// them are the same, bit by bit, however the bodies lie in memory.
     pub(in super::super) fn links(&mut self, gap: f64) -> Result<Vec<Link>, Failure> {
         self.reach(gap)?;
-        let mut links: Vec<Link> = (0..self.contacts.len()).filter_map(|place| self.pair(place, gap)).collect();
-        (0..self.wall_contacts.entries.len()).for_each(|entry| self.walled(entry, gap, &mut links));
+        let pairs = (0..self.contacts.len()).filter(|&place| (self.contacts.first[place] as usize) < self.owner.len());
+        let mut pairs: Vec<usize> = pairs.collect();
+        pairs.sort_by_cached_key(|&place| {
+            let (a, b) = (self.contacts.first[place], self.contacts.second[place]);
+            (self.name(a), self.name(b), self.contacts.image[place])
+        });
+        let mut links: Vec<Link> = pairs.into_iter().filter_map(|place| self.pair(place, gap)).collect();
+        let mut entries: Vec<usize> = (0..self.wall_contacts.entries.len()).collect();
+        entries.sort_by_cached_key(|&entry| {
+            let entry = &self.wall_contacts.entries[entry];
+            (self.name(entry.pebble), entry.wall)
+        });
+        entries.into_iter().for_each(|entry| self.walled(entry, gap, &mut links));
         Ok(links)
     }
 
@@ -136,7 +148,7 @@ impl<R: Real> Bed<R> {
             let overlap = record.radius() - touch.distance;
             let arm = self.arm(entry.pebble, scale(normal, -(record.radius() - 0.5 * overlap)));
             let tangent = Tangent::of(law, overlap, mass, record.radius());
-            Link { bodies: [body, GROUND], normal, arms: [arm, [0.0; 3]], tangent, mass }
+            Link { bodies: [self.bodies[body as usize].id, GROUND], normal, arms: [arm, [0.0; 3]], tangent, mass }
         }));
     }
 
@@ -170,7 +182,7 @@ impl<R: Real> Bed<R> {
         let mass = reduced(one.mass().to_f64(), other.mass().to_f64());
         let law = &self.laws.all()[usize::from(self.contacts.law[place / BLOCK])];
         Some(Link {
-            bodies: [a, b].map(|pebble| self.owner[pebble as usize]),
+            bodies: [a, b].map(|pebble| self.name(pebble).0),
             normal,
             arms: [
                 self.arm(a, scale(normal, -(one.radius() - 0.5 * overlap))),
@@ -193,9 +205,9 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    /// Roots of the inverse inertia of all bodies, as local damping leaves it.
+    /// Roots of the inverse inertia of all bodies by their numbers, as local damping leaves it.
     pub(in super::super) fn roots(&self) -> Vec<Roots> {
-        self.bodies.iter().map(|body| self.root(body)).collect()
+        self.index.iter().map(|&place| self.root(&self.bodies[place as usize])).collect()
     }
 
     pub(in super::super) fn root(&self, body: &Body) -> Roots {

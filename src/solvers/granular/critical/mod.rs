@@ -101,9 +101,9 @@ impl<R: Real> Bed<R> {
         })
     }
 
-    fn seat(&self, place: u32, around: &Around) -> Seat {
-        let state = self.body_state(BodyId(self.bodies[place as usize].id));
-        let contacts = around.of(place as usize).len();
+    fn seat(&self, body: u32, around: &Around) -> Seat {
+        let state = self.body_state(BodyId(body));
+        let contacts = around.of(body as usize).len();
         Seat { body: state.id, place: state.place, surface: state.surface, contacts }
     }
 

@@ -88,7 +88,8 @@ impl<R: Real> Bed<R> {
     fn weigh_down(&mut self, factors: &[f64], target: f64, limit: f64) -> Scaling {
         let mut scaling = Scaling { target, limit, bodies: 0, added_mass: 0.0, added_share: 0.0, largest: None };
         let mut moving = 0.0;
-        for (place, &factor) in factors.iter().enumerate() {
+        for (id, &factor) in factors.iter().enumerate() {
+            let place = self.index[id] as usize;
             let body = &self.bodies[place];
             moving += if body.inverse_mass > 0.0 { body.mass } else { 0.0 };
             if factor <= 1.0 {
@@ -144,7 +145,8 @@ impl<R: Real> Bed<R> {
     /// How much of the kinetic energy bodies with added inertia hold.
     pub fn energy_of_scaled(&self) -> HeldEnergy {
         let mut held = HeldEnergy::default();
-        for (place, body) in self.bodies.iter().enumerate().filter(|(_, b)| b.inverse_mass > 0.0) {
+        let named = self.index.iter().map(|&place| (place as usize, &self.bodies[place as usize]));
+        for (place, body) in named.filter(|(_, b)| b.inverse_mass > 0.0) {
             let per_mass = 0.5 * super::vector::dot(body.velocity, body.velocity);
             let inertial = 1.0 / body.inverse_mass;
             held.all += per_mass * inertial;

@@ -128,7 +128,8 @@ fn a_scaled_bed_is_stable_at_the_target_and_weighs_the_same() {
     bed.set_time_step(target);
     bed.run(10_000).unwrap();
     let load = mean_load(&mut bed, 10_000);
-    assert!((load / -weight(&bed) - 1.0).abs() < 2e-3, "{load}");
+    // what still rolls carries the floor's mean by some thousandths; the added mass, were it heavy, by far more
+    assert!((load / -weight(&bed) - 1.0).abs() < 5e-3 && scaling.added_share > 0.02, "{load} {scaling:?}");
     let after = bed.snapshot().unwrap().contacts;
     let load =
         |contacts: &[crate::solvers::granular::ContactState]| contacts.iter().map(|c| c.force[2].abs()).sum::<f64>();

@@ -258,8 +258,9 @@ impl<R: Real> Bed<R> {
         bodies.sort_unstable();
         bodies.dedup();
         bodies.iter().all(|&body| {
-            let links = self.links_of(body, gap);
-            pencil(body as usize, &self.root(&self.bodies[body as usize]), &links, Weight::Even(2.0)).allows(self.dt)
+            let place = self.index[body as usize];
+            let links = self.links_of(place, gap);
+            pencil(body as usize, &self.root(&self.bodies[place as usize]), &links, Weight::Even(2.0)).allows(self.dt)
         })
     }
 
