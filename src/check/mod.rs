@@ -40,7 +40,7 @@ mod vehicle;
 mod words;
 
 pub use measured::{MeasuredCurve, measured_curve};
-pub use modules::{DataError, Folder, LARGEST_DATA_FILE, Modules, NoModules};
+pub use modules::{DataError, Folder, LARGEST_DATA_FILE, Modules, NoModules, Parsed, Remembered};
 pub use overrides::Override;
 
 use crate::diag::{self, Code, Diagnostic, FileId, Sources, Span};
@@ -73,7 +73,7 @@ pub struct Checked {
 /// Checks a text that a person calls `name`.
 pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Override]) -> Checked {
     let mut loader = Loader::new(modules);
-    let main = loader.load(name, text.to_string(), false, |l, tree| overrides::apply(l, tree, overrides));
+    let main = loader.load(name, text.to_string(), false, overrides);
     let standard = loader.standard_scope();
     let scopes = std::mem::take(&mut loader.scopes);
     let diagnostics = std::mem::take(&mut loader.diagnostics);

@@ -1,13 +1,14 @@
 //! Brings in modules: reads every file that a scene uses and makes the names of each known.
 
+use super::overrides::{self, Override};
 use super::library;
 use crate::diag::{Code, Diagnostic, FileId, Sources, Span, nearest::nearest};
 use crate::schema::{self, Role};
 use crate::syntax::tree::{Declaration, Item, Tree, Use};
 use crate::syntax::{decode, parse};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Where `use site.gravel` finds `site/gravel.track`, and `file("level.csv")` its numbers.
 pub trait Modules {
@@ -18,6 +19,25 @@ pub trait Modules {
     /// implementation to refuse.
     fn data(&self, relative: &Path) -> Result<Vec<u8>, DataError> {
         self.read(relative).ok_or(DataError::Missing)
+    }
+
+    /// The tree of a text that is this file of the sources.
+    fn parsed(&self, file: FileId, text: &str) -> Parsed {
+        Parsed::of(file, text)
+    }
+}
+
+/// A file's tree, and all that is wrong with its text.
+#[derive(Debug, Clone)]
+pub struct Parsed {
+    pub tree: Arc<Tree>,
+    pub mistakes: Arc<[Diagnostic]>,
+}
+
+impl Parsed {
+    fn of(file: FileId, text: &str) -> Parsed {
+        let (tree, mistakes) = parse(file, text);
+        Parsed { tree: Arc::new(tree), mistakes: mistakes.into() }
     }
 }
 
@@ -66,6 +86,39 @@ impl Modules for Folder {
     }
 }
 
+/// Modules of a scene that is compiled again and again, as the points of a study are: no text is parsed twice.
+pub struct Remembered<'a> {
+    modules: &'a (dyn Modules + Sync),
+    trees: Mutex<HashMap<(FileId, String), Parsed>>,
+}
+
+impl<'a> Remembered<'a> {
+    pub fn new(modules: &'a (dyn Modules + Sync)) -> Self {
+        Remembered { modules, trees: Mutex::default() }
+    }
+}
+
+impl Modules for Remembered<'_> {
+    fn read(&self, relative: &Path) -> Option<Vec<u8>> {
+        self.modules.read(relative)
+    }
+
+    fn data(&self, relative: &Path) -> Result<Vec<u8>, DataError> {
+        self.modules.data(relative)
+    }
+
+    fn parsed(&self, file: FileId, text: &str) -> Parsed {
+        let key = (file, text.to_string());
+        // a panic elsewhere leaves the map whole: trees are put into it finished
+        let known = self.trees.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
+        known.unwrap_or_else(|| {
+            let parsed = Parsed::of(file, text);
+            self.trees.lock().unwrap_or_else(PoisonError::into_inner).insert(key, parsed.clone());
+            parsed
+        })
+    }
+}
+
 /// No modules but the standard library, for scenes that stand in memory.
 pub struct NoModules;
 
@@ -80,7 +133,7 @@ pub(super) type ScopeId = usize;
 
 /// One file with its names.
 pub(super) struct Scope {
-    pub tree: Rc<Tree>,
+    pub tree: Arc<Tree>,
     pub library: bool,
     /// Declarations and lets by name: indices of items.
     pub names: BTreeMap<String, usize>,
@@ -125,14 +178,8 @@ impl<'a> Loader<'a> {
         }
     }
 
-    /// Reads a text and all that it uses. `edit` may change the tree before its names are taken.
-    pub fn load(
-        &mut self,
-        name: &str,
-        text: String,
-        library: bool,
-        edit: impl FnOnce(&mut Self, &mut Tree),
-    ) -> ScopeId {
+    /// Reads a text, with some lines edited, and all that it uses.
+    pub fn load(&mut self, name: &str, text: String, library: bool, edits: &[Override]) -> ScopeId {
         // modules know the main file by its name below its own folder
         let key =
             if self.scopes.is_empty() && self.reading.is_empty() { name.rsplit(['/', '\\']).next() } else { None };
@@ -141,10 +188,11 @@ impl<'a> Loader<'a> {
         self.reading.push(key.clone());
         let file = self.sources.add(name, text, library);
         let text = self.sources.get(file).text.clone();
-        let (mut tree, mistakes) = parse(file, &text);
-        self.diagnostics.extend(mistakes);
-        edit(self, &mut tree);
-        let tree = Rc::new(tree);
+        let Parsed { mut tree, mistakes } = self.modules.parsed(file, &text);
+        self.diagnostics.extend(mistakes.iter().cloned());
+        if !edits.is_empty() {
+            overrides::apply(self, Arc::make_mut(&mut tree), edits);
+        }
         let mut brought = BroughtIn::default();
         for item in &tree.items {
             if let Item::Use(used) = item {
@@ -165,7 +213,7 @@ impl<'a> Loader<'a> {
         let file = self.sources.add("defaults", "", true);
         let modules =
             library::MODULES.iter().filter_map(|(name, _)| Some((name.to_string(), self.library(name)?))).collect();
-        let tree = Rc::new(Tree { file, items: Vec::new() });
+        let tree = Arc::new(Tree { file, items: Vec::new() });
         let (names, broken) = (BTreeMap::new(), BTreeSet::new());
         self.scopes.push(Scope { tree, library: true, names, modules, broken });
         self.scopes.len() - 1
@@ -177,7 +225,7 @@ impl<'a> Loader<'a> {
             return *known;
         }
         let text = library::MODULES.iter().find(|(n, _)| *n == module)?.1;
-        Some(self.load(&name, text.to_string(), true, |_, _| {}))
+        Some(self.load(&name, text.to_string(), true, &[]))
     }
 
     fn bring_in(&mut self, used: &Use, brought: &mut BroughtIn) {
@@ -263,7 +311,7 @@ impl<'a> Loader<'a> {
             return None;
         };
         match decode(&relative, &bytes) {
-            Ok(text) => Some(self.load(&relative, text, false, |_, _| {})),
+            Ok(text) => Some(self.load(&relative, text, false, &[])),
             Err(mistake) => {
                 self.diagnostics.push(mistake.at(span, "used here"));
                 None

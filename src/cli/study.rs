@@ -3,7 +3,7 @@
 use super::scene::{SceneArguments, failed, not_yet, show};
 use super::study_folder::{StudyFolder, Taken};
 use super::{Outcome, progress, terminal};
-use crate::check::Folder;
+use crate::check::{Folder, Remembered};
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, has_errors, or_list, render};
 use crate::scenario::Study;
@@ -106,7 +106,7 @@ fn with_scene<T>(arguments: &SceneArguments, compiled: &Compiled, f: impl FnOnce
     let name = arguments.file.display().to_string();
     let folder = Folder(arguments.file.parent().unwrap_or(Path::new("")).to_path_buf());
     let text = compiled.sources.iter().next().map_or("", |(_, source)| source.text.as_str());
-    f(Scene { name: &name, text, modules: &folder, set: &arguments.set })
+    f(Scene { name: &name, text, modules: &Remembered::new(&folder), set: &arguments.set })
 }
 
 fn in_pool(arguments: &Arguments, compiled: &Compiled, study: &Study) -> Outcome {

@@ -18,7 +18,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let (track, speed) = (&scenario.track, blocks.train.speed);
     let factor = amplification(*speed);
     let pressed = seat_loads(scenario, blocks).into_iter().filter_map(|load| {
-        let seat = track.seats.iter().find(|s| s.section == load.section && s.is_ballasted())?;
+        let seat = track.seats[track.seats_of(load.section)].iter().find(|s| s.is_ballasted())?;
         let share = load.wheel * load.winkler.seat_share(load.spacing);
         let area = track.bearing_area(seat)?;
         Some((load.section, area, (load.peak.force + (factor - 1.0) * share) / area))

@@ -60,7 +60,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
 
 /// The median distance of the seats of a section, m.
 fn usual_bay(track: &Track, section: usize) -> f64 {
-    let seats = (0..track.seats.len()).filter(|i| track.seats[*i].section == section);
+    let seats = track.seats_of(section);
     let mut bays: Vec<f64> = seats.map(|seat| track.bay(seat)).collect();
     bays.sort_by(f64::total_cmp);
     bays.get(bays.len() / 2).copied().unwrap_or(*track.sections[section].spacing)

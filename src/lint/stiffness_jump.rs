@@ -37,7 +37,7 @@ pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
         )
         .help(format!("bring both sides within a factor of {LARGEST_RATIO}: softer pads on the stiff side, a stiffer support before it"));
         for section in [i, i + 1] {
-            let seat = track.seats.iter().find(|s| s.section == section);
+            let seat = track.seats[track.seats_of(section)].first();
             let origin = match seat.map(|s| &s.foot) {
                 Some(Foot::Sleeper { support, .. }) => support.stiffness.origin,
                 _ => seat.map_or(crate::scenario::Origin::Default, |s| s.pad.stiffness.origin),

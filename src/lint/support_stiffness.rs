@@ -20,7 +20,7 @@ pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
     };
     let mut found: Vec<Diagnostic> = Vec::new();
     for (i, section) in track.sections.iter().enumerate() {
-        let supports = || track.seats.iter().filter(|seat| seat.section == i).filter_map(stiffness);
+        let supports = || track.seats[track.seats_of(i)].iter().filter_map(stiffness);
         let soft = supports().filter(|k| **k < SOFTEST).min_by(|a, b| a.total_cmp(b));
         let stiff = supports().filter(|k| **k > STIFFEST).max_by(|a, b| a.total_cmp(b));
         let beyond = supports().filter(|k| !(SOFTEST..=STIFFEST).contains(&**k)).count();

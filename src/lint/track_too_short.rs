@@ -48,7 +48,7 @@ fn near_ends(scenario: &Scenario, blocks: &Blocks) -> Vec<Diagnostic> {
 /// A ballasted section in which fewer than ten sleepers see every wheel.
 fn sparsely_passed(scenario: &Scenario, blocks: &Blocks, section: usize) -> Option<Diagnostic> {
     let track = &scenario.track;
-    let ballasted = || track.seats.iter().filter(|s| s.section == section && s.is_ballasted());
+    let ballasted = || track.seats[track.seats_of(section)].iter().filter(|s| s.is_ballasted());
     let passed = blocks.passed();
     let seen = ballasted().filter(|s| passed.contains(&s.x)).count();
     if seen >= PASSED || ballasted().next().is_none() {

@@ -24,8 +24,9 @@ impl Winkler {
     /// As at the seat of a section that is nearest to a chainage.
     pub fn beside(track: &Track, section: usize, x: f64) -> Option<Winkler> {
         let Section { rail, slab, .. } = &track.sections[section];
-        let seats = track.seats.iter().enumerate().filter(|(_, s)| s.section == section);
-        let (index, seat) = seats.min_by(|(_, a), (_, b)| (a.x - x).abs().total_cmp(&(b.x - x).abs()))?;
+        let from = |index: &usize| (track.seats[*index].x - x).abs();
+        let index = track.seats_of(section).min_by(|a, b| from(a).total_cmp(&from(b)))?;
+        let seat = &track.seats[index];
         let spacing = track.bay(index);
         let (below, mass) = match (&seat.foot, slab) {
             (Foot::Sleeper { mass, support }, _) => (1.0 / support.spring().stiffness, **mass / spacing),
@@ -79,7 +80,7 @@ pub(super) fn seat_loads(scenario: &Scenario, blocks: &Blocks) -> Vec<SeatLoad> 
     let heaviest = blocks.train.vehicles.iter().map(Vehicle::mass).fold(0.0, f64::max);
     let wheel = heaviest / Vehicle::AXLES as f64 * *scenario.solve.gravity;
     let of_section = |section: usize| {
-        let first = track.seats.iter().position(|s| s.section == section && s.is_ballasted())?;
+        let first = track.seats_of(section).find(|seat| track.seats[*seat].is_ballasted())?;
         let seat = &track.seats[first];
         let winkler = Winkler::of(track, section)?;
         let spacing = track.bay(first);

@@ -2,6 +2,7 @@
 
 use super::{Bed, Given, Layer, Origin, Profile};
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// The whole track of the model, of one rail.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -304,6 +305,12 @@ impl Track {
     /// Area on which half a sleeper lies, m^2; `None` for a seat without a sleeper or with one of unknown size.
     pub fn bearing_area(&self, seat: &Seat) -> Option<f64> {
         seat.sleeper.filter(|_| seat.is_ballasted()).map(|sleeper| sleeper.base_area / 2.0)
+    }
+
+    /// Indices of the seats of a section, which lie side by side.
+    pub fn seats_of(&self, section: usize) -> Range<usize> {
+        let first = |section: usize| self.seats.partition_point(|seat| seat.section < section);
+        first(section)..first(section + 1)
     }
 
     /// Distance between two neighbouring seats, m, the shortest of all.
