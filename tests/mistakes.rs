@@ -39,7 +39,7 @@ trackform stiff : open {
 }
 
 track line {
-  sections    = [open: 42 m, stiff: 24 m]
+  sections    = [open: 42 m, stiff: 24 m], stretches = [firm, low]
   transitions = [edge: soft_to_stiff]
   rail_ends   = clamped
 }
@@ -104,6 +104,27 @@ soil fill {
   youngs_modulus = 90 MPa, poisson_ratio = 0.3
   density        = 2000 kg/m^3
 }
+
+stretch firm {
+  over          = -20 .. -1 sleepers
+  pad.stiffness = ramp(60 .. 80 MN/m)
+}
+
+stretch low {
+  over    = -10 .. -5 sleepers
+  support = { stiffness = 45 MN/m per seat, damping_time = 1 ms }
+}
+
+study what_helps {
+  vary       = [
+    bay: [0.55, 0.6, 0.65] m
+    low.support.stiffness: steps(30 .. 60 MN/m per seat, by = 10 MN/m per seat)
+  ]
+  set        = [traffic.total: 100 axles]
+  minimise   = max(settlement)
+  report     = [far_field_settlement, mean(contact_force, over = -20 .. -1 sleepers)]
+  subject_to = max(wheel_force) < 200 kN per wheel
+}
 "#;
 
 struct Planted {
@@ -115,7 +136,9 @@ struct Planted {
     below: isize,
     /// What nobody knows any more: `p`laces along the track, the `v`ehicle, the `t`rain, what uses the `b`ay or the
     /// stiffness of the pads, `k`, the trackform with the slab, `f`,
-    /// which `c`ar runs at all, which `s`ections there are, the `g`rains and the ground of their layers, the `l`ength of sleepers.
+    /// which `c`ar runs at all, which `s`ections there are, the `g`rains and the ground of their layers, the `l`ength of sleepers,
+    /// what the b`a`y is, which st`r`etches there are, where they lie and what they set, `x`, what one of them changes, `y`, what the
+    /// study asks, `q`, the number of the pads' stiffness, `z`.
     breaks: &'static str,
     /// What must be known for the mistake to be seen; `*` is everything.
     needs: &'static str,
@@ -157,7 +180,7 @@ const PLANTED: &[Planted] = &[
     breaks("vtc", plant("an unknown train", "  trains = ore", "  trains = oer", Code::E0201)),
     breaks("pf", plant("an unknown base", "trackform stiff : open {", "trackform stiff : opne {", Code::E0201)),
     plant("a name twice", "record bed {", "record forces {", Code::E0202),
-    needs("k", plant("a name that needs itself", "let pad_stiffness = 40 MN/m", "let pad_stiffness = 2 * pad_stiffness", Code::E0203)),
+    breaks("z", needs("k", plant("a name that needs itself", "let pad_stiffness = 40 MN/m", "let pad_stiffness = 2 * pad_stiffness", Code::E0203))),
     breaks("pf", plant("an extension of itself", "trackform stiff : open {", "trackform stiff : stiff {", Code::E0203)),
     plant("a module of the library that is not there", "let bay", "use std.ballast, let bay", Code::E0204),
     plant("a base of another kind", "law mild : laws.varandas_2014", "law mild : rails.UIC60", Code::E0205),
@@ -166,8 +189,8 @@ const PLANTED: &[Planted] = &[
     breaks("l", plant("no unit", "length = 2.4 m }", "length = 2.4 }", Code::E0301)),
     breaks("vt", plant("a speed without unit", "speed     = 70 km/h", "speed     = 70", Code::E0301)),
     plant("zero without unit", "-12 m < place_of_max(settlement) < 0 m", "-12 m < place_of_max(settlement) < 0", Code::E0305),
-    needs("k", plant("a force for a stiffness", "let pad_stiffness = 40 MN/m", "let pad_stiffness = 40 MN", Code::E0302)),
-    needs("b", breaks("p", plant("a time for a length", "let bay = 0.6 m", "let bay = 0.6 s", Code::E0302))),
+    breaks("z", needs("k", plant("a force for a stiffness", "let pad_stiffness = 40 MN/m", "let pad_stiffness = 40 MN", Code::E0302))),
+    needs("b", breaks("pa", plant("a time for a length", "let bay = 0.6 m", "let bay = 0.6 s", Code::E0302))),
     plant("a force for a mass", "mass = 150 kg per seat", "mass = 1.5 kN per seat", Code::E0302),
     breaks("t", plant("sleepers for axles", "  total  = 500 axles", "  total  = 500 sleepers", Code::E0302)),
     plant("an unknown unit", "density = 7800 kg/m^3", "density = 7800 kgs/m^3", Code::E0303),
@@ -194,7 +217,7 @@ const PLANTED: &[Planted] = &[
     breaks("vt", plant("a fast train", "speed     = 70 km/h", "speed     = 70 km/s", Code::E0405)),
     plant("a share of an element", "elements_per_bay = 4", "elements_per_bay = 4.5", Code::E0405),
     plant("half an axle", "geometric(4 axles, 0.2)", "geometric(4.5 axles, 0.2)", Code::E0405),
-    needs("k", plant("text for a number", "let pad_stiffness = 40 MN/m", "let pad_stiffness = \"40 MN/m\"", Code::E0406)),
+    breaks("z", needs("k", plant("text for a number", "let pad_stiffness = 40 MN/m", "let pad_stiffness = \"40 MN/m\"", Code::E0406))),
     breaks("f", plant("a number for an object", "slab    = slabs.half_width_1600", "slab    = 1200 kg/m", Code::E0406)),
     plant("no comparison", "max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force)", Code::E0406),
     below(-1, breaks("vt", needs("vt", plant("masses against the axle load", "car_body  = { radius", "car_body  = { mass = 111 t, radius", Code::E0407)))),
@@ -275,6 +298,40 @@ const PLANTED: &[Planted] = &[
     breaks("g", needs("s", plant("a soil that makes energy", "= 2000 kg/m^3", "= 2000 kg/m^3, strength = mohr_coulomb(10 kPa, 30 deg, dilation = 35 deg)", Code::E0407))),
     breaks("g", needs("s", below(-2, plant("a missing density", "  density        = 2000 kg/m^3", "", Code::E0403)))),
     needs("p", plant("a window off the track", "elements_per_bay = 4", "window           = -80 .. 6 m", Code::E0501)),
+    // stretches
+    breaks("r", plant("a stretch of nothing known", "stretches = [firm, low]", "stretches = [firm, lwo]", Code::E0201)),
+    breaks("r", plant("a stretch that is none", "stretches = [firm, low]", "stretches = [firm, wagon]", Code::E0406)),
+    breaks("x", below(-1, plant("a stretch without a place", "  over          = -20 .. -1 sleepers", "", Code::E0403))),
+    breaks("x", plant("a stretch the wrong way round", "over    = -10 .. -5 sleepers", "over    = -5 .. -10 sleepers", Code::E0505)),
+    breaks("x", needs("pr", plant("a stretch off the track", "over    = -10 .. -5 sleepers", "over    = -100 .. -5 sleepers", Code::E0501))),
+    breaks("y", needs("pfkrxz", plant("a stretch that reaches over the slab", "over          = -20 .. -1 sleepers", "over          = -20 .. +5 sleepers, settlement = 1 mm", Code::E0418))),
+    breaks("x", needs("pr", plant("a stretch from nowhere", "over    = -10 .. -5 sleepers", "over    = -10 .. -5 sleepers, from = west", Code::E0504))),
+    needs("py", below(-2, plant("a stretch that changes nothing", "  pad.stiffness = ramp(60 .. 80 MN/m)", "", Code::E0417))),
+    breaks("x", needs("prx", below(5, plant("two stretches that set the same", "  pad.stiffness = ramp(60", "  support.stiffness = 40 MN/m per seat, pad.stiffness = ramp(60", Code::E0512)))),
+    breaks("x", needs("psbr", plant("another rail in a stretch", "over    = -10 .. -5 sleepers", "over    = -10 .. -5 sleepers, rail = rails.S49", Code::E0411))),
+    breaks("x", plant("a field of something else", "over    = -10 .. -5 sleepers", "over    = -10 .. -5 sleepers, speed = 60 km/h", Code::E0402)),
+    plant("a pad of a force", "ramp(60 .. 80 MN/m)", "ramp(60 .. 80 MN)", Code::E0302),
+    plant("a pad that is too stiff somewhere", "ramp(60 .. 80 MN/m)", "ramp(60 .. 8000 MN/m)", Code::E0405),
+    plant("a support of nobody knows what", "stiffness = 45 MN/m per seat,", "stiffness = 45 MN/m,", Code::E0304),
+    plant("a support's field misspelt", "damping_time = 1 ms }", "dampingtime = 1 ms }", Code::E0402),
+    needs("*", plant("a damping said twice", "damping_time = 1 ms }", "damping_time = 1 ms, damping = 30 kN s/m per seat }", Code::E0407)),
+    // studies
+    breaks("q", plant("a path from nowhere", "    low.support.stiffness: steps", "    lwo.support.stiffness: steps", Code::E0704)),
+    breaks("q", plant("a path that leads nowhere", "    low.support.stiffness: steps", "    low.support.stifness: steps", Code::E0704)),
+    breaks("q", plant("a path into the library", "    low.support.stiffness: steps(30 .. 60 MN/m per seat, by = 10 MN/m per seat)", "    pads.medium.stiffness: [30, 60] MN/m", Code::E0704)),
+    needs("a", breaks("q", plant("values of something else", "    bay: [0.55, 0.6, 0.65] m", "    bay: [0.55, 0.6, 0.65] kN", Code::E0302))),
+    needs("a", breaks("q", plant("values without unit", "    bay: [0.55, 0.6, 0.65] m", "    bay: [0.55, 0.6, 0.65]", Code::E0301))),
+    breaks("q", plant("values without basis", "steps(30 .. 60 MN/m per seat, by = 10 MN/m per seat)", "[30, 60] MN/m", Code::E0304)),
+    breaks("q", plant("steps that miss the end", "by = 10 MN/m per seat)", "by = 20 MN/m per seat)", Code::E0706)),
+    needs("q", plant("a range in a grid", "    bay: [0.55, 0.6, 0.65] m", "    bay: 0.55 .. 0.65 m", Code::E0706)),
+    needs("q", plant("a value varied and set", "set        = [traffic.total: 100 axles]", "set        = [bay: 0.6 m]", Code::E0707)),
+    needs("q", plant("a value varied twice", "set        = [traffic.total: 100 axles]", "set        = [low.support: { stiffness = 40 MN/m per seat }]", Code::E0707)),
+    breaks("q", plant("an unknown sampling", "  minimise   = max(settlement)", "  minimise   = max(settlement), sampling = soboll(16)", Code::E0408)),
+    plant("a study of an unknown response", "  minimise   = max(settlement)", "  minimise   = max(setlement)", Code::E0408),
+    plant("a goal that is no number", "  minimise   = max(settlement)", "  minimise   = settlement", Code::E0406),
+    plant("a limit of something else", "max(wheel_force) < 200 kN per wheel", "max(wheel_force) < 200 mm", Code::E0305),
+    plant("a limit that is none", "subject_to = max(wheel_force) < 200 kN per wheel", "subject_to = max(wheel_force)", Code::E0406),
+    below(-6, plant("a goal that is missing", "  minimise   = max(settlement)\n  report     = [far_field_settlement, mean(contact_force, over = -20 .. -1 sleepers)]\n", "", Code::E0403)),
     // places
     needs("p", plant("sleeper 0", "[-20, -5, -1, +1] sleepers", "[-20, -5, -1, 0] sleepers", Code::E0501)),
     needs("p", plant("a sleeper off the track", "[-20, -5, -1, +1] sleepers", "[-200, -5, -1, +1] sleepers", Code::E0501)),

@@ -1,7 +1,7 @@
 //! Brings in modules: reads every file that a scene uses and makes the names of each known.
 
-use super::overrides::{self, Override};
 use super::library;
+use super::overrides::{self, Override};
 use crate::diag::{Code, Diagnostic, FileId, Sources, Span, nearest::nearest};
 use crate::schema::{self, Role};
 use crate::syntax::tree::{Declaration, Item, Tree, Use};

@@ -205,12 +205,18 @@ impl Checker<'_> {
             self.units_in(value);
             return;
         }
+        // what stands there may be wrong itself, and has been told then
+        let told = self.diagnostics.iter().filter(|d| d.is_error()).filter_map(|d| d.labels.first());
+        if told.map(|label| label.span).any(|span| binding.value.span.covers(span)) {
+            return;
+        }
         if let (Some(own), Some(raw)) = (self.raw(&binding.value, id.scope), self.raw(value, scope))
             && own.dimension != raw.dimension
         {
+            let code = if raw.dimension.is_none() { Code::E0301 } else { Code::E0302 };
             self.report(
                 Diagnostic::new(
-                    Code::E0302,
+                    code,
                     format!("expected {}, found {}", own.dimension.describe(), raw.dimension.describe()),
                 )
                 .at(value.span, "of another dimension")
@@ -262,19 +268,29 @@ impl Checker<'_> {
     ) -> Option<(String, Values)> {
         let mut choices = Vec::with_capacity(entries.len());
         let (mut sound, mut common) = (true, None);
+        let mut wrong_unit = false;
         for entry in entries {
+            let bare = unit_of_all(&entry.value);
+            if wrong_unit && bare {
+                continue;
+            }
             let value = wrapped(with_unit(&entry.value, suffix.unit.as_ref()), suffix.per.as_ref());
             if let Some(key) = &entry.key {
                 self.report(Diagnostic::new(Code::E0406, "expected a value, found a pair").at(key.span, "a key"));
                 sound = false;
                 continue;
             }
-            sound &= self.may_stand(target, &value, scope).is_some();
+            let stands = self.may_stand(target, &value, scope).is_some();
+            sound &= stands;
+            // what the list says once of all its numbers is told once
+            wrong_unit |= !stands
+                && bare
+                && matches!(self.diagnostics.last().map(|d| d.code), Some(Code::E0301 | Code::E0302 | Code::E0304));
             let raw = if sound && is_number(&value) { self.raw(&value, scope) } else { None };
             let unit = suffix_of(&value, raw.as_ref());
             let number = raw.and_then(|raw| Some((raw.value / unit_size(&unit)?, unit.clone())));
             let text = one_line(self.loader.sources.text(entry.value.span));
-            let behind = if unit_of_all(&entry.value) { suffix.text() } else { suffix.per_text() };
+            let behind = if bare { suffix.text() } else { suffix.per_text() };
             choices.push((text + &behind, number, entry.value.span));
             common.get_or_insert(unit);
         }
@@ -334,6 +350,8 @@ impl Checker<'_> {
         per: Option<&Name>,
         scope: ScopeId,
     ) -> Option<(String, Values)> {
+        let (arguments, per) = bare(arguments, per);
+        let (arguments, per) = (arguments.as_slice(), per.as_ref());
         let named = |i: usize, names: &[&str]| {
             let by_name = arguments.iter().find(|a| a.name.as_ref().is_some_and(|n| names.contains(&n.text.as_str())));
             by_name.or_else(|| arguments.get(i).filter(|a| a.name.is_none())).map(|a| &a.value)
@@ -473,6 +491,19 @@ fn rounded(x: f64) -> f64 {
 /// `40 MN/m per seat`
 fn with_suffix(x: f64, suffix: &str) -> String {
     format!("{} {suffix}", number(x)).trim_end().to_string()
+}
+
+/// Arguments without the basis that they all share: it may stand at each of them as well as behind the whole.
+fn bare(arguments: &[Argument], per: Option<&Name>) -> (Vec<Argument>, Option<Name>) {
+    let mut per = per.cloned();
+    let strip = |argument: &Argument| match &argument.value.kind {
+        ValueKind::Per(inner, name) if per.get_or_insert_with(|| name.clone()).text == name.text => {
+            Argument { name: argument.name.clone(), value: (**inner).clone() }
+        }
+        _ => argument.clone(),
+    };
+    let arguments = arguments.iter().map(strip).collect();
+    (arguments, per)
 }
 
 fn wrapped(value: Value, per: Option<&Name>) -> Value {
