@@ -139,6 +139,7 @@ impl Checker<'_> {
             );
             return None;
         }
-        Some(ShapeKind::Table { rows, ends: ends? }).filter(|_| sound)
+        let column = table.columns[value].name.clone();
+        Some(ShapeKind::Table { column, rows, ends: ends? }).filter(|_| sound)
     }
 }

@@ -221,6 +221,7 @@ impl Checker<'_> {
             every,
             depth: record.number("depth").map(|n| n.value),
             volume,
+            span: record.get("volume").and_then(|slot| slot.origin.span()),
         });
         let kept = (!along.is_empty()).then_some(Kept { quantities: along, seats, after, every, near: None });
         Some((kept, volumes))

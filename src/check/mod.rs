@@ -24,6 +24,7 @@ mod profile;
 mod random;
 mod random_field;
 mod records;
+mod resolve;
 mod scatter;
 mod seats;
 mod spacing;
@@ -39,18 +40,20 @@ mod vary;
 mod vehicle;
 mod words;
 
+pub use library::{Entry, library};
 pub use measured::{MeasuredCurve, measured_curve};
 pub use modules::{DataError, Folder, LARGEST_DATA_FILE, Modules, NoModules, Parsed, Remembered};
 pub use overrides::Override;
+pub use resolve::resolve;
 
 use crate::diag::{self, Code, Diagnostic, FileId, Sources, Span};
-use crate::scenario::{Loading, Scenario, Study, Traffic};
+use crate::scenario::{Evidence, LibraryEntry, Loading, Scenario, Study, Traffic};
 use crate::schema::{self, Role};
 use crate::syntax::tree::{Item, Value};
 use geometry::Places;
 use modules::{Loader, Scope, ScopeId};
 use names::ItemId;
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::rc::Rc;
 use table::Table;
 use tier::Asked;
@@ -72,6 +75,17 @@ pub struct Checked {
 
 /// Checks a text that a person calls `name`.
 pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Override]) -> Checked {
+    with_checker(name, text, modules, overrides, |_, _| ()).0
+}
+
+/// Checks a text, and asks something of what was found out about it.
+fn with_checker<T>(
+    name: &str,
+    text: &str,
+    modules: &dyn Modules,
+    overrides: &[Override],
+    ask: impl FnOnce(&mut Checker<'_>, ScopeId) -> T,
+) -> (Checked, T) {
     let mut loader = Loader::new(modules);
     let main = loader.load(name, text.to_string(), false, overrides);
     let standard = loader.standard_scope();
@@ -88,6 +102,7 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
         stack: Vec::new(),
         circles: BTreeSet::new(),
         used: BTreeSet::new(),
+        library_uses: BTreeMap::new(),
         defaults: HashMap::new(),
         numbers: HashMap::new(),
         tables: HashMap::new(),
@@ -101,10 +116,13 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
         seed: 1,
     };
     let (scenario, studies) = checker.scene(main);
+    let known = checker.diagnostics.len();
+    let answer = ask(&mut checker, main);
+    checker.diagnostics.truncate(known);
     let mut diagnostics = checker.diagnostics;
     diag::sort(&mut diagnostics);
     let sound = !diagnostics.iter().any(|d| d.is_error() || d.code == Code::E0410);
-    Checked { sources: checker.loader.sources, diagnostics, scenario, studies, sound }
+    (Checked { sources: checker.loader.sources, diagnostics, scenario, studies, sound }, answer)
 }
 
 /// The state of a check.
@@ -122,6 +140,8 @@ struct Checker<'a> {
     circles: BTreeSet<Vec<ItemId>>,
     /// Items that something asked for.
     used: BTreeSet<ItemId>,
+    /// Entries of the standard library that are named outside of it, and where; nowhere for a default.
+    library_uses: BTreeMap<ItemId, Option<Span>>,
     /// Defaults of the schema, parsed.
     defaults: HashMap<&'static str, Rc<Value>>,
     /// Values of lets that are numbers.
@@ -144,6 +164,15 @@ struct Checker<'a> {
     asked: Asked,
     /// Of everything random that has none of its own.
     seed: u64,
+}
+
+/// What a `scenario` says: title and physics rules.
+#[derive(Default)]
+struct Head {
+    title: String,
+    allow: Vec<(String, String)>,
+    deny: Vec<String>,
+    warn: Vec<String>,
 }
 
 /// Something that an object lacks.
@@ -319,7 +348,7 @@ impl Checker<'_> {
         let records = self.all(main, "record");
         let records: Vec<Option<_>> = records.iter().map(|r| self.kept(r, &places, traffic.as_ref(), ends)).collect();
         let expectations = self.expectations(main);
-        let (title, allow, deny) = self.scenario_head(main);
+        let head = self.scenario_head(main);
         let loads: Vec<_> = loads.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
         let loading = match (traffic_record.is_some(), loads.is_empty()) {
             (true, _) => Some(Loading::Traffic(traffic?)),
@@ -329,7 +358,19 @@ impl Checker<'_> {
         let kept: Vec<_> = records.into_iter().collect::<Option<_>>()?;
         let (records, volumes): (Vec<_>, Vec<_>) = kept.into_iter().unzip();
         let (records, volumes) = (records.into_iter().flatten().collect(), volumes.into_iter().flatten().collect());
-        Some(Scenario { title, track: track?, loading, solve: solve?, records, volumes, expectations, allow, deny })
+        Some(Scenario {
+            title: head.title,
+            track: track?,
+            loading,
+            solve: solve?,
+            records,
+            volumes,
+            expectations,
+            allow: head.allow,
+            deny: head.deny,
+            warn: head.warn,
+            library: self.library_entries(),
+        })
     }
 
     /// `solve` of a scene that says nothing about it.
@@ -351,11 +392,11 @@ impl Checker<'_> {
     }
 
     /// Title and physics rules; the file's name where there is no title.
-    fn scenario_head(&mut self, main: ScopeId) -> (String, Vec<(String, String)>, Vec<String>) {
+    fn scenario_head(&mut self, main: ScopeId) -> Head {
         let record = self.only(main, "scenario");
         let name = self.loader.sources.get(Loader::main_file()).name.clone();
         let stem = name.rsplit(['/', '\\']).next().unwrap_or(&name).trim_end_matches(".track").to_string();
-        let Some(record) = record else { return (stem, Vec::new(), Vec::new()) };
+        let Some(record) = record else { return Head { title: stem, ..Head::default() } };
         let text = |val: &Val| if let Val::Text(t) = val { Some(t.clone()) } else { None };
         let allow = match record.get("allow").map(|s| &s.value) {
             Some(Val::Pairs(pairs)) => {
@@ -363,11 +404,29 @@ impl Checker<'_> {
             }
             _ => Vec::new(),
         };
-        let deny = match record.get("deny").map(|s| &s.value) {
+        let rules = |field: &str| match record.get(field).map(|s| &s.value) {
             Some(Val::List(slots)) => slots.iter().filter_map(|s| text(&s.value)).collect(),
             _ => Vec::new(),
         };
-        (record.text("title").map_or(stem, str::to_string), allow, deny)
+        let title = record.text("title").map_or(stem, str::to_string);
+        Head { title, allow, deny: rules("deny"), warn: rules("warn") }
+    }
+
+    /// Entries of the standard library that the scene names or leaves to a default, with their evidence.
+    fn library_entries(&self) -> Vec<LibraryEntry> {
+        let entry = |(id, span): (&ItemId, &Option<Span>)| {
+            let record = self.records.get(id)?.as_ref()?;
+            let evidence = match record.word("evidence")? {
+                "read" => Evidence::Read,
+                "derived" => Evidence::Derived,
+                _ => Evidence::Unchecked,
+            };
+            let file = &self.loader.sources.get(record.span.file).name;
+            let module = file.trim_start_matches("std/").trim_end_matches(".track");
+            let source = record.text("source").unwrap_or_default().to_string();
+            Some(LibraryEntry { name: format!("{module}.{}", record.name), source, evidence, span: *span })
+        };
+        self.library_uses.iter().filter_map(entry).collect()
     }
 
     /// Warns of declarations of the main file that nothing asks for.

@@ -3,7 +3,7 @@
 use super::Checker;
 use super::modules::ScopeId;
 use super::value::{Slot, Val};
-use crate::diag::{Code, Diagnostic, nearest::nearest};
+use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
 use crate::syntax::tree::{Item, Name, Path};
 
 /// An item of a scope.
@@ -29,6 +29,7 @@ impl Checker<'_> {
         if let (Some(&module), Some(second)) = (self.scopes[scope].modules.get(&first.text), path.names.get(1))
             && let Some(target) = self.lookup(module, second, 2)
         {
+            self.note_library(target.id, path.span, scope);
             return Some(target);
         }
         if let Some(target) = self.lookup(scope, first, 1) {
@@ -62,6 +63,16 @@ impl Checker<'_> {
         }
         self.unknown_name(first, scope, words);
         None
+    }
+
+    /// Notes where the user's files, or a default, name an entry of the standard library.
+    fn note_library(&mut self, id: ItemId, span: Span, scope: ScopeId) {
+        let of_library = |scope: ScopeId| self.scopes[scope].library;
+        if scope == self.standard {
+            self.library_uses.entry(id).or_insert(None);
+        } else if of_library(id.scope) && !of_library(scope) {
+            self.library_uses.entry(id).or_insert(Some(span)).get_or_insert(span);
+        }
     }
 
     fn lookup(&self, scope: ScopeId, name: &Name, taken: usize) -> Option<Target> {

@@ -54,8 +54,9 @@ pub(super) enum ShapeKind {
     Spans(Vec<(Reach, Shape)>),
     /// Scattered about a mean.
     Random(Random),
-    /// Chainage, m, and values of a data file, with the places of the first and the last row.
+    /// Chainage, m, and values of a column of a data file, with the places of the first and the last row.
     Table {
+        column: String,
         rows: Vec<(f64, Number)>,
         ends: [Span; 2],
     },
@@ -351,7 +352,8 @@ impl Checker<'_> {
             ShapeKind::Points(points) => ShapeKind::Points(
                 points.iter().map(|(place, at, n)| Some((*place, *at, hold(*n)?))).collect::<Option<_>>()?,
             ),
-            ShapeKind::Table { rows, ends } => ShapeKind::Table {
+            ShapeKind::Table { column, rows, ends } => ShapeKind::Table {
+                column: column.clone(),
                 rows: rows.iter().map(|(x, n)| Some((*x, hold(*n)?))).collect::<Option<_>>()?,
                 ends: *ends,
             },

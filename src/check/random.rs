@@ -71,7 +71,10 @@ impl Checker<'_> {
             None => cov * mean.value.abs(),
         };
         self.scatters(&mean, deviation, log_normal, first.value.span)?;
-        let path = self.path_of(word.span, scope);
+        let path = match given.get("stream").map(|slot| &slot.value) {
+            Some(Val::Text(stream)) => stream.clone(),
+            _ => self.path_of(word.span, scope),
+        };
         Some(ShapeKind::Random(Random { mean, deviation, correlation, log_normal, seed, path, measure }))
     }
 

@@ -106,7 +106,7 @@ impl Checker<'_> {
                 let found = self.chainages_of(points, places, shape.from)?;
                 Curve::Linear(self.points(points, found, places, cover, within)?)
             }
-            ShapeKind::Table { rows, ends } => {
+            ShapeKind::Table { rows, ends, .. } => {
                 let ends = [(rows.first()?.0, ends[0]), (rows.last()?.0, ends[1])];
                 self.covers(cover, places, within, ends, Some(shape.span))?;
                 let points: Vec<[f64; 2]> = rows.iter().map(|(x, n)| [*x, n.of_rail()]).collect();

@@ -2,23 +2,34 @@
 
 use super::{Outcome, terminal};
 use crate::diag::nearest::nearest;
-use crate::schema;
+use crate::{report, schema};
+use clap::ValueEnum;
 
 /// Say what a kind and its fields mean
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// The kind; all of them in a line each where it is left out.
     kind: Option<String>,
+    /// `markdown` writes the whole reference, or the section of one kind.
+    #[arg(long, value_enum, default_value = "human")]
+    format: DocsFormat,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum DocsFormat {
+    Human,
+    Markdown,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
+    let markdown = arguments.format == DocsFormat::Markdown;
     let Some(wanted) = &arguments.kind else {
-        terminal::out(&schema::index());
+        terminal::out(&if markdown { report::reference() } else { schema::index() });
         return Outcome::Fine;
     };
     match schema::kind(wanted) {
         Some(kind) => {
-            terminal::out(&schema::page(kind));
+            terminal::out(&if markdown { schema::section(kind) } else { schema::page(kind) });
             Outcome::Fine
         }
         None => {

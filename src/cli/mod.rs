@@ -14,6 +14,7 @@ mod new;
 mod plan;
 mod progress;
 mod report;
+mod resolve;
 mod run;
 mod scene;
 mod stability;
@@ -38,6 +39,7 @@ enum Command {
     Check(check::Arguments),
     Draw(draw::Arguments),
     Plan(plan::Arguments),
+    Resolve(resolve::Arguments),
     Run(run::Arguments),
     Study(study::Arguments),
     Calibrate(calibrate::Arguments),
@@ -67,6 +69,12 @@ enum Outcome {
     Usage,
 }
 
+/// Whether the command line understands these arguments, without the program's name in front; else what it would say.
+pub fn understands<'a>(arguments: impl IntoIterator<Item = &'a str>) -> Result<(), String> {
+    let line = std::iter::once("trackbed").chain(arguments);
+    Cli::try_parse_from(line).map(|_| ()).map_err(|error| error.to_string())
+}
+
 /// Reads the arguments, runs the command and tells the shell.
 pub fn main() -> ExitCode {
     let cli = match Cli::try_parse() {
@@ -82,6 +90,7 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Draw(arguments) => draw::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
+        Command::Resolve(arguments) => resolve::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),

@@ -3,9 +3,8 @@
 use super::scene::{SceneArguments, failed, not_yet, show};
 use super::{Outcome, progress, report, terminal};
 use crate::diag::{Code, Diagnostic, render};
-use crate::graph::{self, Graph};
-use crate::results::{self, BlockRow, Provenance, Run, RunRecorder, Store, Summary, checkpoint};
-use crate::scenario::Scenario;
+use crate::graph;
+use crate::results::{self, BlockRow, Run, RunRecorder, Store, checkpoint};
 use crate::units::number;
 use crate::{Compiled, fingerprint};
 use std::collections::BTreeMap;
@@ -76,7 +75,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         return stop(&compiled, results::diagnose(&error, scenario, graph));
     }
     let computed = started.elapsed().as_secs_f64();
-    let run = gather(&recorder, scenario, graph, &compiled, hash);
+    let run = Run::gather(&recorder, scenario, graph, &compiled.sources, hash);
     drop(recorder);
     match write(&run, &arguments.out, computed, &started) {
         Ok(page) => summary(&run, &page, computed),
@@ -125,44 +124,6 @@ fn prepare(arguments: &Arguments) -> Result<(), String> {
         return Err(format!("`{shown}` holds an interrupted run"));
     }
     Ok(())
-}
-
-fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compiled: &Compiled, hash: String) -> Run {
-    let tables = &recorder.tables;
-    let histories = recorder.all_histories();
-    let laws = results::law_rows(scenario, &tables.laws);
-    let mut scalars = results::summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
-    scalars.extend(results::summarise_laws(scenario, &laws));
-    let view = results::Tables {
-        sleepers: &tables.sleepers,
-        blocks: &tables.blocks,
-        rail: &tables.rail,
-        histories: &histories,
-        scalars: &scalars,
-        track: &scenario.track,
-    };
-    let expectations = results::verdicts(scenario, view);
-    // the name alone: equal scenes give equal files wherever they lie
-    let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_string();
-    let main = compiled.sources.iter().next().map(|(_, s)| (name(&s.name), s.text.clone())).unwrap_or_default();
-    let provenance = Provenance {
-        program: env!("CARGO_PKG_NAME").into(),
-        version: env!("CARGO_PKG_VERSION").into(),
-        file: main.0,
-        source: main.1,
-        source_sha256: hash,
-        seed: scenario.solve.seed,
-        plan: graph.listing().text(),
-    };
-    Run {
-        scenario: scenario.clone(),
-        summary: Summary { scalars, expectations, provenance },
-        sleepers: tables.sleepers.clone(),
-        blocks: tables.blocks.clone(),
-        laws,
-        rail: tables.rail.clone(),
-        histories,
-    }
 }
 
 fn write(run: &Run, out: &Path, computed: f64, started: &Instant) -> Result<PathBuf, String> {

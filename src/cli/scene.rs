@@ -1,7 +1,7 @@
 //! Reads and compiles the scene that a command works on, and shows what is wrong with it.
 
 use super::{Outcome, terminal};
-use crate::check::{Folder, Override};
+use crate::check::{self, Folder, Override};
 use crate::diag::{self, Sources, render};
 use crate::{Compiled, compile, syntax};
 use std::path::{Path, PathBuf};
@@ -17,6 +17,18 @@ pub(super) struct SceneArguments {
 }
 
 impl SceneArguments {
+    /// Where its modules and data lie.
+    fn folder(&self) -> Folder {
+        Folder(self.file.parent().unwrap_or(Path::new("")).to_path_buf())
+    }
+
+    /// The scene as one file; `None` where there is none.
+    pub fn resolve(&self) -> Option<String> {
+        let name = self.file.display().to_string();
+        let text = syntax::decode(&name, &std::fs::read(&self.file).ok()?).ok()?;
+        check::resolve(&name, &text, &self.folder(), &self.set)
+    }
+
     /// Reads and compiles the file; `None` where it cannot be read, which has been said.
     pub fn compile(&self) -> Option<Compiled> {
         let name = self.file.display().to_string();
@@ -27,7 +39,7 @@ impl SceneArguments {
                 return None;
             }
         };
-        let folder = Folder(self.file.parent().unwrap_or(Path::new("")).to_path_buf());
+        let folder = self.folder();
         Some(match syntax::decode(&name, &bytes) {
             Ok(text) => compile(&name, &text, &folder, &self.set),
             Err(mistake) => Compiled {

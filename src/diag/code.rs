@@ -116,6 +116,8 @@ codes! {
     L1006 Warning "update interval that overshoots"
     L1007 Warning "sleeper passing near a vehicle resonance"
     L1008 Warning "sleepers below the threshold of their law"
+    L1009 Warning "layer of few grains"
+    L1010 Warning "value of the library that nobody has checked"
     L1011 Warning "irregularity too sharp for a wheel"
     L1012 Warning "sleeper passing near the resonance of a wheel on the track"
     L1013 Warning "wheel that loses its load over the level of the rail"
@@ -123,6 +125,13 @@ codes! {
     L1015 Warning "sleeper pressure beyond the usual limit"
     L1016 Warning "support stiffness that has not been measured"
     L1017 Warning "car body that bounces as none does"
+    L1018 Warning "bed of few grains between its walls"
+    L1019 Warning "sleeper on few grains"
+    L1020 Warning "step of grains beyond what their contacts bear"
+    L1021 Warning "grains that overlap too much under their load"
+    L1022 Warning "run above its budget"
+    L1023 Warning "damper that lets nothing swing"
+    L1024 Warning "volume of few grains"
 }
 
 impl Code {
@@ -142,6 +151,8 @@ impl Code {
             Code::L1006 => "update_overshoot",
             Code::L1007 => "passing_frequency",
             Code::L1008 => "below_threshold",
+            Code::L1009 => "thin_layer",
+            Code::L1010 => "unchecked_values",
             Code::L1011 => "irregularity_too_sharp",
             Code::L1012 => "wheel_on_track",
             Code::L1013 => "wheel_unloading",
@@ -149,8 +160,20 @@ impl Code {
             Code::L1015 => "ballast_pressure",
             Code::L1016 => "support_stiffness",
             Code::L1017 => "car_body_frequency",
+            Code::L1018 => "narrow_bed",
+            Code::L1019 => "few_grains_under_sleeper",
+            Code::L1020 => "grain_step",
+            Code::L1021 => "grain_overlap",
+            Code::L1022 => "over_budget",
+            Code::L1023 => "overdamped",
+            Code::L1024 => "small_volume",
             _ => return None,
         })
+    }
+
+    /// Whether a physics rule is silent until a scenario names it in `warn` or `deny`.
+    pub fn is_silent(self) -> bool {
+        self == Code::L1010
     }
 
     /// The physics rule of that name.

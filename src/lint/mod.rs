@@ -1,6 +1,7 @@
 //! Physics rules over the scene and its plan: what a careful colleague would point out. One rule a file.
 //!
-//! A rule is silenced by `scenario { allow = [rule: "reason"] }` and made an error by `deny`.
+//! A rule is silenced by `scenario { allow = [rule: "reason"] }` and made an error by `deny`. A few are silent until `warn`
+//! or `deny` names them.
 
 mod ballast_pressure;
 mod below_threshold;
@@ -8,13 +9,23 @@ mod car_body_frequency;
 mod coarse_time_step;
 mod critical_speed;
 mod dynamic;
+mod few_grains_under_sleeper;
+mod grain_overlap;
+mod grain_step;
+mod grains;
 mod irregularity_too_sharp;
 mod law_outside_calibration;
+mod narrow_bed;
+mod over_budget;
+mod overdamped;
 mod passing_frequency;
 mod rail_stress;
+mod small_volume;
 mod stiffness_jump;
 mod support_stiffness;
+mod thin_layer;
 mod track_too_short;
+mod unchecked_values;
 mod update_overshoot;
 mod wheel_on_track;
 mod wheel_unloading;
@@ -22,13 +33,13 @@ mod winkler;
 
 pub use winkler::Winkler;
 
-use crate::diag::{Diagnostic, Severity};
+use crate::diag::{Code, Diagnostic, Severity};
 use crate::graph::Graph;
 use crate::scenario::{Loading, Scenario, SettlementLaw};
 
 type Rule = fn(&Scenario, &Graph) -> Vec<Diagnostic>;
 
-const RULES: [Rule; 15] = [
+const RULES: [Rule; 24] = [
     stiffness_jump::check,
     critical_speed::check,
     track_too_short::check,
@@ -44,6 +55,15 @@ const RULES: [Rule; 15] = [
     ballast_pressure::check,
     support_stiffness::check,
     car_body_frequency::check,
+    thin_layer::check,
+    unchecked_values::check,
+    narrow_bed::check,
+    few_grains_under_sleeper::check,
+    grain_step::check,
+    grain_overlap::check,
+    over_budget::check,
+    overdamped::check,
+    small_volume::check,
 ];
 
 /// Applies every rule, at the level that the scene gives it.
@@ -52,11 +72,16 @@ pub fn lint(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         .iter()
         .flat_map(|rule| rule(scenario, graph))
         .filter(|d| !scenario.allow.iter().any(|(rule, _)| Some(rule.as_str()) == d.code.rule()))
+        .filter(|d| !d.code.is_silent() || asked_for(scenario, d.code))
         .map(|d| match d.code.rule() {
             Some(rule) if scenario.deny.iter().any(|denied| denied == rule) => d.severity(Severity::Error),
             _ => d,
         })
         .collect()
+}
+
+fn asked_for(scenario: &Scenario, rule: Code) -> bool {
+    scenario.warn.iter().chain(&scenario.deny).any(|named| Some(named.as_str()) == rule.rule())
 }
 
 /// The law that drives the run, then those beside it.

@@ -6,7 +6,7 @@
 use super::winkler::Winkler;
 use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
-use crate::scenario::{Foot, Scenario};
+use crate::scenario::{Foot, Scenario, Track};
 use crate::units::number;
 
 const LARGEST_RATIO: f64 = 1.15;
@@ -29,10 +29,11 @@ pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
         let mut diagnostic = Diagnostic::new(
             Code::L1001,
             format!(
-                "the stiffness at rail level jumps from {} to {} MN/m at transition{name}, by a factor of {}",
+                "the stiffness at rail level jumps from {} to {} MN/m at transition{name}, by a factor of {} within {} m",
                 number((a / 1e5).round() / 10.0),
                 number((b / 1e5).round() / 10.0),
-                number((ratio * 100.0).round() / 100.0)
+                number((ratio * 100.0).round() / 100.0),
+                number((apart(track, i, transition.x) * 100.0).round() / 100.0)
             ),
         )
         .help(format!("bring both sides within a factor of {LARGEST_RATIO}: softer pads on the stiff side, a stiffer support before it"));
@@ -49,4 +50,13 @@ pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
         found.push(diagnostic);
     }
     found
+}
+
+/// Distance, m, of the two seats that are compared: the nearest ones on either side.
+fn apart(track: &Track, left: usize, x: f64) -> f64 {
+    let nearest = |section: usize| {
+        let seats = track.seats.iter().filter(|s| s.section == section);
+        seats.map(|s| (s.x - x).abs()).fold(f64::INFINITY, f64::min)
+    };
+    nearest(left) + nearest(left + 1)
 }

@@ -149,6 +149,8 @@ pub(crate) fn transition() -> Run {
         ],
         allow: vec![],
         deny: vec![],
+        warn: vec![],
+        library: vec![],
     };
     filled(scenario)
 }
@@ -330,6 +332,8 @@ pub(crate) fn bench() -> Run {
         expectations: vec![],
         allow: vec![],
         deny: vec![],
+        warn: vec![],
+        library: vec![],
     };
     // The beam on a Winkler foundation: w = w0 e^(-bx) (cos bx + sin bx), M = M0 e^(-bx) (cos bx - sin bx).
     let winkler = |x: f64, sign: f64| {

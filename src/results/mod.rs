@@ -9,6 +9,7 @@ mod error;
 mod evaluate;
 mod failure;
 mod files;
+mod gather;
 mod grains;
 mod histories;
 mod laws;

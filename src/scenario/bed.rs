@@ -2,6 +2,7 @@
 //! their answers are wanted.
 
 use super::{Given, response::Response};
+use crate::diag::Span;
 use serde::{Deserialize, Serialize};
 
 /// The box that holds the layers.
@@ -112,6 +113,8 @@ pub struct VolumeRecord {
     /// Below the sleeper's base, m; `None` is half the top layer.
     pub depth: Option<f64>,
     pub volume: Volume,
+    /// Where it is asked for; `None` where the default holds.
+    pub span: Option<Span>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

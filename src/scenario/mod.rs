@@ -8,6 +8,7 @@ mod bed;
 mod given;
 mod grading;
 mod law;
+mod library;
 mod material;
 mod profile;
 pub mod response;
@@ -19,6 +20,7 @@ pub use bed::{Base, Bed, BedEnds, Grains, Tier, Volume, VolumeRecord};
 pub use given::{Given, Origin};
 pub use grading::{Grading, Passing};
 pub use law::{SettlementLaw, law_argument};
+pub use library::{Evidence, LibraryEntry};
 pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soil, Strength};
 pub use profile::{Cubic, Curve, Piece, Profile, Varying};
 pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spread, Study, Values};
@@ -49,6 +51,10 @@ pub struct Scenario {
     pub allow: Vec<(String, String)>,
     /// Physics rules made errors.
     pub deny: Vec<String>,
+    /// Physics rules that speak only because the scene asks for them.
+    pub warn: Vec<String>,
+    /// Entries of the standard library that the scene uses.
+    pub library: Vec<LibraryEntry>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

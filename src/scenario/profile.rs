@@ -75,11 +75,20 @@ impl Varying {
 
     /// The largest value between the points of its curves, exact where these run straight or level out.
     pub fn largest(&self) -> f64 {
+        self.extreme(f64::max)
+    }
+
+    /// The smallest value, as exact as the largest.
+    pub fn smallest(&self) -> f64 {
+        self.extreme(f64::min)
+    }
+
+    fn extreme(&self, of: fn(f64, f64) -> f64) -> f64 {
         match self {
             Varying::Constant(given) => **given,
             Varying::Profile(profile) => {
                 let values = profile.pieces.iter().flat_map(|p| p.knots().into_iter().map(|x| p.curve.value(x)));
-                values.fold(f64::NEG_INFINITY, f64::max)
+                values.reduce(of).unwrap_or_default()
             }
         }
     }

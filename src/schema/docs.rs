@@ -17,30 +17,69 @@ pub fn index() -> String {
     out
 }
 
+/// Everything about one kind, as a section of a Markdown page.
+pub fn section(kind: &Kind) -> String {
+    let mut out = format!("### `{}`\n\n{}\n\n", kind.name, kind.doc);
+    out.push_str("| field | value | | meaning |\n|---|---|---|---|\n");
+    for field in kind.fields {
+        out.push_str(&row(field, &format!("`{}`", field.name)));
+    }
+    for field in kind.fields {
+        for word in known_words(field) {
+            for argument in word.arguments {
+                out.push_str(&row(argument, &format!("`{}`: `{}({})`", field.name, word.name, argument.name)));
+            }
+        }
+    }
+    for paragraph in remarks(kind) {
+        out.push_str(&format!("\n{paragraph}\n"));
+    }
+    out
+}
+
+/// A field as a row of a table: its name, form, need and meaning, with those of its words.
+fn row(field: &Field, name: &str) -> String {
+    let words = known_words(field).filter(|w| !w.doc.is_empty()).map(|w| format!("`{}`: {}", w.name, w.doc));
+    let meaning: Vec<String> = [field.doc.to_string()].into_iter().filter(|doc| !doc.is_empty()).chain(words).collect();
+    let need = match field.need {
+        Need::Required => "required".into(),
+        Need::Optional | Need::Alternative => String::new(),
+        Need::Default(text) => format!("default `{text}`"),
+    };
+    let cells = [name.to_string(), form(&field.form), need, meaning.join("; ")];
+    format!("| {} |\n", cells.map(|cell| cell.replace('|', "\\|")).join(" | "))
+}
+
+fn known_words(field: &Field) -> impl Iterator<Item = &'static super::Word> {
+    field.form.words().into_iter().filter(|w| !w.planned)
+}
+
+/// What a kind says besides its fields: what it changes, which fields exclude each other, what is not read yet.
+fn remarks(kind: &Kind) -> Vec<String> {
+    let changed = kind.changes().map(|changed| {
+        let names: Vec<&str> = changed.fields.iter().map(|f| f.name).collect();
+        format!("Any field or path of a {}: {}. `trackbed docs {0}` describes them.", changed.name, names.join(", "))
+    });
+    let alternatives = kind.alternatives.iter().map(|alternative| {
+        let ways: Vec<String> = alternative.ways.iter().map(|way| format!("`{}`", way.join("` and `"))).collect();
+        let ways = crate::diag::or_list(&ways);
+        match alternative.default {
+            Some((field, value)) => format!("Give {ways}; where none is given, `{field} = {value}`."),
+            None => format!("Give {ways}; given together they must agree within 2 %."),
+        }
+    });
+    let planned = (!kind.planned.is_empty()).then(|| format!("Not in this version: {}.", kind.planned.join(", ")));
+    changed.into_iter().chain(alternatives).chain(planned).collect()
+}
+
 /// Everything about one kind.
 pub fn page(kind: &Kind) -> String {
     let mut out = format!("{}\n\n{}\n\n", kind.name, kind.doc);
     for field in kind.fields.iter().chain(COMMON) {
         describe(&mut out, field, 2);
     }
-    if let Some(changed) = kind.changes() {
-        let names: Vec<&str> = changed.fields.iter().map(|f| f.name).collect();
-        out.push_str(&format!(
-            "  Any field or path of a {}: {}. `trackbed docs {0}` describes them.\n",
-            changed.name,
-            names.join(", ")
-        ));
-    }
-    for alternative in kind.alternatives {
-        let ways: Vec<String> = alternative.ways.iter().map(|way| format!("`{}`", way.join("` and `"))).collect();
-        out.push_str(&format!("  Give {}", crate::diag::or_list(&ways)));
-        match alternative.default {
-            Some((field, value)) => out.push_str(&format!("; where none is given, `{field} = {value}`.\n")),
-            None => out.push_str("; given together they must agree within 2 %.\n"),
-        }
-    }
-    if !kind.planned.is_empty() {
-        out.push_str(&format!("\n  Not in this version: {}.\n", kind.planned.join(", ")));
+    for remark in remarks(kind) {
+        out.push_str(&format!("  {remark}\n"));
     }
     out
 }

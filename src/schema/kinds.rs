@@ -70,6 +70,7 @@ pub static RANDOM: Word = Word {
             Form::Integer { min: 0, max: 1_000_000_000 },
             "else drawn from `solve.seed` and the field's path",
         ),
+        optional("stream", Form::Text, "what it is drawn for, in the place of the field's path"),
     ],
     planned: false,
 };
@@ -164,6 +165,7 @@ pub const KINDS: &[Kind] = &[
                 "physics rules silenced, each with a reason",
             ),
             optional("deny", Form::List(&Form::Rule), "physics rules made errors"),
+            optional("warn", Form::List(&Form::Rule), "physics rules that are silent unless asked for"),
         ],
         alternatives: &[],
         planned: &[],

@@ -7,7 +7,7 @@ mod kinds;
 mod laws;
 mod materials;
 
-pub use docs::{index, page};
+pub use docs::{index, page, section};
 pub use kinds::{COMMON, KINDS, RANDOM};
 
 /// A kind of declaration, or of a value that only stands inside one.

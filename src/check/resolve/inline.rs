@@ -1,0 +1,95 @@
+//! Comparisons as written, with what their names stand for in the place of the names.
+
+use super::{Resolver, literal};
+use crate::check::modules::ScopeId;
+use crate::check::value::{Number, Val};
+use crate::diag::Span;
+use crate::scenario::response::Response;
+use crate::schema::Form;
+use crate::syntax::parse;
+use crate::syntax::tree::{Item, Path, Value, ValueKind};
+
+impl Resolver<'_, '_> {
+    /// The comparison that stands at a place of some file.
+    pub(super) fn comparison(&mut self, span: Span) -> String {
+        let scope = self.scope_of(span);
+        let text = format!("let comparison = {}", self.checker.loader.sources.text(span));
+        let (tree, _) = parse(span.file, &text);
+        match tree.items.first() {
+            Some(Item::Let(binding)) => self.inline(&binding.value, scope),
+            _ => self.checker.loader.sources.text(span).to_string(),
+        }
+    }
+
+    fn inline(&mut self, value: &Value, scope: ScopeId) -> String {
+        match &value.kind {
+            ValueKind::Number { value, unit } => {
+                let digits = literal::plain(*value);
+                unit.as_ref().map_or(digits.clone(), |unit| format!("{digits} {}", unit.text))
+            }
+            ValueKind::Text(text) => super::text::quoted(text),
+            ValueKind::Path(path) => self.inline_path(path, scope),
+            ValueKind::Call { word, arguments } => {
+                let arguments: Vec<String> = arguments
+                    .iter()
+                    .map(|a| {
+                        let value = self.inline(&a.value, scope);
+                        a.name.as_ref().map_or(value.clone(), |name| format!("{} = {value}", name.text))
+                    })
+                    .collect();
+                format!("{}({})", word.text, arguments.join(", "))
+            }
+            ValueKind::List { entries, unit } => {
+                let items: Vec<String> = entries.iter().map(|e| self.inline(&e.value, scope)).collect();
+                let unit = unit.as_ref().map_or(String::new(), |unit| format!(" {}", unit.text));
+                format!("[{}]{unit}", items.join(", "))
+            }
+            ValueKind::Range(a, b) => format!("{} .. {}", self.inline(a, scope), self.inline(b, scope)),
+            ValueKind::Per(inner, basis) => format!("{} per {}", self.inline(inner, scope), basis.text),
+            ValueKind::Binary(a, op, b) => {
+                format!("({} {} {})", self.inline(a, scope), op.symbol(), self.inline(b, scope))
+            }
+            ValueKind::Negate(inner) => format!("-{}", self.inline(inner, scope)),
+            ValueKind::Compare { operands, operators } => {
+                let operands: Vec<String> = operands.iter().map(|o| self.inline(o, scope)).collect();
+                let rest = operands[1..].iter().zip(operators).map(|(o, op)| format!(" {} {o}", op.symbol()));
+                std::iter::once(operands[0].clone()).chain(rest).collect()
+            }
+            // nothing else can stand in a comparison
+            ValueKind::Object { .. } | ValueKind::Hole | ValueKind::Error => "?".into(),
+        }
+    }
+
+    /// A response stays, a `let` is written out, anything else is a number in some object.
+    fn inline_path(&mut self, path: &Path, scope: ScopeId) -> String {
+        if path.names.len() == 1 && Response::of_name(&path.names[0].text).is_some() {
+            return path.text();
+        }
+        // a name of its own, or a word such as that of a transition
+        if path.names.len() == 1 && !self.checker.scopes[scope].names.contains_key(&path.names[0].text) {
+            return path.text();
+        }
+        let Some(target) = self.checker.resolve(path, scope, &[]) else { return path.text() };
+        if target.is_let {
+            let tree = self.checker.scopes[target.id.scope].tree.clone();
+            let Item::Let(binding) = &tree.items[target.id.item] else { return path.text() };
+            let value = self.inline(&binding.value, target.id.scope);
+            // one that is in brackets, or one word, needs no others
+            let alone = matches!(
+                binding.value.kind,
+                ValueKind::Number { .. } | ValueKind::Binary(..) | ValueKind::Call { .. } | ValueKind::Path(_)
+            );
+            return if alone { value } else { format!("({value})") };
+        }
+        match self.checker.slot_at(&target, path).map(|slot| slot.value) {
+            Some(Val::Number(Number { value, dimension, basis, factor })) => {
+                format!("({})", literal::number(Number { value, dimension, basis, factor }, &Form::Text))
+            }
+            _ => path.text(),
+        }
+    }
+
+    fn scope_of(&self, span: Span) -> ScopeId {
+        self.checker.scopes.iter().position(|scope| scope.tree.file == span.file).unwrap_or(self.main)
+    }
+}

@@ -1,0 +1,295 @@
+//! The scene as one file: every object that takes part, with every default and library value written out and where it comes
+//! from. The text is itself a legal file and makes the same scene, to the bit.
+//!
+//! Objects are written as they stand after extension and overrides, parts before what names them. What stood in the place of a
+//! field under a name of its own becomes a declaration, so that sections, vehicles, layers and laws keep their names. Studies are
+//! left out: they edit lines of the file in which they stand.
+
+mod inline;
+mod literal;
+mod text;
+
+use super::modules::ScopeId;
+use super::names::ItemId;
+use super::value::{Record, Slot, Val};
+use super::{Checker, Modules, Override, with_checker};
+use crate::diag::{self, Span};
+use crate::scenario::Origin;
+use crate::schema::{self, Field, Form, KINDS, Kind, Role};
+use crate::syntax;
+use crate::syntax::tree::{Declaration, Item};
+use std::collections::{BTreeSet, HashMap};
+use std::rc::Rc;
+
+/// The text that [`super::check`] takes, as one file with everything written out; `None` where it has errors or no track. A
+/// data file that it names must lie where it lies for the original.
+pub fn resolve(name: &str, text: &str, modules: &dyn Modules, overrides: &[Override]) -> Option<String> {
+    let (_, resolved) = with_checker(name, text, modules, overrides, |checker, main| {
+        if diag::has_errors(&checker.diagnostics) || !checker.declares(main, "track") {
+            return None;
+        }
+        Some(Resolver::new(checker, main).file(name))
+    });
+    resolved.map(|text| syntax::format(&text).unwrap_or(text))
+}
+
+/// Writes objects, each once.
+struct Resolver<'c, 'm> {
+    checker: &'c mut Checker<'m>,
+    main: ScopeId,
+    /// Declarations by the place of their header.
+    headers: HashMap<Span, ItemId>,
+    /// Names that are given, or that would mean something else.
+    taken: BTreeSet<String>,
+    /// Objects with a name, and that name.
+    named: Vec<(Rc<Record>, String)>,
+    /// Declarations so far, parts before what names them.
+    written: Vec<(&'static Kind, String)>,
+}
+
+impl Checker<'_> {
+    fn declares(&self, scope: ScopeId, kind: &str) -> bool {
+        self.scopes[scope].tree.items.iter().any(|item| matches!(item, Item::Declaration(d) if d.kind.text == kind))
+    }
+}
+
+/// The place by which a declaration is known.
+fn header(declaration: &Declaration) -> Span {
+    declaration.name.as_ref().map_or(declaration.kind.span, |name| declaration.kind.span.to(name.span))
+}
+
+impl<'c, 'm> Resolver<'c, 'm> {
+    fn new(checker: &'c mut Checker<'m>, main: ScopeId) -> Self {
+        let mut headers = HashMap::new();
+        let mut taken = BTreeSet::new();
+        for (scope, here) in checker.scopes.iter().enumerate() {
+            for (item, declared) in here.tree.items.iter().enumerate() {
+                let Item::Declaration(d) = declared else { continue };
+                headers.insert(header(d), ItemId { scope, item });
+                if scope == main {
+                    taken.insert(d.name.as_ref().unwrap_or(&d.kind).text.clone());
+                }
+            }
+        }
+        Resolver { checker, main, headers, taken, named: Vec::new(), written: Vec::new() }
+    }
+
+    /// The whole file, unformatted.
+    fn file(mut self, name: &str) -> String {
+        self.roots();
+        // in the order of the vocabulary; objects of a kind stay as they came
+        self.written.sort_by_key(|(kind, _)| KINDS.iter().position(|k| k.name == kind.name));
+        let head = format!("// {name}, with everything written out that it uses or leaves to a default\n");
+        let left_out = self.checker.declares(self.main, "study");
+        let studies = if left_out { "// its studies stay there: they edit its lines\n" } else { "" };
+        let written: Vec<String> = self.written.into_iter().map(|(_, text)| text).collect();
+        format!("{head}{studies}\n{}", written.join("\n"))
+    }
+
+    /// What acts by itself, and with it all that it names.
+    fn roots(&mut self) {
+        let tree = self.checker.scopes[self.main].tree.clone();
+        for (item, declared) in tree.items.iter().enumerate() {
+            let Item::Declaration(d) = declared else { continue };
+            let acts = matches!(schema::kind(&d.kind.text).map(|k| k.role), Some(Role::Scene { .. }));
+            if !acts || d.kind.text == "study" {
+                continue;
+            }
+            if let Some(record) = self.checker.record(ItemId { scope: self.main, item }, d.span) {
+                let name = record.name.clone();
+                self.declare(&record, &name);
+            }
+        }
+        // both hold for every scene, said or not
+        for kind in ["scenario", "solve"].into_iter().filter_map(schema::kind) {
+            if !self.checker.declares(self.main, kind.name) {
+                let span = Span::new(diag::FileId(0), 0, 0);
+                self.declare(&Rc::new(Record::empty(kind, kind.name, span)), kind.name);
+            }
+        }
+    }
+
+    /// Writes a declaration, after those of what it names.
+    fn declare(&mut self, record: &Rc<Record>, name: &str) {
+        let docs: String = self.docs(record).iter().map(|line| format!("/// {}\n", line.trim())).collect();
+        let after = self.after(record);
+        let lines = self.fields(record);
+        let kind = record.kind.name;
+        let header = if name == kind { kind.to_string() } else { format!("{kind} {name}") };
+        self.written.push((record.kind, format!("{docs}{header} {{{after}\n{lines}}}\n")));
+    }
+
+    /// An object as a value: its name, or itself where it has none.
+    fn object(&mut self, record: &Rc<Record>) -> String {
+        if let Some((_, name)) = self.named.iter().find(|(known, _)| Rc::ptr_eq(known, record)) {
+            return name.clone();
+        }
+        let declared = self.declaration(record);
+        if declared.is_none() && (record.name == record.kind.name || record.kind.role == Role::Nested) {
+            let after = self.after(record);
+            let lines = self.fields(record);
+            return if lines.is_empty() { "{}".into() } else { format!("{{{after}\n{lines}}}") };
+        }
+        let mine = declared.is_some_and(|id| id.scope == self.main);
+        let name = if mine { record.name.clone() } else { self.free_name(record) };
+        self.taken.insert(name.clone());
+        self.named.push((record.clone(), name.clone()));
+        self.declare(record, &name);
+        name
+    }
+
+    /// The declaration that an object is, unless something in it was replaced on the way.
+    fn declaration(&self, record: &Rc<Record>) -> Option<ItemId> {
+        let id = *self.headers.get(&record.span)?;
+        let same = self.checker.records.get(&id)?.as_ref().is_some_and(|known| Rc::ptr_eq(known, record));
+        same.then_some(id)
+    }
+
+    /// The name of an object from elsewhere, another one where that means something here.
+    fn free_name(&self, record: &Record) -> String {
+        let free = |name: &String| !self.taken.contains(name) && !is_word(name);
+        let kind = record.kind.name;
+        let own = record.name.clone();
+        let of_kind = format!("{kind}_{own}");
+        let numbered = (2..).map(|n| format!("{of_kind}_{n}"));
+        [own, of_kind.clone()].into_iter().chain(numbered).find(free).unwrap_or(of_kind)
+    }
+
+    /// The lines of an object's fields, each with its origin.
+    fn fields(&mut self, record: &Record) -> String {
+        let full = self.checker.complete(record);
+        let mut out = String::new();
+        for field in record.kind.fields {
+            if let Some(slot) = record.get(field.name).or_else(|| full.get(field.name)) {
+                let line = self.line(field.name, &field.form, slot);
+                out.push_str(&line);
+            } else if record.kind.name == "scenario" && field.name == "title" {
+                out.push_str(&self.title());
+            }
+        }
+        if record.kind.changes().is_some() {
+            self.changes(record, &mut out);
+        }
+        // where data comes from says so itself
+        for field in schema::COMMON {
+            if let Some(slot) = record.get(field.name) {
+                let value = self.value(&field.form, slot);
+                out.push_str(&format!("{} = {value}\n", field.name));
+            }
+        }
+        out
+    }
+
+    /// A scene without a title is called as its file.
+    fn title(&self) -> String {
+        let name = &self.checker.loader.sources.get(diag::FileId(0)).name;
+        let stem = name.rsplit(['/', '\\']).next().unwrap_or(name).trim_end_matches(".track");
+        format!("title = {}  // the file's name\n", text::quoted(stem))
+    }
+
+    /// What a stretch changes: whole fields as they are, parts of fields by their paths.
+    fn changes(&mut self, record: &Record, out: &mut String) {
+        let fields: &'static [Field] = record.kind.changes().map_or(&[], |kind| kind.fields);
+        for field in fields {
+            match record.get(field.name).map(|slot| (slot, &slot.value)) {
+                Some((_, Val::Record(inner))) if inner.partial => self.paths(field.name, inner, out),
+                Some((slot, _)) => {
+                    let line = self.line(field.name, &field.form, slot);
+                    out.push_str(&line);
+                }
+                None => self.replaced_parts(record, field, out),
+            }
+        }
+    }
+
+    /// `pad.stiffness = ...` of an object of which nobody knows the rest.
+    fn paths(&mut self, path: &str, record: &Record, out: &mut String) {
+        for field in record.kind.fields {
+            let Some(slot) = record.get(field.name) else { continue };
+            let path = format!("{path}.{}", field.name);
+            match &slot.value {
+                Val::Record(inner) if inner.partial => self.paths(&path, inner, out),
+                _ => {
+                    let line = self.line(&path, &field.form, slot);
+                    out.push_str(&line);
+                }
+            }
+        }
+    }
+
+    /// `layers.ballast = ...`: a pair of a list that stands in the trackform under the stretch. The last one counts.
+    fn replaced_parts(&mut self, record: &Record, field: &'static Field, out: &mut String) {
+        let Form::Pairs { value: form, .. } = &field.form else { return };
+        let inside = |path: &[syntax::tree::Name]| path.len() == 2 && path[0].text == field.name;
+        let changes: Vec<_> = record.changes.iter().filter(|c| inside(&c.field.path.names)).cloned().collect();
+        for (i, change) in changes.iter().enumerate() {
+            let path = change.field.path.text();
+            if changes[i + 1..].iter().all(|later| later.field.path.text() != path) {
+                let slot = self.checker.fit(form, &change.field.value, change.scope);
+                let line = self.line(&path, form, &slot);
+                out.push_str(&line);
+            }
+        }
+    }
+
+    /// `path = value  // origin`
+    fn line(&mut self, path: &str, form: &'static Form, slot: &Slot) -> String {
+        let value = self.value(form, slot);
+        // an object says of each of its fields where it comes from
+        if value.starts_with('{') {
+            return format!("{path} = {value}\n");
+        }
+        let origin = self.origin(slot.origin);
+        format!("{path} = {value}  // {origin}\n")
+    }
+
+    fn origin(&self, origin: Origin) -> String {
+        literal::origin(origin, |span| self.place(span))
+    }
+
+    /// `line 12` of the main file, `std/pads.track:14` of others.
+    fn place(&self, span: Span) -> String {
+        let sources = &self.checker.loader.sources;
+        let (name, line) = (&sources.get(span.file).name, sources.position(span.file, span.start).line);
+        if span.file == diag::FileId(0) {
+            format!("line {line}")
+        } else if name == "--set" {
+            name.clone()
+        } else {
+            format!("{name}:{line}")
+        }
+    }
+
+    /// What an object extends, as a comment behind its bracket.
+    fn after(&self, record: &Record) -> String {
+        let replaced_in = self.headers.contains_key(&record.span) && {
+            let known = self.headers.get(&record.span).and_then(|id| self.checker.records.get(id)?.as_ref());
+            known.is_some_and(|known| !std::ptr::eq(&**known, record))
+        };
+        let base = if replaced_in { Some(&record.span) } else { record.bases.first() };
+        let Some(id) = base.and_then(|span| self.headers.get(span)) else { return String::new() };
+        let scope = &self.checker.scopes[id.scope];
+        let Item::Declaration(d) = &scope.tree.items[id.item] else { return String::new() };
+        let name = &d.name.as_ref().unwrap_or(&d.kind).text;
+        let file = &self.checker.loader.sources.get(scope.tree.file).name;
+        match id.scope == self.main {
+            true => format!("  // extends {name}"),
+            false => format!("  // extends {}.{name}", file.trim_start_matches("std/").trim_end_matches(".track")),
+        }
+    }
+
+    /// The `///` lines above the declaration of an object.
+    fn docs(&self, record: &Record) -> Vec<String> {
+        let Some(id) = self.headers.get(&record.span) else { return Vec::new() };
+        match &self.checker.scopes[id.scope].tree.items[id.item] {
+            Item::Declaration(d) => d.docs.clone(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// Whether some field reads a bare name as a word of its own.
+fn is_word(name: &str) -> bool {
+    let reserved = ["use", "let", "as", "per", "yes", "no", "all", "rest"];
+    reserved.contains(&name) || schema::word(name).is_some() || schema::kind(name).is_some()
+}

@@ -1,0 +1,44 @@
+//! L1019: a sleeper stands on so few grains that its force is that of single contacts.
+//!
+//! Width of the sleeper's base over the median grain d50 of the layer under it. Below three grains a packing decides what the sleeper
+//! feels, and further packings feel something else.
+
+use super::grains::{beds, mm};
+use crate::diag::{Code, Diagnostic};
+use crate::graph::Graph;
+use crate::scenario::Scenario;
+use crate::units::number;
+
+/// Median grains under the width of a sleeper.
+const FEWEST: f64 = 3.0;
+
+pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for bed in beds(scenario).into_iter().filter(|bed| bed.top) {
+        let seats = scenario.track.seats.iter().filter(|seat| seat.section == bed.index);
+        let Some(width) = seats.filter_map(|seat| seat.sleeper).map(|body| body.base_width).reduce(f64::min) else {
+            continue;
+        };
+        let median = bed.granular.grading.d(50.0);
+        if width >= FEWEST * median {
+            continue;
+        }
+        let diagnostic = Diagnostic::new(
+            Code::L1019,
+            format!(
+                "sleepers of `{}` are {} mm wide, {} median grains of `{}`, d50 = {} mm",
+                bed.section.name,
+                mm(width),
+                number((width / median * 10.0).round() / 10.0),
+                bed.layer.name,
+                mm(median)
+            ),
+        )
+        .help("the force under one sleeper hangs on the packing: finer ballast, or `repeats` for a band of confidence");
+        found.push(match bed.granular.density.origin.span() {
+            Some(span) => diagnostic.at(span, format!("grains of `{}`", bed.layer.name)),
+            None => diagnostic,
+        });
+    }
+    found
+}

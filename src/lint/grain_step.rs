@@ -1,0 +1,67 @@
+//! L1020: the step of grains is longer than the contacts of the smallest grain bear.
+//!
+//! A grain of mass m among larger ones, held by Z contacts of stiffness k and tangential ratio r, swings with `w^2 = K / m`,
+//! `K = Z k (1 + 2 r) / 3`. A leapfrog with dashpots of ratio beta and local damping alpha bears
+//! `dt = (2 / w) (sqrt(1 + xi^2) - xi) / sqrt(1 + alpha)`, `xi = beta sqrt(Z (1 + 2 r) / 3)`. The material with the least step is named.
+
+use super::grains::{Bed, approach, beds, contact_force};
+use crate::diag::{Code, Diagnostic};
+use crate::graph::Graph;
+use crate::scenario::{Contact, Scenario};
+use crate::units::number;
+use std::f64::consts::PI;
+
+/// Contacts of a grain that count.
+const CONTACTS: f64 = 6.0;
+
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+    let Some(step) = scenario.solve.grains.step else { return Vec::new() };
+    let limits = beds(scenario).into_iter().map(|bed| (limit(&bed, bed.pressure(scenario, graph)), bed));
+    let Some((limit, bed)) = limits.min_by(|a, b| a.0.total_cmp(&b.0)) else { return Vec::new() };
+    if *step <= limit {
+        return Vec::new();
+    }
+    let granular = bed.granular;
+    let smallest = granular.grading.smallest();
+    let diagnostic = Diagnostic::new(
+        Code::L1020,
+        format!(
+            "a step of {} us is {} times what the grains of `{}` bear, {} us: {} g of {} mm on their contacts",
+            number((*step * 1e8).round() / 100.0),
+            number((*step / limit * 10.0).round() / 10.0),
+            bed.layer.name,
+            number((limit * 1e8).round() / 100.0),
+            number((mass(&bed) * 1e4).round() / 10.0),
+            number((smallest * 1e4).round() / 10.0)
+        ),
+    )
+    .help("write `grain_step = auto`; a larger `cut_below` or softer contacts allow a longer step");
+    let (set_by, what) = match granular.grading.cut_below {
+        Some(cut) => (cut.origin, "the smallest grains"),
+        None => match granular.contact {
+            Contact::Linear { stiffness } => (stiffness.origin, "these contacts"),
+            Contact::Hertz { youngs_modulus, .. } => (youngs_modulus.origin, "these contacts"),
+        },
+    };
+    let places = [(step.origin, "too long"), (set_by, what)];
+    vec![places.into_iter().fold(diagnostic, |diagnostic, (origin, text)| match origin.span() {
+        Some(span) => diagnostic.at(span, text),
+        None => diagnostic,
+    })]
+}
+
+/// Of the smallest grain, kg.
+fn mass(bed: &Bed<'_>) -> f64 {
+    PI / 6.0 * bed.granular.grading.smallest().powi(3) * *bed.granular.density
+}
+
+/// s.
+fn limit(bed: &Bed<'_>, pressure: f64) -> f64 {
+    let granular = bed.granular;
+    let size = granular.grading.smallest();
+    let (_, stiffness) = approach(&granular.contact, size, contact_force(size, pressure));
+    let held = CONTACTS * (1.0 + 2.0 * *granular.shear_ratio) / 3.0;
+    let frequency = (held * stiffness / mass(bed)).sqrt();
+    let damping = *granular.viscous_damping * held.sqrt();
+    2.0 / frequency * ((1.0 + damping * damping).sqrt() - damping) / (1.0 + *granular.local_damping).sqrt()
+}

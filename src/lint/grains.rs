@@ -1,0 +1,90 @@
+//! What rules of grains share: which layers are modelled as grains, and how hard their grains press on each other.
+
+use crate::graph::{Blocks, Graph, Schedule};
+use crate::lint::dynamic::amplification;
+use crate::lint::winkler::seat_loads;
+use crate::scenario::{Contact, Granular, Layer, Origin, Scenario, Section};
+use std::f64::consts::PI;
+
+/// Share of the volume that grains fill in a packed bed.
+const SOLID: f64 = 0.6;
+/// Contacts of a grain in it.
+const CONTACTS: f64 = 6.0;
+
+/// A layer whose grains are modelled.
+#[derive(Clone, Copy)]
+pub(super) struct Bed<'a> {
+    /// Index into the sections of the track.
+    pub index: usize,
+    pub section: &'a Section,
+    pub layer: &'a Layer,
+    pub granular: &'a Granular,
+    /// Whether the sleepers lie on it.
+    pub top: bool,
+}
+
+/// The granular layers of a scene that a model of grains answers; none where a settlement law does.
+pub(super) fn beds(scenario: &Scenario) -> Vec<Bed<'_>> {
+    if !scenario.solve.grains.tier.has_grains() {
+        return Vec::new();
+    }
+    let sections = scenario.track.sections.iter().enumerate();
+    let layers = sections.flat_map(|(index, section)| {
+        let numbered = section.layers.iter().enumerate();
+        numbered.filter_map(move |(depth, layer)| {
+            let granular = layer.granular()?;
+            Some(Bed { index, section, layer, granular, top: depth == 0 })
+        })
+    });
+    layers.collect()
+}
+
+/// A length in mm, to a tenth.
+pub(super) fn mm(length: f64) -> String {
+    crate::units::number((length * 1e4).round() / 10.0)
+}
+
+/// Where the largest grain of a granular material is said: its cut, else its density, which stands beside its grading.
+pub(super) fn of_sizes(granular: &Granular) -> Origin {
+    granular.grading.cut_above.map_or(granular.density.origin, |cut| cut.origin)
+}
+
+impl Bed<'_> {
+    /// Pressure on the layer, Pa: that of its packing, under the sleepers at least that of a passing wheel.
+    pub fn pressure(&self, scenario: &Scenario, graph: &Graph) -> f64 {
+        let packed = *self.granular.packing.pressure;
+        match &graph.schedule {
+            Schedule::Blocks(blocks) if self.top => packed.max(under_sleepers(scenario, blocks, self.index)),
+            _ => packed,
+        }
+    }
+}
+
+/// Pressure under the sleepers of a section as a wheel passes, Pa; 0 where nobody knows their size.
+fn under_sleepers(scenario: &Scenario, blocks: &Blocks, section: usize) -> f64 {
+    let track = &scenario.track;
+    let Some(load) = seat_loads(scenario, blocks).into_iter().find(|load| load.section == section) else { return 0.0 };
+    let area = track.seats.iter().filter(|s| s.section == section).find_map(|s| track.bearing_area(s));
+    area.map_or(0.0, |area| load.peak.force * amplification(*blocks.train.speed) / area)
+}
+
+/// Mean normal force, N, between grains of a size, m, under a pressure, Pa: `F = pi d^2 p / (Z phi)` of spheres of one size with
+/// Z contacts each that fill the share phi of the volume (Agnolin and Roux 2007, Phys. Rev. E 76, 061302; not at hand).
+pub(super) fn contact_force(size: f64, pressure: f64) -> f64 {
+    PI * size * size * pressure / (CONTACTS * SOLID)
+}
+
+/// How far two grains of a size, m, approach each other under a normal force, N, and the tangent stiffness there, N/m.
+///
+/// Linear: `F = k d`. Hertz: `F = 4/3 E* sqrt(R*) d^1.5` with `E* = E / 2 (1 - nu^2)` and `R* = R / 2`.
+pub(super) fn approach(contact: &Contact, size: f64, force: f64) -> (f64, f64) {
+    match contact {
+        Contact::Linear { stiffness } => (force / **stiffness, **stiffness),
+        Contact::Hertz { youngs_modulus, poisson_ratio } => {
+            let modulus = **youngs_modulus / (2.0 * (1.0 - **poisson_ratio * **poisson_ratio));
+            let factor = 4.0 / 3.0 * modulus * (size / 4.0).sqrt();
+            let approach = (force / factor).powf(2.0 / 3.0);
+            (approach, 1.5 * factor * approach.sqrt())
+        }
+    }
+}

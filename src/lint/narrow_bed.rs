@@ -1,0 +1,72 @@
+//! L1018: the bed of grains is so narrow or short that its walls order the grains.
+//!
+//! Its least side over D90, which nine tenths of the modelled mass pass: across, the width between side wall and middle of the track (or both side walls);
+//! along, a cell of three bays or the window. Laboratories ask for six grains across a specimen (ASTM D4767, not at hand).
+
+use super::grains::{Bed, beds, mm, of_sizes};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::graph::Graph;
+use crate::scenario::{Scenario, Tier};
+use crate::units::number;
+
+/// Coarse grains between two walls.
+const FEWEST: f64 = 6.0;
+/// Bays of the longest periodic cell.
+const BAYS: f64 = 3.0;
+
+pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
+    let coarsest =
+        beds(scenario).into_iter().max_by(|a, b| a.granular.grading.d(90.0).total_cmp(&b.granular.grading.d(90.0)));
+    let Some(bed) = coarsest else { return Vec::new() };
+    let sides = [across(scenario), along(scenario, &bed)];
+    let narrow = sides.into_iter().flatten().filter(|side| side.length < FEWEST * bed.granular.grading.d(90.0));
+    narrow.map(|side| said(&side, &bed)).collect()
+}
+
+/// A side of the bed.
+struct Side {
+    what: &'static str,
+    /// m.
+    length: f64,
+    span: Option<Span>,
+}
+
+fn said(side: &Side, bed: &Bed<'_>) -> Diagnostic {
+    let coarse = bed.granular.grading.d(90.0);
+    let diagnostic = Diagnostic::new(
+        Code::L1018,
+        format!(
+            "the bed is {} m {}, {} of the coarse grains of `{}`, D90 = {} mm",
+            number((side.length * 1e3).round() / 1e3),
+            side.what,
+            number((side.length / coarse * 10.0).round() / 10.0),
+            bed.layer.name,
+            mm(coarse)
+        ),
+    )
+    .help(format!("{FEWEST} grains, {} m, keep the walls out of the answer", number(FEWEST * coarse)));
+    match side.span.or_else(|| of_sizes(bed.granular).span()) {
+        Some(span) => diagnostic.at(span, "so few grains"),
+        None => diagnostic,
+    }
+}
+
+fn across(scenario: &Scenario) -> Option<Side> {
+    let track = &scenario.track;
+    let longest = track.seats.iter().filter_map(|seat| seat.sleeper).map(|body| body.length).reduce(f64::max);
+    let half = track.bed.half_width.map(|width| *width).or(longest.map(|length| length / 2.0))?;
+    let span = track.bed.half_width.and_then(|width| width.origin.span());
+    let sides = if scenario.solve.grains.both_rails { 2.0 } else { 1.0 };
+    Some(Side { what: "wide", length: sides * half, span })
+}
+
+fn along(scenario: &Scenario, bed: &Bed<'_>) -> Option<Side> {
+    if scenario.solve.grains.tier == Tier::Cells {
+        let spacing = bed.section.spacing;
+        return Some(Side { what: "long, a cell of three bays", length: BAYS * *spacing, span: spacing.origin.span() });
+    }
+    let window = scenario.solve.grains.window.iter().flatten().map(|[a, b]| b - a).reduce(f64::min);
+    let length = window.unwrap_or(bed.section.end - bed.section.start);
+    let span = if window.is_some() { None } else { bed.section.length_origin.span() };
+    Some(Side { what: "long", length, span })
+}

@@ -1,0 +1,62 @@
+//! L1024: a volume in which ballast is averaged holds few grains.
+//!
+//! Least side of the volume over the median grain d50 of the layer at its depth. Below three the mean is that of a few grains, and the
+//! next packing has another.
+
+use super::grains::{Bed, beds, mm};
+use crate::diag::{Code, Diagnostic};
+use crate::graph::Graph;
+use crate::scenario::{Scenario, Volume, VolumeRecord};
+use crate::units::number;
+
+/// Median grains across a volume.
+const FEWEST: f64 = 3.0;
+
+pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for record in &scenario.volumes {
+        let Some(bed) = at_depth(scenario, record) else { continue };
+        let (median, side) = (bed.granular.grading.d(50.0), least_side(record.volume));
+        if side >= FEWEST * median {
+            continue;
+        }
+        let diagnostic = Diagnostic::new(
+            Code::L1024,
+            format!(
+                "a volume of {} mm holds {} median grains of `{}`, d50 = {} mm",
+                mm(side),
+                number((side / median * 10.0).round() / 10.0),
+                bed.layer.name,
+                mm(median)
+            ),
+        )
+        .help(format!("{FEWEST} of them, {} mm, are a mean; `repeats` gives its scatter", mm(FEWEST * median)));
+        found.push(match record.span {
+            Some(span) => diagnostic.at(span, "a few grains"),
+            None => diagnostic,
+        });
+    }
+    found
+}
+
+/// m.
+fn least_side(volume: Volume) -> f64 {
+    match volume {
+        Volume::Sphere { radius } => 2.0 * radius,
+        Volume::Box { along, across, height } => across.unwrap_or(f64::INFINITY).min(along).min(height),
+    }
+}
+
+/// The layer of grains in which a record lies, under its first ballasted seat.
+fn at_depth<'a>(scenario: &'a Scenario, record: &VolumeRecord) -> Option<Bed<'a>> {
+    let sections = record.seats.iter().filter_map(|seat| scenario.track.seats.get(*seat)).map(|seat| seat.section);
+    let section = sections.into_iter().find(|section| !scenario.track.sections[*section].layers.is_empty())?;
+    let layers = &scenario.track.sections[section].layers;
+    let depth = record.depth.unwrap_or_else(|| layers[0].thickness.largest() / 2.0);
+    let mut bottom = 0.0;
+    let layer = layers.iter().find(|layer| {
+        bottom += layer.thickness.largest();
+        depth <= bottom
+    })?;
+    beds(scenario).into_iter().find(|bed| bed.index == section && std::ptr::eq(bed.layer, layer))
+}

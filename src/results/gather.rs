@@ -1,0 +1,64 @@
+//! Everything that a finished run says, from its recorder.
+
+use super::{Provenance, Run, RunRecorder, Summary, Tables, law_rows, summarise, summarise_laws, verdicts};
+use crate::diag::Sources;
+use crate::graph::Graph;
+use crate::scenario::Scenario;
+
+impl Run {
+    /// Takes together what a recorder has of a finished run. `sources` are the texts that made it, the main file first, and
+    /// `sha256` is their hash.
+    pub fn gather(
+        recorder: &RunRecorder<'_>,
+        scenario: &Scenario,
+        graph: &Graph,
+        sources: &Sources,
+        sha256: String,
+    ) -> Run {
+        let tables = &recorder.tables;
+        let histories = recorder.all_histories();
+        let laws = law_rows(scenario, &tables.laws);
+        let mut scalars = summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+        scalars.extend(summarise_laws(scenario, &laws));
+        let view = Tables {
+            sleepers: &tables.sleepers,
+            blocks: &tables.blocks,
+            rail: &tables.rail,
+            histories: &histories,
+            scalars: &scalars,
+            track: &scenario.track,
+        };
+        let expectations = verdicts(scenario, view);
+        // the name alone: equal scenes give equal files wherever they lie
+        let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_string();
+        let main = sources.iter().next().map(|(_, s)| (name(&s.name), s.text.clone())).unwrap_or_default();
+        let provenance = Provenance {
+            program: env!("CARGO_PKG_NAME").into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            file: main.0,
+            source: main.1,
+            source_sha256: sha256,
+            seed: scenario.solve.seed,
+            plan: graph.listing().text(),
+        };
+        Run {
+            scenario: scenario.clone(),
+            summary: Summary { scalars, expectations, provenance },
+            sleepers: tables.sleepers.clone(),
+            blocks: tables.blocks.clone(),
+            laws,
+            rail: tables.rail.clone(),
+            histories,
+        }
+    }
+
+    /// A scalar of `summary.json` by its name, such as `max_settlement`, in SI.
+    pub fn scalar(&self, name: &str) -> Option<f64> {
+        self.summary.scalars.get(name).map(|scalar| scalar.value)
+    }
+
+    /// Whether every `expect` of the scene is met.
+    pub fn meets_expectations(&self) -> bool {
+        self.summary.expectations.iter().all(|verdict| verdict.met)
+    }
+}

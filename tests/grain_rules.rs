@@ -1,0 +1,236 @@
+//! What the physics rules of grains and of cost say in numbers, against the closed forms they state.
+
+use std::f64::consts::PI;
+use trackbed::check::NoModules;
+use trackbed::compile;
+use trackbed::diag::Code;
+
+/// 42 m of track on a layer of stone and a metre of soil; each part may be replaced.
+#[derive(Clone, Copy)]
+struct Scene<'a> {
+    stone: &'a str,
+    layers: &'a str,
+    sleeper: &'a str,
+    pad: &'a str,
+    track: &'a str,
+    solve: &'a str,
+    rest: &'a str,
+}
+
+/// Stones of 20 to 80 mm: D50 is 40 mm, D90 69.6 mm.
+const STONE: &str = "grading = { passing = [20 mm: 0 %, 80 mm: 100 %] }, density = 2700 kg/m^3, friction = 0.7, \
+                     contact_stiffness = 10 MN/m per contact";
+
+const SCENE: Scene<'_> = Scene {
+    stone: "",
+    layers: "[stone: 400 mm, soils.sandy_gravel: 1 m]",
+    sleeper: "sleepers.B70",
+    pad: "{ stiffness = 40 MN/m }",
+    track: "sections = [open: 42 m]",
+    solve: "substructure = cells",
+    rest: "",
+};
+
+impl Scene<'_> {
+    fn says(self, code: Code) -> Vec<String> {
+        let Scene { stone, layers, sleeper, pad, track, solve, rest } = self;
+        let text = format!(
+            "use std
+granular base {{ {STONE} }}
+granular stone : base {{ {stone} }}
+trackform open {{
+  rail = rails.UIC60, pad = {pad}, sleeper = {sleeper}, spacing = 0.6 m, layers = {layers}
+  support = {{ stiffness = 40 MN/m per seat }}
+}}
+track line {{ {track} }}
+train ore {{ vehicles = vehicles.ore_wagon_20t, speed = 60 km/h }}
+traffic {{ trains = ore, total = 400 axles }}
+solve {{ {solve} }}
+{rest}
+"
+        );
+        let compiled = compile("scene.track", &text, &NoModules, &[]);
+        let told = trackbed::diag::render::human(&compiled.diagnostics, &compiled.sources, false, 120);
+        assert!(compiled.diagnostics.iter().all(|d| !d.is_error()), "{told}");
+        compiled.diagnostics.iter().filter(|d| d.code == code).map(|d| d.message.clone()).collect()
+    }
+}
+
+/// Size below which a share of the mass of the stones lies, m.
+fn size(share: f64) -> f64 {
+    0.02 * 4f64.powf(share)
+}
+
+#[test]
+fn a_layer_is_four_coarse_grains() {
+    let least = 4.0 * size(0.9);
+    let of = |thickness: f64| {
+        let layers = format!("[stone: {} mm, soils.sandy_gravel: 1 m]", thickness * 1e3);
+        Scene { layers: &layers, ..SCENE }.says(Code::L1009)
+    };
+    assert!(of(least + 1e-3).is_empty());
+    let said = format!(
+        "layer `stone` of `open` is 250 mm thick, {:.2} of its coarse grains, D90 = {:.1} mm",
+        0.25 / size(0.9),
+        size(0.9) * 1e3
+    );
+    assert_eq!(of(0.25), [said]);
+    // a ramp counts where it is thinnest
+    let ramp = "[stone: ramp(250 .. 500 mm), soils.sandy_gravel: 1 m]";
+    assert_eq!(Scene { layers: ramp, ..SCENE }.says(Code::L1009), of(0.25));
+    // a settlement law knows no grains
+    let thin = "[stone: 250 mm, soils.sandy_gravel: 1 m]";
+    assert!(Scene { layers: thin, solve: "substructure = law", ..SCENE }.says(Code::L1009).is_empty());
+}
+
+#[test]
+fn a_bed_has_room_for_six_coarse_grains() {
+    let window = |length: f64| {
+        let solve = format!("substructure = full, window = 10 .. {} m", 10.0 + length);
+        Scene { solve: &solve, ..SCENE }.says(Code::L1018)
+    };
+    let least = 6.0 * size(0.9);
+    assert!(window(least + 1e-3).is_empty());
+    assert_eq!(
+        window(0.4),
+        [format!(
+            "the bed is 0.4 m long, {:.1} of the coarse grains of `stone`, D90 = {:.1} mm",
+            0.4 / size(0.9),
+            size(0.9) * 1e3
+        )]
+    );
+    // half of a bed between walls, the whole of one with both rails
+    let narrow = |symmetry: &str| {
+        let solve = format!("substructure = full, symmetry = {symmetry}");
+        let coarse = "grading.cut_below = 79 mm, contact_stiffness = 100 MN/m per contact";
+        let layers = "[stone: 900 mm, soils.sandy_gravel: 1 m]";
+        let track = "sections = [open: 42 m], bed_width = 2.6 m";
+        let stone = format!("{coarse}, grading.passing = [70 mm: 0 %, 300 mm: 100 %]");
+        Scene { solve: &solve, stone: &stone, layers, track, ..SCENE }.says(Code::L1018).len()
+    };
+    assert_eq!((narrow("half"), narrow("full")), (1, 0));
+}
+
+#[test]
+fn a_sleeper_stands_on_three_median_grains() {
+    let on = |median: f64| {
+        let stone = format!("grading.passing = [{} mm: 0 %, {} mm: 100 %]", median * 0.8, median * 1.25);
+        let layers = "[stone: 900 mm, soils.sandy_gravel: 1 m]";
+        Scene { stone: &stone, layers, sleeper: "sleepers.B70 { base_width = 0.3 m }", ..SCENE }.says(Code::L1019)
+    };
+    assert!(on(99.0).is_empty());
+    assert_eq!(on(120.0), ["sleepers of `open` are 300 mm wide, 2.5 median grains of `stone`, d50 = 120 mm"]);
+}
+
+#[test]
+fn the_step_of_grains_is_set_by_the_lightest_on_the_stiffest() {
+    // six contacts, as stiff across as along
+    let limit = |size: f64, stiffness: f64, beta: f64, alpha: f64| {
+        let mass = PI / 6.0 * size.powi(3) * 2700.0;
+        let (w, xi) = ((6.0 * stiffness / mass).sqrt(), beta * 6f64.sqrt());
+        2.0 / w * ((1.0 + xi * xi).sqrt() - xi) / (1.0 + alpha).sqrt()
+    };
+    let stones = limit(0.02, 10e6, 0.3, 0.2);
+    let with = |step: f64, stone: &str| {
+        let solve = format!("substructure = cells, grain_step = {step:e} s");
+        Scene { solve: &solve, stone, ..SCENE }.says(Code::L1020)
+    };
+    assert!(with(stones * 0.999, "").is_empty());
+    let found = with(stones * 2.0, "");
+    assert!(found.len() == 1 && found[0].contains("is 2 times what the grains of `stone` bear"), "{found:?}");
+    let softer = limit(0.02, 10e6, 0.0, 0.0);
+    assert!(with(softer * 0.999, "viscous_damping = 0, local_damping = 0").is_empty());
+    assert!(!with(softer * 1.001, "viscous_damping = 0, local_damping = 0").is_empty());
+    // a second material with smaller grains sets the step
+    let layers = "[stone: 400 mm, gravel: 300 mm, soils.sandy_gravel: 1 m]";
+    let gravel = "granular gravel : base { grading = { passing = [10 mm: 0 %, 20 mm: 100 %] } }";
+    let solve = format!("substructure = cells, grain_step = {:e} s", stones * 0.9);
+    let found = Scene { layers, solve: &solve, rest: gravel, ..SCENE }.says(Code::L1020);
+    assert!(found.len() == 1 && found[0].contains("the grains of `gravel`"), "{found:?}");
+}
+
+#[test]
+fn grains_overlap_by_their_mean_contact_force() {
+    // under the 200 kPa of their packing
+    let force = PI * 0.04 * 0.04 * 200e3 / (6.0 * 0.6);
+    let least = force / (0.01 * 0.02);
+    let with = |stiffness: f64| {
+        let stone = format!("contact_stiffness = {} MN/m per contact", stiffness / 1e6);
+        Scene { stone: &stone, ..SCENE }.says(Code::L1021)
+    };
+    assert!(with(least * 1.01).is_empty());
+    let said = format!(
+        "grains of `stone` overlap by about 2 % of their radius: {force:.0} N a contact under 200 kPa on grains of 40 mm"
+    );
+    assert_eq!(with(least / 2.0), [said]);
+    // per particle is half per contact
+    let stone = format!("contact_stiffness = {} MN/m per particle", least * 1.01 / 1e6);
+    assert_eq!(Scene { stone: &stone, ..SCENE }.says(Code::L1021).len(), 1);
+    // Hertz: the approach over the radius goes with (p / E*)^(2/3)
+    let rock = |modulus: f64| {
+        let stone = format!("contact = hertz({modulus} GPa, 0.2)");
+        Scene { stone: &stone, ..SCENE }.says(Code::L1021)
+    };
+    let needed = force / (4.0 / 3.0 * 0.01f64.sqrt() * (0.01 * 0.02f64).powf(1.5)) * 2.0 * (1.0 - 0.04) / 1e9;
+    assert!(rock(needed * 1.01).is_empty() && rock(needed * 0.99).len() == 1, "{needed} GPa");
+}
+
+#[test]
+fn a_run_is_held_against_its_budget() {
+    let with = |solve: &str| Scene { solve, ..SCENE }.says(Code::L1022);
+    assert!(with("substructure = law, update_every = 4 axles, budget = 100 min, memory = 8 GiB").is_empty());
+    let time = with("substructure = law, update_every = 4 axles, budget = 0.6 s");
+    assert!(time.len() == 1 && time[0].contains("its budget is 0.6 s: 101 passages"), "{time:?}");
+    let memory = with("substructure = law, memory = 0.01 GiB");
+    assert!(memory.is_empty() || memory[0].contains("it may take 10 MiB"), "{memory:?}");
+    // nobody knows yet what grains cost
+    assert!(with("substructure = cells, budget = 0.6 s").is_empty());
+}
+
+#[test]
+fn a_damper_is_held_against_the_critical_one() {
+    // a B70 on a pad of 100 and a support of 40 MN/m, 1 ms
+    let mass = 145.0;
+    let critical = 2.0 * (140e6f64 * mass).sqrt();
+    let with = |damping: f64| {
+        let pad = format!("{{ stiffness = 100 MN/m, damping = {} kN s/m }}", damping / 1e3);
+        Scene { pad: &pad, ..SCENE }.says(Code::L1023)
+    };
+    assert!(with((critical - 40e3) * 0.99).is_empty());
+    let found = with(2.0 * critical - 40e3);
+    let said = format!(
+        "a sleeper of `open` between pad and support has 2 times its critical damping: {:.1} kN s/m on 140 MN/m and 145 kg",
+        2.0 * critical / 1e3
+    );
+    assert_eq!(found, [said]);
+}
+
+#[test]
+fn a_volume_is_three_median_grains() {
+    let with = |volume: &str| {
+        let rest = format!(
+            "record inside {{ at = 35 sleepers, depth = 150 mm, volume = {volume}, quantities = ballast_velocity }}"
+        );
+        Scene { rest: &rest, ..SCENE }.says(Code::L1024)
+    };
+    assert!(with("sphere(60 mm)").is_empty() && with("box(0.12 m, bed, 0.2 m)").is_empty());
+    let said = ["a volume of 100 mm holds 2.5 median grains of `stone`, d50 = 40 mm"];
+    assert_eq!(with("sphere(50 mm)"), said);
+    assert_eq!(with("box(0.2 m, 0.1 m, 0.3 m)"), said);
+    // in the soil below there are no grains to count
+    let rest =
+        "record inside { at = 35 sleepers, depth = 900 mm, volume = sphere(20 mm), quantities = ballast_stress }";
+    assert!(Scene { rest, ..SCENE }.says(Code::L1024).is_empty());
+}
+
+#[test]
+fn unchecked_values_are_named_when_asked_for() {
+    let named = |rest: &str| Scene { rest, solve: "substructure = law", ..SCENE }.says(Code::L1010);
+    assert!(named("").is_empty());
+    let found = named("scenario { warn = [unchecked_values] }");
+    let of = |name: &str| found.iter().any(|m| m.starts_with(&format!("`{name}` has not been checked: ")));
+    assert!(of("sleepers.B70") && of("soils.sandy_gravel"), "{found:?}");
+    // a default is named too, entries with another evidence are not
+    assert!(!of("vehicles.ore_wagon_20t") && !of("gradings.ballast_31_63"), "{found:?}");
+    assert!(named("scenario { warn = [unchecked_values], allow = [unchecked_values: \"a sketch\"] }").is_empty());
+}
