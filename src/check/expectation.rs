@@ -222,24 +222,19 @@ impl Checker<'_> {
         }
     }
 
-    /// An axle count.
+    /// An axle count; in a scene of loads a number of cycles.
     fn count(&mut self, value: &Value, scope: ScopeId) -> Option<u64> {
         let raw = self.raw(value, scope)?;
-        if raw.dimension == Dimension::CYCLES {
-            if self.asked.traffic {
-                self.not_counted(raw.dimension, "axles of its trains", raw.span);
-                return None;
-            }
+        if raw.dimension == Dimension::CYCLES && !self.asked.traffic {
             return self.whole(raw.value, "cycles", raw.span);
         }
-        if raw.dimension != Dimension::AXLES {
-            self.report(
-                Diagnostic::new(Code::E0302, format!("expected a number of axles, found {}", raw.dimension.describe()))
-                    .at(raw.span, "not axles"),
-            );
+        if ![Dimension::AXLES, Dimension::MASS, Dimension::CYCLES].contains(&raw.dimension) {
+            let text = format!("expected a number of axles or the mass carried, found {}", raw.dimension.describe());
+            self.report(Diagnostic::new(Code::E0302, text).at(raw.span, "not counted"));
             return None;
         }
-        self.whole_axles(raw.value, raw.span)
+        let count = Number { value: raw.value, dimension: raw.dimension, basis: None, factor: 1.0 };
+        self.axle_count(count, raw.span, false)
     }
 
     /// The chainages of a span whose ends may be sleepers; geometry is known before any expectation is read.

@@ -34,6 +34,7 @@ mod table;
 mod tier;
 mod track;
 mod trackform;
+mod traffic;
 mod value;
 mod vary;
 mod vehicle;
@@ -98,6 +99,7 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
         operands: 0,
         seat_places: None,
         asked: Asked::default(),
+        counted: None,
         seed: 1,
     };
     let (scenario, studies) = checker.scene(main);
@@ -142,6 +144,8 @@ struct Checker<'a> {
     seat_places: Option<Places>,
     /// Known before the track is read.
     asked: Asked,
+    /// Known once the traffic is.
+    counted: Option<traffic::Counted>,
     /// Of everything random that has none of its own.
     seed: u64,
 }

@@ -161,6 +161,7 @@ fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compil
         blocks: tables.blocks.clone(),
         laws,
         rail: tables.rail.clone(),
+        trains: tables.trains.clone(),
         histories,
     }
 }

@@ -131,6 +131,9 @@ pub(crate) fn transition() -> Run {
                 speed_profile: None,
                 direction: Direction::Forward,
             },
+            others: vec![],
+            counts: vec![125],
+            order: Order::Interleaved,
             total: given(500),
         })),
         solve: solve(),
@@ -361,7 +364,15 @@ pub(crate) fn bench() -> Run {
 }
 
 fn push(rows: &mut Vec<HistoryRow>, axles: u64, time_s: f64, what: (&str, &str), x_m: f64, value: f64) {
-    rows.push(HistoryRow { axles, time_s, quantity: what.0.to_owned(), id: what.1.to_owned(), x_m, value });
+    rows.push(HistoryRow {
+        axles,
+        time_s,
+        quantity: what.0.to_owned(),
+        id: what.1.to_owned(),
+        x_m,
+        value,
+        train: String::new(),
+    });
 }
 
 fn finished(
@@ -391,5 +402,5 @@ fn finished(
         plan: "track        2D finite elements, 440 elements\nsubstructure law varandas, 69 seats\n".to_owned(),
     };
     let summary = Summary { scalars, expectations, provenance };
-    Run { scenario, summary, sleepers, blocks, laws: vec![], rail: vec![], histories }
+    Run { scenario, summary, sleepers, blocks, laws: vec![], rail: vec![], trains: vec![], histories }
 }

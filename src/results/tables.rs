@@ -71,6 +71,36 @@ impl Row for RailRow {
         &["axles", "x_m", "level_m", "moment_N_m", "stiffness_N_per_m", "max_moment_N_m", "min_moment_N_m"];
 }
 
+/// One kind of train at one recorded axle count (`trains.csv`, where several share the track): extremes of its passage over the
+/// track as it lies then.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub struct TrainRow {
+    pub axles: u64,
+    pub train: String,
+    /// Trains of its kind that have passed.
+    pub passed: u64,
+    pub max_wheel_force_N: f64,
+    pub min_wheel_force_N: f64,
+    pub max_rail_seat_load_N: f64,
+    pub max_contact_force_N: f64,
+    pub max_rail_moment_N_m: f64,
+}
+
+impl Row for TrainRow {
+    const FILE: &'static str = "trains.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "axles",
+        "train",
+        "passed",
+        "max_wheel_force_N",
+        "min_wheel_force_N",
+        "max_rail_seat_load_N",
+        "max_contact_force_N",
+        "max_rail_moment_N_m",
+    ];
+}
+
 /// One block of the iteration (`blocks.csv`): a passage computed at `axles`, and the axles that it stands for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case)]
@@ -160,4 +190,6 @@ pub struct HistoryRow {
     /// Chainage, m: of the seat, of the wheel at that moment, or of the place on the rail.
     pub x_m: f64,
     pub value: f64,
+    /// Whose passage it is; empty where no train runs, as for settlement.
+    pub train: String,
 }

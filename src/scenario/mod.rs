@@ -11,6 +11,7 @@ mod law;
 mod material;
 mod profile;
 pub mod response;
+mod sequence;
 mod study;
 mod track;
 mod traffic;
@@ -21,6 +22,7 @@ pub use grading::{Grading, Passing};
 pub use law::{SettlementLaw, law_argument};
 pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soil, Strength};
 pub use profile::{Cubic, Curve, Piece, Profile, Varying};
+pub use sequence::{Order, Sequence, Share};
 pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spread, Study, Values};
 pub use track::{
     AuxiliaryRailSpan, AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, SleeperBody,

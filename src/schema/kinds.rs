@@ -100,7 +100,7 @@ const SUPPORT: Form = Form::OneOf(&[
 ]);
 const AXLES_OR_MASS: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 1e-6, 1e4)]);
 const AXLE_COUNT: Form = number("axles", 0.0, 1e9);
-const AXLES_MASS_OR_CYCLES: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 1e-6, 1e4), number("cycles", 0.0, 1e9)]);
+const AXLES_MASS_OR_CYCLES: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 0.0, 1e4), number("cycles", 0.0, 1e9)]);
 const TRACK_OR_RAIL: Basis = Basis { names: &[("track", 0.5), ("rail", 1.0)], assumed: Some("track") };
 const LAYERS: Form = Form::Pairs {
     key: &Form::OneOf(&[Form::Object("granular"), Form::Object("soil")]),
@@ -594,12 +594,21 @@ pub const KINDS: &[Kind] = &[
             required(
                 "trains",
                 Form::Pairs { key: &Form::Object("train"), value: &number("%", 0.0, 100.0), implied: Some("100 %") },
-                "with their shares of `total`",
+                "with their shares of `total`, in its unit",
             ),
             required("total", AXLES_OR_MASS, "axles, or the mass that they carry"),
+            default(
+                "order",
+                Form::Words(&[
+                    word("interleaved", "every kind of train all along the run"),
+                    word("in_turn", "all trains of the first kind, then all of the second"),
+                ]),
+                "interleaved",
+                "in which trains of several kinds run",
+            ),
         ],
         alternatives: &[],
-        planned: &["order"],
+        planned: &[],
     },
     Kind {
         name: "load",
