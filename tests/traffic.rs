@@ -236,3 +236,114 @@ solve { law = bed, elements_per_bay = 2, time_step = 2e-4 s }
 record { at = -3 sleepers, after = [0, 40, 80] axles, quantities = contact_force }",
     );
 }
+
+#[test]
+fn a_tamped_track_begins_afresh() {
+    let scene = |tamping: &str| {
+        format!(
+            "traffic {{ trains = ore, total = 120 axles }}
+solve {{ law = [bed, hard], update_every = 12 axles, elements_per_bay = 2, time_step = 2e-4 s }}
+record {{ at = -3 sleepers, after = [0, 60, 120] axles, quantities = contact_force }}
+{tamping}"
+        )
+    };
+    let run = |tamping: &str| {
+        let (scenario, graph) = parts(&scene(tamping));
+        let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
+        graph::execute(&graph, &mut recorder, None).unwrap();
+        recorder.tables
+    };
+    let at = |tables: &trackbed::results::RunTables, axles: u64, sleeper: &str| {
+        let row = tables.sleepers.iter().find(|row| row.axles == axles && row.sleeper == sleeper);
+        row.unwrap().settlement_m
+    };
+    let plain = run("");
+    let all = run("tamping spring { after = 60 axles }");
+    // as if the run began anew: the record at that count shows the track before
+    assert_eq!(at(&all, 60, "-3"), at(&plain, 60, "-3"));
+    let again = (at(&all, 120, "-3") / at(&plain, 60, "-3") - 1.0).abs();
+    assert!(again < 1e-9, "{again}");
+    // some sleepers only, and a tenth stays
+    let some = run("tamping spring { after = 60 axles, over = -8 .. -1 sleepers, left = 10 % }");
+    assert_eq!(some.tampings.len(), 8);
+    for row in &some.tampings {
+        assert_eq!(row.axles, 60);
+        assert!((row.settlement_after_m - 0.1 * row.settlement_before_m).abs() < 1e-15);
+    }
+    assert!(at(&some, 120, "-3") < at(&plain, 120, "-3"));
+    assert!((at(&some, 120, "-20") / at(&plain, 120, "-20") - 1.0).abs() < 0.02, "far away nothing changes");
+    // both laws begin afresh, and both stand in their table before and after
+    let counts: Vec<u64> = some.laws.iter().map(|count| count.axles).collect();
+    assert_eq!(counts.iter().filter(|axles| **axles == 60).count(), 2);
+    stops_and_goes_on(&scene("tamping spring { after = [24, 60] axles, over = -8 .. -1 sleepers, left = 10 % }"));
+}
+
+#[test]
+fn a_tamping_that_changes_nothing_is_refused() {
+    let traffic = "traffic { trains = ore, total = 120 axles }
+";
+    let refusals = [
+        ("tamping a { after = 60 axles, over = 1 .. 4 sleepers }", Code::E0427, "no sleeper on ballast"),
+        ("tamping a { after = [0, 60] axles }", Code::E0427, "before the first train"),
+        ("tamping a { after = 120 axles }", Code::E0427, "the run ends there"),
+        ("tamping a { after = [60, 60] axles }", Code::E0427, "tamped twice after 60 axles"),
+        (
+            "tamping a { after = 60 axles }
+tamping b { after = 60 axles, over = -2 .. -1 sleepers }",
+            Code::E0427,
+            "tamped twice",
+        ),
+        ("tamping a { after = 62 axles }", Code::E0602, "in the middle of a train"),
+        ("tamping a { after = 600 axles }", Code::E0602, "never reached"),
+        ("tamping a { over = -2 .. -1 sleepers }", Code::E0403, "after"),
+        ("tamping a { after = 60 axles, left = 110 % }", Code::E0405, "0 .. 100"),
+    ];
+    for (text, code, says) in refusals {
+        let compiled = check(&format!("{traffic}{text}"));
+        let found: Vec<Code> = compiled.diagnostics.iter().filter(|d| d.is_error()).map(|d| d.code).collect();
+        assert_eq!(found, [code], "{text}: {}", told(&compiled));
+        assert!(told(&compiled).contains(says), "{}", told(&compiled));
+    }
+    let without = check(
+        "tamping a { after = 60 axles }
+load jack { on = rail, at = -3 sleepers, force = 100 kN per rail }",
+    );
+    assert!(without.diagnostics.iter().any(|d| d.code == Code::E0427), "{}", told(&without));
+}
+
+#[test]
+fn records_and_loads_are_mirrored_at_several_transitions() {
+    let scene = |rest: &str| {
+        let bridge = "track bridge { sections = [stiff: 12 m, open: 40 sleepers, stiff: 12 m], \
+                      transitions = [west: stiff_to_soft, east: soft_to_stiff] }
+";
+        let text =
+            format!("{SCENE}{bridge}{rest}").replace("track line { sections = [open: 15 m, stiff: 12 m] }\n", "");
+        compile("scene.track", &text, &NoModules, &[])
+    };
+    let compiled = scene(
+        "traffic { trains = ore, total = 8 axles }
+record { from = [west, east], at = [-3, +1] sleepers, quantities = contact_force }
+record { from = east, over = -1.2 .. 0 m, quantities = rail_moment }",
+    );
+    let scenario = compiled.scenario.as_ref().unwrap_or_else(|| panic!("{}", told(&compiled)));
+    let track = &scenario.track;
+    let names = |record: usize| -> Vec<String> {
+        scenario.records[record].seats.iter().map(|seat| track.seat_name(&track.seats[*seat])).collect()
+    };
+    assert_eq!(names(0), ["west:+1", "west:-3", "east:-3", "east:+1"], "{}", told(&compiled));
+    assert_eq!(names(1), ["east:-2", "east:-1"], "a span in metres that ends at 0 stays on its side");
+    let pressed = scene("load jack { on = sleepers, from = [west, east], at = -3 sleepers, force = 40 kN per seat }");
+    let Some(trackbed::scenario::Loading::Static(loads)) = &pressed.scenario.as_ref().unwrap().loading else {
+        panic!("{}", told(&pressed))
+    };
+    assert_eq!(loads.len(), 2);
+    assert!((loads[0].x + loads[1].x - track.transitions.iter().map(|t| t.x).sum::<f64>()).abs() < 1e-9);
+    for (from, code) in [("[west, west]", Code::E0404), ("[west, weest]", Code::E0504)] {
+        let wrong = scene(&format!(
+            "traffic {{ trains = ore, total = 8 axles }}
+record {{ from = {from}, at = -3 sleepers, quantities = contact_force }}"
+        ));
+        assert!(wrong.diagnostics.iter().filter(|d| d.is_error()).map(|d| d.code).eq([code]), "{}", told(&wrong));
+    }
+}

@@ -4,7 +4,7 @@ use super::Checker;
 use super::geometry::Places;
 use super::tier::changes;
 use super::track::given;
-use super::value::{Number, Record, Slot, Val};
+use super::value::{Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::response::{Place, Response};
 use crate::scenario::{
@@ -32,15 +32,10 @@ impl Checker<'_> {
             return None;
         }
         let places = places.as_ref()?;
-        let from = record.get("from").and_then(|s| Some((record.text("from")?, s.span)));
-        let slot = record.get("at")?;
-        let Val::List(at) = &slot.value else { return None };
-        self.transition(places, from, slot.span)?;
-        let loads: Vec<Option<StaticLoad>> = at
-            .iter()
-            .map(|slot| {
-                let Val::Number(n) = slot.value else { return None };
-                let x = self.chainage(places, n, from, slot.span)?;
+        let chainages = self.chainages_at(record, "at", places)?;
+        let loads: Vec<Option<StaticLoad>> = chainages
+            .into_iter()
+            .map(|(x, _)| {
                 let x = if on == Target::Sleepers { places.seats[places.nearest_seat(x)?].0 } else { x };
                 // the other forces are checked and cannot be run yet
                 let force = given(record, "force").filter(|_| changes(record).is_none())?;
@@ -191,45 +186,6 @@ impl Checker<'_> {
             return None;
         }
         Some(count)
-    }
-
-    /// Indices of the seats that a record names; all of them where it names none.
-    fn kept_seats(&mut self, record: &Record, places: &Places) -> Option<Vec<usize>> {
-        let from = record.get("from").and_then(|s| Some((record.text("from")?, s.span)));
-        let mut seats = Vec::new();
-        let mut any = false;
-        if let Some(place) = record.get("at").or(record.get("over")) {
-            self.transition(places, from, place.span)?;
-        }
-        if let Some(Slot { value: Val::List(at), .. }) = record.get("at") {
-            any = true;
-            let found: Vec<Option<usize>> = at
-                .iter()
-                .map(|slot| match slot.value {
-                    Val::Number(n) => self.seat_of(places, n, from, slot.span),
-                    _ => None,
-                })
-                .collect();
-            seats = found.into_iter().collect::<Option<_>>()?;
-        }
-        if let Some(Slot { value: Val::Range(a, b), span, .. }) = record.get("over") {
-            any = true;
-            let (from_x, to_x) = super::geometry::span(self, &Some(places.clone()), *a, *b, from, *span)?;
-            seats.extend(
-                (0..places.seats.len()).filter(|i| (from_x - 1e-6..=to_x + 1e-6).contains(&places.seats[*i].0)),
-            );
-        }
-        if !any {
-            seats = (0..places.seats.len()).collect();
-        }
-        seats.sort_unstable();
-        seats.dedup();
-        Some(seats)
-    }
-
-    fn seat_of(&mut self, places: &Places, at: Number, from: Option<(&str, Span)>, span: Span) -> Option<usize> {
-        let x = self.chainage(places, at, from, span)?;
-        places.nearest_seat(x)
     }
 }
 

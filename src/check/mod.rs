@@ -4,7 +4,9 @@
 //! depends on it.
 
 mod arithmetic;
+mod chosen;
 mod columns;
+mod combine;
 mod complete;
 mod expectation;
 mod fit;
@@ -24,6 +26,7 @@ mod profile;
 mod random;
 mod random_field;
 mod records;
+mod reduction;
 mod scatter;
 mod seats;
 mod spacing;
@@ -31,6 +34,7 @@ mod springs;
 mod stretch;
 mod study;
 mod table;
+mod tamping;
 mod tier;
 mod track;
 mod trackform;
@@ -322,6 +326,8 @@ impl Checker<'_> {
         let ends = loading::cycles(&load_records);
         let records = self.all(main, "record");
         let records: Vec<Option<_>> = records.iter().map(|r| self.kept(r, &places, traffic.as_ref(), ends)).collect();
+        let tampings = self.all(main, "tamping");
+        let tampings = self.tampings(&tampings, &places, track.as_ref(), traffic.as_ref());
         let expectations = self.expectations(main);
         let (title, allow, deny) = self.scenario_head(main);
         let loads: Vec<_> = loads.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
@@ -333,7 +339,18 @@ impl Checker<'_> {
         let kept: Vec<_> = records.into_iter().collect::<Option<_>>()?;
         let (records, volumes): (Vec<_>, Vec<_>) = kept.into_iter().unzip();
         let (records, volumes) = (records.into_iter().flatten().collect(), volumes.into_iter().flatten().collect());
-        Some(Scenario { title, track: track?, loading, solve: solve?, records, volumes, expectations, allow, deny })
+        Some(Scenario {
+            title,
+            track: track?,
+            loading,
+            tampings: tampings?,
+            solve: solve?,
+            records,
+            volumes,
+            expectations,
+            allow,
+            deny,
+        })
     }
 
     /// `solve` of a scene that says nothing about it.

@@ -222,12 +222,9 @@ impl Checker<'_> {
         if exact && !count.is_multiple_of(axles) {
             let below = count / axles * axles;
             self.report(
-                Diagnostic::new(
-                    Code::E0602,
-                    format!("{count} recorded axles are no whole number of trains of {axles} axles"),
-                )
-                .at(span, "in the middle of a train")
-                .help(format!("write {below} or {} axles", below + axles)),
+                Diagnostic::new(Code::E0602, format!("{count} axles are no whole number of trains of {axles} axles"))
+                    .at(span, "in the middle of a train")
+                    .help(format!("write {below} or {} axles", below + axles)),
             );
             return None;
         }

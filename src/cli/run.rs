@@ -162,6 +162,7 @@ fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, compil
         laws,
         rail: tables.rail.clone(),
         trains: tables.trains.clone(),
+        tampings: tables.tampings.clone(),
         histories,
     }
 }

@@ -1,7 +1,7 @@
 //! Which trains run between two exchanges: whole trains, up to the next stop, in the order and directions of the traffic.
 
 use super::{Block, Blocks, PassagePlan, Runner};
-use crate::scenario::{Direction, Train, Update};
+use crate::scenario::{Direction, Tamping, Train, Update};
 
 /// Parts into which a block of unlike trains is divided when it settles the track: within a part they run one kind after the
 /// other, so that the order of the trains is kept to within a sixteenth of the block.
@@ -32,6 +32,11 @@ impl Blocks {
     /// Trains that have passed when so many axles have.
     fn position(&self, axles: u64) -> u64 {
         self.sequence.within(axles)
+    }
+
+    /// What is tamped when so many axles have passed.
+    pub fn tamped_after(&self, axles: u64) -> impl Iterator<Item = &Tamping> {
+        self.tampings.iter().filter(move |tamping| tamping.after.contains(&axles))
     }
 
     /// The next axle count at which a block ends: something is recorded or done to the track there, or another kind of

@@ -41,7 +41,10 @@ pub trait Recorder {
         before: &[f64],
         after: &[f64],
     );
-    /// Settlement of every seat by each law, the driving one first, m: as built and after each block.
+    /// Seats are tamped: the settlement of every seat before and after it, m. What is recorded at that count has been told, and
+    /// shows the track before.
+    fn tamped(&mut self, _axles: u64, _seats: &[usize], _before: &[f64], _after: &[f64]) {}
+    /// Settlement of every seat by each law, the driving one first, m: as built, after each block and after each tamping.
     fn laws(&mut self, _axles: u64, _settlement: &[Vec<f64>]) {}
     /// Called after each block; a failure stops the run.
     fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<(), String>;
@@ -142,8 +145,14 @@ impl<'a> Run<'a> {
         if self.done == 0 {
             self.recorder.laws(0, &self.substructure.settlement_by_law());
         }
-        while here.axles < self.blocks.total {
+        loop {
             self.show(&here);
+            if here.axles >= self.blocks.total {
+                break;
+            }
+            if self.blocks.tamped_after(here.axles).next().is_some() {
+                here = self.tamp(here.axles)?;
+            }
             let done = match self.blocks.update {
                 Update::Adaptive { tolerance, cap } => self.adaptive(&mut here, tolerance, cap)?,
                 Update::Fixed { .. } | Update::Geometric { .. } => self.prescribed(&mut here)?,
@@ -166,7 +175,6 @@ impl<'a> Run<'a> {
                 None => self.arrive(axles, &self.substructure)?,
             };
         }
-        self.show(&here);
         let passages: Vec<&PassageOutcome> = here.passages().collect();
         self.recorder.block(here.axles, None, &passages, &here.settlement, &here.settlement);
         self.recorder.progress(self.done as u64 + 1, self.done as u64 + 1);
@@ -175,16 +183,40 @@ impl<'a> Run<'a> {
 
     /// The track after so many axles, with the passages that the next block is expected to need.
     pub fn arrive(&self, axles: u64, substructure: &Substructure<'_>) -> Result<Exchange, RunError> {
+        let adaptive = matches!(self.blocks.update, Update::Adaptive { .. });
         let mut runners = if axles == self.blocks.total {
             self.blocks.leading()
+        } else if adaptive && self.blocks.tamped_after(axles).next().is_some() {
+            Vec::new() // no train runs before the track is lifted
         } else {
-            let wanted = self.blocks.wanted(axles).map(|wanted| self.control.bounded(wanted));
-            self.blocks.block(axles, wanted.unwrap_or_else(|| self.blocks.trains_left(axles))).runners()
+            self.expected(axles)
         };
         let shown = if self.blocks.recorded.contains(&axles) { self.shown(&runners) } else { Vec::new() };
         runners.extend(shown.iter().filter(|shown| !runners.contains(shown)).copied().collect::<Vec<_>>());
         let mut exchange = Exchange::new(axles, substructure.settlement(), shown);
         self.ensure(&mut exchange, &runners)?;
+        Ok(exchange)
+    }
+
+    /// Passages that the next block is expected to need.
+    fn expected(&self, axles: u64) -> Vec<Runner> {
+        let wanted = self.blocks.wanted(axles).map(|wanted| self.control.bounded(wanted));
+        self.blocks.block(axles, wanted.unwrap_or_else(|| self.blocks.trains_left(axles))).runners()
+    }
+
+    /// Tamps what is due, and arrives at the same count on the track as it lies then.
+    fn tamp(&mut self, axles: u64) -> Result<Exchange, RunError> {
+        let before = self.substructure.settlement();
+        let mut seats = Vec::new();
+        for tamping in self.blocks.tamped_after(axles) {
+            self.substructure.tamp(&tamping.seats, tamping.left);
+            seats.extend(&tamping.seats);
+        }
+        let after = self.substructure.settlement();
+        self.recorder.tamped(axles, &seats, &before, &after);
+        self.recorder.laws(axles, &self.substructure.settlement_by_law());
+        let mut exchange = Exchange::new(axles, after, Vec::new());
+        self.ensure(&mut exchange, &self.expected(axles))?;
         Ok(exchange)
     }
 

@@ -26,7 +26,7 @@ pub use substructure::SubstructureState;
 pub use system::{RUNAWAY, Steps};
 pub use track::{PassageOutcome, RailPlace, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
 
-use crate::scenario::{Beam, Direction, Integrator, Record, Sequence, StaticLoad, Track, Train, Update};
+use crate::scenario::{Beam, Direction, Integrator, Record, Sequence, StaticLoad, Tamping, Track, Train, Update};
 use crate::solvers::settlement::Law;
 use serde::{Deserialize, Serialize};
 
@@ -93,7 +93,9 @@ pub struct Blocks {
     pub cure: bool,
     /// Axle counts at which the state of the track is recorded, ascending.
     pub recorded: Vec<u64>,
-    /// Axle counts at which a block ends, ascending: those and the counts at which another kind of train begins.
+    pub tampings: Vec<Tamping>,
+    /// Axle counts at which a block ends, ascending: those, the counts of tampings and those at which another kind of train
+    /// begins.
     pub stops: Vec<u64>,
     /// Axles of the whole run.
     pub total: u64,

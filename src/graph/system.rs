@@ -171,6 +171,7 @@ impl<'a> TrackSystem<'a> {
             min_wheel_force: envelope.wheel_forces.iter().map(|r| r.0).fold(f64::INFINITY, f64::min),
             max_rail_moment: largest(&envelope.rail_moments),
             rail_moments: envelope.rail_moments,
+            rail_displacements: envelope.rail_displacements,
             time_steps: counters.steps as u64,
             newton_iterations: counters.iterations as u64,
             samples: sampler.samples,

@@ -25,14 +25,26 @@ pub(super) fn blocks(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic) ->
     }
     let sequence = traffic.sequence();
     let turns = sequence.turns().into_iter().map(|position| sequence.axles(position));
-    let mut stops: Vec<u64> = recorded.iter().copied().chain(turns).collect();
+    let tamped = scenario.tampings.iter().flat_map(|tamping| tamping.after.iter().copied());
+    let mut stops: Vec<u64> = recorded.iter().copied().chain(turns).chain(tamped).collect();
     stops.sort_unstable();
     stops.dedup();
     let mut plans = plans.into_iter();
     let (train, passage) = (traffic.train.clone(), plans.next()??);
     let others = traffic.others.iter().cloned().zip(plans).map(|(train, plan)| Some((train, plan?)));
     let others: Vec<_> = others.collect::<Option<_>>()?;
-    let blocks = Blocks { train, passage, others, sequence, update, cure: true, recorded, stops, total };
+    let tampings = scenario.tampings.clone();
+    let blocks = Blocks { train, passage, others, sequence, update, cure: true, recorded, tampings, stops, total };
+    for tamping in &blocks.tampings {
+        let after: Vec<String> = tamping.after.iter().map(u64::to_string).collect();
+        let what = format!("{} sleepers after {} axles", tamping.seats.len(), after.join(", "));
+        let why = format!(
+            "`{}` leaves {} % of their settlement; their law begins afresh",
+            tamping.name,
+            number(100.0 * tamping.left)
+        );
+        pass.decide("tamping", what, why);
+    }
     if traffic.is_mixed() {
         mix(pass, &blocks);
     }

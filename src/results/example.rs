@@ -104,7 +104,7 @@ pub(crate) fn transition() -> Run {
         span: Span::new(FileId(0), 0, 1),
         operands: vec![
             Expression::Number(low),
-            Expression::Measure(Measure { reduction, response, over: None, after: None }),
+            Expression::Measure(Measure::new(reduction, response)),
             Expression::Number(high),
         ],
         operators: vec![Comparison::Less, Comparison::Less],
@@ -136,6 +136,7 @@ pub(crate) fn transition() -> Run {
             order: Order::Interleaved,
             total: given(500),
         })),
+        tampings: vec![],
         solve: solve(),
         records: vec![],
         volumes: vec![],
@@ -253,6 +254,8 @@ fn rail_row(axles: u64, x: f64) -> RailRow {
         stiffness_N_per_m: if x < 0.0 { 66e6 } else { 80e6 } * over_sleepers,
         max_moment_N_m: 20e3 * (1.0 + 0.1 * disturbance(x, axles)),
         min_moment_N_m: -5e3,
+        max_displacement_m: 1.2e-3 * over_sleepers,
+        min_displacement_m: -0.05e-3,
     }
 }
 
@@ -402,5 +405,5 @@ fn finished(
         plan: "track        2D finite elements, 440 elements\nsubstructure law varandas, 69 seats\n".to_owned(),
     };
     let summary = Summary { scalars, expectations, provenance };
-    Run { scenario, summary, sleepers, blocks, laws: vec![], rail: vec![], trains: vec![], histories }
+    Run { scenario, summary, sleepers, blocks, laws: vec![], rail: vec![], trains: vec![], tampings: vec![], histories }
 }

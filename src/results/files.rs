@@ -25,14 +25,18 @@ pub fn write(run: &Run, directory: &Path) -> Result<(), ResultsError> {
         (super::LawRow::FILE, table(&run.laws, directory)?),
         (super::RailRow::FILE, table(&run.rail, directory)?),
         (super::TrainRow::FILE, table(&run.trains, directory)?),
+        (super::TampingRow::FILE, table(&run.tampings, directory)?),
         (HISTORIES, histories::encode(&run.histories, directory)?),
         (SUMMARY, summary_json(run, directory)?), // last: a directory with a summary is complete
     ];
     fs::create_dir_all(directory).map_err(|cause| ResultsError::io(directory, "create", cause))?;
-    // these are there only where there are several laws, or several trains
-    let skipped = |name: &str| {
-        name == super::LawRow::FILE && run.laws.is_empty() || name == super::TrainRow::FILE && run.trains.is_empty()
-    };
+    // these are there only where there are several laws, several trains, or tamping
+    let empty = [
+        (super::LawRow::FILE, run.laws.is_empty()),
+        (super::TrainRow::FILE, run.trains.is_empty()),
+        (super::TampingRow::FILE, run.tampings.is_empty()),
+    ];
+    let skipped = |name: &str| empty.contains(&(name, true));
     let written = files.iter().filter(|(name, _)| !skipped(name));
     written.into_iter().try_for_each(|(name, bytes)| atomic::write(&directory.join(name), bytes))
 }
@@ -47,6 +51,7 @@ pub fn read(directory: &Path) -> Result<Run, ResultsError> {
         laws: read_table_if_any(directory)?,
         rail: read_table(directory)?,
         trains: read_table_if_any(directory)?,
+        tampings: read_table_if_any(directory)?,
         histories: histories::decode(&directory.join(HISTORIES))?,
     })
 }

@@ -33,7 +33,7 @@ pub use level::{LongitudinalLevel, longitudinal_level};
 pub use recorder::{RunRecorder, RunTables, Store};
 pub use summarise::{RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise};
 pub use summary::{Provenance, Scalar, Summary, Verdict};
-pub use tables::{BlockRow, HistoryRow, RailRow, Row, SleeperRow, TrainRow};
+pub use tables::{BlockRow, HistoryRow, RailRow, Row, SleeperRow, TampingRow, TrainRow};
 pub use vtk::{bodies_vtk, contacts_vtk};
 
 use crate::scenario::{Loading, Scenario};
@@ -51,6 +51,8 @@ pub struct Run {
     pub rail: Vec<RailRow>,
     /// Passages of each kind of train; empty where there is only one.
     pub trains: Vec<TrainRow>,
+    /// Sleepers that were tamped; empty without tamping.
+    pub tampings: Vec<TampingRow>,
     pub histories: Vec<HistoryRow>,
 }
 

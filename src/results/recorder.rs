@@ -3,8 +3,8 @@
 
 use super::histories::HISTORIES;
 use super::{
-    BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, SleeperRow, TrainRow, atomic, checkpoint,
-    histories,
+    BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, SleeperRow, TampingRow, TrainRow, atomic,
+    checkpoint, histories,
 };
 use crate::graph::{self, Block, Measured, PassageOutcome, Recorder, Runner, Unloaded};
 use crate::scenario::response::Response;
@@ -31,7 +31,8 @@ pub struct RunTables {
     pub laws: Vec<LawCount>,
     /// Passages of each kind of train; empty where there is only one.
     pub trains: Vec<TrainRow>,
-    /// Largest sagging moment of the last passage, N m, and displacement of a static check, m.
+    pub tampings: Vec<TampingRow>,
+    /// Largest sagging moment and displacement of the last passages, or of a static check, N m and m.
     pub max_rail_moment: Option<f64>,
     pub max_rail_displacement: Option<f64>,
     /// Largest tension in the rail's foot of the last recorded passage, Pa.
@@ -125,8 +126,10 @@ impl<'a> RunRecorder<'a> {
             level_m: p.level,
             moment_N_m: p.moment,
             stiffness_N_per_m: p.stiffness,
-            max_moment_N_m: between(&nodes, p.x, passage, |m| m.1),
-            min_moment_N_m: between(&nodes, p.x, passage, |m| m.0),
+            max_moment_N_m: between(&nodes, p.x, &passage.rail_moments, |m| m.1),
+            min_moment_N_m: between(&nodes, p.x, &passage.rail_moments, |m| m.0),
+            max_displacement_m: between(&nodes, p.x, &passage.rail_displacements, |d| d.1),
+            min_displacement_m: between(&nodes, p.x, &passage.rail_displacements, |d| d.0),
         }));
         self.tables.max_foot_stress = self.foot_stress(&nodes, passage);
     }
@@ -180,8 +183,14 @@ impl<'a> RunRecorder<'a> {
         let nodes: Vec<f64> = unloaded.rail.iter().map(|p| p.x).collect();
         let first = self.tables.rail.len().saturating_sub(unloaded.profile.len());
         for row in &mut self.tables.rail[first..] {
-            row.max_moment_N_m = row.max_moment_N_m.max(between(&nodes, row.x_m, passage, |m| m.1));
-            row.min_moment_N_m = row.min_moment_N_m.min(between(&nodes, row.x_m, passage, |m| m.0));
+            let moment = |of: fn(&(f64, f64)) -> f64| between(&nodes, row.x_m, &passage.rail_moments, of);
+            let displacement = |of: fn(&(f64, f64)) -> f64| between(&nodes, row.x_m, &passage.rail_displacements, of);
+            let [moment, displacement] =
+                [[moment(|m| m.0), moment(|m| m.1)], [displacement(|d| d.0), displacement(|d| d.1)]];
+            row.min_moment_N_m = row.min_moment_N_m.min(moment[0]);
+            row.max_moment_N_m = row.max_moment_N_m.max(moment[1]);
+            row.min_displacement_m = row.min_displacement_m.min(displacement[0]);
+            row.max_displacement_m = row.max_displacement_m.max(displacement[1]);
         }
         let stress = self.foot_stress(&nodes, passage);
         self.tables.max_foot_stress = self.tables.max_foot_stress.into_iter().chain(stress).reduce(f64::max);
@@ -222,10 +231,10 @@ impl<'a> RunRecorder<'a> {
     }
 }
 
-/// An extreme of the rail's moment at a place, N m; linear between the nodes of the mesh.
-fn between(nodes: &[f64], x: f64, passage: &PassageOutcome, of: fn(&(f64, f64)) -> f64) -> f64 {
+/// An extreme of the rail at a place, of those at the nodes of the mesh; linear between them.
+fn between(nodes: &[f64], x: f64, extremes: &[(f64, f64)], of: fn(&(f64, f64)) -> f64) -> f64 {
     let (left, share) = graph::between(nodes, x);
-    let (a, b) = (of(&passage.rail_moments[left]), of(&passage.rail_moments[left + 1]));
+    let (a, b) = (of(&extremes[left]), of(&extremes[left + 1]));
     a + share * (b - a)
 }
 
@@ -295,6 +304,20 @@ impl Recorder for RunRecorder<'_> {
             self.keep_settlements(axles + block.axles, after);
         }
         self.tables.max_rail_moment = Some(largest(|p| p.max_rail_moment));
+        let deepest = |p: &PassageOutcome| p.rail_displacements.iter().map(|d| d.1).fold(f64::NEG_INFINITY, f64::max);
+        self.tables.max_rail_displacement = Some(largest(deepest));
+    }
+
+    fn tamped(&mut self, axles: u64, seats: &[usize], before: &[f64], after: &[f64]) {
+        let track = self.track();
+        self.tables.tampings.extend(seats.iter().map(|seat| TampingRow {
+            axles,
+            sleeper: track.seat_name(&track.seats[*seat]),
+            x_m: track.seats[*seat].x,
+            settlement_before_m: before[*seat],
+            settlement_after_m: after[*seat],
+        }));
+        self.keep_settlements(axles, after);
     }
 
     fn laws(&mut self, axles: u64, settlement: &[Vec<f64>]) {

@@ -15,7 +15,7 @@ const FAR_FIELD_DISTANCE: f64 = 10.0;
 pub struct RailMaxima {
     /// Sagging moment, N m.
     pub moment: Option<f64>,
-    /// Downward displacement, m; of a static check.
+    /// Downward displacement from the unloaded state, m.
     pub displacement: Option<f64>,
     /// Tension in the foot, Pa.
     pub foot_stress: Option<f64>,
@@ -59,9 +59,7 @@ pub fn summarise(
     put("axles", Some(axles as f64), "1");
     put("max_rail_seat_load", largest(last.iter().map(|row| row.max_rail_seat_load_N)), "N");
     put("max_rail_moment", rail.moment, "N m");
-    if matches!(scenario.loading, Some(Loading::Static(_))) {
-        put("max_rail_displacement", rail.displacement, "m");
-    }
+    put("max_rail_displacement", rail.displacement, "m");
     put("max_rail_foot_stress", rail.foot_stress, "Pa");
     put("longitudinal_level_d1", rail.level.map(|l| l.0), "m");
     put("longitudinal_level_d1_deviation", rail.level.map(|l| l.1), "m");

@@ -63,12 +63,24 @@ pub struct RailRow {
     /// During the passage, sagging; linear between the nodes of the mesh.
     pub max_moment_N_m: f64,
     pub min_moment_N_m: f64,
+    /// During the passage, downward from the unloaded state; linear between the nodes of the mesh.
+    pub max_displacement_m: f64,
+    pub min_displacement_m: f64,
 }
 
 impl Row for RailRow {
     const FILE: &'static str = "rail.csv";
-    const COLUMNS: &'static [&'static str] =
-        &["axles", "x_m", "level_m", "moment_N_m", "stiffness_N_per_m", "max_moment_N_m", "min_moment_N_m"];
+    const COLUMNS: &'static [&'static str] = &[
+        "axles",
+        "x_m",
+        "level_m",
+        "moment_N_m",
+        "stiffness_N_per_m",
+        "max_moment_N_m",
+        "min_moment_N_m",
+        "max_displacement_m",
+        "min_displacement_m",
+    ];
 }
 
 /// One kind of train at one recorded axle count (`trains.csv`, where several share the track): extremes of its passage over the
@@ -99,6 +111,22 @@ impl Row for TrainRow {
         "max_contact_force_N",
         "max_rail_moment_N_m",
     ];
+}
+
+/// One sleeper that is tamped (`tamping.csv`, where there is tamping).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub struct TampingRow {
+    pub axles: u64,
+    pub sleeper: String,
+    pub x_m: f64,
+    pub settlement_before_m: f64,
+    pub settlement_after_m: f64,
+}
+
+impl Row for TampingRow {
+    const FILE: &'static str = "tamping.csv";
+    const COLUMNS: &'static [&'static str] = &["axles", "sleeper", "x_m", "settlement_before_m", "settlement_after_m"];
 }
 
 /// One block of the iteration (`blocks.csv`): a passage computed at `axles`, and the axles that it stands for.

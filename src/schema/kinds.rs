@@ -617,7 +617,11 @@ pub const KINDS: &[Kind] = &[
         fields: &[
             required("on", Form::Words(&[word("rail", ""), word("sleepers", "")]), "what it stands on"),
             required("at", Form::List(&Form::Place), "one force at each place"),
-            optional("from", Form::Name, "the transition from which `at` counts; needed where there are several"),
+            optional(
+                "from",
+                Form::List(&Form::Name),
+                "the transitions from which `at` counts, mirrored at each; needed where there are several",
+            ),
             required(
                 "force",
                 Form::OneOf(&[per("kN", 0.0, 10_000.0, &FORCE), Form::Words(&[CYCLIC])]),
@@ -650,6 +654,28 @@ pub const KINDS: &[Kind] = &[
                 ]),
                 "axle",
                 "what one cycle of the law is: publications differ, by a factor of four",
+            ),
+        ],
+        alternatives: &[],
+        planned: &[],
+    },
+    Kind {
+        name: "tamping",
+        doc: "Sleepers lifted and packed anew: brings the level back at some counts. Their settlement law begins afresh.",
+        role: Role::Scene { once: false },
+        fields: &[
+            required("after", Form::List(&AXLES_OR_MASS), "how much traffic; between the first and the last train"),
+            optional("over", Form::Span, "which sleepers; all on ballast where absent"),
+            optional(
+                "from",
+                Form::List(&Form::Name),
+                "the transitions from which `over` counts, mirrored at each; needed where there are several",
+            ),
+            default(
+                "left",
+                number("%", 0.0, 100.0),
+                "0 %",
+                "share of the settlement that stays, and of the voids with it",
             ),
         ],
         alternatives: &[],
@@ -865,7 +891,11 @@ pub const KINDS: &[Kind] = &[
             required("quantities", Form::List(&Form::Response), "what to keep"),
             optional("at", Form::List(&Form::Place), "at these seats"),
             optional("over", Form::Span, "at all seats of a span"),
-            optional("from", Form::Name, "the transition from which places count; needed where there are several"),
+            optional(
+                "from",
+                Form::List(&Form::Name),
+                "the transitions from which places count, mirrored at each; needed where there are several",
+            ),
             optional(
                 "after",
                 Form::List(&AXLES_MASS_OR_CYCLES),
