@@ -324,6 +324,7 @@ pub(crate) fn bench() -> Run {
             irregularity: None,
             bed: Bed::default(),
         },
+        tampings: vec![],
         loading: Some(Loading::Static(vec![StaticLoad {
             name: "jack".to_owned(),
             on: Target::Rail,
