@@ -5,9 +5,9 @@ use std::path::Path;
 use std::process::Command;
 use trackbed::check::NoModules;
 use trackbed::diag::Code;
-use trackbed::graph::{self, Block, Checkpoint, Measured, PassageOutcome, Recorder, Unloaded};
+use trackbed::graph::{self, Block, Checkpoint, Measured, PassageOutcome, Recorder, Runner, Unloaded};
 use trackbed::results::{RunRecorder, law_rows, summarise_laws, unsettled};
-use trackbed::scenario::{Direction, SettlementLaw};
+use trackbed::scenario::SettlementLaw;
 use trackbed::solvers::settlement::*;
 use trackbed::{Compiled, compile};
 
@@ -128,7 +128,7 @@ struct Laws {
 
 impl Recorder for Laws {
     fn unloaded(&mut self, _: u64, _: &Unloaded) {}
-    fn passage(&mut self, _: u64, _: Direction, _: &PassageOutcome) {}
+    fn passage(&mut self, _: u64, _: Runner, _: &PassageOutcome) {}
     fn block(&mut self, _: u64, _: Option<(&Block, &Measured)>, _: &[&PassageOutcome], _: &[f64], _: &[f64]) {}
     fn laws(&mut self, axles: u64, settlement: &[Vec<f64>]) {
         self.counts.push((axles, settlement.to_vec()));

@@ -567,3 +567,70 @@ fn random_values_beyond_their_range_are_counted() {
         mistake.message
     );
 }
+
+#[test]
+fn arithmetic_acts_on_every_value_of_a_profile() {
+    let stiffness = |lets: &str, value: &str| {
+        let pad = format!("pad = {{ damping = 5 kN s/m, stiffness = {value} }}, sleeper");
+        let scenario = sound(&scene("", "", lets).replacen("pad = pads.ahmadi_2026, sleeper", &pad, 1));
+        let of = |number: i32| *seat(&scenario, number).pad.stiffness / 1e6;
+        [of(-19), of(-10), of(-1)]
+    };
+    let plain = stiffness("let k = ramp(40 .. 60 MN/m)", "k");
+    let close_to = |found: [f64; 3], act: &dyn Fn(f64) -> f64| {
+        for (found, plain) in found.iter().zip(plain) {
+            assert!((found - act(plain)).abs() < 1e-9, "{found} of {plain}");
+        }
+    };
+    let lets = "let k = ramp(40 .. 60 MN/m)";
+    let more = "let k = ramp(40 .. 60 MN/m)
+let twice = 2 * k";
+    let shares = "let k = ramp(40 .. 60 MN/m)
+let part = 50 %";
+    close_to(stiffness(lets, "2 * k"), &|k| 2.0 * k);
+    close_to(stiffness(more, "twice / 4"), &|k| k / 2.0);
+    close_to(stiffness(shares, "k * part + 5 MN/m"), &|k| 0.5 * k + 5.0);
+    close_to(stiffness(lets, "100 MN/m - k"), &|k| 100.0 - k);
+    close_to(stiffness(lets, "-(k - 100 MN/m)"), &|k| 100.0 - k);
+    close_to(stiffness(lets, "k + ramp(0 .. 10 MN/m)"), &|k| k + (k - 40.0) / 2.0);
+    // lists by places and by spans, entry by entry
+    let pieces = "let k = [-12 .. -6 m: 40 MN/m, -6 .. 0 m: ramp(40 .. 60 MN/m)]
+let more = [-12 .. -6 m: ramp(0 .. 10 MN/m), -6 .. 0 m: 5 MN/m]";
+    let alone = pieces.lines().next().unwrap();
+    let [far, _, near] = stiffness(alone, "2 * k");
+    assert!((far - 80.0).abs() < 1e-9 && (115.0..=120.0).contains(&near), "{far} {near}");
+    let [far, _, near] = stiffness(pieces, "k + more");
+    assert!((40.0..42.0).contains(&far) && (62.0..=65.0).contains(&near), "{far} {near}");
+    // a random profile is the same field, scaled
+    let field = "let k = random(40 MN/m, sd = 2 MN/m, correlation = 3 m)";
+    let (once, twice) = (stiffness(field, "k"), stiffness(field, "2 * k"));
+    assert!(once.iter().zip(twice).all(|(k, twice)| (twice - 2.0 * k).abs() < 1e-9));
+}
+
+#[test]
+fn profiles_that_do_not_combine_are_refused() {
+    let with_settlement =
+        |lets: &str, value: &str| with(&scene(&format!("settlement = {value}"), "", lets), Files::default());
+    let refused = [
+        ("let a = ramp(0 .. 1 mm)", "a * ramp(1 .. 2)", "multiplied or divided"),
+        ("let a = ramp(1 .. 2 mm)", "1 mm / a", "divided by a profile"),
+        ("let a = ramp(0 .. 1 mm)", "a + smooth(0 .. 1 mm)", "different forms"),
+        ("let a = ramp(0 .. 1 mm, over = -6 .. 0 m)", "a + ramp(0 .. 1 mm)", "other spans"),
+        ("let a = [-12 m: 0 mm, 0 m: 1 mm]", "a + [-12 m: 0 mm, -1 m: 1 mm, 0 m: 2 mm]", "other places"),
+        ("let a = random(1 mm, cov = 10 %)", "a + 1 mm", "random profile"),
+    ];
+    for (lets, value, says) in refused {
+        let compiled = with_settlement(lets, value);
+        assert_eq!(codes(&compiled), [Code::E0428], "{value}: {}", told(&compiled));
+        assert!(told(&compiled).contains(says), "{}", told(&compiled));
+    }
+    // other mistakes of arithmetic are said once, at their place
+    for (lets, value, code) in [
+        ("let a = ramp(0 .. 1 mm)", "a + 1 s", Code::E0305),
+        ("let a = ramp(0 .. 1 mm)", "2 s * a", Code::E0302),
+        ("let a = ramp(0 .. 1 mm)", "a + missing", Code::E0201),
+        ("let a = 2 * a", "a", Code::E0203),
+    ] {
+        assert_eq!(codes(&with_settlement(lets, value)), [code], "{value}: {}", told(&with_settlement(lets, value)));
+    }
+}

@@ -184,11 +184,11 @@ fn repeats_need_a_seed_to_change() {
 #[test]
 fn responses_that_are_not_kept_are_told_before_a_run() {
     let (plan, _) = planned(
-        "study s { vary = [ore.direction: [forward, backward]], minimise = max(rail_displacement), report = dip }",
+        "study s { vary = [ore.direction: [forward, backward]], minimise = max(sleeper_velocity), report = dip }",
     );
     let [only] = plan.diagnostics.as_slice() else { panic!("{:#?}", plan.diagnostics) };
     assert_eq!(only.code, Code::E0705);
-    assert!(only.message.contains("2 of 2 points") && only.message.contains("`rail_displacement`"), "{}", only.message);
+    assert!(only.message.contains("2 of 2 points") && only.message.contains("`sleeper_velocity`"), "{}", only.message);
 }
 
 #[test]

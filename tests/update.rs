@@ -3,7 +3,7 @@
 
 use trackbed::check::NoModules;
 use trackbed::graph::{
-    self, Block, Checkpoint, Graph, Measured, PassageOutcome, Recorder, RunError, Schedule, Unloaded,
+    self, Block, Checkpoint, Graph, Measured, PassageOutcome, Recorder, RunError, Runner, Schedule, Unloaded,
 };
 use trackbed::results::{BlockRow, RunRecorder};
 use trackbed::scenario::{Direction, Scenario};
@@ -178,7 +178,7 @@ struct Stopping {
 
 impl Recorder for Stopping {
     fn unloaded(&mut self, _: u64, _: &Unloaded) {}
-    fn passage(&mut self, _: u64, _: Direction, _: &PassageOutcome) {}
+    fn passage(&mut self, _: u64, _: Runner, _: &PassageOutcome) {}
     fn block(&mut self, axles: u64, _: Option<(&Block, &Measured)>, _: &[&PassageOutcome], _: &[f64], after: &[f64]) {
         self.blocks.push((axles, after.iter().map(|s| s.to_bits()).collect()));
     }
@@ -230,7 +230,7 @@ fn both_directions_share_the_trains_of_a_run() {
     let Schedule::Blocks(blocks) = &graph.schedule else { panic!("traffic") };
     let planned = blocks.planned().unwrap();
     let all = |of: fn(&Block) -> u64| planned.iter().map(of).sum::<u64>();
-    assert_eq!((all(|b| b.forward), all(|b| b.backward)), (32, 32));
+    assert_eq!((all(|b| b.towards(Direction::Forward)), all(|b| b.towards(Direction::Backward))), (32, 32));
     assert_eq!(all(|b| b.axles), 256);
 }
 

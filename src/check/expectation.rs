@@ -3,9 +3,9 @@
 use super::Checker;
 use super::arithmetic::{Raw, shape};
 use super::modules::ScopeId;
-use super::value::{Number, Val};
-use crate::diag::{Code, Diagnostic, Span, nearest::nearest, or_list};
-use crate::scenario::response::{Expectation, Expression, Measure, Place, Reduction, Response};
+use super::value::Number;
+use crate::diag::{Code, Diagnostic, Span, or_list};
+use crate::scenario::response::{Expectation, Expression, Function, Measure, Place, Reduction, Response};
 use crate::syntax::tree::{Argument, BinaryOp, Item, Name, Path, Value, ValueKind};
 use crate::units::{Dimension, parse_unit};
 
@@ -25,13 +25,6 @@ const BASES: [(&str, f64); 7] = [
 
 /// Operands of one comparison, those of its lets counted wherever they are used.
 const MOST_OPERANDS: usize = 10_000;
-
-const REDUCTIONS: [(&str, Reduction); 4] = [
-    ("max", Reduction::Max),
-    ("min", Reduction::Min),
-    ("mean", Reduction::Mean),
-    ("place_of_max", Reduction::PlaceOfMax),
-];
 
 impl Checker<'_> {
     pub fn comparison(&mut self, value: &Value, scope: ScopeId) -> Option<Expectation> {
@@ -82,8 +75,11 @@ impl Checker<'_> {
 
     fn expression_of(&mut self, value: &Value, scope: ScopeId) -> Option<Typed> {
         match &value.kind {
-            ValueKind::Call { word, arguments } if REDUCTIONS.iter().any(|(n, _)| *n == word.text) => {
+            ValueKind::Call { word, arguments } if self.reduces(word, arguments, scope) => {
                 self.measure(word, arguments, scope)
+            }
+            ValueKind::Call { word, arguments } if function(word).is_some() => {
+                self.function_of(word, arguments, value.span, scope)
             }
             ValueKind::Binary(left, op, right) if *op != BinaryOp::Power => {
                 let (a, b) = (self.expression(left, scope), self.expression(right, scope));
@@ -107,13 +103,16 @@ impl Checker<'_> {
             && let Some(response) = Response::of_name(&name.text)
         {
             if response.place() == Place::Scene {
-                let measure = Measure { reduction: Reduction::Itself, response, over: None, after: None };
+                let measure = Measure::new(Reduction::Itself, response);
                 return Some((Expression::Measure(measure), Dimension::of(response.unit())));
             }
             self.report(
                 Diagnostic::new(Code::E0406, format!("`{}` has a value at many places", name.text))
                     .at(name.span, "not one number")
-                    .help(format!("write `max({})`, or `min`, `mean` or `place_of_max` of it", name.text)),
+                    .help(format!(
+                        "write `max({})`, or `min`, `mean`, `rms`, `percentile` or `place_of_max` of it",
+                        name.text
+                    )),
             );
             return None;
         }
@@ -127,6 +126,31 @@ impl Checker<'_> {
         let raw = self.raw(value, scope)?;
         let value = self.of_rail(&raw)?;
         Some((Expression::Number(value), raw.dimension))
+    }
+
+    /// `abs sqrt min max` of expressions.
+    fn function_of(&mut self, word: &Name, arguments: &[Argument], span: Span, scope: ScopeId) -> Option<Typed> {
+        let function = function(word)?;
+        let one = matches!(function, Function::Abs | Function::Sqrt);
+        let values: Vec<Option<Typed>> = arguments.iter().map(|a| self.expression(&a.value, scope)).collect();
+        let values: Vec<Typed> = values.into_iter().collect::<Option<_>>()?;
+        if values.is_empty() || one && values.len() != 1 {
+            let count = if one { "one value" } else { "at least one value" };
+            let text = format!("`{}` takes {count}, found {}", word.text, values.len());
+            self.report(Diagnostic::new(Code::E0406, text).at(span, "here"));
+            return None;
+        }
+        let first = values[0].1;
+        if let Some(other) = values.iter().position(|(_, dimension)| *dimension != first) {
+            self.report(
+                Diagnostic::new(Code::E0305, format!("`{}` needs values of the same dimension", word.text))
+                    .at(arguments[other].value.span, values[other].1.describe())
+                    .at(arguments[0].value.span, first.describe()),
+            );
+            return None;
+        }
+        let dimension = if function == Function::Sqrt { first.power(50)? } else { first };
+        Some((Expression::Function(function, values.into_iter().map(|(e, _)| e).collect()), dimension))
     }
 
     fn combine(&mut self, a: Typed, op: BinaryOp, b: Typed, left: Span, right: Span) -> Option<Typed> {
@@ -146,68 +170,8 @@ impl Checker<'_> {
         Some((Expression::Binary(Box::new(a.0), op, Box::new(b.0)), dimension))
     }
 
-    /// `max(contact_force, over = -20 .. -1 sleepers, after = 100 axles)`
-    fn measure(&mut self, word: &Name, arguments: &[Argument], scope: ScopeId) -> Option<Typed> {
-        let reduction = REDUCTIONS.iter().find(|(n, _)| *n == word.text)?.1;
-        let response = match arguments.first().map(|a| (&a.name, &a.value.kind)) {
-            Some((None, ValueKind::Path(path))) if path.names.len() == 1 => self.response(&path.names[0])?,
-            _ => {
-                self.report(
-                    Diagnostic::new(Code::E0406, format!("`{}` needs a response", word.text))
-                        .at(word.span, "of what?")
-                        .help(format!("write something like `{}(settlement)`", word.text)),
-                );
-                return None;
-            }
-        };
-        let mut measure = Measure { reduction, response, over: None, after: None };
-        let named = |wanted: &str| {
-            arguments.iter().skip(1).find(|a| a.name.as_ref().is_some_and(|n| n.text == wanted)).map(|a| &a.value)
-        };
-        let transition = match named("from").map(|v| (&v.kind, v.span)) {
-            Some((ValueKind::Path(path), span)) if path.names.len() == 1 => Some((path.text(), span)),
-            Some((other, span)) => {
-                self.report(
-                    Diagnostic::new(Code::E0406, format!("expected the name of a transition, found {}", shape(other)))
-                        .at(span, "not a transition"),
-                );
-                return None;
-            }
-            None => None,
-        };
-        for argument in &arguments[1..] {
-            let name = argument.name.as_ref().map_or("", |n| n.text.as_str());
-            match (name, &argument.value.kind) {
-                ("over", ValueKind::Range(from, to)) => {
-                    let Val::Range(a, b) = self.span(from, to, scope)? else { return None };
-                    if self.seat_places.is_none() {
-                        continue; // the track is not understood, and the scene not made
-                    }
-                    let counted = transition.as_ref().map(|(name, span)| (name.as_str(), *span));
-                    measure.over = Some(self.chainages(a, b, counted, argument.value.span)?);
-                }
-                ("from", _) => {}
-                ("after", _) => measure.after = Some(self.count(&argument.value, scope)?),
-                _ => {
-                    let place = argument.name.as_ref().map_or(argument.value.span, |n| n.span);
-                    let near = nearest(name, ["over", "from", "after"]).map(|n| format!("did you mean `{n}`?"));
-                    self.report(
-                        Diagnostic::new(Code::E0402, format!("`{}` has no such argument", word.text))
-                            .at(place, "unknown argument")
-                            .help(near.unwrap_or_else(|| {
-                                "it takes `over = span`, `from = transition` and `after = axles`".into()
-                            })),
-                    );
-                    return None;
-                }
-            }
-        }
-        let unit = if reduction == Reduction::PlaceOfMax { "m" } else { response.unit() };
-        Some((Expression::Measure(measure), Dimension::of(unit)))
-    }
-
     /// Values in a comparison are of one rail or one seat, as responses are.
-    fn of_rail(&mut self, raw: &Raw) -> Option<f64> {
+    pub(super) fn of_rail(&mut self, raw: &Raw) -> Option<f64> {
         let Some((name, span)) = &raw.basis else { return Some(raw.value) };
         match BASES.iter().find(|(basis, _)| basis == name) {
             Some((_, factor)) => Some(raw.value * factor),
@@ -222,31 +186,43 @@ impl Checker<'_> {
         }
     }
 
-    /// An axle count.
-    fn count(&mut self, value: &Value, scope: ScopeId) -> Option<u64> {
+    /// An axle count; in a scene of loads a number of cycles.
+    pub(super) fn count(&mut self, value: &Value, scope: ScopeId) -> Option<u64> {
         let raw = self.raw(value, scope)?;
-        if raw.dimension == Dimension::CYCLES {
-            if self.asked.traffic {
-                self.not_counted(raw.dimension, "axles of its trains", raw.span);
-                return None;
-            }
+        if raw.dimension == Dimension::CYCLES && !self.asked.traffic {
             return self.whole(raw.value, "cycles", raw.span);
         }
-        if raw.dimension != Dimension::AXLES {
-            self.report(
-                Diagnostic::new(Code::E0302, format!("expected a number of axles, found {}", raw.dimension.describe()))
-                    .at(raw.span, "not axles"),
-            );
+        if ![Dimension::AXLES, Dimension::MASS, Dimension::CYCLES].contains(&raw.dimension) {
+            let text = format!("expected a number of axles or the mass carried, found {}", raw.dimension.describe());
+            self.report(Diagnostic::new(Code::E0302, text).at(raw.span, "not counted"));
             return None;
         }
-        self.whole_axles(raw.value, raw.span)
+        let count = Number { value: raw.value, dimension: raw.dimension, basis: None, factor: 1.0 };
+        self.axle_count(count, raw.span, false)
     }
 
     /// The chainages of a span whose ends may be sleepers; geometry is known before any expectation is read.
-    fn chainages(&mut self, a: Number, b: Number, from: Option<(&str, Span)>, span: Span) -> Option<(f64, f64)> {
+    pub(super) fn chainages(
+        &mut self,
+        a: Number,
+        b: Number,
+        from: Option<(&str, Span)>,
+        span: Span,
+    ) -> Option<(f64, f64)> {
         let seats = self.seat_places.clone();
         super::geometry::span(self, &seats, a, b, from, span)
     }
+}
+
+/// The function of that name.
+fn function(word: &Name) -> Option<Function> {
+    Some(match word.text.as_str() {
+        "abs" => Function::Abs,
+        "sqrt" => Function::Sqrt,
+        "min" => Function::Min,
+        "max" => Function::Max,
+        _ => return None,
+    })
 }
 
 /// The first unit written in an operand.

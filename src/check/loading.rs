@@ -1,84 +1,18 @@
-//! What acts on the track, how the answer is computed and what is kept of it: traffic, loads, laws, `solve`, `record`.
+//! Test loads, how the answer is computed and what is kept of it: loads, laws, `solve`, `record`.
 
 use super::Checker;
 use super::geometry::Places;
 use super::tier::changes;
 use super::track::given;
-use super::value::{Number, Record, Slot, Val};
+use super::value::{Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::response::{Place, Response};
 use crate::scenario::{
-    Beam, Given, Integrator, Record as Kept, Solve, StaticLoad, Target, TimeStep, Traffic, Train, Update, VolumeRecord,
+    Beam, Given, Integrator, Record as Kept, Solve, StaticLoad, Target, TimeStep, Traffic, Update, VolumeRecord,
 };
-use crate::units::{Dimension, number};
+use crate::units::Dimension;
 
 impl Checker<'_> {
-    pub(super) fn traffic(&mut self, record: &Record) -> Option<Traffic> {
-        let Val::Pairs(pairs) = &record.get("trains")?.value else { return None };
-        let trains: Vec<Option<Train>> = pairs
-            .iter()
-            .map(|(train, _)| match &train.value {
-                Val::Record(train) => self.train(train),
-                _ => None,
-            })
-            .collect();
-        let total = record.get("total")?;
-        let span = record.get("trains")?.span;
-        if pairs.len() != 1 {
-            let mistake = if pairs.is_empty() {
-                Diagnostic::new(Code::E0403, "traffic needs a train").at(span, "empty")
-            } else {
-                Diagnostic::new(Code::E0411, "this version does not mix trains yet").at(span, "several trains")
-            };
-            self.report(mistake);
-            return None;
-        }
-        let share = match pairs[0].1.value {
-            Val::Number(n) => n.value,
-            _ => return None,
-        };
-        if (share - 1.0).abs() > 1e-9 {
-            self.report(
-                Diagnostic::new(
-                    Code::E0407,
-                    format!("the shares of the trains sum to {} %, not to 100 %", number(100.0 * share)),
-                )
-                .at(pairs[0].1.span, "of `total`"),
-            );
-            return None;
-        }
-        let train = trains.into_iter().next()??;
-        let axles = self.axles(total, &train)?;
-        Some(Traffic { train, total: Given { value: axles, origin: total.origin } })
-    }
-
-    /// Axles of a count that may be given as the mass carried: whole trains, to the nearest.
-    fn axles(&mut self, slot: &Slot, train: &Train) -> Option<u64> {
-        let Val::Number(n) = slot.value else { return None };
-        if n.dimension == Dimension::MASS {
-            let mass: f64 = train.vehicles.iter().map(|v| 2.0 * v.mass()).sum();
-            let trains = (n.value / mass).round().max(1.0);
-            return Some(trains as u64 * train.axles());
-        }
-        self.whole_axles(n.value, slot.span)
-    }
-
-    /// An axle count, which is a whole number.
-    pub(super) fn whole_axles(&mut self, axles: f64, span: Span) -> Option<u64> {
-        self.whole(axles, "axles", span)
-    }
-
-    pub(super) fn whole(&mut self, count: f64, what: &str, span: Span) -> Option<u64> {
-        if count.fract() != 0.0 {
-            self.report(
-                Diagnostic::new(Code::E0405, format!("expected a whole number of {what}, found {}", number(count)))
-                    .at(span, "not whole"),
-            );
-            return None;
-        }
-        Some(count as u64)
-    }
-
     pub(super) fn loads(&mut self, record: &Record, places: &Option<Places>) -> Option<Vec<StaticLoad>> {
         let on = if record.word("on")? == "rail" { Target::Rail } else { Target::Sleepers };
         let force = record.get("force")?;
@@ -98,15 +32,10 @@ impl Checker<'_> {
             return None;
         }
         let places = places.as_ref()?;
-        let from = record.get("from").and_then(|s| Some((record.text("from")?, s.span)));
-        let slot = record.get("at")?;
-        let Val::List(at) = &slot.value else { return None };
-        self.transition(places, from, slot.span)?;
-        let loads: Vec<Option<StaticLoad>> = at
-            .iter()
-            .map(|slot| {
-                let Val::Number(n) = slot.value else { return None };
-                let x = self.chainage(places, n, from, slot.span)?;
+        let chainages = self.chainages_at(record, "at", places)?;
+        let loads: Vec<Option<StaticLoad>> = chainages
+            .into_iter()
+            .map(|(x, _)| {
                 let x = if on == Target::Sleepers { places.seats[places.nearest_seat(x)?].0 } else { x };
                 // the other forces are checked and cannot be run yet
                 let force = given(record, "force").filter(|_| changes(record).is_none())?;
@@ -235,7 +164,7 @@ impl Checker<'_> {
             None => return Some(traffic.map(|t| *t.total).or(cycles).into_iter().collect()),
         };
         let counts: Vec<Option<u64>> = match (traffic, cycles) {
-            (Some(traffic), _) => slots.iter().map(|slot| self.recorded(slot, traffic)).collect(),
+            (Some(_), _) => slots.iter().map(|slot| self.between_trains(slot)).collect(),
             (None, Some(cycles)) => slots.iter().map(|slot| self.recorded_cycles(slot, cycles)).collect(),
             // what counts is not understood, or nothing does
             (None, None) => Vec::new(),
@@ -258,89 +187,6 @@ impl Checker<'_> {
             return None;
         }
         Some(count)
-    }
-
-    /// A count of something that this scene does not count.
-    pub(super) fn not_counted(&mut self, dimension: Dimension, counts: &str, span: Span) {
-        let message = format!("this scene counts the {counts}, found {}", dimension.describe());
-        self.report(Diagnostic::new(Code::E0302, message).at(span, "not counted here"));
-    }
-
-    fn recorded(&mut self, slot: &Slot, traffic: &Traffic) -> Option<u64> {
-        if let Val::Number(n) = slot.value
-            && n.dimension == Dimension::CYCLES
-        {
-            self.not_counted(n.dimension, "axles of its trains", slot.span);
-            return None;
-        }
-        let count = self.axles_from_zero(slot, &traffic.train)?;
-        if count > *traffic.total {
-            self.report(
-                Diagnostic::new(Code::E0602, format!("the run ends after {} axles", *traffic.total))
-                    .at(slot.span, format!("{count} axles are never reached")),
-            );
-            return None;
-        }
-        let axles = traffic.train.axles();
-        if !count.is_multiple_of(axles) && count != *traffic.total {
-            let below = count / axles * axles;
-            self.report(
-                Diagnostic::new(
-                    Code::E0602,
-                    format!("{count} recorded axles are no whole number of trains of {axles} axles"),
-                )
-                .at(slot.span, "in the middle of a train")
-                .help(format!("write {below} or {} axles", below + axles)),
-            );
-            return None;
-        }
-        Some(count)
-    }
-
-    fn axles_from_zero(&mut self, slot: &Slot, train: &Train) -> Option<u64> {
-        match slot.value {
-            Val::Number(n) if n.value == 0.0 => Some(0),
-            _ => self.axles(slot, train),
-        }
-    }
-
-    /// Indices of the seats that a record names; all of them where it names none.
-    fn kept_seats(&mut self, record: &Record, places: &Places) -> Option<Vec<usize>> {
-        let from = record.get("from").and_then(|s| Some((record.text("from")?, s.span)));
-        let mut seats = Vec::new();
-        let mut any = false;
-        if let Some(place) = record.get("at").or(record.get("over")) {
-            self.transition(places, from, place.span)?;
-        }
-        if let Some(Slot { value: Val::List(at), .. }) = record.get("at") {
-            any = true;
-            let found: Vec<Option<usize>> = at
-                .iter()
-                .map(|slot| match slot.value {
-                    Val::Number(n) => self.seat_of(places, n, from, slot.span),
-                    _ => None,
-                })
-                .collect();
-            seats = found.into_iter().collect::<Option<_>>()?;
-        }
-        if let Some(Slot { value: Val::Range(a, b), span, .. }) = record.get("over") {
-            any = true;
-            let (from_x, to_x) = super::geometry::span(self, &Some(places.clone()), *a, *b, from, *span)?;
-            seats.extend(
-                (0..places.seats.len()).filter(|i| (from_x - 1e-6..=to_x + 1e-6).contains(&places.seats[*i].0)),
-            );
-        }
-        if !any {
-            seats = (0..places.seats.len()).collect();
-        }
-        seats.sort_unstable();
-        seats.dedup();
-        Some(seats)
-    }
-
-    fn seat_of(&mut self, places: &Places, at: Number, from: Option<(&str, Span)>, span: Span) -> Option<usize> {
-        let x = self.chainage(places, at, from, span)?;
-        places.nearest_seat(x)
     }
 }
 

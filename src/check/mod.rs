@@ -4,7 +4,9 @@
 //! depends on it.
 
 mod arithmetic;
+mod chosen;
 mod columns;
+mod combine;
 mod complete;
 mod expectation;
 mod fit;
@@ -24,6 +26,7 @@ mod profile;
 mod random;
 mod random_field;
 mod records;
+mod reduction;
 mod resolve;
 mod scatter;
 mod seats;
@@ -32,9 +35,11 @@ mod springs;
 mod stretch;
 mod study;
 mod table;
+mod tamping;
 mod tier;
 mod track;
 mod trackform;
+mod traffic;
 mod value;
 mod vary;
 mod vehicle;
@@ -113,6 +118,7 @@ fn with_checker<T>(
         operands: 0,
         seat_places: None,
         asked: Asked::default(),
+        counted: None,
         seed: 1,
     };
     let (scenario, studies) = checker.scene(main);
@@ -162,6 +168,8 @@ struct Checker<'a> {
     seat_places: Option<Places>,
     /// Known before the track is read.
     asked: Asked,
+    /// Known once the traffic is.
+    counted: Option<traffic::Counted>,
     /// Of everything random that has none of its own.
     seed: u64,
 }
@@ -347,6 +355,8 @@ impl Checker<'_> {
         let ends = loading::cycles(&load_records);
         let records = self.all(main, "record");
         let records: Vec<Option<_>> = records.iter().map(|r| self.kept(r, &places, traffic.as_ref(), ends)).collect();
+        let tampings = self.all(main, "tamping");
+        let tampings = self.tampings(&tampings, &places, track.as_ref(), traffic.as_ref());
         let expectations = self.expectations(main);
         let head = self.scenario_head(main);
         let loads: Vec<_> = loads.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
@@ -362,6 +372,7 @@ impl Checker<'_> {
             title: head.title,
             track: track?,
             loading,
+            tampings: tampings?,
             solve: solve?,
             records,
             volumes,

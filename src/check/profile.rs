@@ -76,7 +76,7 @@ pub(super) type Per = Option<(String, Span)>;
 const WORDS: [&str; 4] = ["ramp", "smooth", "random", "file"];
 
 /// The value without the `per` around it.
-fn bare(value: &Value) -> (&Value, Per) {
+pub(super) fn bare(value: &Value) -> (&Value, Per) {
     match &value.kind {
         ValueKind::Per(inner, name) => (inner, Some((name.text.clone(), name.span))),
         _ => (value, None),
@@ -99,7 +99,7 @@ impl Checker<'_> {
         value: &Value,
         scope: ScopeId,
     ) -> Option<Val> {
-        if !is_profile(value) {
+        if !self.varies(value, scope) {
             if measure.varies == Varies::Yes && self.misspelt_profile(value) {
                 return None;
             }
@@ -161,6 +161,10 @@ impl Checker<'_> {
                     return shape.map(|s| Shape { span: value.span, ..s });
                 }
                 ShapeKind::Constant(self.held(measure, inner, per, scope)?)
+            }
+            ValueKind::Binary(..) | ValueKind::Negate(_) if self.varies(inner, scope) => {
+                let worked = self.worked(inner, scope)?;
+                return self.shape(measure, &worked, per, scope).map(|s| Shape { span: value.span, ..s });
             }
             _ => ShapeKind::Constant(self.held(measure, inner, per, scope)?),
         };

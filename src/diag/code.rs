@@ -72,6 +72,8 @@ codes! {
     E0421 Error "rest of a depth that nobody knows"
     E0422 Note "response that the tier does not give"
     E0417 Error "stretch without an effect"
+    E0427 Error "tamping without an effect"
+    E0428 Error "profiles that do not combine"
     E0418 Error "stretch that the track under it cannot have"
     E0501 Error "place off the track"
     E0502 Error "section that does not fit its sleepers"

@@ -1,41 +1,102 @@
-//! Which trains run between two exchanges: whole trains, up to the next recorded count, in the directions of the traffic.
+//! Which trains run between two exchanges: whole trains, up to the next stop, in the order and directions of the traffic.
 
-use super::{Block, Blocks};
-use crate::scenario::{Direction, Update};
+use super::{Block, Blocks, PassagePlan, Runner};
+use crate::scenario::{Direction, Tamping, Train, Update};
+
+/// Parts into which a block of unlike trains is divided when it settles the track: within a part they run one kind after the
+/// other, so that the order of the trains is kept to within a sixteenth of the block.
+const PARTS: u64 = 16;
 
 impl Blocks {
-    /// The next axle count at which the state is recorded, or the end of the run.
+    /// A kind of train, and how its passages are integrated; 0 leads the traffic.
+    pub fn kind(&self, kind: usize) -> (&Train, &PassagePlan) {
+        match kind.checked_sub(1).and_then(|other| self.others.get(other)) {
+            Some((train, plan)) => (train, plan),
+            None => (&self.train, &self.passage),
+        }
+    }
+
+    /// Every kind of train, in the order of the traffic.
+    pub fn kinds(&self) -> impl Iterator<Item = (&Train, &PassagePlan)> {
+        std::iter::once((&self.train, &self.passage)).chain(self.others.iter().map(|(train, plan)| (train, plan)))
+    }
+
+    /// A passage of each kind of train in its leading direction.
+    pub fn leading(&self) -> Vec<Runner> {
+        self.kinds()
+            .enumerate()
+            .map(|(kind, (train, _))| Runner { kind, direction: leading_direction(train) })
+            .collect()
+    }
+
+    /// Trains that have passed when so many axles have.
+    fn position(&self, axles: u64) -> u64 {
+        self.sequence.within(axles)
+    }
+
+    /// What is tamped when so many axles have passed.
+    pub fn tamped_after(&self, axles: u64) -> impl Iterator<Item = &Tamping> {
+        self.tampings.iter().filter(move |tamping| tamping.after.contains(&axles))
+    }
+
+    /// The next axle count at which a block ends: something is recorded or done to the track there, or another kind of
+    /// train begins, or the run ends.
     pub fn stop(&self, before: u64) -> u64 {
-        self.recorded.iter().copied().find(|count| *count > before).unwrap_or(self.total)
+        self.stops.iter().copied().find(|count| *count > before).unwrap_or(self.total)
     }
 
     /// Trains until the next stop.
     pub fn trains_left(&self, before: u64) -> u64 {
-        (self.stop(before) - before) / self.train.axles()
+        self.position(self.stop(before)) - self.position(before)
     }
 
     /// Trains that the policy wants to send next, where it knows without a look at forces.
     pub fn wanted(&self, before: u64) -> Option<u64> {
-        let axles = self.train.axles();
-        let wanted = match self.update {
-            Update::Fixed { axles: fixed } => fixed / axles,
-            Update::Geometric { first, ratio } => first.max((ratio * before as f64) as u64) / axles,
+        let axles = match self.update {
+            Update::Fixed { axles } => axles,
+            Update::Geometric { first, ratio } => first.max((ratio * before as f64) as u64),
             Update::Adaptive { .. } => return None,
         };
+        let wanted = self.position(before + axles) - self.position(before);
         Some(wanted.clamp(1, self.trains_left(before)))
     }
 
     /// A block of so many trains after `before` axles.
     pub fn block(&self, before: u64, trains: u64) -> Block {
-        let axles = self.train.axles();
-        let (forward, backward) = match self.train.direction {
-            Direction::Forward => (trains, 0),
-            Direction::Backward => (0, trains),
-            // the first of every two trains of the run goes forward
-            Direction::Both if (before / axles).is_multiple_of(2) => (trains.div_ceil(2), trains / 2),
-            Direction::Both => (trains / 2, trains.div_ceil(2)),
+        let position = self.position(before);
+        let (begun, done) = (self.sequence.counts(position), self.sequence.counts(position + trains));
+        let mut runs = Vec::new();
+        for (kind, (train, _)) in self.kinds().enumerate() {
+            let (first, end) = (begun[kind], done[kind]);
+            let forward = match train.direction {
+                Direction::Forward => end - first,
+                Direction::Backward => 0,
+                // the first of every two trains goes forward
+                Direction::Both => end.div_ceil(2) - first.div_ceil(2),
+            };
+            let of = |direction, trains| (Runner { kind, direction }, trains);
+            runs.extend([of(Direction::Forward, forward), of(Direction::Backward, end - first - forward)]);
+        }
+        runs.retain(|(_, trains)| *trains > 0);
+        let axles = runs.iter().map(|(runner, trains)| trains * self.kind(runner.kind).0.axles()).sum();
+        Block { before, axles, runs }
+    }
+
+    /// A block in parts that keep the order of its trains.
+    pub fn parts(&self, block: &Block) -> Vec<Block> {
+        let trains = block.trains();
+        let mixed = block.runs.iter().any(|(runner, _)| runner.kind != block.runs[0].0.kind);
+        if !mixed {
+            return vec![block.clone()];
+        }
+        let parts = trains.min(PARTS);
+        let mut before = block.before;
+        let part = |k: u64| {
+            let part = self.block(before, (k + 1) * trains / parts - k * trains / parts);
+            before += part.axles;
+            part
         };
-        Block { before, axles: trains * axles, forward, backward }
+        (0..parts).map(part).collect()
     }
 
     /// The blocks of a run whose policy needs no forces; `None` for an adaptive one.
@@ -50,11 +111,34 @@ impl Blocks {
         Some(blocks)
     }
 
-    /// Directions of the passages that a block needs, with the number of trains of each.
-    pub fn passages(&self, block: &Block) -> Vec<(Direction, u64)> {
-        [(Direction::Forward, block.forward), (Direction::Backward, block.backward)]
-            .into_iter()
-            .filter(|(_, trains)| *trains > 0)
-            .collect()
+    /// The same traffic, led by another kind of train: what is true of the leading train is asked of each so.
+    pub fn led_by(&self, kind: usize) -> Blocks {
+        let mut blocks = self.clone();
+        let Some(other) = kind.checked_sub(1).filter(|other| *other < blocks.others.len()) else { return blocks };
+        std::mem::swap(&mut blocks.train, &mut blocks.others[other].0);
+        std::mem::swap(&mut blocks.passage, &mut blocks.others[other].1);
+        blocks.sequence.shares.swap(0, kind);
+        blocks
     }
+}
+
+impl Block {
+    pub fn trains(&self) -> u64 {
+        self.runs.iter().map(|(_, trains)| trains).sum()
+    }
+
+    /// Trains of all kinds that run so.
+    pub fn towards(&self, direction: Direction) -> u64 {
+        self.runs.iter().filter(|(runner, _)| runner.direction == direction).map(|(_, trains)| trains).sum()
+    }
+
+    /// Passages that stand for its trains.
+    pub fn runners(&self) -> Vec<Runner> {
+        self.runs.iter().map(|(runner, _)| *runner).collect()
+    }
+}
+
+/// The direction of the passage that shows a state of the track.
+pub(super) fn leading_direction(train: &Train) -> Direction {
+    if train.direction == Direction::Backward { Direction::Backward } else { Direction::Forward }
 }

@@ -1,59 +1,65 @@
 //! One exchange: the track as it lies after so many axles, and the passages of trains over it, each computed once.
 
 use super::substructure::Substructure;
-use super::system::TrackSystem;
+use super::system::{Kept, TrackSystem};
 use super::track::{PassageOutcome, Unloaded};
+use super::{Block, Runner};
 use crate::scenario::Direction;
 use crate::solvers::track::TrackError;
+use rayon::prelude::*;
 
 /// The track at an axle count.
 pub(super) struct Exchange {
     pub axles: u64,
     /// Of every seat, m.
     pub settlement: Vec<f64>,
-    /// Whether the passage of `leading` is recorded.
-    recorded: bool,
-    leading: Direction,
+    /// Passages that are recorded, one of each kind of train, the leading one first; empty where nothing is.
+    shown: Vec<Runner>,
     pub unloaded: Option<Unloaded>,
-    forward: Option<PassageOutcome>,
-    backward: Option<PassageOutcome>,
+    /// In the order of the kinds of trains, forward before backward.
+    passages: Vec<(Runner, PassageOutcome)>,
 }
 
 impl Exchange {
-    /// The settled track, before any train runs over it. The passage in direction `leading` is the one that is recorded.
-    pub fn new(axles: u64, settlement: Vec<f64>, recorded: bool, leading: Direction) -> Self {
-        Exchange { axles, settlement, recorded, leading, unloaded: None, forward: None, backward: None }
+    /// The settled track, before any train runs over it. The passages `shown` are recorded.
+    pub fn new(axles: u64, settlement: Vec<f64>, shown: Vec<Runner>) -> Self {
+        Exchange { axles, settlement, shown, unloaded: None, passages: Vec::new() }
     }
 
-    /// Computes the passages that are missing, both directions at once.
-    pub fn ensure(&mut self, system: &TrackSystem<'_>, directions: &[Direction]) -> Result<(), TrackError> {
-        let missing = |direction| directions.contains(&direction) && self.of(direction).is_none();
-        let run = |direction: Direction| {
-            let recorded = self.recorded && direction == self.leading;
-            system.passage(self.axles, &self.settlement, direction, recorded)
+    /// Computes the passages that are missing, all at once.
+    pub fn ensure(&mut self, system: &TrackSystem<'_>, runners: &[Runner]) -> Result<(), TrackError> {
+        let missing: Vec<Runner> = runners.iter().copied().filter(|runner| self.of(*runner).is_none()).collect();
+        let run = |runner: &Runner| {
+            let kept = match self.shown.iter().position(|shown| shown == runner) {
+                Some(0) => Kept::Profile,
+                Some(_) => Kept::Histories,
+                None => Kept::Nothing,
+            };
+            system.passage(self.axles, &self.settlement, *runner, kept)
         };
-        let one = |direction| missing(direction).then(|| run(direction)).transpose();
-        let (forward, backward) = rayon::join(|| one(Direction::Forward), || one(Direction::Backward));
-        for (direction, passage) in [(Direction::Forward, forward?), (Direction::Backward, backward?)] {
-            let Some((unloaded, passage)) = passage else { continue };
-            self.unloaded = Some(unloaded); // the same for both: no train stands on it
-            match direction {
-                Direction::Backward => self.backward = Some(passage),
-                _ => self.forward = Some(passage),
+        let done: Vec<Result<(Unloaded, PassageOutcome), TrackError>> = missing.par_iter().map(run).collect();
+        for (runner, passage) in missing.into_iter().zip(done) {
+            let (unloaded, passage) = passage?;
+            // the same for all but the profile: no train stands on it
+            if self.unloaded.is_none() || self.shown.first() == Some(&runner) {
+                self.unloaded = Some(unloaded);
             }
+            self.passages.push((runner, passage));
         }
+        self.passages.sort_by_key(|(runner, _)| (runner.kind, runner.direction == Direction::Backward));
         Ok(())
     }
 
-    /// The passage in a direction, where it has been computed.
-    pub fn of(&self, direction: Direction) -> Option<&PassageOutcome> {
-        if direction == Direction::Backward { self.backward.as_ref() } else { self.forward.as_ref() }
+    /// A passage, where it has been computed.
+    pub fn of(&self, runner: Runner) -> Option<&PassageOutcome> {
+        self.passages.iter().find(|(of, _)| *of == runner).map(|(_, passage)| passage)
     }
 
-    /// The passage that a record shows.
-    pub fn recorded(&self) -> Option<(&Unloaded, Direction, &PassageOutcome)> {
-        let passage = self.of(self.leading).filter(|_| self.recorded)?;
-        Some((self.unloaded.as_ref()?, self.leading, passage))
+    /// The passages that a record shows, with the track before them; `None` where nothing is recorded.
+    pub fn recorded(&self) -> Option<(&Unloaded, Vec<(Runner, &PassageOutcome)>)> {
+        let shown: Vec<(Runner, &PassageOutcome)> =
+            self.shown.iter().filter_map(|runner| Some((*runner, self.of(*runner)?))).collect();
+        Some((self.unloaded.as_ref()?, shown)).filter(|(_, shown)| !shown.is_empty())
     }
 
     /// What its passages took.
@@ -65,14 +71,15 @@ impl Exchange {
     }
 
     pub fn passages(&self) -> impl Iterator<Item = &PassageOutcome> {
-        self.forward.iter().chain(&self.backward)
+        self.passages.iter().map(|(_, passage)| passage)
     }
 
-    /// What the substructure becomes when trains of these counts pass with the forces computed here.
-    pub fn load<'a>(&self, from: &Substructure<'a>, trains: &[(Direction, u64)]) -> Substructure<'a> {
+    /// What the substructure becomes when the trains of these blocks pass one after the other with the forces computed here;
+    /// those without a passage settle nothing.
+    pub fn load<'a>(&self, from: &Substructure<'a>, blocks: &[Block]) -> Substructure<'a> {
         let mut loaded = from.clone();
-        for (direction, count) in trains {
-            if let Some(passage) = self.of(*direction) {
+        for (runner, count) in blocks.iter().flat_map(|block| &block.runs) {
+            if let Some(passage) = self.of(*runner) {
                 loaded.load(&passage.peaks, *count);
             }
         }

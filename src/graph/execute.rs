@@ -4,10 +4,10 @@ use super::control::Control;
 use super::exchange::Exchange;
 use super::step::Measured;
 use super::substructure::{Substructure, SubstructureState, initial_settlement};
-use super::system::TrackSystem;
+use super::system::{Kept, TrackSystem};
 use super::track::{PassageOutcome, Unloaded};
-use super::{Block, Blocks, Graph, Schedule};
-use crate::scenario::{Direction, Update};
+use super::{Block, Blocks, Graph, Runner, Schedule};
+use crate::scenario::Update;
 use crate::solvers::track::TrackError;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -29,8 +29,8 @@ pub struct Checkpoint {
 pub trait Recorder {
     /// The track without a train, at an axle count that is recorded.
     fn unloaded(&mut self, axles: u64, state: &Unloaded);
-    /// The passage at a recorded count.
-    fn passage(&mut self, axles: u64, direction: Direction, passage: &PassageOutcome);
+    /// A passage at a recorded count; there is one of each kind of train, the leading one first.
+    fn passage(&mut self, axles: u64, runner: Runner, passage: &PassageOutcome);
     /// A block is done: the passages at its start, and the settlement of every seat before and after it, m. `block` is
     /// `None` for the passage after the last block.
     fn block(
@@ -41,7 +41,10 @@ pub trait Recorder {
         before: &[f64],
         after: &[f64],
     );
-    /// Settlement of every seat by each law, the driving one first, m: as built and after each block.
+    /// Seats are tamped: the settlement of every seat before and after it, m. What is recorded at that count has been told, and
+    /// shows the track before.
+    fn tamped(&mut self, _axles: u64, _seats: &[usize], _before: &[f64], _after: &[f64]) {}
+    /// Settlement of every seat by each law, the driving one first, m: as built, after each block and after each tamping.
     fn laws(&mut self, _axles: u64, _settlement: &[Vec<f64>]) {}
     /// Called after each block; a failure stops the run.
     fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<(), String>;
@@ -107,7 +110,8 @@ pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunErro
     let at = |cause: TrackError| RunError::Track { axles: 0, cause };
     let level = initial_settlement(&graph.track.track);
     let system = TrackSystem::new(graph).map_err(at)?;
-    let (_, passage) = system.passage(0, &level, blocks.leading_direction(), false).map_err(at)?;
+    let leading = Runner { kind: 0, direction: blocks.leading_direction() };
+    let (_, passage) = system.passage(0, &level, leading, Kept::Nothing).map_err(at)?;
     Ok(Some(passage))
 }
 
@@ -141,15 +145,21 @@ impl<'a> Run<'a> {
         if self.done == 0 {
             self.recorder.laws(0, &self.substructure.settlement_by_law());
         }
-        while here.axles < self.blocks.total {
+        loop {
             self.show(&here);
+            if here.axles >= self.blocks.total {
+                break;
+            }
+            if self.blocks.tamped_after(here.axles).next().is_some() {
+                here = self.tamp(here.axles)?;
+            }
             let done = match self.blocks.update {
                 Update::Adaptive { tolerance, cap } => self.adaptive(&mut here, tolerance, cap)?,
                 Update::Fixed { .. } | Update::Geometric { .. } => self.prescribed(&mut here)?,
             };
             let after = done.after.settlement();
-            let used = self.blocks.passages(&done.block);
-            let passages: Vec<&PassageOutcome> = used.iter().filter_map(|(d, _)| here.of(*d)).collect();
+            let passages: Vec<&PassageOutcome> =
+                done.block.runs.iter().filter_map(|(runner, _)| here.of(*runner)).collect();
             let block = Some((&done.block, &done.measured));
             self.recorder.block(here.axles, block, &passages, &here.settlement, &after);
             self.substructure = done.after;
@@ -165,7 +175,6 @@ impl<'a> Run<'a> {
                 None => self.arrive(axles, &self.substructure)?,
             };
         }
-        self.show(&here);
         let passages: Vec<&PassageOutcome> = here.passages().collect();
         self.recorder.block(here.axles, None, &passages, &here.settlement, &here.settlement);
         self.recorder.progress(self.done as u64 + 1, self.done as u64 + 1);
@@ -174,34 +183,63 @@ impl<'a> Run<'a> {
 
     /// The track after so many axles, with the passages that the next block is expected to need.
     pub fn arrive(&self, axles: u64, substructure: &Substructure<'_>) -> Result<Exchange, RunError> {
-        let directions: Vec<Direction> = if axles == self.blocks.total {
-            vec![self.blocks.leading_direction()]
+        let adaptive = matches!(self.blocks.update, Update::Adaptive { .. });
+        let mut runners = if axles == self.blocks.total {
+            self.blocks.leading()
+        } else if adaptive && self.blocks.tamped_after(axles).next().is_some() {
+            Vec::new() // no train runs before the track is lifted
         } else {
-            let wanted = self.blocks.wanted(axles).map(|wanted| self.control.bounded(wanted));
-            let block = self.blocks.block(axles, wanted.unwrap_or_else(|| self.blocks.trains_left(axles)));
-            self.blocks.passages(&block).into_iter().map(|(direction, _)| direction).collect()
+            self.expected(axles)
         };
-        // a block of one train decides which direction comes first
-        let leading = if axles == self.blocks.total || directions.len() > 1 {
-            self.blocks.leading_direction()
-        } else {
-            directions.first().copied().unwrap_or(Direction::Forward)
-        };
-        let recorded = self.blocks.recorded.contains(&axles);
-        let mut exchange = Exchange::new(axles, substructure.settlement(), recorded, leading);
-        self.ensure(&mut exchange, &directions)?;
+        let shown = if self.blocks.recorded.contains(&axles) { self.shown(&runners) } else { Vec::new() };
+        runners.extend(shown.iter().filter(|shown| !runners.contains(shown)).copied().collect::<Vec<_>>());
+        let mut exchange = Exchange::new(axles, substructure.settlement(), shown);
+        self.ensure(&mut exchange, &runners)?;
         Ok(exchange)
     }
 
-    pub fn ensure(&self, exchange: &mut Exchange, directions: &[Direction]) -> Result<(), RunError> {
+    /// Passages that the next block is expected to need.
+    fn expected(&self, axles: u64) -> Vec<Runner> {
+        let wanted = self.blocks.wanted(axles).map(|wanted| self.control.bounded(wanted));
+        self.blocks.block(axles, wanted.unwrap_or_else(|| self.blocks.trains_left(axles))).runners()
+    }
+
+    /// Tamps what is due, and arrives at the same count on the track as it lies then.
+    fn tamp(&mut self, axles: u64) -> Result<Exchange, RunError> {
+        let before = self.substructure.settlement();
+        let mut seats = Vec::new();
+        for tamping in self.blocks.tamped_after(axles) {
+            self.substructure.tamp(&tamping.seats, tamping.left);
+            seats.extend(&tamping.seats);
+        }
+        let after = self.substructure.settlement();
+        self.recorder.tamped(axles, &seats, &before, &after);
+        self.recorder.laws(axles, &self.substructure.settlement_by_law());
+        let mut exchange = Exchange::new(axles, after, Vec::new());
+        self.ensure(&mut exchange, &self.expected(axles))?;
+        Ok(exchange)
+    }
+
+    /// The passages that a record shows: one of each kind of train, in its leading direction unless only the other one runs.
+    fn shown(&self, runners: &[Runner]) -> Vec<Runner> {
+        let of = |leading: Runner| {
+            let mut same = runners.iter().filter(|runner| runner.kind == leading.kind);
+            let (first, second) = (same.next().copied(), same.next());
+            first.filter(|_| second.is_none()).unwrap_or(leading)
+        };
+        self.blocks.leading().into_iter().map(of).collect()
+    }
+
+    pub fn ensure(&self, exchange: &mut Exchange, runners: &[Runner]) -> Result<(), RunError> {
         let axles = exchange.axles;
-        exchange.ensure(&self.system, directions).map_err(|cause| RunError::Track { axles, cause })
+        exchange.ensure(&self.system, runners).map_err(|cause| RunError::Track { axles, cause })
     }
 
     fn show(&mut self, here: &Exchange) {
-        if let Some((unloaded, direction, passage)) = here.recorded() {
-            self.recorder.unloaded(here.axles, unloaded);
-            self.recorder.passage(here.axles, direction, passage);
+        let Some((unloaded, passages)) = here.recorded() else { return };
+        self.recorder.unloaded(here.axles, unloaded);
+        for (runner, passage) in passages {
+            self.recorder.passage(here.axles, runner, passage);
         }
     }
 
@@ -209,7 +247,7 @@ impl<'a> Run<'a> {
     fn blocks_left(&self, axles: u64, last: u64) -> u64 {
         let left = self.blocks.total - axles;
         match self.blocks.update {
-            Update::Fixed { axles } => left.div_ceil(axles),
+            Update::Fixed { axles } => left.div_ceil(axles.max(1)),
             // blocks grow with the axles so far, or keep their length if that is not so
             Update::Geometric { .. } | Update::Adaptive { .. } => {
                 let growth = (last as f64 / axles as f64).min(1.0);

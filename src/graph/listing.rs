@@ -80,22 +80,25 @@ impl Graph {
             format!("section {}: {} m, {seats} seats {foot}", s.name, number(s.end - s.start))
         }));
         if let Schedule::Blocks(blocks) = &self.schedule {
-            let plan = &blocks.passage;
-            details.push(format!(
-                "train {}: {} vehicles, {} axles, {} km/h",
-                blocks.train.name,
-                blocks.train.vehicles.len(),
-                blocks.train.axles(),
-                number(*blocks.train.speed * 3.6)
-            ));
-            details.push(format!(
-                "passage: wheels from {} m to {} m, {}, step {} ms{}",
-                number(plan.left),
-                number(plan.right),
-                integrator(plan.integrator),
-                number(plan.time_step * 1e3),
-                if plan.adaptive.is_some() { " or shorter" } else { "" }
-            ));
+            for ((train, plan), share) in blocks.kinds().zip(&blocks.sequence.shares) {
+                let count =
+                    if blocks.others.is_empty() { String::new() } else { format!(", {} of them", share.trains) };
+                details.push(format!(
+                    "train {}: {} vehicles, {} axles, {} km/h{count}",
+                    train.name,
+                    train.vehicles.len(),
+                    train.axles(),
+                    number(*train.speed * 3.6)
+                ));
+                details.push(format!(
+                    "passage: wheels from {} m to {} m, {}, step {} ms{}",
+                    number(plan.left),
+                    number(plan.right),
+                    integrator(plan.integrator),
+                    number(plan.time_step * 1e3),
+                    if plan.adaptive.is_some() { " or shorter" } else { "" }
+                ));
+            }
         }
         Node { name: "track", model: "2D finite element track with multibody vehicles, one Newton".into(), details }
     }

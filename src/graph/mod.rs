@@ -26,7 +26,7 @@ pub use substructure::SubstructureState;
 pub use system::{RUNAWAY, Steps};
 pub use track::{PassageOutcome, RailPlace, RailPoint, Sample, SeatOutcome, Target, Unloaded, UnloadedSeat};
 
-use crate::scenario::{Beam, Direction, Integrator, Record, StaticLoad, Track, Train, Update};
+use crate::scenario::{Beam, Direction, Integrator, Record, Sequence, StaticLoad, Tamping, Track, Train, Update};
 use crate::solvers::settlement::Law;
 use serde::{Deserialize, Serialize};
 
@@ -80,14 +80,23 @@ pub enum Schedule {
 /// The loop over axles.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Blocks {
+    /// The train that leads the traffic, and how its passages are integrated.
     pub train: Train,
     pub passage: PassagePlan,
+    /// Trains of other kinds.
+    pub others: Vec<(Train, PassagePlan)>,
+    /// Which train runs when.
+    pub sequence: Sequence,
     /// How long the blocks are.
     pub update: Update,
     /// Whether a fixed or geometric block that overshoots is done again in halves. Off, the oscillation shows.
     pub cure: bool,
     /// Axle counts at which the state of the track is recorded, ascending.
     pub recorded: Vec<u64>,
+    pub tampings: Vec<Tamping>,
+    /// Axle counts at which a block ends, ascending: those, the counts of tampings and those at which another kind of train
+    /// begins.
+    pub stops: Vec<u64>,
     /// Axles of the whole run.
     pub total: u64,
 }
@@ -109,6 +118,12 @@ pub struct PassagePlan {
 }
 
 impl PassagePlan {
+    /// Chainages between which every wheel of a train comes and goes, m.
+    pub fn passed(&self, train: &Train) -> std::ops::Range<f64> {
+        let base = train.wheel_base();
+        self.left + base + APPROACH..self.right - base - APPROACH
+    }
+
     /// The shortest step that a passage may take, s.
     pub fn shortest_step(&self) -> f64 {
         self.time_step * self.adaptive.map_or(1.0, |steps| 0.5f64.powi(steps.halvings as i32))
@@ -129,14 +144,22 @@ pub struct AdaptiveSteps {
 }
 
 /// Trains that run between two exchanges.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Block {
     /// Axles that have passed before.
     pub before: u64,
     pub axles: u64,
-    /// Trains as x grows, and the other way.
-    pub forward: u64,
-    pub backward: u64,
+    /// How many trains of each kind run in each direction.
+    pub runs: Vec<(Runner, u64)>,
+}
+
+/// Trains that do the same to the track as it lies: one passage stands for all of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Runner {
+    /// Index of the kind of train in the traffic, 0 leads it.
+    pub kind: usize,
+    /// Forward or backward.
+    pub direction: Direction,
 }
 
 /// What a pass did and why.
@@ -162,14 +185,13 @@ pub struct Estimate {
 const APPROACH: f64 = 1.0;
 
 impl Blocks {
-    /// Chainages between which every wheel of a train comes and goes: seats there see the whole train.
+    /// Chainages between which every wheel of the leading train comes and goes: seats there see the whole train.
     pub fn passed(&self) -> std::ops::Range<f64> {
-        let base = self.train.wheel_base();
-        self.passage.left + base + APPROACH..self.passage.right - base - APPROACH
+        self.passage.passed(&self.train)
     }
 
-    /// The direction of the passage that shows the state after the last block.
+    /// The direction of the passage of the leading train that shows a state of the track.
     pub fn leading_direction(&self) -> Direction {
-        if self.train.direction == Direction::Backward { Direction::Backward } else { Direction::Forward }
+        blocks::leading_direction(&self.train)
     }
 }

@@ -1,11 +1,11 @@
 //! One block: as long as the scene prescribes and its exchange stays calm, or as long as its error allows.
 
-use super::Block;
 use super::control::largest_within;
 use super::exchange::{Exchange, Work};
 use super::execute::{Run, RunError};
 use super::oscillation::{amplification, sawtooth};
 use super::substructure::Substructure;
+use super::{Block, Runner};
 use crate::scenario::Direction;
 
 /// What the exchange of a block was worth, and what it took besides the passages at its start.
@@ -50,13 +50,11 @@ impl<'a> Run<'a> {
         loop {
             let trains = self.control.bounded(wanted);
             let block = self.blocks.block(here.axles, trains);
-            let shares = self.blocks.passages(&block);
-            let directions: Vec<Direction> = shares.iter().map(|(direction, _)| *direction).collect();
-            self.ensure(here, &directions)?;
-            let after = here.load(&self.substructure, &shares);
+            self.ensure(here, &block.runners())?;
+            let after = here.load(&self.substructure, &self.blocks.parts(&block));
             let next = self.arrive(here.axles + block.axles, &after)?;
             let settled = difference(&after.settlement(), &here.settlement);
-            let change = self.change(here, &next, trains);
+            let change = self.change(here, &next, &block);
             measured.overshoot = change.as_ref().and_then(|change| amplification(&settled, change));
             measured.sawtooth = sawtooth(&self.runs, &settled);
             // the mean of the forces of both ends would settle half the change more
@@ -74,12 +72,22 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// How much more a block of so many trains from `here` would settle with the forces of `there`, m; `None` where no
-    /// direction was run at both.
-    fn change(&self, here: &Exchange, there: &Exchange, trains: u64) -> Option<Vec<f64>> {
-        let both = |direction: &Direction| here.of(*direction).is_some() && there.of(*direction).is_some();
-        let direction = [Direction::Forward, Direction::Backward].into_iter().find(both)?;
-        let after = |exchange: &Exchange| exchange.load(&self.substructure, &[(direction, trains)]).settlement();
+    /// How much more the trains of a block from `here` would settle with the forces of `there`, m: those of each kind all in
+    /// a direction that was run at both. `None` where none was.
+    fn change(&self, here: &Exchange, there: &Exchange, block: &Block) -> Option<Vec<f64>> {
+        let mut runs: Vec<(Runner, u64)> = Vec::new();
+        for kind in 0..=self.blocks.others.len() {
+            let trains = block.runs.iter().filter(|(runner, _)| runner.kind == kind).map(|(_, trains)| trains).sum();
+            let both = |runner: &Runner| here.of(*runner).is_some() && there.of(*runner).is_some();
+            let directions = [Direction::Forward, Direction::Backward].into_iter();
+            let runner = directions.map(|direction| Runner { kind, direction }).find(both);
+            runs.extend(runner.filter(|_| trains > 0).map(|runner| (runner, trains)));
+        }
+        if runs.is_empty() {
+            return None;
+        }
+        let block = [Block { runs, ..block.clone() }];
+        let after = |exchange: &Exchange| exchange.load(&self.substructure, &block).settlement();
         Some(difference(&after(there), &after(here)))
     }
 
@@ -95,10 +103,8 @@ impl<'a> Run<'a> {
         loop {
             let trains = self.choose(here, most);
             let block = self.blocks.block(here.axles, trains);
-            let shares = self.blocks.passages(&block);
-            let directions: Vec<Direction> = shares.iter().map(|(direction, _)| *direction).collect();
-            self.ensure(here, &directions)?;
-            let whole = here.load(&self.substructure, &shares);
+            self.ensure(here, &block.runners())?;
+            let whole = here.load(&self.substructure, &self.blocks.parts(&block));
             let settled = difference(&whole.settlement(), &here.settlement);
             if trains == 1 {
                 measured.sawtooth = sawtooth(&self.runs, &settled);
@@ -106,21 +112,21 @@ impl<'a> Run<'a> {
             }
 
             let half = self.blocks.block(here.axles, trains / 2);
-            let begun = here.load(&self.substructure, &self.blocks.passages(&half));
+            let begun = here.load(&self.substructure, &self.blocks.parts(&half));
             let axles = half.before + half.axles;
             // a shorter block after a rejected one may have the same middle
             let mut between = middle
                 .take()
                 .filter(|middle| middle.axles == axles)
-                .unwrap_or_else(|| Exchange::new(axles, begun.settlement(), false, self.blocks.leading_direction()));
+                .unwrap_or_else(|| Exchange::new(axles, begun.settlement(), Vec::new()));
             let known = between.work();
-            self.ensure(&mut between, &directions)?;
+            self.ensure(&mut between, &block.runners())?;
             measured.add(&between, known);
             let rest = self.blocks.block(axles, trains.div_ceil(2));
-            let halves = between.load(&begun, &self.blocks.passages(&rest)).settlement();
+            let halves = between.load(&begun, &self.blocks.parts(&rest)).settlement();
             let error = largest(&difference(&whole.settlement(), &halves));
             let moved = difference(&between.settlement, &here.settlement);
-            let change = self.change(here, &between, trains);
+            let change = self.change(here, &between, &block);
             measured.overshoot = change.and_then(|change| amplification(&moved, &change));
             self.control.learn(error, largest(&settled), tolerance, cap);
             if trains > 2 && (error > tolerance || measured.overshoot.is_some_and(|a| a > UNSTABLE)) {
@@ -132,8 +138,8 @@ impl<'a> Run<'a> {
             measured.error = if trains > 2 { error } else { 0.0 };
             let one = self.blocks.block(here.axles, 1);
             let others = self.blocks.block(here.axles + one.axles, trains - 1);
-            let first = here.load(&self.substructure, &self.blocks.passages(&one));
-            let after = between.load(&first, &self.blocks.passages(&others));
+            let first = here.load(&self.substructure, &self.blocks.parts(&one));
+            let after = between.load(&first, &self.blocks.parts(&others));
             measured.sawtooth = sawtooth(&self.runs, &difference(&after.settlement(), &here.settlement));
             return Ok(Done { block, measured, after, next: None });
         }
@@ -154,11 +160,11 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The most that any seat settles under so many trains with the forces of the start, m.
+    /// The most that any seat settles under so many trains with the forces of the start, m. Of unlike trains their order
+    /// does not matter here.
     fn predicted(&self, here: &Exchange, trains: u64) -> f64 {
-        let shares = self.blocks.passages(&self.blocks.block(here.axles, trains));
-        let known: Vec<(Direction, u64)> = shares.into_iter().filter(|(d, _)| here.of(*d).is_some()).collect();
-        largest(&difference(&here.load(&self.substructure, &known).settlement(), &here.settlement))
+        let block = [self.blocks.block(here.axles, trains)];
+        largest(&difference(&here.load(&self.substructure, &block).settlement(), &here.settlement))
     }
 }
 

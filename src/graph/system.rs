@@ -5,8 +5,8 @@ use super::profile;
 use super::sampler::Sampler;
 use super::substructure::initial_settlement;
 use super::track::{PassageOutcome, RailPoint, SeatOutcome, Unloaded, UnloadedSeat};
-use super::{AdaptiveSteps, Blocks, Graph, Schedule, TrackNode};
-use crate::scenario::{Direction, Record, StaticLoad, Target};
+use super::{AdaptiveSteps, Blocks, Graph, Runner, Schedule, TrackNode};
+use crate::scenario::{Direction, Record, StaticLoad, Target, Train};
 use crate::solvers::settlement::Peak;
 use crate::solvers::track::{
     Envelope, Ladder, Loads, Passage, Run, Scheme, StaticState, Stepper, Track, TrackError, TrackLevel, solve_static,
@@ -19,7 +19,17 @@ pub(super) struct TrackSystem<'a> {
     node: &'a TrackNode,
     records: &'a [Record],
     track: Arc<Track>,
-    traffic: Option<(&'a Blocks, Steps)>,
+    /// With the steps of each kind of train.
+    traffic: Option<(&'a Blocks, Vec<Arc<Steps>>)>,
+}
+
+/// What a passage keeps beside its outcome.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kept {
+    Nothing,
+    Histories,
+    /// Histories, and the unloaded rail under the mean wheel of the train.
+    Profile,
 }
 
 /// The time steps of all passages, factored once.
@@ -47,6 +57,20 @@ impl Steps {
     }
 }
 
+/// The steps of every kind of train; those that take the same ones share their factors.
+fn steps_of_kinds(blocks: &Blocks, track: &Arc<Track>) -> Result<Vec<Arc<Steps>>, TrackError> {
+    let mut steps: Vec<Arc<Steps>> = Vec::new();
+    let plans: Vec<_> = blocks.kinds().map(|(_, plan)| (plan.integrator, plan.time_step, plan.adaptive)).collect();
+    for (kind, plan) in plans.iter().enumerate() {
+        let (integrator, time_step, adaptive) = *plan;
+        steps.push(match plans[..kind].iter().position(|earlier| earlier == plan) {
+            Some(same) => steps[same].clone(),
+            None => Arc::new(Steps::new(track, scheme(integrator, time_step)?, adaptive)?),
+        });
+    }
+    Ok(steps)
+}
+
 /// Seats whose mean stands for those near the ends of the model, see [`TrackSystem::complete`].
 const NEIGHBOURS: usize = 10;
 
@@ -58,10 +82,7 @@ impl<'a> TrackSystem<'a> {
         let track = Arc::new(Track::new(model(&graph.track))?);
         let traffic = match &graph.schedule {
             Schedule::Static { .. } => None,
-            Schedule::Blocks(blocks) => {
-                let scheme = scheme(blocks.passage.integrator, blocks.passage.time_step)?;
-                Some((&**blocks, Steps::new(&track, scheme, blocks.passage.adaptive)?))
-            }
+            Schedule::Blocks(blocks) => Some((&**blocks, steps_of_kinds(blocks, &track)?)),
         };
         Ok(TrackSystem { node: &graph.track, records: &graph.records, track, traffic })
     }
@@ -95,33 +116,35 @@ impl<'a> TrackSystem<'a> {
         Unloaded { rail: rail.collect(), seats: seats.collect(), profile: Vec::new() }
     }
 
-    /// One train over the settled track, and the track at rest before it. `recorded` asks for histories.
+    /// One train over the settled track, and the track at rest before it.
     pub fn passage(
         &self,
         axles: u64,
         settlement: &[f64],
-        direction: Direction,
-        recorded: bool,
+        runner: Runner,
+        kept: Kept,
     ) -> Result<(Unloaded, PassageOutcome), TrackError> {
         let Some((blocks, steps)) = &self.traffic else {
             return Err(TrackError::Parameter { name: "trains", value: 0.0, expected: "of 1 or more" });
         };
-        let train = train(&blocks.train, direction);
-        let (left, right, base) = (blocks.passage.left, blocks.passage.right, train.wheel_base());
+        let ((kind, plan), steps, direction) = (blocks.kind(runner.kind), &steps[runner.kind], runner.direction);
+        let train = train(kind, direction);
+        let (left, right, base) = (plan.left, plan.right, train.wheel_base());
         let (start, finish) =
             if direction == Direction::Backward { (right - base, left) } else { (left + base, right) };
         let level = level(self.node, settlement);
-        let motion = motion(&blocks.train);
+        let motion = motion(kind);
         let run = Run { train: &train, start, finish, motion: &motion };
         let mut passage = steps.begin(&level, run)?;
         let mut unloaded = self.at_rest(passage.unloaded(), settlement);
-        if recorded {
-            let load = blocks.train.mean_wheel_mass() * self.node.gravity;
+        let recorded = kept != Kept::Nothing;
+        if kept == Kept::Profile {
+            let load = kind.mean_wheel_mass() * self.node.gravity;
             unloaded.profile = profile::profile(&self.track, &level, passage.unloaded(), load, left..=right)?;
         }
         let mut envelope = Envelope::default();
         let wanted = if recorded { self.records } else { &[] };
-        let mut sampler = Sampler::new(wanted, axles, blocks.passage.sample_every, recorded);
+        let mut sampler = Sampler::new(wanted, axles, plan.sample_every, recorded);
         let counters = passage.run(&mut (&mut envelope, &mut sampler))?;
 
         let seats = settlement.len();
@@ -139,7 +162,7 @@ impl<'a> TrackSystem<'a> {
             wheels.map(|(force, deflection)| Peak { force: *force, deflection: *deflection }).collect()
         };
         let mut peaks: Vec<Vec<Peak>> = (0..seats).map(peaks_of).collect();
-        self.complete(blocks.passed(), &mut outcomes, &mut peaks);
+        self.complete(plan.passed(kind), &mut outcomes, &mut peaks);
         let largest = |range: &[(f64, f64)]| range.iter().map(|r| r.1).fold(f64::NEG_INFINITY, f64::max);
         let outcome = PassageOutcome {
             seats: outcomes,
@@ -148,18 +171,19 @@ impl<'a> TrackSystem<'a> {
             min_wheel_force: envelope.wheel_forces.iter().map(|r| r.0).fold(f64::INFINITY, f64::min),
             max_rail_moment: largest(&envelope.rail_moments),
             rail_moments: envelope.rail_moments,
+            rail_displacements: envelope.rail_displacements,
             time_steps: counters.steps as u64,
             newton_iterations: counters.iterations as u64,
             samples: sampler.samples,
         };
-        self.bounded(blocks, &outcome)?;
+        self.bounded(kind, &outcome)?;
         Ok((unloaded, outcome))
     }
 
     /// Refuses an outcome that has run away: it would settle the track by forces that no track bears.
-    fn bounded(&self, blocks: &Blocks, outcome: &PassageOutcome) -> Result<(), TrackError> {
-        let mass: f64 = blocks.train.vehicles.iter().map(|v| v.mass()).sum();
-        let times = outcome.max_wheel_force / (mass * self.node.gravity / blocks.train.axles() as f64);
+    fn bounded(&self, train: &Train, outcome: &PassageOutcome) -> Result<(), TrackError> {
+        let mass: f64 = train.vehicles.iter().map(|v| v.mass()).sum();
+        let times = outcome.max_wheel_force / (mass * self.node.gravity / train.axles() as f64);
         if times <= RUNAWAY {
             return Ok(());
         }

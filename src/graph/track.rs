@@ -64,6 +64,8 @@ pub struct PassageOutcome {
     pub max_rail_moment: f64,
     /// Smallest and largest sagging moment of every rail node, N m.
     pub rail_moments: Vec<(f64, f64)>,
+    /// Smallest and largest downward displacement of every rail node from the unloaded state, m.
+    pub rail_displacements: Vec<(f64, f64)>,
     pub time_steps: u64,
     pub newton_iterations: u64,
     /// Histories; empty where the passage is not recorded.

@@ -34,8 +34,9 @@ mod winkler;
 pub use winkler::Winkler;
 
 use crate::diag::{Code, Diagnostic, Severity};
-use crate::graph::Graph;
+use crate::graph::{Graph, Schedule};
 use crate::scenario::{Loading, Scenario, SettlementLaw};
+use std::borrow::Cow;
 
 type Rule = fn(&Scenario, &Graph) -> Vec<Diagnostic>;
 
@@ -66,11 +67,17 @@ const RULES: [Rule; 24] = [
     small_volume::check,
 ];
 
-/// Applies every rule, at the level that the scene gives it.
+/// Applies every rule, at the level that the scene gives it. Rules know one train: of a mix each is asked in turn.
 pub fn lint(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    RULES
-        .iter()
-        .flat_map(|rule| rule(scenario, graph))
+    let mut found = Vec::new();
+    for rule in RULES {
+        for (scenario, graph) in led_by_each(scenario, graph) {
+            let new: Vec<Diagnostic> = rule(&scenario, &graph).into_iter().filter(|d| !found.contains(d)).collect();
+            found.extend(new);
+        }
+    }
+    found
+        .into_iter()
         .filter(|d| !scenario.allow.iter().any(|(rule, _)| Some(rule.as_str()) == d.code.rule()))
         .filter(|d| !d.code.is_silent() || asked_for(scenario, d.code))
         .map(|d| match d.code.rule() {
@@ -82,6 +89,27 @@ pub fn lint(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
 
 fn asked_for(scenario: &Scenario, rule: Code) -> bool {
     scenario.warn.iter().chain(&scenario.deny).any(|named| Some(named.as_str()) == rule.rule())
+}
+
+/// The scene as each of its trains would lead it.
+fn led_by_each<'a>(scenario: &'a Scenario, graph: &'a Graph) -> Vec<(Cow<'a, Scenario>, Cow<'a, Graph>)> {
+    let mut views = vec![(Cow::Borrowed(scenario), Cow::Borrowed(graph))];
+    let others = match &graph.schedule {
+        Schedule::Blocks(blocks) => blocks.others.len(),
+        Schedule::Static { .. } => 0,
+    };
+    for kind in 1..=others {
+        let (mut scenario, mut graph) = (scenario.clone(), graph.clone());
+        if let Some(Loading::Traffic(traffic)) = &mut scenario.loading {
+            std::mem::swap(&mut traffic.train, &mut traffic.others[kind - 1]);
+            traffic.counts.swap(0, kind);
+        }
+        if let Schedule::Blocks(blocks) = &mut graph.schedule {
+            **blocks = blocks.led_by(kind);
+        }
+        views.push((Cow::Owned(scenario), Cow::Owned(graph)));
+    }
+    views
 }
 
 /// The law that drives the run, then those beside it.

@@ -46,7 +46,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
 /// Settlement of a fresh support under the equal wheels of one block, m.
 fn first_block(law: &Law, peak: Peak, block: &Block) -> f64 {
     let mut support = law.fresh();
-    let trains = (block.forward + block.backward).max(1);
+    let trains = block.trains().max(1);
     law.load(&mut support, &vec![peak; (block.axles / trains) as usize], trains);
     law.settlement(&support)
 }

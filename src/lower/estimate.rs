@@ -1,7 +1,7 @@
 //! What a run will take, before it runs: counts of unknowns and steps, times a measured cost.
 
-use crate::graph::{Blocks, Estimate, Schedule, TrackNode};
-use crate::scenario::Direction;
+use crate::graph::{Blocks, Estimate, PassagePlan, Schedule, TrackNode};
+use crate::scenario::{Direction, Train};
 
 /// Seconds a step and unknown of one passage on one core, as `cargo bench --bench track_passage` shows.
 const SECONDS: f64 = 2.5e-8;
@@ -13,9 +13,14 @@ pub(super) fn estimate(node: &TrackNode, schedule: &Schedule) -> Estimate {
         Schedule::Static { .. } => Estimate { unknowns, passages: 0, steps: 0, seconds: 0.01, bytes },
         Schedule::Blocks(b) => {
             let passages = passages(b);
-            let run = b.passage.right - b.passage.left - b.train.wheel_base();
-            let steps = (run / *b.train.speed / b.passage.usual_step()).ceil() as u64 * passages;
-            let unknowns = unknowns + 10 * b.train.vehicles.len();
+            let kinds = b.others.len() as u64 + 1;
+            let steps_of = |(train, plan): (&Train, &PassagePlan)| {
+                let run = plan.right - plan.left - train.wheel_base();
+                (run / *train.speed / plan.usual_step()).ceil() as u64
+            };
+            let steps = b.kinds().map(steps_of).sum::<u64>() * passages / kinds;
+            let vehicles = b.kinds().map(|(train, _)| train.vehicles.len()).max().unwrap_or(0);
+            let unknowns = unknowns + 10 * vehicles;
             Estimate { unknowns, passages, steps, seconds: steps as f64 * unknowns as f64 * SECONDS, bytes }
         }
     }
@@ -24,11 +29,16 @@ pub(super) fn estimate(node: &TrackNode, schedule: &Schedule) -> Estimate {
 /// Passages of a run; of an adaptive one an expectation, from what runs of the shipped scenes took.
 pub(super) fn passages(blocks: &Blocks) -> u64 {
     match blocks.planned() {
-        Some(planned) => planned.iter().map(|block| blocks.passages(block).len() as u64).sum::<u64>() + 1,
+        Some(planned) => {
+            planned.iter().map(|block| block.runs.len() as u64).sum::<u64>() + blocks.others.len() as u64 + 1
+        }
         None => {
-            let trains = blocks.total as f64 / blocks.train.axles() as f64;
-            let directions = if blocks.train.direction == Direction::Both { 2 } else { 1 };
-            (directions * (1.0 + 3.0 * trains.ln()).ceil() as u64).min(directions * trains as u64) + 1
+            let trains = blocks.sequence.trains();
+            let directions = |train: &Train| if train.direction == Direction::Both { 2 } else { 1 };
+            let directions: u64 = blocks.kinds().map(|(train, _)| directions(train)).sum();
+            (directions * (1.0 + 3.0 * (trains as f64).ln()).ceil() as u64).min(directions * trains)
+                + blocks.others.len() as u64
+                + 1
         }
     }
 }

@@ -19,12 +19,17 @@ const HALVINGS: u32 = 5;
 /// Interval of histories where nothing is said, s.
 const SAMPLE: f64 = 5e-4;
 
-pub(super) fn plan(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<PassagePlan> {
+/// The passage of a train; `named` says of which train the decisions are.
+pub(super) fn plan(pass: &mut Pass, scenario: &Scenario, train: &Train, named: bool) -> Option<PassagePlan> {
+    let first = pass.decisions.len();
     let (left, right) = ends(pass, scenario, train)?;
     let (time_step, adaptive) = match scenario.solve.time_step {
         TimeStep::Adaptive { tolerance } => varying_steps(pass, scenario, train, *tolerance),
         _ => (time_step(pass, scenario, train)?, None),
     };
+    for decision in pass.decisions[first..].iter_mut().filter(|_| named) {
+        decision.what = format!("of `{}`: {}", train.name, decision.what);
+    }
     let every = scenario.records.iter().filter_map(|r| r.every).fold(SAMPLE, f64::min);
     let sample_every = (every / time_step).round().max(1.0) as u64;
     Some(PassagePlan { left, right, time_step, adaptive, integrator: scenario.solve.integrator, sample_every })

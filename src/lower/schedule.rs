@@ -2,34 +2,78 @@
 
 use super::{Pass, estimate, passage};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::graph::Blocks;
-use crate::scenario::{Scenario, Traffic, Train, Update};
+use crate::graph::{Blocks, PassagePlan};
+use crate::scenario::{Order, Scenario, Share, Traffic, Train, Update};
+use crate::units::number;
 
 pub(super) fn blocks(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic) -> Option<Blocks> {
-    let train = &traffic.train;
-    let plan = passage::plan(pass, scenario, train);
+    let plans: Vec<Option<PassagePlan>> =
+        traffic.trains().map(|train| passage::plan(pass, scenario, train, traffic.is_mixed())).collect();
     let total = *traffic.total;
-    let axles = train.axles();
-    let mut sound = divides(pass, total, train, "the run", traffic.total.origin.span());
     let mut update = scenario.solve.update;
-    match &mut update {
-        // nobody chose the default for this train
-        Update::Geometric { first, .. } if scenario.solve.update_span.is_none() => {
-            *first = first.div_ceil(axles) * axles
-        }
-        Update::Geometric { first, .. } => {
-            sound &= divides(pass, *first, train, "the first block", scenario.solve.update_span)
-        }
-        Update::Fixed { axles } => {
-            sound &= divides(pass, *axles, train, "an update interval", scenario.solve.update_span)
-        }
-        Update::Adaptive { .. } => {}
-    }
+    // counts of a mix have gone to the nearest train
+    let mut sound = traffic.is_mixed() || whole_trains(pass, scenario, traffic, &mut update);
     let mut recorded: Vec<u64> =
         scenario.records.iter().flat_map(|r| r.after.iter().copied()).chain([0, total]).collect();
     recorded.sort_unstable();
     recorded.dedup();
-    for count in recorded.iter().filter(|c| *c % axles != 0 && **c != total) {
+    if !traffic.is_mixed() {
+        sound &= between_trains(pass, &recorded, total, &traffic.train);
+    }
+    if !sound {
+        return None;
+    }
+    let sequence = traffic.sequence();
+    let turns = sequence.turns().into_iter().map(|position| sequence.axles(position));
+    let tamped = scenario.tampings.iter().flat_map(|tamping| tamping.after.iter().copied());
+    let mut stops: Vec<u64> = recorded.iter().copied().chain(turns).chain(tamped).collect();
+    stops.sort_unstable();
+    stops.dedup();
+    let mut plans = plans.into_iter();
+    let (train, passage) = (traffic.train.clone(), plans.next()??);
+    let others = traffic.others.iter().cloned().zip(plans).map(|(train, plan)| Some((train, plan?)));
+    let others: Vec<_> = others.collect::<Option<_>>()?;
+    let tampings = scenario.tampings.clone();
+    let blocks = Blocks { train, passage, others, sequence, update, cure: true, recorded, tampings, stops, total };
+    for tamping in &blocks.tampings {
+        let after: Vec<String> = tamping.after.iter().map(u64::to_string).collect();
+        let what = format!("{} sleepers after {} axles", tamping.seats.len(), after.join(", "));
+        let why = format!(
+            "`{}` leaves {} % of their settlement; their law begins afresh",
+            tamping.name,
+            number(100.0 * tamping.left)
+        );
+        pass.decide("tamping", what, why);
+    }
+    if traffic.is_mixed() {
+        mix(pass, &blocks);
+    }
+    share(pass, &blocks);
+    Some(blocks)
+}
+
+/// Whether total and blocks of traffic of one kind are whole trains.
+fn whole_trains(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic, update: &mut Update) -> bool {
+    let (train, span) = (&traffic.train, scenario.solve.update_span);
+    let sound = divides(pass, *traffic.total, train, "the run", traffic.total.origin.span());
+    let blocks = match update {
+        // nobody chose the default for this train
+        Update::Geometric { first, .. } if span.is_none() => {
+            *first = first.div_ceil(train.axles()) * train.axles();
+            true
+        }
+        Update::Geometric { first, .. } => divides(pass, *first, train, "the first block", span),
+        Update::Fixed { axles } => divides(pass, *axles, train, "an update interval", span),
+        Update::Adaptive { .. } => true,
+    };
+    sound && blocks
+}
+
+/// Whether everything that is recorded is recorded between two trains of one kind.
+fn between_trains(pass: &mut Pass, recorded: &[u64], total: u64, train: &Train) -> bool {
+    let axles = train.axles();
+    let within: Vec<u64> = recorded.iter().copied().filter(|count| count % axles != 0 && *count != total).collect();
+    for count in &within {
         pass.diagnostics.push(
             Diagnostic::new(
                 Code::E0602,
@@ -37,28 +81,39 @@ pub(super) fn blocks(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic) ->
             )
             .help(format!("record after {} axles", (count / axles).max(1) * axles)),
         );
-        sound = false;
     }
-    if !sound {
-        return None;
+    within.is_empty()
+}
+
+/// Says what a mix has become in whole trains.
+fn mix(pass: &mut Pass, blocks: &Blocks) {
+    let share = |((train, _), share): ((&Train, &PassagePlan), &Share)| {
+        let axles = 100.0 * (share.trains * share.axles) as f64 / blocks.total as f64;
+        format!("{} of `{}` ({} % of the axles)", share.trains, train.name, number((axles * 100.0).round() / 100.0))
+    };
+    let shares: Vec<String> = blocks.kinds().zip(&blocks.sequence.shares).map(share).collect();
+    let why = match blocks.sequence.order {
+        Order::Interleaved => "shares go to the nearest whole train; trains are spread evenly over the run",
+        Order::InTurn => "shares go to the nearest whole train; one kind runs after the other",
+    };
+    pass.decide("mix", format!("{}, {} axles in all", shares.join(", "), blocks.total), why);
+}
+
+/// Says how many passages stand for all trains.
+fn share(pass: &mut Pass, blocks: &Blocks) {
+    let trains = blocks.sequence.trains();
+    if trains < 2 {
+        return;
     }
-    let blocks = Blocks { train: train.clone(), passage: plan?, update, cure: true, recorded, total };
-    if axles < total {
-        let trains = total / axles;
-        let why = "trains of one block run over the same settled track, so one passage gives the forces of all";
-        match blocks.planned() {
-            Some(planned) => {
-                let passages: usize = planned.iter().map(|block| blocks.passages(block).len()).sum();
-                pass.decide("share", format!("{} passages stand for {trains} trains", passages + 1), why)
-            }
-            None => pass.decide(
-                "share",
-                format!("about {} passages stand for {trains} trains", estimate::passages(&blocks)),
-                why,
-            ),
+    let why = "trains of one kind and block run over the same settled track, so one passage gives the forces of all";
+    let passages = match blocks.planned() {
+        Some(planned) => {
+            let passages: usize = planned.iter().map(|block| block.runs.len()).sum();
+            format!("{}", passages + blocks.others.len() + 1)
         }
-    }
-    Some(blocks)
+        None => format!("about {}", estimate::passages(blocks)),
+    };
+    pass.decide("share", format!("{passages} passages stand for {trains} trains"), why);
 }
 
 /// Whether a count is a whole number of trains.

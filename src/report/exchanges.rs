@@ -21,6 +21,8 @@ pub fn settlement_with_axles(run: &Run) -> Option<Figure> {
         let name = format!("{}{why}", row.sleeper.replace('-', "\u{2212}"));
         chart.series.push(Series::new(&name, &format!("s{index}"), Mark::Dots, of_sleeper(run, &row.sleeper)));
     }
+    chart.uprights = run.tampings.iter().map(|row| row.axles as f64).collect();
+    chart.uprights.dedup();
     if chart.series.iter().all(|series| series.points.len() < 2) {
         return None;
     }
@@ -32,6 +34,9 @@ pub fn settlement_with_axles(run: &Run) -> Option<Figure> {
         "Settlement against the axles passed; each symbol is an exchange of forces and settlement between \
                        track and supports. Sleepers by number, negative on the softer side."
             .to_owned();
+    if !chart.uprights.is_empty() {
+        caption += " Dashed where sleepers are tamped.";
+    }
     if last / first >= DECADES {
         let mut logarithmic = chart;
         logarithmic.x = Axis { logarithmic: true, range: Some((first, last)), ..logarithmic.x };
@@ -52,9 +57,11 @@ fn of_sleeper(run: &Run, sleeper: &str) -> Vec<(f64, f64)> {
     let blocks = run.histories.iter().filter(|h| h.quantity == "settlement" && h.id == sleeper);
     let mut points: Vec<(f64, f64)> = blocks.map(|h| (h.axles as f64, h.value)).collect();
     let counts = run.sleepers.iter().filter(|other| other.sleeper == sleeper);
-    points.extend(counts.map(|other| (other.axles as f64, other.settlement_m)));
+    let counts = counts.map(|other| (other.axles as f64, other.settlement_m));
+    let further: Vec<(f64, f64)> = counts.filter(|(axles, _)| points.iter().all(|point| point.0 != *axles)).collect();
+    points.extend(further);
+    // a count at which a sleeper is tamped has two: before and after
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    points.dedup_by(|a, b| a.0 == b.0);
     points
 }
 

@@ -5,7 +5,7 @@ use super::number::{plain, significant, whole};
 use super::svg::{STYLE, escape};
 use super::{Figure, figures, laws};
 use crate::results::{Run, Verdict};
-use crate::scenario::{Loading, Scenario};
+use crate::scenario::{Loading, Scenario, Train};
 use std::fmt::Write;
 
 /// Makes the whole page.
@@ -17,6 +17,7 @@ pub fn page(run: &Run) -> String {
     expectations(&mut html, &run.summary.expectations);
     contents(&mut html, &figures, run);
     figures.iter().for_each(|figure| picture(&mut html, figure));
+    trains(&mut html, run);
     blocks(&mut html, run);
     provenance(&mut html, run);
     html += "</main></body></html>\n";
@@ -45,14 +46,13 @@ fn subtitle(scenario: &Scenario) -> String {
     let track = &scenario.track;
     let mut text = match &scenario.loading {
         Some(Loading::Traffic(traffic)) => {
-            let count = traffic.train.vehicles.len();
-            format!(
-                "{} axles of train {} ({count} vehicle{}) at {} km/h. ",
-                whole(*traffic.total),
-                traffic.train.name,
-                if count == 1 { "" } else { "s" },
-                plain(*traffic.train.speed * 3.6, 3)
-            )
+            let train = |train: &Train| {
+                let count = train.vehicles.len();
+                let (name, s, speed) = (&train.name, if count == 1 { "" } else { "s" }, plain(*train.speed * 3.6, 3));
+                format!("train {name} ({count} vehicle{s}) at {speed} km/h")
+            };
+            let trains: Vec<String> = traffic.trains().map(train).collect();
+            format!("{} axles of {}. ", whole(*traffic.total), trains.join(", "))
         }
         Some(Loading::Static(loads)) => {
             let list = loads.iter().map(|load| format!("{} {} kN", load.name, plain(*load.force / 1e3, 4)));
@@ -72,6 +72,9 @@ fn contents(html: &mut String, figures: &[Figure], run: &Run) {
     *html += "<nav id=\"contents\"><h2>Contents</h2><ol>";
     for figure in figures {
         let _ = write!(html, "<li><a href=\"#{}\">{}</a></li>", escape(&figure.id), escape(&figure.title));
+    }
+    if !run.trains.is_empty() {
+        *html += "<li><a href=\"#trains\">Trains</a></li>";
     }
     if !run.blocks.is_empty() {
         *html += "<li><a href=\"#blocks\">Blocks</a></li>";
@@ -118,6 +121,29 @@ fn picture(html: &mut String, figure: &Figure) {
         html,
         "<section id=\"{id}\"><h2>{title}</h2><p class=\"caption\">{caption}</p><div class=\"scroll\">{svg}</div></section>"
     );
+}
+
+/// What each of several kinds of trains does at the last count.
+fn trains(html: &mut String, run: &Run) {
+    let Some(last) = run.trains.iter().map(|row| row.axles).max() else { return };
+    let _ = write!(
+        html,
+        "<section id=\"trains\"><h2>Trains</h2><p class=\"caption\">Extremes of a passage of each kind of train after {} \
+         axles. Figures of one passage are of the first; histories of all are kept.</p><div class=\"scroll\"><table><tr>\
+         <th class=\"text\">train</th><th>trains so far</th><th>Wheel force, largest<small>kN</small></th>\
+         <th>Wheel force, least<small>kN</small></th><th>Rail seat load<small>kN</small></th>\
+         <th>Contact force<small>kN</small></th><th>Rail moment<small>kN m</small></th></tr>",
+        whole(last)
+    );
+    for row in run.trains.iter().filter(|row| row.axles == last) {
+        let _ = write!(html, "<tr><td class=\"text\">{}</td><td>{}</td>", escape(&row.train), whole(row.passed));
+        let forces = [row.max_wheel_force_N, row.min_wheel_force_N, row.max_rail_seat_load_N, row.max_contact_force_N];
+        for value in forces.into_iter().chain([row.max_rail_moment_N_m]) {
+            let _ = write!(html, "<td>{}</td>", significant(value / 1e3, 3));
+        }
+        *html += "</tr>";
+    }
+    *html += "</table></div></section>\n";
 }
 
 /// The extremes of every block.

@@ -7,7 +7,7 @@ use super::number::{plain, tick_label, ticks, whole};
 use super::svg::{Anchor, Frame, Svg, text_width};
 use super::symbols::{draw_dimension, draw_spring, draw_stones};
 use super::vehicle;
-use crate::scenario::{Foot, Loading, Scenario, Seat, Section, StaticLoad};
+use crate::scenario::{Foot, Loading, Scenario, Seat, Section, StaticLoad, Tamping};
 
 pub const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 26.0;
@@ -288,12 +288,13 @@ fn carried(section: &Section, seats: &[&Seat]) -> String {
     text
 }
 
-/// Name, length and content of each stretch, one below the other where they overlap.
+/// Name, length and content of each stretch, and what is tamped, one below the other where they overlap.
 fn draw_stretches(svg: &mut Svg, scenario: &Scenario, view: &View, y: f64) -> f64 {
     let mut rows: Vec<f64> = Vec::new(); // right ends
-    for stretch in &scenario.track.stretches {
-        let (a, b) = (view.x(stretch.start), view.x(stretch.end));
-        let text = format!("{}: {} m, {}", stretch.name, plain(stretch.end - stretch.start, 3), stretch.changes);
+    let stretches = scenario.track.stretches.iter().map(|s| (s.name.as_str(), s.start, s.end, s.changes.to_string()));
+    for (name, start, end, changes) in stretches.chain(scenario.tampings.iter().flat_map(|t| tamped(scenario, t))) {
+        let (a, b) = (view.x(start), view.x(end));
+        let text = format!("{name}: {} m, {changes}", plain(end - start, 3));
         let half = 0.5 * text_width(&text).max(b - a);
         let middle = (0.5 * (a + b)).clamp(MARGIN + half, (WIDTH - MARGIN - half).max(MARGIN + half));
         let row = rows.iter().position(|end| *end < middle - half - 4.0).unwrap_or(rows.len());
@@ -304,6 +305,19 @@ fn draw_stretches(svg: &mut Svg, scenario: &Scenario, view: &View, y: f64) -> f6
         svg.text("small", (middle, y + 15.0), Anchor::Middle, &text);
     }
     y + 24.0 * rows.len() as f64
+}
+
+/// What a tamping reaches, seats side by side together: its name, from where to where, m, and when.
+fn tamped<'a>(scenario: &'a Scenario, tamping: &'a Tamping) -> Vec<(&'a str, f64, f64, String)> {
+    let track = &scenario.track;
+    let after: Vec<String> = tamping.after.iter().map(|count| whole(*count)).collect();
+    let text = format!("tamped after {} axles", after.join(", "));
+    let reach = |seats: &[usize]| {
+        let [first, last] = [seats[0], seats[seats.len() - 1]];
+        let half = |seat: usize| 0.5 * track.bay(seat);
+        (tamping.name.as_str(), track.seats[first].x - half(first), track.seats[last].x + half(last), text.clone())
+    };
+    tamping.seats.chunk_by(|a, b| a + 1 == *b).map(reach).collect()
 }
 
 /// Name, length and seats of each section.

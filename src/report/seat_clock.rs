@@ -15,7 +15,7 @@ const MOST: f64 = 22.0;
 /// When the leading wheel stands over x at a count, s; before its first and after its last sample it keeps its speed there.
 fn arrival(run: &Run, axles: u64, x: f64) -> Option<f64> {
     let leads = |h: &&HistoryRow| h.quantity == "wheel_force" && h.id == "wheel 1" && h.axles == axles;
-    let path: Vec<(f64, f64)> = run.histories.iter().filter(leads).map(|h| (h.time_s, h.x_m)).collect();
+    let path: Vec<(f64, f64)> = run.leading_histories().filter(leads).map(|h| (h.time_s, h.x_m)).collect();
     let forward = path.last()?.1 > path.first()?.1;
     let after = path.partition_point(|(_, place)| if forward { *place < x } else { *place > x });
     let right = after.clamp(1, path.len().checked_sub(1).filter(|last| *last > 0)?);
@@ -34,7 +34,7 @@ pub fn window(run: &Run) -> (f64, f64) {
 
 /// A history of a seat at a count, over the seat's time; empty where there is none.
 pub fn history(run: &Run, quantity: Response, seat: &str, axles: u64) -> Vec<(f64, f64)> {
-    let rows = run.histories.iter().filter(|h| h.quantity == quantity.name() && h.id == seat && h.axles == axles);
+    let rows = run.leading_histories().filter(|h| h.quantity == quantity.name() && h.id == seat && h.axles == axles);
     let mut rows = rows.peekable();
     let Some(x) = rows.peek().map(|row| row.x_m) else { return vec![] };
     let zero = arrival(run, axles, x).unwrap_or(0.0);
@@ -114,6 +114,7 @@ mod tests {
                 id: "wheel 1".into(),
                 x_m: sign * (20.0 * time_s - 4.0 * time_s * time_s),
                 value: 1e5,
+                train: String::new(),
             };
             run.histories = (0..=10).map(|i| row(0.1 * f64::from(i))).collect();
             for time in [0.1, 0.35, 0.8] {

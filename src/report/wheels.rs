@@ -32,7 +32,7 @@ pub fn wheel_force(run: &Run) -> Option<Figure> {
         let mut chart = track_chart(run, &name, "N", false);
         chart.x.range = close.or(chart.x.range);
         for count in &counts {
-            let rows = run.histories.iter().filter(|h| h.quantity == "wheel_force" && h.id == id);
+            let rows = run.leading_histories().filter(|h| h.quantity == "wheel_force" && h.id == id);
             let points: Vec<(f64, f64)> = rows.filter(|h| h.axles == count.axles).map(|h| (h.x_m, h.value)).collect();
             if !points.is_empty() {
                 chart.series.push(Series::new(count.short(), &count.class, Mark::Line, points));

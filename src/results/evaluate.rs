@@ -5,7 +5,7 @@
 
 use super::{BlockRow, HistoryRow, RailRow, Scalar, SleeperRow, Verdict};
 use crate::graph::{Graph, Schedule};
-use crate::scenario::response::{Expectation, Expression, Measure, Place, Reduction, Response};
+use crate::scenario::response::{Expectation, Expression, Function, Measure, Place, Reduction, Response};
 use crate::scenario::{Scenario, Track};
 use crate::syntax::tree::{BinaryOp, Comparison};
 use std::collections::{BTreeMap, HashMap};
@@ -37,6 +37,10 @@ pub fn evaluate(expression: &Expression, tables: Tables<'_>) -> Result<f64, Stri
         Expression::Number(value) => *value,
         Expression::Measure(measure) => evaluate_measure(measure, tables)?,
         Expression::Negate(inner) => -evaluate(inner, tables)?,
+        Expression::Function(function, of) => {
+            let values: Vec<f64> = of.iter().map(|e| evaluate(e, tables)).collect::<Result<_, _>>()?;
+            apply(*function, &values).ok_or("the root of a negative value")?
+        }
         Expression::Binary(left, operator, right) => {
             let (left, right) = (evaluate(left, tables)?, evaluate(right, tables)?);
             if *operator == BinaryOp::Divide && right == 0.0 {
@@ -74,6 +78,7 @@ pub fn known(expression: &Expression) -> Option<f64> {
         Expression::Number(value) => Some(*value),
         Expression::Measure(_) => None,
         Expression::Negate(inner) => Some(-known(inner)?),
+        Expression::Function(function, of) => apply(*function, &of.iter().map(known).collect::<Option<Vec<f64>>>()?),
         Expression::Binary(left, operator, right) => {
             let (left, right) = (known(left)?, known(right)?);
             match operator {
@@ -81,6 +86,17 @@ pub fn known(expression: &Expression) -> Option<f64> {
                 _ => Some(combine(left, *operator, right)),
             }
         }
+    }
+}
+
+/// A function of one value or more; `None` where it has no value.
+fn apply(function: Function, values: &[f64]) -> Option<f64> {
+    let first = *values.first()?;
+    match function {
+        Function::Abs => Some(first.abs()),
+        Function::Sqrt => Some(first.sqrt()).filter(|root| root.is_finite()),
+        Function::Min => values.iter().copied().min_by(f64::total_cmp),
+        Function::Max => values.iter().copied().max_by(f64::total_cmp),
     }
 }
 
@@ -109,17 +125,65 @@ fn evaluate_measure(measure: &Measure, tables: Tables<'_>) -> Result<f64, String
         let scalar = tables.scalars.get(name);
         return scalar.map(|s| s.value).ok_or_else(|| format!("this run has no `{name}`"));
     }
+    // a peak of the whole rail is one at a node of the mesh, and may lie beyond the places of the table
+    if measure.response.place() == Place::Rail
+        && let Some(peak) = peak(measure, tables)
+    {
+        return Ok(peak);
+    }
     let values = values(measure, tables)?;
     let largest = || values.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
-    let result = match measure.reduction {
+    let mean = |of: fn(f64) -> f64| {
+        (!values.is_empty()).then(|| values.iter().map(|v| of(v.1)).sum::<f64>() / values.len() as f64)
+    };
+    let result = match &measure.reduction {
         Reduction::Max => largest().map(|(_, value)| value),
         Reduction::PlaceOfMax => largest().map(|(x, _)| x),
         Reduction::Min => values.iter().map(|(_, value)| *value).min_by(f64::total_cmp),
-        Reduction::Mean => (!values.is_empty()).then(|| values.iter().map(|v| v.1).sum::<f64>() / values.len() as f64),
+        Reduction::Mean => mean(|value| value),
+        Reduction::Rms => mean(|value| value * value).map(f64::sqrt),
+        Reduction::Percentile(share) => percentile(&values, *share),
+        Reduction::Misfit(measured) if values.is_empty() => {
+            return Err(format!("{} to be held against {} measured values", absent(measure), measured.len()));
+        }
+        Reduction::Misfit(measured) => return misfit(measure, values, measured),
         Reduction::Itself => return Err(format!("`{name}` has many values: take its max, min or mean")),
     };
-    // A peak along the rail is known for the whole run even where no history was asked for.
     result.or_else(|| peak(measure, tables)).ok_or_else(|| absent(measure))
+}
+
+/// The value that a share of all values does not exceed: straight between the two nearest in order.
+fn percentile(values: &[(f64, f64)], share: f64) -> Option<f64> {
+    let mut sorted: Vec<f64> = values.iter().map(|v| v.1).collect();
+    sorted.sort_by(f64::total_cmp);
+    let place = share * (sorted.len().checked_sub(1)?) as f64;
+    let (below, above) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
+    Some(below + place.fract() * (above - below))
+}
+
+/// Root of the mean square of what the values depart from measured ones, at the measured places that they reach.
+fn misfit(measure: &Measure, mut values: Vec<(f64, f64)>, measured: &[(f64, f64)]) -> Result<f64, String> {
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    values.dedup_by(|next, kept| (next.0 - kept.0).abs() < PLACE_TOLERANCE);
+    let squares: Vec<f64> = measured.iter().filter_map(|(x, value)| Some((at(&values, *x)? - value).powi(2))).collect();
+    if squares.is_empty() {
+        let [first, last] = [values[0].0, values[values.len() - 1].0];
+        let name = measure.response.name();
+        return Err(format!("no measured place lies where `{name}` is known, from {first} m to {last} m"));
+    }
+    Ok((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+}
+
+/// The value at a place, straight between those beside it; `None` beyond them. Places ascend.
+fn at(values: &[(f64, f64)], x: f64) -> Option<f64> {
+    let [first, last] = [values.first()?, values.last()?];
+    if x < first.0 - PLACE_TOLERANCE || x > last.0 + PLACE_TOLERANCE {
+        return None;
+    }
+    let right = values.partition_point(|value| value.0 < x).min(values.len() - 1);
+    let (a, b) = (values[right.saturating_sub(1)], values[right]);
+    let share = if b.0 > a.0 { ((x - a.0) / (b.0 - a.0)).clamp(0.0, 1.0) } else { 0.0 };
+    Some(a.1 + share * (b.1 - a.1))
 }
 
 fn peak(measure: &Measure, tables: Tables<'_>) -> Option<f64> {
@@ -140,6 +204,7 @@ pub fn not_kept(expression: &Expression, graph: &Graph) -> Option<String> {
         Expression::Number(_) => None,
         Expression::Measure(measure) => (!kept(measure, graph)).then(|| absent(measure)),
         Expression::Negate(inner) => not_kept(inner, graph),
+        Expression::Function(_, of) => of.iter().find_map(|e| not_kept(e, graph)),
         Expression::Binary(left, _, right) => not_kept(left, graph).or_else(|| not_kept(right, graph)),
     }
 }
@@ -147,14 +212,14 @@ pub fn not_kept(expression: &Expression, graph: &Graph) -> Option<String> {
 /// Whether tables, peaks or histories of a run hold a response.
 fn kept(measure: &Measure, graph: &Graph) -> bool {
     let response = measure.response;
-    let whole = measure.over.is_none() && measure.after.is_none();
-    let peaks = whole && measure.reduction == Reduction::Max && response == Response::RailMoment;
     match response.place() {
         Place::Scene | Place::Wheel => true,
         // only grains fill volumes, and no tier has them yet
         Place::Volume => false,
+        // passages say all of the rail, a static check all but what needs a wheel
         Place::Rail => {
-            response == Response::RailStiffness || peaks || matches!(graph.schedule, Schedule::Static { .. })
+            let by_loads = matches!(response, Response::RailDisplacement | Response::RailMoment);
+            by_loads || matches!(graph.schedule, Schedule::Blocks(_))
         }
         Place::Seat if response == Response::ContactPressure || sleeper_column(response).is_some() => true,
         Place::Seat => graph.records.iter().any(|record| record.quantities.contains(&response)),
@@ -188,10 +253,11 @@ fn values(measure: &Measure, tables: Tables<'_>) -> Result<Vec<(f64, f64)>, Stri
         let rows = tables.sleepers.iter().filter(|row| Some(row.axles) == axles && inside(row.x_m));
         return Ok(contact_pressures(tables.track, rows));
     }
-    if measure.response == Response::RailStiffness {
+    // a static check has its rail in the histories
+    if let Some(column) = rail_column(measure).filter(|_| !tables.rail.is_empty()) {
         let axles = measure.after.or_else(|| tables.rail.iter().map(|row| row.axles).max());
         let rows = tables.rail.iter().filter(|row| Some(row.axles) == axles && inside(row.x_m));
-        return Ok(rows.map(|row| (row.x_m, row.stiffness_N_per_m)).collect());
+        return Ok(rows.map(|row| (row.x_m, column(row))).collect());
     }
     let name = measure.response.name();
     let on_rail = measure.response.place() == Place::Rail;
@@ -199,6 +265,21 @@ fn values(measure: &Measure, tables: Tables<'_>) -> Result<Vec<(f64, f64)>, Stri
     let axles = measure.after.or_else(|| rows().map(|row| row.axles).max());
     let rows = rows().filter(|row| Some(row.axles) == axles && inside(row.x_m));
     Ok(rows.map(|row| (row.x_m, row.value)).collect())
+}
+
+/// The column of `rail.csv` that holds a response along the rail: what varies in a passage by its largest value, for a minimum
+/// by its smallest.
+fn rail_column(measure: &Measure) -> Option<fn(&RailRow) -> f64> {
+    let least = measure.reduction == Reduction::Min;
+    Some(match measure.response {
+        Response::RailStiffness => |row| row.stiffness_N_per_m,
+        Response::RailLevel => |row| row.level_m,
+        Response::RailMoment if least => |row| row.min_moment_N_m,
+        Response::RailMoment => |row| row.max_moment_N_m,
+        Response::RailDisplacement if least => |row| row.min_displacement_m,
+        Response::RailDisplacement => |row| row.max_displacement_m,
+        _ => return None,
+    })
 }
 
 /// The column of `sleepers.csv` that holds a seat's response.
@@ -222,7 +303,7 @@ mod tests {
     use crate::results::example;
 
     fn measure(reduction: Reduction, response: Response) -> Measure {
-        Measure { reduction, response, over: None, after: None }
+        Measure::new(reduction, response)
     }
 
     #[test]
@@ -253,6 +334,54 @@ mod tests {
     }
 
     #[test]
+    fn values_are_held_against_measured_ones() {
+        let run = example::transition();
+        let tables = Tables {
+            sleepers: &run.sleepers,
+            blocks: &run.blocks,
+            rail: &run.rail,
+            histories: &run.histories,
+            scalars: &run.summary.scalars,
+            track: &run.scenario.track,
+        };
+        let value = |measure: Measure| evaluate(&Expression::Measure(measure), tables);
+        let over =
+            |reduction: Reduction| Measure { over: Some((-30.0, -20.0)), ..measure(reduction, Response::Settlement) };
+        let mean = value(over(Reduction::Mean)).unwrap();
+        // far from the transition all seats settle alike
+        assert!((value(over(Reduction::Rms)).unwrap() / mean - 1.0).abs() < 1e-3);
+        assert!((value(over(Reduction::Percentile(0.5))).unwrap() / mean - 1.0).abs() < 1e-3);
+        let measured = |off: f64| Reduction::Misfit(vec![(-28.05, mean + off), (-25.0, mean - off), (-5e3, 1.0)]);
+        assert!((value(over(measured(0.1e-3))).unwrap() - 0.1e-3).abs() < 1e-6);
+        let nowhere = value(over(Reduction::Misfit(vec![(10.0, 0.0)]))).unwrap_err();
+        assert!(nowhere.starts_with("no measured place lies where `settlement` is known, from -3"), "{nowhere}");
+        let of = |values: &[f64], share| percentile(&values.iter().map(|v| (0.0, *v)).collect::<Vec<_>>(), share);
+        assert_eq!(of(&[3.0, 1.0, 2.0], 0.5), Some(2.0));
+        assert_eq!((of(&[1.0, 2.0], 0.25), of(&[4.0], 0.9), of(&[], 0.5)), (Some(1.25), Some(4.0), None));
+    }
+
+    #[test]
+    fn the_rail_is_known_along_its_table() {
+        let run = example::transition();
+        let tables = Tables {
+            sleepers: &run.sleepers,
+            blocks: &run.blocks,
+            rail: &run.rail,
+            histories: &run.histories,
+            scalars: &run.summary.scalars,
+            track: &run.scenario.track,
+        };
+        let value = |measure: Measure| evaluate(&Expression::Measure(measure), tables).unwrap();
+        let deepest = value(measure(Reduction::Max, Response::RailDisplacement));
+        assert!((1.2e-3..1.22e-3).contains(&deepest), "{deepest}");
+        assert_eq!(value(measure(Reduction::Min, Response::RailDisplacement)), -0.05e-3);
+        assert_eq!(value(measure(Reduction::Min, Response::RailMoment)), -5e3);
+        let near = Measure { over: Some((-5.0, 0.0)), ..measure(Reduction::Max, Response::RailMoment) };
+        assert!(value(near) > 15e3);
+        assert!(value(measure(Reduction::Max, Response::RailLevel)) > 1e-3);
+    }
+
+    #[test]
     fn arithmetic_and_division_by_zero() {
         let scalars = BTreeMap::new();
         let track = example::bench().scenario.track;
@@ -262,5 +391,12 @@ mod tests {
         assert_eq!(binary(2.0, BinaryOp::Power, 3.0), Ok(8.0));
         assert_eq!(binary(2.0, BinaryOp::Divide, 0.0), Err("divided by zero".to_owned()));
         assert!(binary(-2.0, BinaryOp::Power, 0.5).is_err());
+        let of = |function, values: &[f64]| {
+            let values = values.iter().map(|v| Expression::Number(*v)).collect();
+            evaluate(&Expression::Function(function, values), tables)
+        };
+        assert_eq!((of(Function::Abs, &[-2.0]), of(Function::Sqrt, &[9.0])), (Ok(2.0), Ok(3.0)));
+        assert_eq!((of(Function::Min, &[2.0, 1.0]), of(Function::Max, &[2.0, 1.0])), (Ok(1.0), Ok(2.0)));
+        assert_eq!(of(Function::Sqrt, &[-1.0]), Err("the root of a negative value".to_owned()));
     }
 }

@@ -104,7 +104,7 @@ pub(crate) fn transition() -> Run {
         span: Span::new(FileId(0), 0, 1),
         operands: vec![
             Expression::Number(low),
-            Expression::Measure(Measure { reduction, response, over: None, after: None }),
+            Expression::Measure(Measure::new(reduction, response)),
             Expression::Number(high),
         ],
         operators: vec![Comparison::Less, Comparison::Less],
@@ -131,8 +131,12 @@ pub(crate) fn transition() -> Run {
                 speed_profile: None,
                 direction: Direction::Forward,
             },
+            others: vec![],
+            counts: vec![125],
+            order: Order::Interleaved,
             total: given(500),
         })),
+        tampings: vec![],
         solve: solve(),
         records: vec![],
         volumes: vec![],
@@ -252,6 +256,8 @@ fn rail_row(axles: u64, x: f64) -> RailRow {
         stiffness_N_per_m: if x < 0.0 { 66e6 } else { 80e6 } * over_sleepers,
         max_moment_N_m: 20e3 * (1.0 + 0.1 * disturbance(x, axles)),
         min_moment_N_m: -5e3,
+        max_displacement_m: 1.2e-3 * over_sleepers,
+        min_displacement_m: -0.05e-3,
     }
 }
 
@@ -320,6 +326,7 @@ pub(crate) fn bench() -> Run {
             irregularity: None,
             bed: Bed::default(),
         },
+        tampings: vec![],
         loading: Some(Loading::Static(vec![StaticLoad {
             name: "jack".to_owned(),
             on: Target::Rail,
@@ -365,7 +372,15 @@ pub(crate) fn bench() -> Run {
 }
 
 fn push(rows: &mut Vec<HistoryRow>, axles: u64, time_s: f64, what: (&str, &str), x_m: f64, value: f64) {
-    rows.push(HistoryRow { axles, time_s, quantity: what.0.to_owned(), id: what.1.to_owned(), x_m, value });
+    rows.push(HistoryRow {
+        axles,
+        time_s,
+        quantity: what.0.to_owned(),
+        id: what.1.to_owned(),
+        x_m,
+        value,
+        train: String::new(),
+    });
 }
 
 fn finished(
@@ -395,5 +410,5 @@ fn finished(
         plan: "track        2D finite elements, 440 elements\nsubstructure law varandas, 69 seats\n".to_owned(),
     };
     let summary = Summary { scalars, expectations, provenance };
-    Run { scenario, summary, sleepers, blocks, laws: vec![], rail: vec![], histories }
+    Run { scenario, summary, sleepers, blocks, laws: vec![], rail: vec![], trains: vec![], tampings: vec![], histories }
 }

@@ -24,12 +24,19 @@ pub fn write(run: &Run, directory: &Path) -> Result<(), ResultsError> {
         (super::BlockRow::FILE, table(&run.blocks, directory)?),
         (super::LawRow::FILE, table(&run.laws, directory)?),
         (super::RailRow::FILE, table(&run.rail, directory)?),
+        (super::TrainRow::FILE, table(&run.trains, directory)?),
+        (super::TampingRow::FILE, table(&run.tampings, directory)?),
         (HISTORIES, histories::encode(&run.histories, directory)?),
         (SUMMARY, summary_json(run, directory)?), // last: a directory with a summary is complete
     ];
     fs::create_dir_all(directory).map_err(|cause| ResultsError::io(directory, "create", cause))?;
-    // a table of laws is there only where several are compared
-    let skipped = |name: &str| name == super::LawRow::FILE && run.laws.is_empty();
+    // these are there only where there are several laws, several trains, or tamping
+    let empty = [
+        (super::LawRow::FILE, run.laws.is_empty()),
+        (super::TrainRow::FILE, run.trains.is_empty()),
+        (super::TampingRow::FILE, run.tampings.is_empty()),
+    ];
+    let skipped = |name: &str| empty.contains(&(name, true));
     let written = files.iter().filter(|(name, _)| !skipped(name));
     written.into_iter().try_for_each(|(name, bytes)| atomic::write(&directory.join(name), bytes))
 }
@@ -41,8 +48,10 @@ pub fn read(directory: &Path) -> Result<Run, ResultsError> {
         scenario: read_json(&directory.join(SCENARIO))?,
         sleepers: read_table(directory)?,
         blocks: read_table(directory)?,
-        laws: if directory.join(super::LawRow::FILE).exists() { read_table(directory)? } else { Vec::new() },
+        laws: read_table_if_any(directory)?,
         rail: read_table(directory)?,
+        trains: read_table_if_any(directory)?,
+        tampings: read_table_if_any(directory)?,
         histories: histories::decode(&directory.join(HISTORIES))?,
     })
 }
@@ -127,6 +136,11 @@ fn check_row<R: Row>(row: &R, number: usize, path: &Path) -> Result<(), ResultsE
         Some(column) => Err(not_finite(R::FILE, column, number)),
         None => Ok(()),
     }
+}
+
+/// A table that not every run has.
+fn read_table_if_any<R: Row>(directory: &Path) -> Result<Vec<R>, ResultsError> {
+    if directory.join(R::FILE).exists() { read_table(directory) } else { Ok(Vec::new()) }
 }
 
 fn read_table<R: Row>(directory: &Path) -> Result<Vec<R>, ResultsError> {

@@ -48,6 +48,8 @@ impl Run {
             blocks: tables.blocks.clone(),
             laws,
             rail: tables.rail.clone(),
+            trains: tables.trains.clone(),
+            tampings: tables.tampings.clone(),
             histories,
         }
     }

@@ -1,6 +1,6 @@
 //! `histories.parquet`: the long table of everything sampled along a passage, one row a value.
 //!
-//! Columns `axles` INT64, `time_s` DOUBLE, `quantity` UTF8, `id` UTF8, `x_m` DOUBLE, `value` DOUBLE; dictionaries
+//! Columns `axles` INT64, `time_s` DOUBLE, `quantity` UTF8, `id` UTF8, `x_m` DOUBLE, `value` DOUBLE, `train` UTF8; dictionaries
 //! where values repeat, compressed with Snappy. Equal rows make equal bytes: nothing of the file depends on the clock.
 
 use super::files::check_finite;
@@ -19,13 +19,14 @@ use std::sync::Arc;
 
 pub(super) const HISTORIES: &str = "histories.parquet";
 
-const COLUMNS: [(&str, Physical); 6] = [
+const COLUMNS: [(&str, Physical); 7] = [
     ("axles", Physical::INT64),
     ("time_s", Physical::DOUBLE),
     ("quantity", Physical::BYTE_ARRAY),
     ("id", Physical::BYTE_ARRAY),
     ("x_m", Physical::DOUBLE),
     ("value", Physical::DOUBLE),
+    ("train", Physical::BYTE_ARRAY),
 ];
 
 /// Rows that are held in columns at once while a file is written or read.
@@ -88,6 +89,7 @@ fn write_groups(rows: &[HistoryRow]) -> ParquetResult<Vec<u8>> {
         write_column::<ByteArrayType, _>(&mut group, rows.iter().map(|r| text(&r.id)).collect())?;
         write_column::<DoubleType, _>(&mut group, rows.iter().map(|r| r.x_m).collect())?;
         write_column::<DoubleType, _>(&mut group, rows.iter().map(|r| r.value).collect())?;
+        write_column::<ByteArrayType, _>(&mut group, rows.iter().map(|r| text(&r.train)).collect())?;
         group.close()?;
     }
     writer.close()?;
@@ -112,6 +114,7 @@ fn read_group(group: &dyn RowGroupReader, rows: &mut Vec<HistoryRow>) -> Parquet
     let id = read_column::<ByteArrayType>(group, 3)?;
     let x = read_column::<DoubleType>(group, 4)?;
     let value = read_column::<DoubleType>(group, 5)?;
+    let train = read_column::<ByteArrayType>(group, 6)?;
     for row in 0..axles.len() {
         rows.push(HistoryRow {
             axles: axles[row] as u64,
@@ -120,6 +123,7 @@ fn read_group(group: &dyn RowGroupReader, rows: &mut Vec<HistoryRow>) -> Parquet
             id: id[row].as_utf8()?.to_owned(),
             x_m: x[row],
             value: value[row],
+            train: train[row].as_utf8()?.to_owned(),
         });
     }
     Ok(())

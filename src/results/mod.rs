@@ -34,10 +34,10 @@ pub use level::{LongitudinalLevel, longitudinal_level};
 pub use recorder::{RunRecorder, RunTables, Store};
 pub use summarise::{RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise};
 pub use summary::{Provenance, Scalar, Summary, Verdict};
-pub use tables::{BlockRow, HistoryRow, RailRow, Row, SleeperRow};
+pub use tables::{BlockRow, HistoryRow, RailRow, Row, SleeperRow, TampingRow, TrainRow};
 pub use vtk::{bodies_vtk, contacts_vtk};
 
-use crate::scenario::Scenario;
+use crate::scenario::{Loading, Scenario};
 use serde::{Deserialize, Serialize};
 
 /// Everything that a run's directory says, as data.
@@ -50,5 +50,20 @@ pub struct Run {
     /// Settlement by each law; empty where there is only one.
     pub laws: Vec<LawRow>,
     pub rail: Vec<RailRow>,
+    /// Passages of each kind of train; empty where there is only one.
+    pub trains: Vec<TrainRow>,
+    /// Sleepers that were tamped; empty without tamping.
+    pub tampings: Vec<TampingRow>,
     pub histories: Vec<HistoryRow>,
+}
+
+impl Run {
+    /// Histories of no train, and of the train that leads the traffic: figures of one passage show that one.
+    pub fn leading_histories(&self) -> impl Iterator<Item = &HistoryRow> {
+        let leading = match &self.scenario.loading {
+            Some(Loading::Traffic(traffic)) => traffic.train.name.as_str(),
+            _ => "",
+        };
+        self.histories.iter().filter(move |row| row.train.is_empty() || row.train == leading)
+    }
 }

@@ -3,11 +3,12 @@
 
 use super::histories::HISTORIES;
 use super::{
-    BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, SleeperRow, atomic, checkpoint, histories,
+    BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, SleeperRow, TampingRow, TrainRow, atomic,
+    checkpoint, histories,
 };
-use crate::graph::{self, Block, Measured, PassageOutcome, Recorder, Unloaded};
+use crate::graph::{self, Block, Measured, PassageOutcome, Recorder, Runner, Unloaded};
 use crate::scenario::response::Response;
-use crate::scenario::{Direction, Foot, Scenario, Track};
+use crate::scenario::{Foot, Loading, Scenario, Track, Traffic};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -28,7 +29,10 @@ pub struct RunTables {
     pub settlements: Vec<HistoryRow>,
     /// Settlement by each law after every block; empty where there is only one law.
     pub laws: Vec<LawCount>,
-    /// Largest sagging moment of the last passage, N m, and displacement of a static check, m.
+    /// Passages of each kind of train; empty where there is only one.
+    pub trains: Vec<TrainRow>,
+    pub tampings: Vec<TampingRow>,
+    /// Largest sagging moment and displacement of the last passages, or of a static check, N m and m.
     pub max_rail_moment: Option<f64>,
     pub max_rail_displacement: Option<f64>,
     /// Largest tension in the rail's foot of the last recorded passage, Pa.
@@ -109,62 +113,43 @@ impl<'a> RunRecorder<'a> {
             id: track.seat_name(seat),
             x_m: seat.x,
             value: *value,
+            train: String::new(),
         }));
     }
 
     /// The rail at a recorded count, and the extremes of its moment between the same places.
     fn keep_profile(&mut self, axles: u64, unloaded: &Unloaded, passage: &PassageOutcome) {
         let nodes: Vec<f64> = unloaded.rail.iter().map(|p| p.x).collect();
-        let between = |x: f64, of: fn(&(f64, f64)) -> f64| {
-            let (left, share) = graph::between(&nodes, x);
-            let (a, b) = (of(&passage.rail_moments[left]), of(&passage.rail_moments[left + 1]));
-            a + share * (b - a)
-        };
         self.tables.rail.extend(unloaded.profile.iter().map(|p| RailRow {
             axles,
             x_m: p.x,
             level_m: p.level,
             moment_N_m: p.moment,
             stiffness_N_per_m: p.stiffness,
-            max_moment_N_m: between(p.x, |m| m.1),
-            min_moment_N_m: between(p.x, |m| m.0),
+            max_moment_N_m: between(&nodes, p.x, &passage.rail_moments, |m| m.1),
+            min_moment_N_m: between(&nodes, p.x, &passage.rail_moments, |m| m.0),
+            max_displacement_m: between(&nodes, p.x, &passage.rail_displacements, |d| d.1),
+            min_displacement_m: between(&nodes, p.x, &passage.rail_displacements, |d| d.0),
         }));
+        self.tables.max_foot_stress = self.foot_stress(&nodes, passage);
+    }
+
+    /// Largest tension in the rail's foot during a passage, Pa.
+    fn foot_stress(&self, nodes: &[f64], passage: &PassageOutcome) -> Option<f64> {
+        let stress = |(node, moment): (&f64, &(f64, f64))| Some(moment.1 / self.track().rail_at(*node)?.foot_modulus());
+        nodes.iter().zip(&passage.rail_moments).filter_map(stress).reduce(f64::max)
+    }
+
+    fn traffic(&self) -> Option<&'a Traffic> {
+        match &self.scenario.loading {
+            Some(Loading::Traffic(traffic)) => Some(traffic),
+            _ => None,
+        }
+    }
+
+    /// Every sleeper after a count, under the leading train.
+    fn keep_sleepers(&mut self, axles: u64, unloaded: &Unloaded, passage: &PassageOutcome) {
         let track = self.track();
-        let stress = |(node, moment): (&f64, &(f64, f64))| Some(moment.1 / track.rail_at(*node)?.foot_modulus());
-        self.tables.max_foot_stress = nodes.iter().zip(&passage.rail_moments).filter_map(stress).reduce(f64::max);
-    }
-
-    fn keep_rail(&mut self, axles: u64, quantity: Response, points: impl Iterator<Item = (f64, f64)>) {
-        self.histories.extend(points.map(|(x_m, value)| HistoryRow {
-            axles,
-            time_s: 0.0,
-            quantity: quantity.name().into(),
-            id: "rail".into(),
-            x_m,
-            value,
-        }));
-    }
-}
-
-impl Recorder for RunRecorder<'_> {
-    fn unloaded(&mut self, axles: u64, state: &Unloaded) {
-        self.keep_rail(axles, Response::RailLevel, state.rail.iter().map(|p| (p.x, p.deflection)));
-        self.unloaded = Some(state.clone());
-    }
-
-    fn passage(&mut self, axles: u64, _direction: Direction, passage: &PassageOutcome) {
-        let track = self.track();
-        let rows = passage.samples.iter().map(|s| HistoryRow {
-            axles,
-            time_s: s.time,
-            quantity: s.quantity.name().into(),
-            id: s.target.name(track),
-            x_m: s.x,
-            value: s.value,
-        });
-        self.histories.extend(rows);
-        let Some(unloaded) = self.unloaded.take() else { return };
-        self.keep_profile(axles, &unloaded, passage);
         for ((seat, outcome), rest) in track.seats.iter().zip(&passage.seats).zip(&unloaded.seats) {
             let stiffness = match &seat.foot {
                 Foot::Sleeper { support, .. } => support.spring().stiffness,
@@ -184,6 +169,102 @@ impl Recorder for RunRecorder<'_> {
                 contact_loss_s: outcome.contact_loss,
             });
         }
+    }
+
+    /// Widens the rows of the last count to what a further train does: tables hold the extremes over all kinds.
+    fn widen(&mut self, unloaded: &Unloaded, passage: &PassageOutcome) {
+        let first = self.tables.sleepers.len().saturating_sub(passage.seats.len());
+        for (row, outcome) in self.tables.sleepers[first..].iter_mut().zip(&passage.seats) {
+            row.max_contact_force_N = row.max_contact_force_N.max(outcome.max_contact_force);
+            row.max_rail_seat_load_N = row.max_rail_seat_load_N.max(outcome.max_rail_seat_load);
+            row.max_sleeper_displacement_m = row.max_sleeper_displacement_m.max(outcome.max_sleeper_displacement);
+            row.contact_loss_s = row.contact_loss_s.max(outcome.contact_loss);
+        }
+        let nodes: Vec<f64> = unloaded.rail.iter().map(|p| p.x).collect();
+        let first = self.tables.rail.len().saturating_sub(unloaded.profile.len());
+        for row in &mut self.tables.rail[first..] {
+            let moment = |of: fn(&(f64, f64)) -> f64| between(&nodes, row.x_m, &passage.rail_moments, of);
+            let displacement = |of: fn(&(f64, f64)) -> f64| between(&nodes, row.x_m, &passage.rail_displacements, of);
+            let [moment, displacement] =
+                [[moment(|m| m.0), moment(|m| m.1)], [displacement(|d| d.0), displacement(|d| d.1)]];
+            row.min_moment_N_m = row.min_moment_N_m.min(moment[0]);
+            row.max_moment_N_m = row.max_moment_N_m.max(moment[1]);
+            row.min_displacement_m = row.min_displacement_m.min(displacement[0]);
+            row.max_displacement_m = row.max_displacement_m.max(displacement[1]);
+        }
+        let stress = self.foot_stress(&nodes, passage);
+        self.tables.max_foot_stress = self.tables.max_foot_stress.into_iter().chain(stress).reduce(f64::max);
+    }
+
+    /// The passage of one of several kinds of trains.
+    fn keep_train(&mut self, axles: u64, runner: Runner, passage: &PassageOutcome) {
+        let Some(traffic) = self.traffic().filter(|traffic| traffic.is_mixed()) else { return };
+        let sequence = traffic.sequence();
+        let largest = |of: fn(&graph::SeatOutcome) -> f64| passage.seats.iter().map(of).fold(0.0, f64::max);
+        self.tables.trains.push(TrainRow {
+            axles,
+            train: self.train_name(runner),
+            passed: sequence.counts(sequence.within(axles))[runner.kind],
+            max_wheel_force_N: passage.max_wheel_force,
+            min_wheel_force_N: passage.min_wheel_force,
+            max_rail_seat_load_N: largest(|seat| seat.max_rail_seat_load),
+            max_contact_force_N: largest(|seat| seat.max_contact_force),
+            max_rail_moment_N_m: passage.max_rail_moment,
+        });
+    }
+
+    fn train_name(&self, runner: Runner) -> String {
+        let train = self.traffic().and_then(|traffic| traffic.trains().nth(runner.kind));
+        train.map(|train| train.name.clone()).unwrap_or_default()
+    }
+
+    fn keep_rail(&mut self, axles: u64, quantity: Response, points: impl Iterator<Item = (f64, f64)>) {
+        self.histories.extend(points.map(|(x_m, value)| HistoryRow {
+            axles,
+            time_s: 0.0,
+            quantity: quantity.name().into(),
+            id: "rail".into(),
+            x_m,
+            value,
+            train: String::new(),
+        }));
+    }
+}
+
+/// An extreme of the rail at a place, of those at the nodes of the mesh; linear between them.
+fn between(nodes: &[f64], x: f64, extremes: &[(f64, f64)], of: fn(&(f64, f64)) -> f64) -> f64 {
+    let (left, share) = graph::between(nodes, x);
+    let (a, b) = (of(&extremes[left]), of(&extremes[left + 1]));
+    a + share * (b - a)
+}
+
+impl Recorder for RunRecorder<'_> {
+    fn unloaded(&mut self, axles: u64, state: &Unloaded) {
+        self.keep_rail(axles, Response::RailLevel, state.rail.iter().map(|p| (p.x, p.deflection)));
+        self.unloaded = Some(state.clone());
+    }
+
+    fn passage(&mut self, axles: u64, runner: Runner, passage: &PassageOutcome) {
+        let (track, train) = (self.track(), self.train_name(runner));
+        let rows = passage.samples.iter().map(|s| HistoryRow {
+            axles,
+            time_s: s.time,
+            quantity: s.quantity.name().into(),
+            id: s.target.name(track),
+            x_m: s.x,
+            value: s.value,
+            train: train.clone(),
+        });
+        self.histories.extend(rows);
+        let Some(unloaded) = self.unloaded.take() else { return };
+        if runner.kind == 0 {
+            self.keep_profile(axles, &unloaded, passage);
+            self.keep_sleepers(axles, &unloaded, passage);
+        } else {
+            self.widen(&unloaded, passage);
+        }
+        self.keep_train(axles, runner, passage);
+        self.unloaded = Some(unloaded);
     }
 
     fn block(
@@ -223,6 +304,20 @@ impl Recorder for RunRecorder<'_> {
             self.keep_settlements(axles + block.axles, after);
         }
         self.tables.max_rail_moment = Some(largest(|p| p.max_rail_moment));
+        let deepest = |p: &PassageOutcome| p.rail_displacements.iter().map(|d| d.1).fold(f64::NEG_INFINITY, f64::max);
+        self.tables.max_rail_displacement = Some(largest(deepest));
+    }
+
+    fn tamped(&mut self, axles: u64, seats: &[usize], before: &[f64], after: &[f64]) {
+        let track = self.track();
+        self.tables.tampings.extend(seats.iter().map(|seat| TampingRow {
+            axles,
+            sleeper: track.seat_name(&track.seats[*seat]),
+            x_m: track.seats[*seat].x,
+            settlement_before_m: before[*seat],
+            settlement_after_m: after[*seat],
+        }));
+        self.keep_settlements(axles, after);
     }
 
     fn laws(&mut self, axles: u64, settlement: &[Vec<f64>]) {

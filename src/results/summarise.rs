@@ -1,7 +1,7 @@
 //! The scalars of `summary.json`, from the tables: every extreme is that after the last axle count.
 
 use super::{BlockRow, LongitudinalLevel, RailRow, Scalar, SleeperRow, longitudinal_level};
-use crate::scenario::{Loading, Scenario, Seat, Vehicle};
+use crate::scenario::{Loading, Scenario, Seat, Train, Vehicle};
 use std::collections::{BTreeMap, HashMap};
 
 /// A gap below this is round-off, not a void, m.
@@ -15,7 +15,7 @@ const FAR_FIELD_DISTANCE: f64 = 10.0;
 pub struct RailMaxima {
     /// Sagging moment, N m.
     pub moment: Option<f64>,
-    /// Downward displacement, m; of a static check.
+    /// Downward displacement from the unloaded state, m.
     pub displacement: Option<f64>,
     /// Tension in the foot, Pa.
     pub foot_stress: Option<f64>,
@@ -59,9 +59,7 @@ pub fn summarise(
     put("axles", Some(axles as f64), "1");
     put("max_rail_seat_load", largest(last.iter().map(|row| row.max_rail_seat_load_N)), "N");
     put("max_rail_moment", rail.moment, "N m");
-    if matches!(scenario.loading, Some(Loading::Static(_))) {
-        put("max_rail_displacement", rail.displacement, "m");
-    }
+    put("max_rail_displacement", rail.displacement, "m");
     put("max_rail_foot_stress", rail.foot_stress, "Pa");
     put("longitudinal_level_d1", rail.level.map(|l| l.0), "m");
     put("longitudinal_level_d1_deviation", rail.level.map(|l| l.1), "m");
@@ -92,16 +90,26 @@ pub fn summarise(
         put("overshot_blocks", Some(blocks.iter().map(|b| b.overshot).sum::<u64>() as f64), "1");
         put("max_wheel_force", Some(block.max_wheel_force_N), "N");
         put("min_wheel_force", Some(block.min_wheel_force_N), "N");
-        let amplification = static_wheel_load(scenario).map(|load| block.max_wheel_force_N / load);
+        let amplification = heaviest_wheel_load(scenario).map(|load| block.max_wheel_force_N / load);
         put("dynamic_amplification", amplification, "1");
     }
     scalars
 }
 
-/// The static load of the heaviest vehicle's wheels, N; `None` without traffic or without gravity.
+/// The static load of the wheels of the leading train's heaviest vehicle, N; `None` without traffic or without gravity.
 pub fn static_wheel_load(scenario: &Scenario) -> Option<f64> {
     let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
-    let loads = traffic.train.vehicles.iter().map(|v| v.mass() * *scenario.solve.gravity / Vehicle::AXLES as f64);
+    wheel_load(scenario, &traffic.train)
+}
+
+/// The same of the heaviest vehicle of all trains.
+fn heaviest_wheel_load(scenario: &Scenario) -> Option<f64> {
+    let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
+    largest(traffic.trains().filter_map(|train| wheel_load(scenario, train)))
+}
+
+fn wheel_load(scenario: &Scenario, train: &Train) -> Option<f64> {
+    let loads = train.vehicles.iter().map(|v| v.mass() * *scenario.solve.gravity / Vehicle::AXLES as f64);
     largest(loads).filter(|load| *load > 0.0)
 }
 

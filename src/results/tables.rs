@@ -63,12 +63,70 @@ pub struct RailRow {
     /// During the passage, sagging; linear between the nodes of the mesh.
     pub max_moment_N_m: f64,
     pub min_moment_N_m: f64,
+    /// During the passage, downward from the unloaded state; linear between the nodes of the mesh.
+    pub max_displacement_m: f64,
+    pub min_displacement_m: f64,
 }
 
 impl Row for RailRow {
     const FILE: &'static str = "rail.csv";
-    const COLUMNS: &'static [&'static str] =
-        &["axles", "x_m", "level_m", "moment_N_m", "stiffness_N_per_m", "max_moment_N_m", "min_moment_N_m"];
+    const COLUMNS: &'static [&'static str] = &[
+        "axles",
+        "x_m",
+        "level_m",
+        "moment_N_m",
+        "stiffness_N_per_m",
+        "max_moment_N_m",
+        "min_moment_N_m",
+        "max_displacement_m",
+        "min_displacement_m",
+    ];
+}
+
+/// One kind of train at one recorded axle count (`trains.csv`, where several share the track): extremes of its passage over the
+/// track as it lies then.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub struct TrainRow {
+    pub axles: u64,
+    pub train: String,
+    /// Trains of its kind that have passed.
+    pub passed: u64,
+    pub max_wheel_force_N: f64,
+    pub min_wheel_force_N: f64,
+    pub max_rail_seat_load_N: f64,
+    pub max_contact_force_N: f64,
+    pub max_rail_moment_N_m: f64,
+}
+
+impl Row for TrainRow {
+    const FILE: &'static str = "trains.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "axles",
+        "train",
+        "passed",
+        "max_wheel_force_N",
+        "min_wheel_force_N",
+        "max_rail_seat_load_N",
+        "max_contact_force_N",
+        "max_rail_moment_N_m",
+    ];
+}
+
+/// One sleeper that is tamped (`tamping.csv`, where there is tamping).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub struct TampingRow {
+    pub axles: u64,
+    pub sleeper: String,
+    pub x_m: f64,
+    pub settlement_before_m: f64,
+    pub settlement_after_m: f64,
+}
+
+impl Row for TampingRow {
+    const FILE: &'static str = "tamping.csv";
+    const COLUMNS: &'static [&'static str] = &["axles", "sleeper", "x_m", "settlement_before_m", "settlement_after_m"];
 }
 
 /// One block of the iteration (`blocks.csv`): a passage computed at `axles`, and the axles that it stands for.
@@ -160,4 +218,6 @@ pub struct HistoryRow {
     /// Chainage, m: of the seat, of the wheel at that moment, or of the place on the rail.
     pub x_m: f64,
     pub value: f64,
+    /// Whose passage it is; empty where no train runs, as for settlement.
+    pub train: String,
 }

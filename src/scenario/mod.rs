@@ -12,7 +12,9 @@ mod library;
 mod material;
 mod profile;
 pub mod response;
+mod sequence;
 mod study;
+mod tamping;
 mod track;
 mod traffic;
 
@@ -23,7 +25,9 @@ pub use law::{SettlementLaw, law_argument};
 pub use library::{Evidence, LibraryEntry};
 pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soil, Strength};
 pub use profile::{Cubic, Curve, Piece, Profile, Varying};
+pub use sequence::{Order, Sequence, Share};
 pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spread, Study, Values};
+pub use tamping::Tamping;
 pub use track::{
     AuxiliaryRailSpan, AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, SleeperBody,
     Spring, Stretch, Support, Track, Transition, Usp,
@@ -42,6 +46,7 @@ pub struct Scenario {
     pub track: Track,
     /// What acts on the track; `None` is a scene that can be drawn but not run.
     pub loading: Option<Loading>,
+    pub tampings: Vec<Tamping>,
     pub solve: Solve,
     pub records: Vec<Record>,
     /// What is wanted from volumes of grains.

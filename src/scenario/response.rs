@@ -70,12 +70,19 @@ pub enum Place {
 }
 
 /// How a field of values becomes one number.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reduction {
     Max,
     Min,
     Mean,
+    /// Root of the mean square.
+    Rms,
+    /// The value that this share of all values, 0 .. 1, does not exceed; straight between two of them.
+    Percentile(f64),
+    /// Root of the mean square by which the response departs from measured values, given by chainage, m; straight between
+    /// places.
+    Misfit(Vec<(f64, f64)>),
     /// Chainage at which the largest value stands, m.
     PlaceOfMax,
     /// A response that is one number already.
@@ -93,6 +100,23 @@ pub struct Measure {
     pub after: Option<u64>,
 }
 
+impl Measure {
+    /// Everywhere, after the last count.
+    pub fn new(reduction: Reduction, response: Response) -> Measure {
+        Measure { reduction, response, over: None, after: None }
+    }
+}
+
+/// A function of numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Function {
+    Abs,
+    Sqrt,
+    Min,
+    Max,
+}
+
 /// An expression over measures, in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Expression {
@@ -100,6 +124,8 @@ pub enum Expression {
     Measure(Measure),
     Binary(Box<Expression>, BinaryOp, Box<Expression>),
     Negate(Box<Expression>),
+    /// Of one value or more.
+    Function(Function, Vec<Expression>),
 }
 
 impl Expression {
@@ -110,6 +136,7 @@ impl Expression {
             Expression::Measure(_) => true,
             Expression::Binary(left, _, right) => left.needs_a_run() || right.needs_a_run(),
             Expression::Negate(inner) => inner.needs_a_run(),
+            Expression::Function(_, of) => of.iter().any(Expression::needs_a_run),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What acts on the track: vehicles, trains and test loads.
 
-use super::{Given, Profile};
+use super::{Given, Order, Profile, Sequence, Share};
 use serde::{Deserialize, Serialize};
 
 /// A vehicle on two bogies of two axles each, as carried by **one rail**: half of every mass, inertia and stiffness.
@@ -69,6 +69,11 @@ impl Train {
         Vehicle::AXLES * self.vehicles.len() as u64
     }
 
+    /// Mass on both rails, kg.
+    pub fn mass(&self) -> f64 {
+        self.vehicles.iter().map(|vehicle| 2.0 * vehicle.mass()).sum()
+    }
+
     /// Mass that a wheel carries on average, kg.
     pub fn mean_wheel_mass(&self) -> f64 {
         self.vehicles.iter().map(Vehicle::mass).sum::<f64>() / self.axles() as f64
@@ -107,11 +112,39 @@ pub enum Direction {
     Both,
 }
 
+/// The trains of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Traffic {
+    /// The train that the scene names first. What is shown of one train only is of it.
     pub train: Train,
+    /// Trains of other kinds that share the track with it.
+    pub others: Vec<Train>,
+    /// How many trains of each kind run, in the order of the scene; of one kind alone it follows from `total`.
+    pub counts: Vec<u64>,
+    pub order: Order,
     /// Axles of the whole run.
     pub total: Given<u64>,
+}
+
+impl Traffic {
+    /// Every kind of train, in the order of the scene.
+    pub fn trains(&self) -> impl Iterator<Item = &Train> {
+        std::iter::once(&self.train).chain(&self.others)
+    }
+
+    /// Whether trains of several kinds run.
+    pub fn is_mixed(&self) -> bool {
+        !self.others.is_empty()
+    }
+
+    /// Which train runs when.
+    pub fn sequence(&self) -> Sequence {
+        let alone = [*self.total / self.train.axles()];
+        let counts = if self.is_mixed() { self.counts.as_slice() } else { alone.as_slice() };
+        let share =
+            |(train, trains): (&Train, &u64)| Share { trains: *trains, axles: train.axles(), mass: train.mass() };
+        Sequence { order: self.order, shares: self.trains().zip(counts).map(share).collect() }
+    }
 }
 
 /// A constant force on a track at rest.

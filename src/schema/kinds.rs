@@ -101,7 +101,7 @@ const SUPPORT: Form = Form::OneOf(&[
 ]);
 const AXLES_OR_MASS: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 1e-6, 1e4)]);
 const AXLE_COUNT: Form = number("axles", 0.0, 1e9);
-const AXLES_MASS_OR_CYCLES: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 1e-6, 1e4), number("cycles", 0.0, 1e9)]);
+const AXLES_MASS_OR_CYCLES: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 0.0, 1e4), number("cycles", 0.0, 1e9)]);
 const TRACK_OR_RAIL: Basis = Basis { names: &[("track", 0.5), ("rail", 1.0)], assumed: Some("track") };
 const LAYERS: Form = Form::Pairs {
     key: &Form::OneOf(&[Form::Object("granular"), Form::Object("soil")]),
@@ -596,12 +596,21 @@ pub const KINDS: &[Kind] = &[
             required(
                 "trains",
                 Form::Pairs { key: &Form::Object("train"), value: &number("%", 0.0, 100.0), implied: Some("100 %") },
-                "with their shares of `total`",
+                "with their shares of `total`, in its unit",
             ),
             required("total", AXLES_OR_MASS, "axles, or the mass that they carry"),
+            default(
+                "order",
+                Form::Words(&[
+                    word("interleaved", "every kind of train all along the run"),
+                    word("in_turn", "all trains of the first kind, then all of the second"),
+                ]),
+                "interleaved",
+                "in which trains of several kinds run",
+            ),
         ],
         alternatives: &[],
-        planned: &["order"],
+        planned: &[],
     },
     Kind {
         name: "load",
@@ -610,7 +619,11 @@ pub const KINDS: &[Kind] = &[
         fields: &[
             required("on", Form::Words(&[word("rail", ""), word("sleepers", "")]), "what it stands on"),
             required("at", Form::List(&Form::Place), "one force at each place"),
-            optional("from", Form::Name, "the transition from which `at` counts; needed where there are several"),
+            optional(
+                "from",
+                Form::List(&Form::Name),
+                "the transitions from which `at` counts, mirrored at each; needed where there are several",
+            ),
             required(
                 "force",
                 Form::OneOf(&[per("kN", 0.0, 10_000.0, &FORCE), Form::Words(&[CYCLIC])]),
@@ -643,6 +656,28 @@ pub const KINDS: &[Kind] = &[
                 ]),
                 "axle",
                 "what one cycle of the law is: publications differ, by a factor of four",
+            ),
+        ],
+        alternatives: &[],
+        planned: &[],
+    },
+    Kind {
+        name: "tamping",
+        doc: "Sleepers lifted and packed anew: brings the level back at some counts. Their settlement law begins afresh.",
+        role: Role::Scene { once: false },
+        fields: &[
+            required("after", Form::List(&AXLES_OR_MASS), "how much traffic; between the first and the last train"),
+            optional("over", Form::Span, "which sleepers; all on ballast where absent"),
+            optional(
+                "from",
+                Form::List(&Form::Name),
+                "the transitions from which `over` counts, mirrored at each; needed where there are several",
+            ),
+            default(
+                "left",
+                number("%", 0.0, 100.0),
+                "0 %",
+                "share of the settlement that stays, and of the voids with it",
             ),
         ],
         alternatives: &[],
@@ -858,7 +893,11 @@ pub const KINDS: &[Kind] = &[
             required("quantities", Form::List(&Form::Response), "what to keep"),
             optional("at", Form::List(&Form::Place), "at these seats"),
             optional("over", Form::Span, "at all seats of a span"),
-            optional("from", Form::Name, "the transition from which places count; needed where there are several"),
+            optional(
+                "from",
+                Form::List(&Form::Name),
+                "the transitions from which places count, mirrored at each; needed where there are several",
+            ),
             optional(
                 "after",
                 Form::List(&AXLES_MASS_OR_CYCLES),

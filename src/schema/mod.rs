@@ -144,7 +144,7 @@ pub struct Alternative {
 }
 
 /// Kinds of the language that this version does not read yet.
-pub const PLANNED_KINDS: &[&str] = &["tamping"];
+pub const PLANNED_KINDS: &[&str] = &[];
 
 /// The kind of that name, nested ones included.
 pub fn kind(name: &str) -> Option<&'static Kind> {

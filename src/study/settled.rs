@@ -1,7 +1,6 @@
 //! The track as a run of the scene leaves it: the state over which variants are compared.
 
-use crate::graph::{self, Block, Checkpoint, Graph, Measured, PassageOutcome, Recorder, RunError, Unloaded};
-use crate::scenario::Direction;
+use crate::graph::{self, Block, Checkpoint, Graph, Measured, PassageOutcome, Recorder, RunError, Runner, Unloaded};
 
 /// Settlement after some axles.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +43,7 @@ struct Keeper<'a> {
 
 impl Recorder for Keeper<'_> {
     fn unloaded(&mut self, _: u64, _: &Unloaded) {}
-    fn passage(&mut self, _: u64, _: Direction, _: &PassageOutcome) {}
+    fn passage(&mut self, _: u64, _: Runner, _: &PassageOutcome) {}
     fn equilibrium(&mut self, _: &Unloaded) {}
 
     fn block(

@@ -22,6 +22,8 @@ pub struct Envelope {
     pub wheel_forces: Vec<(f64, f64)>,
     /// Sagging rail moment at each node, smallest and largest, N m.
     pub rail_moments: Vec<(f64, f64)>,
+    /// Downward displacement of each rail node from the unloaded state, smallest and largest, m.
+    pub rail_displacements: Vec<(f64, f64)>,
     moments: Vec<f64>,
     /// Wheels from left to right, and the nearest of them to the seat that was looked at last.
     along: Vec<usize>,
@@ -60,6 +62,7 @@ impl Envelope {
             axle_deflections: vec![0.0; seats * wheels],
             wheel_forces: vec![NOTHING; wheels],
             rail_moments: vec![NOTHING; nodes],
+            rail_displacements: vec![NOTHING; nodes],
             moments: vec![0.0; nodes],
             along: (0..wheels).collect(),
             near: 0,
@@ -107,6 +110,9 @@ impl Observer for Envelope {
         }
         for (range, force) in self.wheel_forces.iter_mut().zip(view.wheel_forces()) {
             widen(range, *force);
+        }
+        for (node, range) in self.rail_displacements.iter_mut().enumerate() {
+            widen(range, view.rail_deflection(node) - view.unloaded().rail_deflection[node]);
         }
         view.rail_moments(&mut self.moments);
         for (range, moment) in self.rail_moments.iter_mut().zip(&self.moments) {

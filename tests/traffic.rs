@@ -1,0 +1,349 @@
+//! Mixes of trains: their shares and order, what they do to the track together, and what is said against a mix that is none.
+
+use trackbed::check::NoModules;
+use trackbed::diag::{Code, render};
+use trackbed::graph::{
+    self, Block, Checkpoint, Graph, Measured, PassageOutcome, Recorder, RunError, Runner, Schedule, Unloaded,
+};
+use trackbed::results::RunRecorder;
+use trackbed::scenario::Scenario;
+use trackbed::{Compiled, compile};
+
+/// A transition zone that runs in a moment, and trains to run over it.
+const SCENE: &str = r#"use std
+trackform open {
+  rail = rails.UIC60
+  pad = pads.ahmadi_2026
+  sleeper = sleepers.B70
+  spacing = 0.6 m
+  support = { stiffness = 50 MN/m per seat, damping_time = 1 ms }
+}
+trackform stiff : open { sleeper = none, support = none, slab = slabs.half_width_1600 }
+track line { sections = [open: 15 m, stiff: 12 m] }
+train ore { vehicles = vehicles.ore_wagon_20t, speed = 120 km/h }
+train twin : ore { }
+train heavy { vehicles = vehicles.ore_wagon_30t, speed = 60 km/h }
+law bed : laws.varandas_2014 { form.gamma = 10 mm }
+law hard : laws.hettler_1984 { }
+scenario { allow = [stiffness_jump: "a test", passing_frequency: "a test", wheel_on_track: "a test"] }
+"#;
+
+fn check(rest: &str) -> Compiled {
+    compile("scene.track", &format!("{SCENE}{rest}"), &NoModules, &[])
+}
+
+fn told(compiled: &Compiled) -> String {
+    render::human(&compiled.diagnostics, &compiled.sources, false, 120)
+}
+
+fn parts(rest: &str) -> (Scenario, Graph) {
+    let compiled = check(rest);
+    assert!(compiled.diagnostics.iter().all(|d| !d.is_error()), "{}", told(&compiled));
+    (compiled.scenario.unwrap(), compiled.graph.unwrap())
+}
+
+/// Traffic, how it is run, and the histories kept.
+fn traffic(trains: &str, law: &str) -> String {
+    format!(
+        "traffic {{ {trains}, total = 120 axles }}
+solve {{ law = {law}, update_every = 20 axles, elements_per_bay = 2, time_step = 2e-4 s }}
+record {{ at = -3 sleepers, after = [0, 60, 120] axles, quantities = contact_force }}"
+    )
+}
+
+/// Settlement of every seat after the last train, m.
+fn settled(rest: &str) -> Vec<f64> {
+    let (scenario, graph) = parts(rest);
+    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
+    graph::execute(&graph, &mut recorder, None).unwrap();
+    recorder.tables.sleepers.iter().filter(|row| row.axles == 120).map(|row| row.settlement_m).collect()
+}
+
+#[test]
+fn two_trains_that_are_one_settle_the_track_as_one() {
+    for law in ["bed", "hard"] {
+        let one = settled(&traffic("trains = ore", law));
+        for order in ["interleaved", "in_turn"] {
+            let both = settled(&traffic(&format!("trains = [ore: 50 %, twin: 50 %], order = {order}"), law));
+            let apart = one.iter().zip(&both).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(apart < 1e-9, "{law} {order}: {apart} m");
+        }
+    }
+}
+
+#[test]
+fn a_mix_settles_more_than_its_lighter_train_and_less_than_its_heavier() {
+    let light = settled(&traffic("trains = ore", "bed"));
+    let heavy = settled(&traffic("trains = heavy", "bed"));
+    let deepest = |settled: &[f64]| settled.iter().copied().fold(0.0, f64::max);
+    let mut last = deepest(&light);
+    for share in [20, 50, 80] {
+        let mix = settled(&traffic(&format!("trains = [ore: {} %, heavy: {share} %]", 100 - share), "bed"));
+        // far from the transition both load every seat alike
+        for seat in 5..15 {
+            assert!(light[seat] < mix[seat] && mix[seat] < heavy[seat], "{share} %: seat {seat}");
+        }
+        assert!(deepest(&mix) > last, "{share} %");
+        last = deepest(&mix);
+    }
+    assert!(last < deepest(&heavy));
+}
+
+#[test]
+fn results_name_the_train() {
+    let (scenario, graph) = parts(&traffic("trains = [ore: 50 %, heavy: 50 %]", "bed"));
+    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
+    graph::execute(&graph, &mut recorder, None).unwrap();
+    let force = |train: &str, quantity: &str| {
+        let of =
+            recorder.histories.iter().filter(|row| row.train == train && row.quantity == quantity && row.axles == 60);
+        of.map(|row| row.value).fold(0.0, f64::max)
+    };
+    // 20 t and 30 t an axle
+    assert!((95e3..130e3).contains(&force("ore", "wheel_force")), "{}", force("ore", "wheel_force"));
+    assert!((140e3..180e3).contains(&force("heavy", "wheel_force")), "{}", force("heavy", "wheel_force"));
+    assert!(force("heavy", "contact_force") > 1.2 * force("ore", "contact_force"));
+    let tables = &recorder.tables;
+    let rows: Vec<(u64, &str, u64)> = tables.trains.iter().map(|r| (r.axles, r.train.as_str(), r.passed)).collect();
+    let expected = [(0, 0), (60, 8), (120, 15)];
+    assert_eq!(rows.len(), 6);
+    for ((axles, passed), pair) in expected.iter().zip(rows.chunks(2)) {
+        assert_eq!((pair[0].0, pair[0].1, pair[1].1), (*axles, "ore", "heavy"));
+        assert!(pair[0].2 + pair[1].2 == axles / 4 && pair[0].2.abs_diff(*passed) <= 1);
+    }
+    // tables along the track hold the larger of both
+    let heavy = tables.trains.iter().find(|r| r.train == "heavy" && r.axles == 120);
+    let row = tables.sleepers.iter().filter(|r| r.axles == 120).map(|r| r.max_contact_force_N).fold(0.0, f64::max);
+    assert_eq!(Some(row), heavy.map(|r| r.max_contact_force_N));
+    assert!(tables.laws.is_empty() && scenario.loading.is_some());
+}
+
+#[test]
+fn trains_in_turn_end_a_block_where_they_change() {
+    let mix = "trains = [ore: 60 %, heavy: 40 %], order = in_turn";
+    let (_, graph) = parts(&traffic(mix, "bed"));
+    let Schedule::Blocks(blocks) = &graph.schedule else { panic!("traffic") };
+    let kinds: Vec<(u64, Vec<usize>)> =
+        blocks.planned().unwrap().iter().map(|b| (b.before, b.runners().iter().map(|r| r.kind).collect())).collect();
+    assert!(kinds.iter().all(|(before, kinds)| kinds == &[usize::from(*before >= 72)]), "{kinds:?}");
+    assert!(kinds.iter().any(|(before, _)| *before == 72));
+    // the mix says what it has become
+    assert!(
+        graph.listing().text().contains("pass mix: 18 of `ore` (60 % of the axles), 12 of `heavy` (40 % of the axles)")
+    );
+}
+
+#[test]
+fn counts_may_be_the_mass_that_trains_carry() {
+    // wagons of 80 t and 120 t
+    let (scenario, graph) = parts(
+        "traffic { trains = [ore: 40 %, heavy: 60 %], total = 0.004 MGT }
+record { at = -3 sleepers, after = [0, 0.001, 0.004] MGT, quantities = contact_force }
+expect { that = [max(settlement, after = 0.001 MGT) < max(settlement, after = 0.004 MGT)] }",
+    );
+    let Schedule::Blocks(blocks) = &graph.schedule else { panic!("traffic") };
+    assert_eq!(blocks.sequence.shares.iter().map(|share| share.trains).collect::<Vec<_>>(), [20, 20]);
+    assert_eq!((blocks.total, blocks.recorded.clone()), (160, vec![0, 40, 160]));
+    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
+    graph::execute(&graph, &mut recorder, None).unwrap();
+    assert!(recorder.tables.sleepers.iter().any(|row| row.axles == 40));
+}
+
+#[test]
+fn every_train_of_a_mix_is_held_against_the_rules() {
+    let springs = "vehicle stiff_wagon : vehicles.ore_wagon_20t { secondary.stiffness = 90 MN/m per bogie, \
+                   primary.stiffness = 100 MN/m per wheel }
+train hard_riding { vehicles = stiff_wagon, speed = 60 km/h }
+";
+    let found = |trains: &str| {
+        let compiled = check(&format!("{springs}traffic {{ trains = {trains}, total = 80 axles }}"));
+        compiled.diagnostics.iter().filter(|d| d.code == Code::L1017).count()
+    };
+    assert_eq!((found("ore"), found("[ore: 50 %, hard_riding: 50 %]"), found("hard_riding")), (0, 1, 1));
+}
+
+#[test]
+fn a_mix_that_is_none_is_refused() {
+    let refusals = [
+        ("traffic { trains = [ore: 70 %, heavy: 40 %], total = 120 axles }", Code::E0407, "sum to 110 %"),
+        ("traffic { trains = [ore, heavy], total = 120 axles }", Code::E0407, "sum to 200 %"),
+        ("traffic { trains = [ore: 60 %, ore: 40 %], total = 120 axles }", Code::E0404, "`ore` is given twice"),
+        (
+            "traffic { trains = [ore: 99 %, heavy: 1 %], total = 120 axles }",
+            Code::E0602,
+            "1.2 axles, less than half a train",
+        ),
+        ("traffic { trains = [ore: 50 %, heavy: 50 %], total = 120 axles, order = mixed }", Code::E0408, "mixed"),
+        ("traffic { trains = [], total = 120 axles }", Code::E0403, "needs a train"),
+    ];
+    for (text, code, says) in refusals {
+        let compiled = check(text);
+        let found: Vec<Code> = compiled.diagnostics.iter().filter(|d| d.is_error()).map(|d| d.code).collect();
+        assert_eq!(found, [code], "{text}: {}", told(&compiled));
+        assert!(told(&compiled).contains(says), "{}", told(&compiled));
+    }
+}
+
+/// Stops a run after some blocks, and keeps what it would take to go on.
+struct Stopping {
+    left: usize,
+    kept: Option<Checkpoint>,
+    blocks: Vec<(u64, Vec<u64>)>,
+}
+
+impl Recorder for Stopping {
+    fn unloaded(&mut self, _: u64, _: &Unloaded) {}
+    fn passage(&mut self, _: u64, _: Runner, _: &PassageOutcome) {}
+    fn block(&mut self, axles: u64, _: Option<(&Block, &Measured)>, _: &[&PassageOutcome], _: &[f64], after: &[f64]) {
+        self.blocks.push((axles, after.iter().map(|s| s.to_bits()).collect()));
+    }
+    fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<(), String> {
+        let text = serde_json::to_string(checkpoint).unwrap();
+        self.kept = Some(serde_json::from_str(&text).unwrap());
+        self.left -= 1;
+        if self.left == 0 { Err("stopped".into()) } else { Ok(()) }
+    }
+    fn progress(&mut self, done: u64, all: u64) {
+        assert!(done <= all);
+    }
+    fn equilibrium(&mut self, _: &Unloaded) {}
+}
+
+/// What a run leaves whole, and stopped after each of its blocks.
+fn stops_and_goes_on(rest: &str) {
+    let (_, graph) = parts(rest);
+    let run = |left: usize, from: Option<Checkpoint>| {
+        let mut recorder = Stopping { left, kept: None, blocks: Vec::new() };
+        let outcome = graph::execute(&graph, &mut recorder, from);
+        (recorder, outcome)
+    };
+    let (whole, outcome) = run(usize::MAX, None);
+    assert_eq!(outcome, Ok(()));
+    for stop in [1, whole.blocks.len() / 2, whole.blocks.len() - 2] {
+        let (mut begun, outcome) = run(stop, None);
+        assert_eq!(outcome, Err(RunError::Recorder("stopped".into())));
+        begun.blocks.extend(run(usize::MAX, begun.kept.take()).0.blocks);
+        assert!(begun.blocks == whole.blocks, "stopped after {stop}");
+    }
+}
+
+#[test]
+fn a_stopped_mix_goes_on_with_the_same_bits() {
+    stops_and_goes_on(
+        "train back : heavy { direction = both }
+traffic { trains = [ore: 70 %, back: 30 %], total = 80 axles }
+solve { law = bed, elements_per_bay = 2, time_step = 2e-4 s }
+record { at = -3 sleepers, after = [0, 40, 80] axles, quantities = contact_force }",
+    );
+}
+
+#[test]
+fn a_tamped_track_begins_afresh() {
+    let scene = |tamping: &str| {
+        format!(
+            "traffic {{ trains = ore, total = 120 axles }}
+solve {{ law = [bed, hard], update_every = 12 axles, elements_per_bay = 2, time_step = 2e-4 s }}
+record {{ at = -3 sleepers, after = [0, 60, 120] axles, quantities = contact_force }}
+{tamping}"
+        )
+    };
+    let run = |tamping: &str| {
+        let (scenario, graph) = parts(&scene(tamping));
+        let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
+        graph::execute(&graph, &mut recorder, None).unwrap();
+        recorder.tables
+    };
+    let at = |tables: &trackbed::results::RunTables, axles: u64, sleeper: &str| {
+        let row = tables.sleepers.iter().find(|row| row.axles == axles && row.sleeper == sleeper);
+        row.unwrap().settlement_m
+    };
+    let plain = run("");
+    let all = run("tamping spring { after = 60 axles }");
+    // as if the run began anew: the record at that count shows the track before
+    assert_eq!(at(&all, 60, "-3"), at(&plain, 60, "-3"));
+    let again = (at(&all, 120, "-3") / at(&plain, 60, "-3") - 1.0).abs();
+    assert!(again < 1e-9, "{again}");
+    // some sleepers only, and a tenth stays
+    let some = run("tamping spring { after = 60 axles, over = -8 .. -1 sleepers, left = 10 % }");
+    assert_eq!(some.tampings.len(), 8);
+    for row in &some.tampings {
+        assert_eq!(row.axles, 60);
+        assert!((row.settlement_after_m - 0.1 * row.settlement_before_m).abs() < 1e-15);
+    }
+    assert!(at(&some, 120, "-3") < at(&plain, 120, "-3"));
+    assert!((at(&some, 120, "-20") / at(&plain, 120, "-20") - 1.0).abs() < 0.02, "far away nothing changes");
+    // both laws begin afresh, and both stand in their table before and after
+    let counts: Vec<u64> = some.laws.iter().map(|count| count.axles).collect();
+    assert_eq!(counts.iter().filter(|axles| **axles == 60).count(), 2);
+    stops_and_goes_on(&scene("tamping spring { after = [24, 60] axles, over = -8 .. -1 sleepers, left = 10 % }"));
+}
+
+#[test]
+fn a_tamping_that_changes_nothing_is_refused() {
+    let traffic = "traffic { trains = ore, total = 120 axles }
+";
+    let refusals = [
+        ("tamping a { after = 60 axles, over = 1 .. 4 sleepers }", Code::E0427, "no sleeper on ballast"),
+        ("tamping a { after = [0, 60] axles }", Code::E0427, "before the first train"),
+        ("tamping a { after = 120 axles }", Code::E0427, "the run ends there"),
+        ("tamping a { after = [60, 60] axles }", Code::E0427, "tamped twice after 60 axles"),
+        (
+            "tamping a { after = 60 axles }
+tamping b { after = 60 axles, over = -2 .. -1 sleepers }",
+            Code::E0427,
+            "tamped twice",
+        ),
+        ("tamping a { after = 62 axles }", Code::E0602, "in the middle of a train"),
+        ("tamping a { after = 600 axles }", Code::E0602, "never reached"),
+        ("tamping a { over = -2 .. -1 sleepers }", Code::E0403, "after"),
+        ("tamping a { after = 60 axles, left = 110 % }", Code::E0405, "0 .. 100"),
+    ];
+    for (text, code, says) in refusals {
+        let compiled = check(&format!("{traffic}{text}"));
+        let found: Vec<Code> = compiled.diagnostics.iter().filter(|d| d.is_error()).map(|d| d.code).collect();
+        assert_eq!(found, [code], "{text}: {}", told(&compiled));
+        assert!(told(&compiled).contains(says), "{}", told(&compiled));
+    }
+    let without = check(
+        "tamping a { after = 60 axles }
+load jack { on = rail, at = -3 sleepers, force = 100 kN per rail }",
+    );
+    assert!(without.diagnostics.iter().any(|d| d.code == Code::E0427), "{}", told(&without));
+}
+
+#[test]
+fn records_and_loads_are_mirrored_at_several_transitions() {
+    let scene = |rest: &str| {
+        let bridge = "track bridge { sections = [stiff: 12 m, open: 40 sleepers, stiff: 12 m], \
+                      transitions = [west: stiff_to_soft, east: soft_to_stiff] }
+";
+        let text =
+            format!("{SCENE}{bridge}{rest}").replace("track line { sections = [open: 15 m, stiff: 12 m] }\n", "");
+        compile("scene.track", &text, &NoModules, &[])
+    };
+    let compiled = scene(
+        "traffic { trains = ore, total = 8 axles }
+record { from = [west, east], at = [-3, +1] sleepers, quantities = contact_force }
+record { from = east, over = -1.2 .. 0 m, quantities = rail_moment }",
+    );
+    let scenario = compiled.scenario.as_ref().unwrap_or_else(|| panic!("{}", told(&compiled)));
+    let track = &scenario.track;
+    let names = |record: usize| -> Vec<String> {
+        scenario.records[record].seats.iter().map(|seat| track.seat_name(&track.seats[*seat])).collect()
+    };
+    assert_eq!(names(0), ["west:+1", "west:-3", "east:-3", "east:+1"], "{}", told(&compiled));
+    assert_eq!(names(1), ["east:-2", "east:-1"], "a span in metres that ends at 0 stays on its side");
+    let pressed = scene("load jack { on = sleepers, from = [west, east], at = -3 sleepers, force = 40 kN per seat }");
+    let Some(trackbed::scenario::Loading::Static(loads)) = &pressed.scenario.as_ref().unwrap().loading else {
+        panic!("{}", told(&pressed))
+    };
+    assert_eq!(loads.len(), 2);
+    assert!((loads[0].x + loads[1].x - track.transitions.iter().map(|t| t.x).sum::<f64>()).abs() < 1e-9);
+    for (from, code) in [("[west, west]", Code::E0404), ("[west, weest]", Code::E0504)] {
+        let wrong = scene(&format!(
+            "traffic {{ trains = ore, total = 8 axles }}
+record {{ from = {from}, at = -3 sleepers, quantities = contact_force }}"
+        ));
+        assert!(wrong.diagnostics.iter().filter(|d| d.is_error()).map(|d| d.code).eq([code]), "{}", told(&wrong));
+    }
+}
