@@ -10,6 +10,8 @@ mod expectation;
 mod fit;
 mod geometry;
 mod grading;
+mod ground;
+mod groundwork;
 mod law;
 mod layers;
 mod library;
