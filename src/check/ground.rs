@@ -16,6 +16,14 @@ const ODEMARK: f64 = 0.9;
 /// Nearer to its hinge than this share of its length a plate is as stiff as there: the ground must keep a modulus.
 const AT_HINGE: f64 = 0.05;
 
+/// The ground of some seats.
+#[derive(Clone, Copy)]
+pub(super) enum Under<'a> {
+    /// That of their section; `None` where it is not understood.
+    Section(Option<&'a [Layer]>),
+    Regraded(&'a Regrade<'a>),
+}
+
 /// What a stretch changes of the layers under some seats.
 pub(super) struct Regrade<'a> {
     /// The layers of the section.
@@ -124,9 +132,10 @@ impl Checker<'_> {
         places: &Places,
         section: usize,
         seats: Range<usize>,
-        regrade: Option<&Regrade<'_>>,
+        under: Under<'_>,
     ) -> Option<Vec<Carried>> {
         let strata = built.layers.as_ref()?;
+        let regrade = if let Under::Regraded(regrade) = under { Some(regrade) } else { None };
         let depends = built.stands_on_layers() || regrade.is_some_and(|regrade| regrade.scales);
         let (Some(body), false) = (built.sleeper_body(), strata.is_empty()) else { return Some(Vec::new()) };
         let unknown: Vec<&super::layers::Stratum> = strata.iter().filter(|s| s.modulus_unknown()).collect();
@@ -137,10 +146,14 @@ impl Checker<'_> {
             }
             return Some(Vec::new());
         }
-        let layers = self.lay_strata(built, places, section, seats.clone(), regrade.map(|r| r.before))?;
+        let layers = match under {
+            Under::Section(None) if !depends => return Some(Vec::new()),
+            Under::Section(layers) => Some(layers?.to_vec()),
+            Under::Regraded(regrade) => self.lay_strata(built, places, section, seats.clone(), Some(regrade.before)),
+        }?;
         let plate = regrade.and_then(|regrade| regrade.plate);
         let mut found: Vec<Carried> = Vec::with_capacity(seats.len());
-        let mut last: Option<(Bearing, Vec<foundation::Layer>)> = None;
+        let mut last: Option<(Bearing, Vec<foundation::Layer>, Option<Vec<foundation::Layer>>)> = None;
         for seat in seats {
             let x = places.seats[seat].0;
             let bearing = bearing(&body, places.spacings(seat, built.spacing.map_or(0.6, |s| *s)));
@@ -148,27 +161,26 @@ impl Checker<'_> {
             if let Some(plate) = &plate {
                 stack_here = with_plate(stack_here, plate, x);
             }
+            let before = regrade.filter(|regrade| regrade.scales).and_then(|regrade| stack(regrade.before, x));
+            let here = (bearing, stack_here, before);
             // most seats lie as their neighbour does
-            if let (Some(known), Some(same)) = (&last, found.last().copied())
-                && known.0 == bearing
-                && known.1 == stack_here
-                && regrade.is_none()
-            {
+            if let Some(same) = found.last().copied().filter(|_| last.as_ref() == Some(&here)) {
                 found.push(same);
                 continue;
             }
-            let before = match regrade.filter(|regrade| regrade.scales) {
-                Some(regrade) => stack(regrade.before, x),
-                None => None,
-            };
+            let (bearing, stack_here, before) = &here;
             let name = places.named(&(seat..seat + 1));
-            let (stiffness, onto_subgrade) = self.bears_on(built, &name, &bearing, &stack_here)?;
+            let found_here = self.asked.support(bearing, stack_here);
+            if found_here.is_err() && !depends {
+                return Some(Vec::new());
+            }
+            let (stiffness, onto_subgrade) = self.bears_on(built, &name, found_here)?;
             let change = match before {
-                Some(before) => stiffness / self.bears_on(built, &name, &bearing, &before)?.0,
+                Some(before) => stiffness / self.bears_on(built, &name, self.asked.support(bearing, before))?.0,
                 None => 1.0,
             };
             found.push(Carried { stiffness, onto_subgrade, change });
-            last = Some((bearing, stack_here));
+            last = Some(here);
         }
         Some(found)
     }
@@ -177,10 +189,9 @@ impl Checker<'_> {
         &mut self,
         built: &Built,
         seat: &str,
-        bearing: &Bearing,
-        stack: &[foundation::Layer],
+        found: Result<(f64, f64), foundation::FoundationError>,
     ) -> Option<(f64, f64)> {
-        match self.asked.support(bearing, stack) {
+        match found {
             Ok(found) => Some(found),
             Err(wrong) => {
                 let message = format!("the layers of trackform `{}` carry no sleeper at {seat}: {wrong}", built.name);
@@ -214,8 +225,10 @@ impl Places {
     /// Distances to the seats on the left and on the right, m; beyond an end of the track as on the other side.
     fn spacings(&self, seat: usize, alone: f64) -> [f64; 2] {
         let x = self.seats[seat].0;
-        let left = seat.checked_sub(1).map(|i| x - self.seats[i].0);
-        let right = self.seats.get(seat + 1).map(|next| next.0 - x);
+        // without the last digits of differences, so that equal neighbours lie equally
+        let apart = |other: f64| ((x - other).abs() * 1e9).round() / 1e9;
+        let left = seat.checked_sub(1).map(|i| apart(self.seats[i].0));
+        let right = self.seats.get(seat + 1).map(|next| apart(next.0));
         let own = left.or(right).unwrap_or(alone);
         [left.unwrap_or(right.unwrap_or(own)), right.unwrap_or(own)]
     }

@@ -2,7 +2,7 @@
 
 use super::Checker;
 use super::geometry::Places;
-use super::ground::Regrade;
+use super::ground::Under;
 use super::seats::{Along, Cover, Laid};
 use super::trackform::{Base, Bed, Built, Cushion, Damped};
 use super::value::{Record, Val};
@@ -48,7 +48,7 @@ impl Checker<'_> {
         places: &Places,
         section: usize,
         range: Range<usize>,
-        regrade: Option<&Regrade<'_>>,
+        under: Under<'_>,
     ) -> Option<Vec<Seat>> {
         let (start, end) = places.sections[section];
         let cover = |what: &str| Cover {
@@ -66,7 +66,7 @@ impl Checker<'_> {
             Some(Base::Slab) => Some(LaidFoot::Fixed(Foot::Slab)),
             None => None,
         };
-        let carried = self.carried(built, places, section, range.clone(), regrade);
+        let carried = self.carried(built, places, section, range.clone(), under);
         let (pad, settlement, foot, carried) = (pad?, settlement?, foot?, carried?);
         let mut seats = Vec::with_capacity(range.len());
         for (i, &(x, section, transition, number)) in places.seats[range].iter().enumerate() {

@@ -3,7 +3,7 @@
 
 use super::Checker;
 use super::geometry::Places;
-use super::ground::Regrade;
+use super::ground::{Regrade, Under};
 use super::value::{Change, Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{ApproachSlab, AuxiliaryRailSpan, Layer, Seat, Stretch};
@@ -235,7 +235,7 @@ impl Checker<'_> {
         let complete = self.complete(&extended);
         let built = self.trackform(&complete, true);
         if !stretches.iter().any(|instance| instance.regrades()) {
-            return self.seats(&built, places, section, seats, None);
+            return self.seats(&built, places, section, seats, Under::Section(layers));
         }
         let before = layers?;
         let scales = !stretches.iter().any(|instance| instance.sets("support"));
@@ -243,7 +243,7 @@ impl Checker<'_> {
             self.has_ground(instance, form)?;
         }
         let plate = stretches.iter().find_map(|instance| instance.plate);
-        self.seats(&built, places, section, seats, Some(&Regrade { before, plate, scales }))
+        self.seats(&built, places, section, seats, Under::Regraded(&Regrade { before, plate, scales }))
     }
 
     /// Refuses what only sleepers have where there are none.

@@ -2,6 +2,7 @@
 
 use super::Checker;
 use super::geometry::{Places, Plan};
+use super::ground::Under;
 use super::seats::{Along, Cover};
 use super::stretch::described;
 use super::trackform::Built;
@@ -68,7 +69,7 @@ impl Checker<'_> {
         let mut groundworks = Vec::new();
         for (i, built) in built.iter().enumerate() {
             let layers = self.lay_layers(built, &places, i);
-            let mut laid = self.seats(built, &places, i, places.seats_of(i), None);
+            let mut laid = self.seats(built, &places, i, places.seats_of(i), Under::Section(layers.as_deref()));
             if let Some(laid) = &mut laid {
                 sound &= self.change_seats(&forms[i], &stood, &places, i, layers.as_deref(), laid);
             }
