@@ -7,6 +7,8 @@ use super::trackform::Built;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{ApproachSlab, Layer, Material, SleeperBody};
 use crate::solvers::foundation::{self, Bearing, Below};
+use rayon::prelude::*;
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// Poisson's ratio of concrete.
@@ -44,6 +46,12 @@ pub(super) struct Carried {
     pub change: f64,
 }
 
+/// Stiffness, N/m, and pressure on the lowest layer for each newton, 1/m^2.
+type Found = Result<(f64, f64), foundation::FoundationError>;
+
+/// Answers by the bits of what was asked: seats under several stretches are asked for again.
+pub(super) type Supports = HashMap<Vec<u64>, Found>;
+
 /// How half a sleeper lies: its bearing area under the seat as far as the sleeper reaches.
 fn bearing(body: &SleeperBody, spacings: [f64; 2]) -> Bearing {
     let half = 0.5 * body.length;
@@ -70,18 +78,23 @@ fn stack(layers: &[Layer], x: f64) -> Option<Vec<foundation::Layer>> {
     layers.iter().map(continuum).collect()
 }
 
+/// Thickness of the ground that spreads a load as a plate on it does, m: `0.9 t (E / E_ground)^(1/3)` (Odemark 1949).
+fn equivalent(plate: &ApproachSlab, ground: f64) -> f64 {
+    *plate.thickness * (ODEMARK * (*plate.youngs_modulus / ground).cbrt()).max(1.0)
+}
+
 /// Layers with a plate in them that displaces what it fills.
 ///
-/// In the stress cone a plate spreads the load as its equivalent of the ground below would (Odemark 1949):
-/// `h = 0.9 t (E / E_below)^(1/3)`. A hinge keeps its end in place. A stiff plate that turns about it moves by s / L of its far
-/// end at a distance s, and a load there turns it by s / L of what it would at the far end: the compliance of the ground below
-/// goes with `(s / L)^2`.
+/// In the stress cone it spreads the load as its [`equivalent`] of the ground below. A hinge keeps its end in place. A stiff
+/// plate that turns about it moves by s / L of its far end at a distance s, and a load there turns it by s / L of what it
+/// would at the far end: the compliance of the ground below goes with `(s / L)^2`.
 fn with_plate(layers: Vec<foundation::Layer>, plate: &ApproachSlab, x: f64) -> Vec<foundation::Layer> {
     let (top, bottom) = (*plate.depth, *plate.depth + *plate.thickness);
     let [structure, far] = plate.ends;
     let share = ((x - structure) / (far - structure)).abs().clamp(AT_HINGE, 1.0);
     let yields = if plate.hinged { share * share } else { 1.0 };
     let (mut above, mut below) = (Vec::new(), Vec::new());
+    let mut ground = None;
     let mut z = 0.0;
     for layer in layers {
         let end = z + layer.thickness;
@@ -90,37 +103,42 @@ fn with_plate(layers: Vec<foundation::Layer>, plate: &ApproachSlab, x: f64) -> V
             above.push(part(z, end.min(top)));
         }
         if end > bottom {
+            ground = ground.or(Some(layer));
             let youngs_modulus = (layer.youngs_modulus / yields).min(layer.youngs_modulus.max(*plate.youngs_modulus));
             below.push(foundation::Layer { youngs_modulus, ..part(z.max(bottom), end) });
         }
         z = end;
     }
-    let ratio = below.first().map_or(1.0, |ground| *plate.youngs_modulus * yields / ground.youngs_modulus);
-    let rate = below.first().or(above.last()).map_or(0.0, |ground| ground.spread.tan());
-    let equivalent = ODEMARK * ratio.max(1.0).cbrt();
+    let spread = match ground.or(above.last().copied()) {
+        Some(ground) => (equivalent(plate, ground.youngs_modulus) / *plate.thickness * ground.spread.tan()).atan(),
+        None => 0.0,
+    };
     above.push(foundation::Layer {
         thickness: *plate.thickness,
         youngs_modulus: *plate.youngs_modulus,
         poisson_ratio: CONCRETE,
         density: *plate.density,
-        spread: (equivalent.max(1.0) * rate).atan(),
+        spread,
     });
     above.extend(below);
     above
 }
 
-impl Asked {
-    fn support(&self, bearing: &Bearing, stack: &[foundation::Layer]) -> Result<(f64, f64), foundation::FoundationError> {
-        let below = match stack.last() {
-            Some(ground) if self.quiet_base => Below::HalfSpace {
-                youngs_modulus: ground.youngs_modulus,
-                poisson_ratio: ground.poisson_ratio,
-            },
-            _ => Below::Rigid,
-        };
-        let support = foundation::support(bearing, stack, below, self.support_method)?;
-        Ok((support.stiffness, support.pressures[stack.len() - 1]))
-    }
+fn key(bearing: &Bearing, stack: &[foundation::Layer]) -> Vec<u64> {
+    let plan = [bearing.width, bearing.length, bearing.spacings[0], bearing.spacings[1]];
+    let layer = |l: &foundation::Layer| [l.thickness, l.youngs_modulus, l.poisson_ratio, l.spread];
+    plan.into_iter().chain(bearing.to_centre).chain(stack.iter().flat_map(layer)).map(f64::to_bits).collect()
+}
+
+fn solve(asked: &Asked, bearing: &Bearing, stack: &[foundation::Layer]) -> Found {
+    let below = match stack.last() {
+        Some(ground) if asked.quiet_base => {
+            Below::HalfSpace { youngs_modulus: ground.youngs_modulus, poisson_ratio: ground.poisson_ratio }
+        }
+        _ => Below::Rigid,
+    };
+    let support = foundation::support(bearing, stack, below, asked.support_method)?;
+    Ok((support.stiffness, support.pressures[stack.len() - 1]))
 }
 
 impl Checker<'_> {
@@ -152,53 +170,61 @@ impl Checker<'_> {
             Under::Regraded(regrade) => self.lay_strata(built, places, section, seats.clone(), Some(regrade.before)),
         }?;
         let plate = regrade.and_then(|regrade| regrade.plate);
-        let mut found: Vec<Carried> = Vec::with_capacity(seats.len());
-        let mut last: Option<(Bearing, Vec<foundation::Layer>, Option<Vec<foundation::Layer>>)> = None;
-        for seat in seats {
+        let mut asked = Vec::with_capacity(seats.len());
+        let mut before = Vec::new();
+        for seat in seats.clone() {
             let x = places.seats[seat].0;
             let bearing = bearing(&body, places.spacings(seat, built.spacing.map_or(0.6, |s| *s)));
-            let mut stack_here = stack(&layers, x)?;
-            if let Some(plate) = &plate {
-                stack_here = with_plate(stack_here, plate, x);
-            }
-            let before = regrade.filter(|regrade| regrade.scales).and_then(|regrade| stack(regrade.before, x));
-            let here = (bearing, stack_here, before);
-            // most seats lie as their neighbour does
-            if let Some(same) = found.last().copied().filter(|_| last.as_ref() == Some(&here)) {
-                found.push(same);
-                continue;
-            }
-            let (bearing, stack_here, before) = &here;
-            let name = places.named(&(seat..seat + 1));
-            let found_here = self.asked.support(bearing, stack_here);
-            if found_here.is_err() && !depends {
+            let stack_here = stack(&layers, x)?;
+            let stack_here = plate.iter().fold(stack_here, |stack, plate| with_plate(stack, plate, x));
+            asked.push((bearing, stack_here));
+            let scaled = regrade.filter(|regrade| regrade.scales && !built.stands_on_layers());
+            before.extend(scaled.and_then(|regrade| stack(regrade.before, x)).map(|stack| (bearing, stack)));
+        }
+        let (found, before) = (self.supports(&asked), self.supports(&before));
+        let mut carried = Vec::with_capacity(seats.len());
+        for (i, seat) in seats.enumerate() {
+            if found[i].is_err() && !depends {
                 return Some(Vec::new());
             }
-            let (stiffness, onto_subgrade) = self.bears_on(built, &name, found_here)?;
-            let change = match before {
-                Some(before) => stiffness / self.bears_on(built, &name, self.asked.support(bearing, before))?.0,
+            let (stiffness, onto_subgrade) = self.held_up(built, places, seat, found[i])?;
+            let change = match before.get(i) {
+                Some(plain) => stiffness / self.held_up(built, places, seat, *plain)?.0,
                 None => 1.0,
             };
-            found.push(Carried { stiffness, onto_subgrade, change });
-            last = Some(here);
+            carried.push(Carried { stiffness, onto_subgrade, change });
         }
-        Some(found)
+        Some(carried)
     }
 
-    fn bears_on(
-        &mut self,
-        built: &Built,
-        seat: &str,
-        found: Result<(f64, f64), foundation::FoundationError>,
-    ) -> Option<(f64, f64)> {
+    /// Answers in the order of what is asked; each is computed once in a check, and independent ones side by side.
+    fn supports(&mut self, asked: &[(Bearing, Vec<foundation::Layer>)]) -> Vec<Found> {
+        let keys: Vec<Vec<u64>> = asked.iter().map(|(bearing, stack)| key(bearing, stack)).collect();
+        let mut missing: Vec<(&Vec<u64>, &(Bearing, Vec<foundation::Layer>))> =
+            keys.iter().zip(asked).filter(|(key, _)| !self.supports.contains_key(*key)).collect();
+        missing.sort_by_key(|(key, _)| *key);
+        missing.dedup_by_key(|(key, _)| *key);
+        let settings = self.asked;
+        let found: Vec<(Vec<u64>, Found)> = missing
+            .into_par_iter()
+            .map(|(key, (bearing, stack))| (key.clone(), solve(&settings, bearing, stack)))
+            .collect();
+        self.supports.extend(found);
+        keys.iter().map(|key| self.supports[key]).collect()
+    }
+
+    fn held_up(&mut self, built: &Built, places: &Places, seat: usize, found: Found) -> Option<(f64, f64)> {
         match found {
             Ok(found) => Some(found),
             Err(wrong) => {
+                let seat = places.named(&(seat..seat + 1));
                 let message = format!("the layers of trackform `{}` carry no sleeper at {seat}: {wrong}", built.name);
                 self.report(
                     Diagnostic::new(Code::E0407, message)
                         .at(built.layers_span, "its support is computed from these")
-                        .help("give every layer a thickness and a modulus there, and sleepers that do not lie on each other"),
+                        .help(
+                            "give every layer a thickness and a modulus there, and sleepers that do not lie on each other",
+                        ),
                 );
                 None
             }

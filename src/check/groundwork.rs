@@ -55,7 +55,13 @@ impl Checker<'_> {
             self.report(
                 Diagnostic::new(Code::E0425, message)
                     .at(over, "its span")
-                    .at(record.get("hinged").filter(|s| s.span.file == record.span.file).map_or(record.span, |s| s.span), "hinged")
+                    .at(
+                        record
+                            .get("hinged")
+                            .filter(|s| s.span.file == record.span.file)
+                            .map_or(record.span, |s| s.span),
+                        "hinged",
+                    )
                     .help("let the span end at the transition, as `over = -6 .. 0 m` does, or write `hinged = no`"),
             );
             return None;
@@ -79,11 +85,16 @@ impl Checker<'_> {
         section: usize,
         before: &[Layer],
     ) -> Option<Vec<Groundwork>> {
+        // a stretch over a slab is refused where its seats are changed
+        if form.record("slab").is_some() {
+            return Some(Vec::new());
+        }
         let (start, end) = places.sections[section];
         let whole = places.seats_of(section);
         let here: Vec<&Instance> =
             stood.iter().filter(|instance| instance.regrades() && instance.common(&whole).is_some()).collect();
-        let mut cuts: Vec<f64> = here.iter().flat_map(|i| [i.reach.0, i.reach.1]).map(|x| x.clamp(start, end)).collect();
+        let mut cuts: Vec<f64> =
+            here.iter().flat_map(|i| [i.reach.0, i.reach.1]).map(|x| x.clamp(start, end)).collect();
         cuts.sort_by(f64::total_cmp);
         cuts.dedup_by(|a, b| (*a - *b).abs() < TINY);
         let mut found = Vec::new();
@@ -93,10 +104,15 @@ impl Checker<'_> {
             let over: Vec<&Instance> =
                 here.iter().filter(|i| i.reach.0 < middle && middle < i.reach.1).copied().collect();
             let common = |seats: Option<Range<usize>>, instance: &&Instance| instance.common(&seats?);
-            let Some(seats) = over.iter().fold(Some(whole.clone()), common).filter(|_| !over.is_empty()) else { continue };
+            let Some(seats) = over.iter().fold(Some(whole.clone()), common).filter(|_| !over.is_empty()) else {
+                continue;
+            };
             let extended = self.extended_by(form, &over);
             let complete = self.complete(&extended);
             let built = self.trackform(&complete, true);
+            if before.is_empty() && !built.stands_on_layers() {
+                continue;
+            }
             let Some(layers) = self.lay_strata(&built, places, section, seats.clone(), Some(before)) else {
                 sound = false;
                 continue;
@@ -144,7 +160,13 @@ impl Checker<'_> {
     }
 
     /// A plate lies in layers.
-    fn holds_the_plate(&mut self, instance: &Instance, layers: &[Layer], places: &Places, seats: &Range<usize>) -> bool {
+    fn holds_the_plate(
+        &mut self,
+        instance: &Instance,
+        layers: &[Layer],
+        places: &Places,
+        seats: &Range<usize>,
+    ) -> bool {
         let (Some(plate), Some(slot)) = (instance.plate, instance.stretch.get("approach_slab")) else { return true };
         let bottom = *plate.depth + *plate.thickness;
         let Some(seat) = seats.clone().find(|seat| bottom > depth(layers, places.seats[*seat].0) + TOLERANCE) else {

@@ -109,7 +109,13 @@ impl Checker<'_> {
         };
         let material = material?;
         let places = [material.span, key.span];
-        Some(Stratum { name: material.name.clone(), ground: ground?, thickness: along, span: thickness.span, material: places })
+        Some(Stratum {
+            name: material.name.clone(),
+            ground: ground?,
+            thickness: along,
+            span: thickness.span,
+            material: places,
+        })
     }
 
     /// The layers of a trackform under some seats of a section. `before` are those of the section, where a stretch takes their
@@ -135,15 +141,16 @@ impl Checker<'_> {
         let mut sound = true;
         for (i, stratum) in built.layers.as_ref()?.iter().enumerate() {
             let thickness = match &stratum.thickness {
-                Thickness::Given(along) => self.lay(along, places, &cover("thickness", &stratum.name)).map(Varying::from),
+                Thickness::Given(along) => {
+                    self.lay(along, places, &cover("thickness", &stratum.name)).map(Varying::from)
+                }
                 Thickness::Rest => {
                     rest = Some((i, stratum.span));
                     Some(Varying::Constant(Given::derived(0.0)))
                 }
             };
-            let mut modulus = |along: &Along| {
-                self.lay(along, places, &cover("Young's modulus", &stratum.name)).map(Varying::from)
-            };
+            let mut modulus =
+                |along: &Along| self.lay(along, places, &cover("Young's modulus", &stratum.name)).map(Varying::from);
             let material = match &stratum.ground {
                 Ground::Granular(granular, along) => match along.as_ref().map(&mut modulus) {
                     Some(None) => None,
@@ -152,12 +159,11 @@ impl Checker<'_> {
                         Some(Material::Granular(Box::new(Granular { youngs_modulus, ..(**granular).clone() })))
                     }
                 },
-                Ground::Soil { youngs_modulus, poisson_ratio, density, spread, strength } => {
-                    modulus(youngs_modulus).map(|youngs_modulus| {
+                Ground::Soil { youngs_modulus, poisson_ratio, density, spread, strength } => modulus(youngs_modulus)
+                    .map(|youngs_modulus| {
                         let (poisson_ratio, density, spread) = (*poisson_ratio, *density, *spread);
                         Material::Soil(Soil { youngs_modulus, poisson_ratio, density, spread, strength: *strength })
-                    })
-                }
+                    }),
             };
             let (Some(thickness), Some(material)) = (thickness, material) else {
                 sound = false;
@@ -171,9 +177,12 @@ impl Checker<'_> {
         if let (Some((i, span)), Some(before)) = (rest, before) {
             if before.is_empty() {
                 self.report(
-                    Diagnostic::new(Code::E0421, "the trackform under the stretch has no layers whose depth could be kept")
-                        .at(span, "left of what?")
-                        .help("give the trackform its `layers`, or say every thickness here, such as `1 m`"),
+                    Diagnostic::new(
+                        Code::E0421,
+                        "the trackform under the stretch has no layers whose depth could be kept",
+                    )
+                    .at(span, "left of what?")
+                    .help("give the trackform its `layers`, or say every thickness here, such as `1 m`"),
                 );
                 return None;
             }
@@ -206,11 +215,10 @@ impl Checker<'_> {
                 mm(depth(layers, x)),
                 mm(depth(before, x))
             );
-            self.report(
-                Diagnostic::new(Code::E0423, message)
-                    .at(span, "what is left of the depth")
-                    .help(format!("make the other layers thinner, or the last layer of trackform `{}` deeper", built.name)),
-            );
+            self.report(Diagnostic::new(Code::E0423, message).at(span, "what is left of the depth").help(format!(
+                "make the other layers thinner, or the last layer of trackform `{}` deeper",
+                built.name
+            )));
             return None;
         }
         let (start, end) = (*xs.first()?, *xs.last()?);

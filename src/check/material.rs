@@ -13,7 +13,13 @@ use std::collections::BTreeMap;
 pub(super) enum Ground {
     /// With its modulus as a continuum, where that is given.
     Granular(Box<Granular>, Option<Along>),
-    Soil { youngs_modulus: Along, poisson_ratio: Given, density: Given, spread: Given, strength: Strength },
+    Soil {
+        youngs_modulus: Along,
+        poisson_ratio: Given,
+        density: Given,
+        spread: Given,
+        strength: Strength,
+    },
 }
 
 type Arguments = BTreeMap<&'static str, Slot>;

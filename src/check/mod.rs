@@ -98,6 +98,7 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
         unreadable,
         depth: 0,
         operands: 0,
+        supports: HashMap::new(),
         seat_places: None,
         asked: Asked::default(),
         seed: 1,
@@ -140,6 +141,8 @@ struct Checker<'a> {
     depth: usize,
     /// Operands of the comparison that is being read.
     operands: usize,
+    /// What stacks of layers made of the support of a seat.
+    supports: ground::Supports,
     /// Known once the track is laid out.
     seat_places: Option<Places>,
     /// Known before the track is read.

@@ -92,17 +92,7 @@ impl Checker<'_> {
             let (initial_settlement, sleeper) = (*settlement.at(x), built.sleeper_body());
             let pad = Pad { stiffness, damping };
             let onto_subgrade = carried.get(i).map(|carried| carried.onto_subgrade);
-            seats.push(Seat {
-                number,
-                transition,
-                x,
-                section,
-                pad,
-                foot,
-                sleeper,
-                initial_settlement,
-                onto_subgrade,
-            });
+            seats.push(Seat { number, transition, x, section, pad, foot, sleeper, initial_settlement, onto_subgrade });
         }
         Some(seats)
     }

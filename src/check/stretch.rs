@@ -115,7 +115,8 @@ impl Checker<'_> {
 
     /// Whether a stretch changes anything, and nothing that a section is from end to end.
     fn says_something(&mut self, stretch: &Record) -> bool {
-        let nothing = stretch.changes.is_empty() && !matches!(stretch.get("approach_slab"), Some(s) if !matches!(s.value, Val::Word { .. }));
+        let nothing = stretch.changes.is_empty()
+            && !matches!(stretch.get("approach_slab"), Some(s) if !matches!(s.value, Val::Word { .. }));
         if nothing && !stretch.partial {
             self.report(
                 Diagnostic::new(Code::E0417, format!("stretch `{}` changes nothing", stretch.name))

@@ -113,7 +113,10 @@ impl Checker<'_> {
                     "give the trackforms a `rail`, a `pad` and a `support` to run them with `law`".to_string()
                 }
                 (.., Some(form)) => {
-                    format!("give trackform `{}` a `support`, or its grains a `youngs_modulus`; then {INSTEAD}", form.name)
+                    format!(
+                        "give trackform `{}` a `support`, or its grains a `youngs_modulus`; then {INSTEAD}",
+                        form.name
+                    )
                 }
                 _ => INSTEAD.to_string(),
             };

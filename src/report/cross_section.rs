@@ -41,6 +41,8 @@ struct Cut<'a> {
     section: &'a Section,
     sleeper: &'a SleeperBody,
     ground: Groundwork,
+    /// Whether a stretch made it what it is.
+    changed: bool,
     x: f64,
 }
 
@@ -52,7 +54,8 @@ fn cuts(scenario: &Scenario) -> Vec<Cut<'_>> {
     let ground = |seat: &Seat| grounds[seat.section].iter().find(|g| seat.x <= g.end).or(grounds[seat.section].last());
     let mut cuts: Vec<Cut<'_>> = Vec::new();
     for seat in &track.seats {
-        let (section, Some(sleeper), Some(ground)) = (&track.sections[seat.section], &seat.sleeper, ground(seat)) else {
+        let (section, Some(sleeper), Some(ground)) = (&track.sections[seat.section], &seat.sleeper, ground(seat))
+        else {
             continue;
         };
         let same = |cut: &&mut Cut<'_>| {
@@ -63,7 +66,10 @@ fn cuts(scenario: &Scenario) -> Vec<Cut<'_>> {
         match cuts.iter_mut().find(same) {
             Some(cut) if distance(seat.x) < distance(cut.x) => cut.x = seat.x,
             Some(_) => {}
-            None => cuts.push(Cut { section, sleeper, ground: ground.clone(), x: seat.x }),
+            None => {
+                let changed = track.groundworks.iter().any(|work| (work.start, work.end) == (ground.start, ground.end));
+                cuts.push(Cut { section, sleeper, ground: ground.clone(), changed, x: seat.x });
+            }
         }
     }
     cuts
@@ -98,8 +104,7 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place
     let (section, sleeper, layers) = (cut.section, cut.sleeper, &cut.ground.layers);
     let (half, length, height) = (half_width(scenario, sleeper), sleeper.length, sleeper.height);
     let gauge = sleeper.seat_distance;
-    let changed = scenario.track.groundworks.iter().any(|g| g.layers == *layers && g.start <= cut.x && cut.x <= g.end);
-    let name = if changed { format!("{} at {} m", section.name, plain(cut.x, 3)) } else { section.name.clone() };
+    let name = if cut.changed { format!("{} at {} m", section.name, plain(cut.x, 3)) } else { section.name.clone() };
     svg.text("small halo", (place.centre, place.top - 34.0), Anchor::Middle, &name);
     let (foot, rail) = (section.rail.height + PAD, section.rail.height);
     let mut depth = foot + height;

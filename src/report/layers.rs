@@ -14,6 +14,9 @@ const FARTHEST: f64 = 30.0;
 const DEEPEST: f64 = 3.0;
 /// Points of a boundary between two layers a metre of track.
 const POINTS: f64 = 8.0;
+/// Soils are coloured by Young's modulus, Pa: treated ground and concrete from here on, mats up to here.
+const FIRM: f64 = 300e6;
+const SOFT: f64 = 5e6;
 const PAD: f64 = 0.035;
 const SLAB: f64 = 0.25;
 
@@ -195,6 +198,8 @@ pub(super) fn class(material: &Material) -> &'static str {
     match material {
         Material::Granular(granular) if granular.bond.is_some() => "bonded",
         Material::Granular(_) => "stones",
+        Material::Soil(soil) if soil.youngs_modulus.largest() >= FIRM => "firm",
+        Material::Soil(soil) if soil.youngs_modulus.largest() <= SOFT => "mat",
         Material::Soil(_) => "soil",
     }
 }

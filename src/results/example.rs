@@ -295,7 +295,7 @@ pub(crate) fn bench() -> Run {
             foot: Foot::Rigid,
             sleeper: Some(sleeper()),
             initial_settlement: 0.0,
-        onto_subgrade: None,
+            onto_subgrade: None,
         })
         .collect();
     let load = seats[9].x;

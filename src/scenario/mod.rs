@@ -23,8 +23,8 @@ pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soi
 pub use profile::{Cubic, Curve, Piece, Profile, Varying};
 pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spread, Study, Values};
 pub use track::{
-    ApproachSlab, AuxiliaryRailSpan, AuxiliaryRails, Foot, Groundwork, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, SleeperBody,
-    Spring, Stretch, Support, Track, Transition, Usp,
+    ApproachSlab, AuxiliaryRailSpan, AuxiliaryRails, Foot, Groundwork, Pad, Rail, RailEnds, Seat, Seating, Section,
+    Side, Slab, SleeperBody, Spring, Stretch, Support, Track, Transition, Usp,
 };
 pub use traffic::{Direction, StaticLoad, Target, Traffic, Train, Vehicle};
 

@@ -233,7 +233,10 @@ pub(super) const APPROACH_SLAB: Kind = Kind {
         required("depth", number("m", 0.1, 5.0), "of its top below the sleepers"),
         default(
             "hinged",
-            Form::Words(&[word("yes", "its end at the boundary rests on the structure"), word("no", "it lies on the ground")]),
+            Form::Words(&[
+                word("yes", "its end at the boundary rests on the structure"),
+                word("no", "it lies on the ground"),
+            ]),
             "yes",
             "at the boundary from which `over` counts",
         ),
