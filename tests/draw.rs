@@ -33,6 +33,26 @@ fn stretches_are_drawn_where_they_act() {
 }
 
 #[test]
+fn wedges_and_approach_slabs_are_drawn_in_their_layers() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("scene.svg");
+    for (scene, texts) in [
+        (
+            "wedge.track",
+            ["wedge: 20 m, layers", "treated: 100 to 800 mm, 150 to 900 MPa", "fill: 1900 to 1200 mm, 60 MPa"],
+        ),
+        (
+            "bridge.track",
+            ["approach: 6 m, approach_slab", "approach slab: 300 mm, 34 GPa, hinged", "ballasted at 72 m"],
+        ),
+    ] {
+        assert!(draw(&shipped(scene), &out).status.success());
+        let picture = std::fs::read_to_string(&out).unwrap();
+        texts.iter().for_each(|text| assert!(picture.contains(text), "{scene}: no {text}"));
+    }
+}
+
+#[test]
 fn a_scene_with_mistakes_leaves_no_picture() {
     let folder = tempfile::tempdir().unwrap();
     let (scene, out) = (folder.path().join("bad.track"), folder.path().join("bad.svg"));

@@ -168,19 +168,23 @@ fn bulk_and_shear_modulus_are_youngs_modulus_and_poissons_ratio() {
 
 #[test]
 fn who_needs_a_support_is_told() {
-    let layers = "ballasts.granite_31_63: 350 mm, soils.sandy_gravel: 2 m";
-    let without = |solve: &str| {
-        let text = scene("", layers, solve).replace("  support = { stiffness = 40 MN/m per seat }\n", "");
+    let grains = "granular stone { grading = gradings.ballast_31_63, density = 2650 kg/m^3, friction = 0.7, contact_stiffness = 9 MN/m per contact }";
+    let without = |before: &str, layers: &str, solve: &str| {
+        let text = scene(before, layers, solve).replace("  support = { stiffness = 40 MN/m per seat }\n", "");
         compile("scene.track", &text, &NoModules, &[])
     };
-    let auto = without("");
+    let known = without("", "ballasts.granite_31_63: 350 mm, soils.sandy_gravel: 2 m", "");
+    assert!(known.diagnostics.is_empty() && known.graph.is_some(), "{}", told(&known));
+    let unknown = |solve: &str| without(grains, "stone: 350 mm, soils.sandy_gravel: 2 m", solve);
+    let auto = unknown("");
     assert_eq!(codes(&auto), [Code::E0604], "{}", told(&auto));
-    assert!(auto.diagnostics[0].help.as_ref().unwrap().contains("support"));
-    let full = without("solve { substructure = full }");
+    let help = auto.diagnostics[0].help.as_ref().unwrap();
+    assert!(help.contains("support") && help.contains("youngs_modulus"), "{help}");
+    let full = unknown("solve { substructure = full }");
     assert_eq!(codes(&full), [Code::E0604], "{}", told(&full));
     assert!(full.diagnostics[0].help.as_ref().unwrap().contains("give trackform `open` a `support`"));
-    let law = without("solve { substructure = law }");
-    assert_eq!(codes(&law), [Code::E0403], "{}", told(&law));
+    let law = unknown("solve { substructure = law }");
+    assert_eq!(codes(&law), [Code::E0419], "{}", told(&law));
 }
 
 struct Files(BTreeMap<&'static str, &'static str>);

@@ -156,6 +156,7 @@ fn inside(kind: &Kind, fields: &str) -> String {
         (Role::Nested, "secondary_suspension") => format!("vehicle v {{ secondary = {{ {fields} }} }}\n"),
         (Role::Nested, "seating") => format!("support s {{ seating = {{ {fields} }} }}\n"),
         (Role::Nested, name @ ("packing" | "bond")) => format!("granular g {{ {name} = {{ {fields} }} }}\n"),
+        (Role::Nested, "approach_slab") => format!("stretch s {{ approach_slab = {{ {fields} }} }}\n"),
         (Role::Nested, "auxiliary_rails") => format!("trackform t {{ auxiliary_rails = {{ {fields} }} }}\n"),
         (Role::Nested, name) => format!("vehicle v {{ {name} = {{ {fields} }} }}\n"),
         (_, name) => format!("{name} x {{ {fields} }}\n"),

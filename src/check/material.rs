@@ -11,8 +11,15 @@ use std::collections::BTreeMap;
 
 /// A material before its layer is laid along the track.
 pub(super) enum Ground {
-    Granular(Box<Granular>),
-    Soil { youngs_modulus: Along, poisson_ratio: Given, density: Given, strength: Strength },
+    /// With its modulus as a continuum, where that is given.
+    Granular(Box<Granular>, Option<Along>),
+    Soil {
+        youngs_modulus: Along,
+        poisson_ratio: Given,
+        density: Given,
+        spread: Given,
+        strength: Strength,
+    },
 }
 
 type Arguments = BTreeMap<&'static str, Slot>;
@@ -23,7 +30,11 @@ impl Checker<'_> {
         if record.kind.name == "soil" {
             self.soil(record)
         } else {
-            self.granular(record).map(|granular| Ground::Granular(Box::new(granular)))
+            if record.unknown("youngs_modulus") {
+                return None;
+            }
+            let along = self.along(record, "youngs_modulus");
+            self.granular(record).map(|granular| Ground::Granular(Box::new(granular), along))
         }
     }
 
@@ -65,6 +76,9 @@ impl Checker<'_> {
                 viscous_damping: given(packing, "viscous_damping")?,
             },
             bond,
+            youngs_modulus: None,
+            poisson_ratio: given(record, "poisson_ratio")?,
+            spread: given(record, "spread")?,
         })
     }
 
@@ -143,7 +157,8 @@ impl Checker<'_> {
         let own = given(record, "poisson_ratio");
         let ways = [("poisson_ratio", own), ("(3 K - 2 G) / (6 K + 2 G)", of_poisson.filter(|_| !differ))];
         let poisson_ratio = self.agree(record, "Poisson's ratio", &ways, "")?;
-        Some(Ground::Soil { youngs_modulus, poisson_ratio, density: given(record, "density")?, strength: strength? })
+        let (density, spread) = (given(record, "density")?, given(record, "spread")?);
+        Some(Ground::Soil { youngs_modulus, poisson_ratio, density, spread, strength: strength? })
     }
 
     /// Young's modulus 9 K G / (3 K + G) and Poisson's ratio (3 K - 2 G) / (6 K + 2 G) of bulk modulus K and shear modulus G;

@@ -12,6 +12,8 @@ mod expectation;
 mod fit;
 mod geometry;
 mod grading;
+mod ground;
+mod groundwork;
 mod law;
 mod layers;
 mod library;
@@ -116,6 +118,7 @@ fn with_checker<T>(
         unreadable,
         depth: 0,
         operands: 0,
+        supports: HashMap::new(),
         seat_places: None,
         asked: Asked::default(),
         counted: None,
@@ -164,6 +167,8 @@ struct Checker<'a> {
     depth: usize,
     /// Operands of the comparison that is being read.
     operands: usize,
+    /// What stacks of layers made of the support of a seat.
+    supports: ground::Supports,
     /// Known once the track is laid out.
     seat_places: Option<Places>,
     /// Known before the track is read.

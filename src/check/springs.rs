@@ -2,11 +2,13 @@
 
 use super::Checker;
 use super::geometry::Places;
+use super::ground::Under;
 use super::seats::{Along, Cover, Laid};
 use super::trackform::{Base, Bed, Built, Cushion, Damped};
-use super::value::Record;
+use super::value::{Record, Val};
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{Foot, Given, Origin, Pad, Seat, Seating, Support, Usp};
+use crate::schema;
 use crate::units::number;
 use std::ops::Range;
 
@@ -20,8 +22,21 @@ pub(super) struct LaidSpring<'a> {
 
 /// A [`Base`] laid along the track.
 enum LaidFoot<'a> {
-    Sleeper { mass: Given, support: LaidSpring<'a>, seating: Option<Seating>, usp: Option<(&'a Cushion, Laid)> },
+    Sleeper { mass: Given, support: LaidSupport<'a>, seating: Option<Seating>, usp: Option<(&'a Cushion, Laid)> },
     Fixed(Foot),
+}
+
+/// What carries sleepers.
+enum LaidSupport<'a> {
+    Stated(LaidSpring<'a>),
+    /// Computed from the layers of each seat; damping over stiffness is that of a support that does not say it.
+    OfLayers {
+        time: Given,
+    },
+}
+
+fn scaled(given: Given, by: f64) -> Given {
+    if by == 1.0 { given } else { Given { value: by * *given, ..given } }
 }
 
 impl Checker<'_> {
@@ -33,6 +48,7 @@ impl Checker<'_> {
         places: &Places,
         section: usize,
         range: Range<usize>,
+        under: Under<'_>,
     ) -> Option<Vec<Seat>> {
         let (start, end) = places.sections[section];
         let cover = |what: &str| Cover {
@@ -50,13 +66,24 @@ impl Checker<'_> {
             Some(Base::Slab) => Some(LaidFoot::Fixed(Foot::Slab)),
             None => None,
         };
-        let (pad, settlement, foot) = (pad?, settlement?, foot?);
+        let carried = self.carried(built, places, section, range.clone(), under);
+        let (pad, settlement, foot, carried) = (pad?, settlement?, foot?, carried?);
         let mut seats = Vec::with_capacity(range.len());
-        for &(x, section, transition, number) in &places.seats[range] {
+        for (i, &(x, section, transition, number)) in places.seats[range].iter().enumerate() {
             let (stiffness, damping) = self.spring_at(&pad, x)?;
             let foot = match &foot {
                 LaidFoot::Sleeper { mass, support, seating, usp } => {
-                    let (stiffness, damping) = self.spring_at(support, x)?;
+                    let (stiffness, damping) = match support {
+                        LaidSupport::Stated(spring) => {
+                            let by = carried.get(i).map_or(1.0, |carried| carried.change);
+                            let (stiffness, damping) = self.spring_at(spring, x)?;
+                            (scaled(stiffness, by), scaled(damping, by))
+                        }
+                        LaidSupport::OfLayers { time } => {
+                            let stiffness = Given::derived(carried.get(i)?.stiffness);
+                            (stiffness, Given { value: **time * *stiffness, origin: time.origin })
+                        }
+                    };
                     let usp = usp.as_ref().map(|(usp, modulus)| usp.at(modulus, x));
                     Foot::Sleeper { mass: *mass, support: Support { stiffness, damping, seating: *seating, usp } }
                 }
@@ -64,7 +91,8 @@ impl Checker<'_> {
             };
             let (initial_settlement, sleeper) = (*settlement.at(x), built.sleeper_body());
             let pad = Pad { stiffness, damping };
-            seats.push(Seat { number, transition, x, section, pad, foot, sleeper, initial_settlement });
+            let onto_subgrade = carried.get(i).map(|carried| carried.onto_subgrade);
+            seats.push(Seat { number, transition, x, section, pad, foot, sleeper, initial_settlement, onto_subgrade });
         }
         Some(seats)
     }
@@ -77,7 +105,11 @@ impl Checker<'_> {
         seats: Range<usize>,
         cover: &dyn Fn(&str) -> Cover,
     ) -> Option<LaidFoot<'a>> {
-        let support = bed.support.as_ref().and_then(|support| self.lay_spring(support, places, "support", cover));
+        let support = match &bed.support {
+            _ if bed.by_layers => self.usual_damping_time().map(|time| LaidSupport::OfLayers { time }),
+            Some(support) => self.lay_spring(support, places, "support", cover).map(LaidSupport::Stated),
+            None => None,
+        };
         let usp = match &bed.usp {
             Some(Some(usp)) => {
                 self.lay(&usp.bedding_modulus, places, &cover("bedding modulus")).map(|laid| Some((usp, laid)))
@@ -86,7 +118,7 @@ impl Checker<'_> {
             None => None,
         };
         let soft = match (bed.seating, &support) {
-            (Some(Some(seating)), Some(support)) => {
+            (Some(Some(seating)), Some(LaidSupport::Stated(support))) => {
                 let seats = places.seats[seats].iter().map(|seat| seat.0);
                 self.seats_softly(built, seating, support, seats)
             }
@@ -94,6 +126,16 @@ impl Checker<'_> {
         };
         let (mass, support, seating, usp) = (bed.mass?, support?, bed.seating?, usp?);
         soft.then_some(LaidFoot::Sleeper { mass, support, seating, usp })
+    }
+
+    /// The default of a support's `damping_time`.
+    fn usual_damping_time(&mut self) -> Option<Given> {
+        let support = schema::kind("support")?;
+        let (name, text) = support.alternatives.iter().find_map(|alternative| alternative.default)?;
+        match self.default_value(&support.field(name)?.form, text).value {
+            Val::Number(time) => Some(Given { value: time.value, origin: Origin::Default }),
+            _ => None,
+        }
     }
 
     /// A support grows stiffer as it closes up, never softer.

@@ -3,9 +3,10 @@
 
 use super::Checker;
 use super::geometry::Places;
+use super::ground::{Regrade, Under};
 use super::value::{Change, Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::scenario::{AuxiliaryRailSpan, Seat, Stretch};
+use crate::scenario::{ApproachSlab, AuxiliaryRailSpan, Layer, Seat, Stretch};
 use crate::syntax::tree::Name;
 use crate::units::{Dimension, number};
 use std::ops::Range;
@@ -16,7 +17,7 @@ const TINY: f64 = 1e-6;
 /// Parts that make a section what it is from end to end.
 const WHOLE_SECTION: [&str; 2] = ["rail", "slab"];
 /// What only sleepers on a support that gives have.
-const OF_SLEEPERS: [&str; 4] = ["sleeper", "usp", "support", "settlement"];
+const OF_SLEEPERS: [&str; 5] = ["sleeper", "usp", "support", "settlement", "layers"];
 
 /// A stretch at one of its transitions.
 pub(super) struct Instance {
@@ -26,20 +27,26 @@ pub(super) struct Instance {
     /// Chainage of its first and of its last end, m.
     ends: [f64; 2],
     /// What it covers, m, ascending: a span of sleepers reaches half a bay beyond them.
-    reach: (f64, f64),
+    pub reach: (f64, f64),
     seats: Range<usize>,
+    pub plate: Option<ApproachSlab>,
 }
 
 impl Instance {
-    fn sets(&self, field: &str) -> bool {
+    pub fn sets(&self, field: &str) -> bool {
         self.stretch.changes.iter().any(|c| c.field.path.names[0].text == field)
     }
 
-    fn over(&self) -> Span {
+    /// Whether it changes what lies under the sleepers.
+    pub fn regrades(&self) -> bool {
+        self.sets("layers") || self.plate.is_some()
+    }
+
+    pub fn over(&self) -> Span {
         self.stretch.get("over").map_or(self.stretch.span, |slot| slot.span)
     }
 
-    fn common(&self, seats: &Range<usize>) -> Option<Range<usize>> {
+    pub fn common(&self, seats: &Range<usize>) -> Option<Range<usize>> {
         let common = self.seats.start.max(seats.start)..self.seats.end.min(seats.end);
         (!common.is_empty()).then_some(common)
     }
@@ -100,21 +107,24 @@ impl Checker<'_> {
                 true => (places.cell(seats.start).0, places.cell(seats.end - 1).1),
                 false => (ends[0].min(ends[1]), ends[0].max(ends[1])),
             };
-            stood.push(Instance { stretch: stretch.clone(), transition, ends, reach, seats });
+            let plate = self.plate(stretch, transition, reach, places)?;
+            stood.push(Instance { stretch: stretch.clone(), transition, ends, reach, seats, plate });
         }
         Some(stood).filter(|_| sound)
     }
 
     /// Whether a stretch changes anything, and nothing that a section is from end to end.
     fn says_something(&mut self, stretch: &Record) -> bool {
-        if stretch.changes.is_empty() && !stretch.partial {
+        let nothing = stretch.changes.is_empty()
+            && !matches!(stretch.get("approach_slab"), Some(s) if !matches!(s.value, Val::Word { .. }));
+        if nothing && !stretch.partial {
             self.report(
                 Diagnostic::new(Code::E0417, format!("stretch `{}` changes nothing", stretch.name))
                     .at(stretch.span, "says where, not what")
                     .help("say what differs there, such as `usp = usps.medium` or `pad.stiffness = 60 MN/m`"),
             );
         }
-        let mut sound = !stretch.partial && !stretch.changes.is_empty();
+        let mut sound = !stretch.partial && !nothing;
         for change in &stretch.changes {
             let name = &change.field.path.names[0];
             if WHOLE_SECTION.contains(&name.text.as_str()) {
@@ -138,6 +148,10 @@ impl Checker<'_> {
         for (i, later) in stood.iter().enumerate() {
             for first in &stood[..i] {
                 let Some(seats) = first.common(&later.seats) else { continue };
+                if let (Some(_), Some(_)) = (first.plate, later.plate) {
+                    sound = false;
+                    self.report(two_plates(first, later, &places.named(&seats)));
+                }
                 let pairs =
                     first.stretch.changes.iter().flat_map(|a| later.stretch.changes.iter().map(move |b| (a, b)));
                 let Some((a, b)) = pairs.into_iter().find(|(a, b)| overlap(a, b)) else { continue };
@@ -149,7 +163,7 @@ impl Checker<'_> {
     }
 
     /// A trackform as stretches change it, without the defaults of what they bring.
-    fn extended_by(&mut self, form: &Record, stretches: &[&Instance]) -> Record {
+    pub(super) fn extended_by(&mut self, form: &Record, stretches: &[&Instance]) -> Record {
         let mut extended = form.clone();
         for instance in stretches {
             for change in &instance.stretch.changes {
@@ -169,6 +183,7 @@ impl Checker<'_> {
         stood: &[Instance],
         places: &Places,
         section: usize,
+        layers: Option<&[Layer]>,
         laid: &mut [Seat],
     ) -> bool {
         let whole = places.seats_of(section);
@@ -179,7 +194,7 @@ impl Checker<'_> {
             form,
             stretches,
             places,
-            section,
+            (section, layers),
             seats.clone(),
         ) {
             Some(changed) => laid[seats.start - whole.start..seats.end - whole.start].clone_from_slice(&changed),
@@ -211,43 +226,74 @@ impl Checker<'_> {
         form: &Record,
         stretches: &[&Instance],
         places: &Places,
-        section: usize,
+        (section, layers): (usize, Option<&[Layer]>),
         seats: Range<usize>,
     ) -> Option<Vec<Seat>> {
         let extended = self.extended_by(form, stretches);
         for instance in stretches {
-            self.stands_right(instance, &extended, &places.named(&seats))?;
+            self.stands_right(instance, form, &extended, &places.named(&seats))?;
         }
         let complete = self.complete(&extended);
-        let built = self.trackform(&complete);
-        self.seats(&built, places, section, seats)
+        let built = self.trackform(&complete, true);
+        if !stretches.iter().any(|instance| instance.regrades()) {
+            return self.seats(&built, places, section, seats, Under::Section(layers));
+        }
+        let before = layers?;
+        let scales = !stretches.iter().any(|instance| instance.sets("support"));
+        for instance in stretches.iter().filter(|_| before.is_empty()) {
+            self.has_ground(instance, form)?;
+        }
+        let plate = stretches.iter().find_map(|instance| instance.plate);
+        self.seats(&built, places, section, seats, Under::Regraded(&Regrade { before, plate, scales }))
     }
 
     /// Refuses what only sleepers have where there are none.
-    fn stands_right(&mut self, instance: &Instance, under: &Record, seats: &str) -> Option<()> {
-        let (ground, what) = match (under.record("slab").and(under.get("slab")), under.word("support")) {
+    fn stands_right(&mut self, instance: &Instance, form: &Record, under: &Record, seats: &str) -> Option<()> {
+        let (ground, what) = match (form.record("slab").and(form.get("slab")), under.word("support")) {
             (Some(slab), _) => (slab.span, "a slab"),
             (None, Some("rigid")) => (under.get("support")?.span, "rigid supports"),
             _ => return Some(()),
         };
         let has = |name: &str| match under.get(name).map(|slot| &slot.value) {
             Some(Val::Number(n)) => n.value != 0.0,
+            Some(Val::Pairs(pairs)) => !pairs.is_empty(),
             value => matches!(value, Some(Val::Profile(_) | Val::Record(_))),
         };
         let wrong = |change: &&Change| {
             let name = change.field.path.names[0].text.as_str();
             OF_SLEEPERS.contains(&name) && has(name)
         };
-        let Some(change) = instance.stretch.changes.iter().find(wrong) else { return Some(()) };
-        let path = &change.field.path;
-        let message =
-            format!("stretch `{}` sets `{}`, but {seats} stand on {what}", instance.stretch.name, path.text());
+        let path = instance.stretch.changes.iter().find(wrong).map(|change| &change.field.path);
+        let plate = instance.stretch.get("approach_slab").filter(|_| instance.plate.is_some());
+        let (path, at) = match (path, plate) {
+            (Some(path), _) => (path.text(), path.span),
+            (None, Some(slot)) => ("approach_slab".into(), slot.span),
+            (None, None) => return Some(()),
+        };
+        let message = format!("stretch `{}` sets `{path}`, but {seats} stand on {what}", instance.stretch.name);
         self.report(
             Diagnostic::new(Code::E0418, message)
-                .at(path.span, "only sleepers on a support have it")
+                .at(at, "only sleepers on a support have it")
                 .at(instance.over(), "reaches too far")
                 .at(ground, what)
                 .help("end the span at the last sleeper, as `over = -20 .. -1 sleepers` does; pads can differ on both sides"),
+        );
+        None
+    }
+
+    /// Refuses to change the layers of a trackform that has none.
+    fn has_ground(&mut self, instance: &Instance, form: &Record) -> Option<()> {
+        let set = instance.stretch.get(if instance.sets("layers") { "layers" } else { "approach_slab" });
+        let Some(slot) = set.filter(|_| instance.regrades()) else { return Some(()) };
+        let message = format!(
+            "stretch `{}` changes the ground, but trackform `{}` does not say what lies under its sleepers",
+            instance.stretch.name, form.name
+        );
+        self.report(
+            Diagnostic::new(Code::E0418, message)
+                .at(slot.span, "in the place of what?")
+                .at(form.span, "no `layers`")
+                .help("give the trackform its `layers`; its `support` may stay beside them and changes as they do"),
         );
         None
     }
@@ -293,6 +339,7 @@ pub(super) fn described(stood: &[Instance]) -> Vec<Stretch> {
     let what = |instance: &Instance| {
         let mut paths: Vec<String> = instance.stretch.changes.iter().map(|c| c.field.path.text()).collect();
         paths.dedup();
+        paths.extend(instance.plate.map(|_| "approach_slab".to_string()));
         paths.join(", ")
     };
     let stretch = |instance: &Instance| {
@@ -305,6 +352,13 @@ pub(super) fn described(stood: &[Instance]) -> Vec<Stretch> {
 /// Whether one path is the other, or lies inside it.
 fn overlap(a: &Change, b: &Change) -> bool {
     a.field.path.names.iter().zip(&b.field.path.names).all(|(a, b)| a.text == b.text)
+}
+
+fn two_plates(first: &Instance, later: &Instance, seats: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0512, format!("two approach slabs lie in one place at {seats}"))
+        .at(later.over(), format!("that of `{}`", later.stretch.name))
+        .at(first.over(), format!("that of `{}`", first.stretch.name))
+        .help("let one span end where the other begins")
 }
 
 fn clash(first: &Instance, a: &Change, later: &Instance, b: &Change, seats: &str) -> Diagnostic {
@@ -369,7 +423,7 @@ impl Places {
     }
 
     /// `sleepers -6 .. -1`, of which transition where there are several.
-    fn named(&self, seats: &Range<usize>) -> String {
+    pub fn named(&self, seats: &Range<usize>) -> String {
         let (first, last) = (self.seats[seats.start], self.seats[seats.end - 1]);
         let of = |transition: usize| match self.transitions.get(transition) {
             Some(t) if self.transitions.len() > 1 => format!(" of `{}`", t.name),

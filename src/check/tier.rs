@@ -6,12 +6,17 @@ use super::track::given;
 use super::value::{Number, Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Grains, Tier, Volume, response::Response};
+use crate::solvers::foundation::Method;
 
 /// What the parts of a track have to bring along.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Asked {
-    /// Grains give the stiffness of the supports: layers do instead of a `support`.
+    /// Grains give the stiffness of the supports: layers without a modulus do instead of a `support`.
     pub layers_do: bool,
+    /// By which layers with a modulus become the support of a sleeper.
+    pub support_method: Method,
+    /// The lowest layer goes on without end.
+    pub quiet_base: bool,
     /// Only test loads on sleepers act: a rail is not needed.
     pub rig: bool,
     /// Trains run: what is counted is axles.
@@ -31,13 +36,33 @@ pub(super) fn tier(solve: &Record) -> Tier {
     }
 }
 
+impl Default for Asked {
+    fn default() -> Self {
+        let support_method = Method::StressCone;
+        Asked { layers_do: false, support_method, quiet_base: false, rig: false, traffic: false }
+    }
+}
+
 impl Asked {
     pub fn of(solve: &Record, track: &Record, traffic: bool, loads: &[Record]) -> Asked {
         let tier = tier(solve);
-        let by_layers = tier == Tier::Auto && forms(track).any(stands_on_layers);
+        let by_layers = tier == Tier::Auto && forms(track).any(stands_on_grains);
         let layers_do = tier.has_grains() || by_layers;
         let on_sleepers = !loads.is_empty() && loads.iter().all(|load| load.word("on") == Some("sleepers"));
-        Asked { layers_do, rig: layers_do && !traffic && on_sleepers, traffic }
+        let support_method = method(solve).unwrap_or(Method::StressCone);
+        let quiet_base = track.word("base") == Some("quiet");
+        Asked { layers_do, support_method, quiet_base, rig: layers_do && !traffic && on_sleepers, traffic }
+    }
+}
+
+fn method(solve: &Record) -> Option<Method> {
+    let Val::Word { word, arguments } = &solve.get("support_method")?.value else { return None };
+    if word.name == "stress_cone" {
+        return Some(Method::StressCone);
+    }
+    match arguments.get("neighbours")?.value {
+        Val::Number(n) => Some(Method::LayeredElastic { neighbours: n.value }),
+        _ => None,
     }
 }
 
@@ -66,12 +91,19 @@ pub(super) fn stands_on_layers(form: &Record) -> bool {
     has_layers(form) && none("slab") && none("support") && form.word("support") != Some("rigid")
 }
 
+/// Whether only grains can say how stiff those layers are.
+fn stands_on_grains(form: &Record) -> bool {
+    let Some(Val::Pairs(pairs)) = form.get("layers").map(|slot| &slot.value) else { return false };
+    let without = |record: &Record| record.kind.name == "granular" && record.get("youngs_modulus").is_none();
+    stands_on_layers(form) && pairs.iter().any(|(key, _)| matches!(&key.value, Val::Record(r) if without(r)))
+}
+
 impl Checker<'_> {
     /// Warns of what needs a tier of grains, once a scene.
     pub(super) fn waits_for_grains(&mut self, solve: &Record, track: &Record, loads: &[Record]) {
         let tier = tier(solve);
         let cyclic = loads.iter().find_map(changes);
-        let without = forms(track).find(|form| stands_on_layers(form));
+        let without = forms(track).find(|form| stands_on_grains(form));
         let slot = solve.get("substructure");
         let mistake = if let (true, Some(slot)) = (tier.has_grains(), slot) {
             let name = solve.word("substructure").unwrap_or_default();
@@ -81,7 +113,10 @@ impl Checker<'_> {
                     "give the trackforms a `rail`, a `pad` and a `support` to run them with `law`".to_string()
                 }
                 (.., Some(form)) => {
-                    format!("give trackform `{}` a `support` beside its layers; then {INSTEAD}", form.name)
+                    format!(
+                        "give trackform `{}` a `support`, or its grains a `youngs_modulus`; then {INSTEAD}",
+                        form.name
+                    )
                 }
                 _ => INSTEAD.to_string(),
             };
@@ -94,11 +129,13 @@ impl Checker<'_> {
                 .help("a constant `force` gives the equilibrium of the track under it")
         } else if let (Tier::Auto, Some(form)) = (tier, without) {
             let message =
-                format!("trackform `{}` has layers and no `support`, which only a model of grains can run", form.name);
+                format!("trackform `{}` has no `support`, and grains without a modulus in its layers", form.name);
             let at = form.get("layers").map_or(form.span, |slot| slot.span);
             Diagnostic::new(Code::E0604, message)
-                .at(at, "this version checks layers and cannot run them yet")
-                .help("add `support = { stiffness = 50 MN/m per seat }` to run it with a settlement law")
+                .at(at, "only a model of grains finds their stiffness, and this version cannot run it yet")
+                .help(
+                    "add `support = { stiffness = 50 MN/m per seat }`, or give each granular its `youngs_modulus`, to run it with a settlement law",
+                )
         } else {
             return;
         };

@@ -2,6 +2,7 @@
 
 use super::Checker;
 use super::geometry::{Places, Plan};
+use super::ground::Under;
 use super::seats::{Along, Cover};
 use super::stretch::described;
 use super::trackform::Built;
@@ -44,7 +45,7 @@ impl Checker<'_> {
                 plans.push(Plan { name, spacing, bays: Default::default(), length: *n, span });
             }
         }
-        let built: Vec<Built> = forms.iter().map(|form| self.trackform(form)).collect();
+        let built: Vec<Built> = forms.iter().map(|form| self.trackform(form, false)).collect();
         if plans.len() < pairs.len() || plans.is_empty() {
             if pairs.is_empty() {
                 self.report(
@@ -65,13 +66,19 @@ impl Checker<'_> {
         let mut seats = Vec::with_capacity(places.seats.len());
         let mut sections = Vec::new();
         let mut beside = Vec::new();
+        let mut groundworks = Vec::new();
         for (i, built) in built.iter().enumerate() {
             let layers = self.lay_layers(built, &places, i);
-            let section = layers.and_then(|layers| section(built, places.sections[i], lengths[i], layers));
-            let mut laid = self.seats(built, &places, i, places.seats_of(i));
+            let mut laid = self.seats(built, &places, i, places.seats_of(i), Under::Section(layers.as_deref()));
             if let Some(laid) = &mut laid {
-                sound &= self.change_seats(&forms[i], &stood, &places, i, laid);
+                sound &= self.change_seats(&forms[i], &stood, &places, i, layers.as_deref(), laid);
             }
+            if let Some(before) = layers.as_deref().filter(|_| laid.is_some()) {
+                let found = self.groundworks(&forms[i], &stood, &places, i, before);
+                sound &= found.is_some();
+                groundworks.extend(found.unwrap_or_default());
+            }
+            let section = layers.and_then(|layers| section(built, places.sections[i], lengths[i], layers));
             sound &= laid.is_some() && section.is_some() && built.auxiliary_rails.is_some();
             seats.extend(laid.unwrap_or_default());
             sections.extend(section);
@@ -97,6 +104,7 @@ impl Checker<'_> {
             seats,
             auxiliary_rails,
             stretches: described(&stood),
+            groundworks,
             rail_ends,
             irregularity,
             bed: bed?,

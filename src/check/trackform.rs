@@ -3,7 +3,7 @@
 use super::Checker;
 use super::layers::Stratum;
 use super::seats::Along;
-use super::tier::{has_layers, stands_on_layers};
+use super::tier::stands_on_layers;
 use super::track::given;
 use super::value::{Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
@@ -27,6 +27,8 @@ pub(super) struct Built {
     pub foot: Option<Base>,
     pub settlement: Option<Along>,
     pub layers: Option<Vec<Stratum>>,
+    /// Where its layers stand, or the trackform itself.
+    pub layers_span: Span,
 }
 
 /// What the pads stand on.
@@ -40,6 +42,8 @@ pub(super) enum Base {
 pub(super) struct Bed {
     pub mass: Option<Given>,
     pub support: Option<Damped>,
+    /// Whether the layers carry it, and nothing that is stated.
+    pub by_layers: bool,
     pub seating: Option<Option<Seating>>,
     pub usp: Option<Option<Cushion>>,
 }
@@ -60,15 +64,12 @@ pub(super) struct Cushion {
     pub thickness: f64,
 }
 
-fn under_sleepers(form: &Record) -> &'static str {
-    if has_layers(form) {
-        "beside its layers, under the sleepers: only grains find it from them"
-    } else {
-        "under the sleepers"
-    }
-}
-
 impl Built {
+    /// Whether its layers carry the sleepers.
+    pub fn stands_on_layers(&self) -> bool {
+        matches!(&self.foot, Some(Base::Sleeper(bed)) if bed.by_layers)
+    }
+
     /// Size of its sleepers, as far as it is known.
     pub fn sleeper_body(&self) -> Option<SleeperBody> {
         let sleeper = self.sleeper.as_ref()?;
@@ -90,7 +91,8 @@ fn base_area(sleeper: &Record) -> Option<f64> {
 }
 
 impl Checker<'_> {
-    pub(super) fn trackform(&mut self, form: &Record) -> Built {
+    /// The parts of a trackform, or of one that a stretch extends.
+    pub(super) fn trackform(&mut self, form: &Record, of_stretch: bool) -> Built {
         let rail = self.upper(form, "rail", "to carry the wheels").and_then(|r| self.rail(&r));
         let pad = self.upper(form, "pad", "between rail and seat").and_then(|r| self.damped(&r));
         let spacing = given(form, "spacing");
@@ -99,9 +101,10 @@ impl Checker<'_> {
         let sleeper = form.record("sleeper").cloned();
         let (foot, slab) = self.under_the_pads(form, sleeper.as_ref());
         let sleeper = sleeper.filter(|_| slab.is_none());
-        let layers = self.strata(form);
+        let layers = self.strata(form, of_stretch);
+        let layers_span = form.get("layers").map_or(form.span, |slot| slot.span);
         let name = form.name.clone();
-        Built { name, rail, spacing, slab, sleeper, auxiliary_rails, pad, foot, settlement, layers }
+        Built { name, rail, spacing, slab, sleeper, auxiliary_rails, pad, foot, settlement, layers, layers_span }
     }
 
     fn under_the_pads(&mut self, form: &Record, sleeper: Option<&Rc<Record>>) -> (Option<Base>, Option<Slab>) {
@@ -134,11 +137,11 @@ impl Checker<'_> {
         if let Some(sleeper) = &sleeper {
             self.bears(sleeper);
         }
-        let by_layers = self.asked.layers_do && stands_on_layers(form);
-        let record = if by_layers { None } else { self.part(form, "support", under_sleepers(form)) };
-        let seating = record.as_ref().and_then(|r| self.seating(r));
+        let by_layers = stands_on_layers(form);
+        let record = if by_layers { None } else { self.part(form, "support", "or layers, under the sleepers") };
+        let seating = if by_layers { Some(None) } else { record.as_ref().and_then(|r| self.seating(r)) };
         let support = record.and_then(|s| self.damped(&s));
-        (Some(Base::Sleeper(Box::new(Bed { mass, support, seating, usp }))), None)
+        (Some(Base::Sleeper(Box::new(Bed { mass, support, by_layers, seating, usp }))), None)
     }
 
     /// Refuses what only a sleeper on a support can have.

@@ -5,7 +5,7 @@ use super::number::plain;
 use super::scene::WIDTH;
 use super::svg::{Anchor, Frame, Svg};
 use super::symbols::{draw_dimension, draw_stones};
-use crate::scenario::{Scenario, Section, SleeperBody};
+use crate::scenario::{Groundwork, Scenario, Seat, Section, SleeperBody};
 
 /// Sections side by side, at most.
 const COLUMNS: usize = 3;
@@ -36,28 +36,60 @@ impl Place {
     }
 }
 
-/// Draws each kind of section that has sleepers; gives the height.
-pub(super) fn draw(svg: &mut Svg, scenario: &Scenario) -> f64 {
+/// What is cut: a section, its sleeper, and its ground at a chainage.
+struct Cut<'a> {
+    section: &'a Section,
+    sleeper: &'a SleeperBody,
+    ground: Groundwork,
+    /// Whether a stretch made it what it is.
+    changed: bool,
+    x: f64,
+}
+
+/// One cut for each kind of sleeper on each kind of ground; where the ground varies, as near to a transition as sleepers lie.
+fn cuts(scenario: &Scenario) -> Vec<Cut<'_>> {
     let track = &scenario.track;
-    let mut sections: Vec<(&Section, &SleeperBody)> = Vec::new();
+    let grounds: Vec<Vec<Groundwork>> = (0..track.sections.len()).map(|section| track.ground(section)).collect();
+    let distance = |x: f64| track.transitions.iter().map(|t| (t.x - x).abs()).fold(f64::INFINITY, f64::min);
+    let ground = |seat: &Seat| grounds[seat.section].iter().find(|g| seat.x <= g.end).or(grounds[seat.section].last());
+    let mut cuts: Vec<Cut<'_>> = Vec::new();
     for seat in &track.seats {
-        let (section, Some(sleeper)) = (&track.sections[seat.section], &seat.sleeper) else { continue };
-        if !sections.iter().any(|(other, body)| other.layers == section.layers && *body == sleeper) {
-            sections.push((section, sleeper));
+        let (section, Some(sleeper), Some(ground)) = (&track.sections[seat.section], &seat.sleeper, ground(seat))
+        else {
+            continue;
+        };
+        let same = |cut: &&mut Cut<'_>| {
+            cut.ground.layers == ground.layers
+                && cut.ground.approach_slab.is_some() == ground.approach_slab.is_some()
+                && cut.sleeper == sleeper
+        };
+        match cuts.iter_mut().find(same) {
+            Some(cut) if distance(seat.x) < distance(cut.x) => cut.x = seat.x,
+            Some(_) => {}
+            None => {
+                let changed = track.groundworks.iter().any(|work| (work.start, work.end) == (ground.start, ground.end));
+                cuts.push(Cut { section, sleeper, ground: ground.clone(), changed, x: seat.x });
+            }
         }
     }
-    if sections.is_empty() {
+    cuts
+}
+
+/// Draws each kind of section that has sleepers; gives the height.
+pub(super) fn draw(svg: &mut Svg, scenario: &Scenario) -> f64 {
+    let cuts = cuts(scenario);
+    if cuts.is_empty() {
         return 0.0;
     }
     svg.text("strong", (6.0, 18.0), Anchor::Start, "Across the track, to scale");
-    let columns = sections.len().min(COLUMNS) as f64;
+    let columns = cuts.len().min(COLUMNS) as f64;
     let room = (WIDTH - 2.0 * MARGIN) / columns;
-    let widest = sections.iter().map(|(_, sleeper)| 2.0 * half_width(scenario, sleeper)).fold(0.0, f64::max);
+    let widest = cuts.iter().map(|cut| 2.0 * half_width(scenario, cut.sleeper)).fold(0.0, f64::max);
     let scale = ((room - NAMES - 20.0) / widest).min(110.0);
     let mut bottom: f64 = 0.0;
-    for (index, (section, sleeper)) in sections.iter().take(COLUMNS).enumerate() {
+    for (index, cut) in cuts.iter().take(COLUMNS).enumerate() {
         let centre = MARGIN + room * index as f64 + 0.5 * (room - NAMES);
-        bottom = bottom.max(draw_section(svg, scenario, (section, sleeper), &Place { centre, top: 70.0, scale }));
+        bottom = bottom.max(draw_section(svg, scenario, cut, &Place { centre, top: 70.0, scale }));
     }
     bottom + 20.0
 }
@@ -68,23 +100,23 @@ fn half_width(scenario: &Scenario, sleeper: &SleeperBody) -> f64 {
     scenario.track.bed.half_width.map_or(least, |half| *half).max(least)
 }
 
-fn draw_section(
-    svg: &mut Svg,
-    scenario: &Scenario,
-    (section, sleeper): (&Section, &SleeperBody),
-    place: &Place,
-) -> f64 {
+fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place) -> f64 {
+    let (section, sleeper, layers) = (cut.section, cut.sleeper, &cut.ground.layers);
     let (half, length, height) = (half_width(scenario, sleeper), sleeper.length, sleeper.height);
     let gauge = sleeper.seat_distance;
-    svg.text("small halo", (place.centre, place.top - 34.0), Anchor::Middle, &section.name);
+    let name = if cut.changed { format!("{} at {} m", section.name, plain(cut.x, 3)) } else { section.name.clone() };
+    svg.text("small halo", (place.centre, place.top - 34.0), Anchor::Middle, &name);
     let (foot, rail) = (section.rail.height + PAD, section.rail.height);
     let mut depth = foot + height;
     // beside the sleeper the bed reaches up to its top
-    if let Some(first) = section.layers.first() {
+    if let Some(first) = layers.first() {
         svg.rect(class(&first.material), place.area(-half, half, foot + 0.25 * height, depth));
     }
-    for layer in &section.layers {
-        let thickness = layer.thickness.at(section.start.max(section.end - 1e-6).min(section.end));
+    for layer in layers {
+        let thickness = layer.thickness.at(cut.x);
+        if thickness < 1e-3 {
+            continue;
+        }
         let below = depth + thickness.min(DEEPEST);
         let area = place.area(-half, half, depth, below);
         svg.titled_rect(class(&layer.material), area, &layer.name);
@@ -98,6 +130,12 @@ fn draw_section(
         svg.text("small muted", (x, y + 13.0), Anchor::Start, &format!("{} mm{cut}", plain(1e3 * thickness, 4)));
         depth = below;
     }
+    if let Some(plate) = &cut.ground.approach_slab {
+        let top = foot + height + *plate.depth;
+        let area = place.area(-half, half, top, (top + *plate.thickness).min(depth));
+        svg.titled_rect("slab", area, "approach slab");
+        svg.text("small halo", (place.centre, area.y + 0.5 * area.height + 4.0), Anchor::Middle, "approach slab");
+    }
     svg.rect("sleeper", place.area(-0.5 * length, 0.5 * length, foot, foot + height));
     for side in [-0.5, 0.5] {
         let x = side * gauge;
@@ -107,7 +145,7 @@ fn draw_section(
         svg.rect("steel", place.area(x - 0.036, x + 0.036, 0.0, 0.045));
     }
     let wall = place.area(-half, half, foot, depth);
-    if !section.layers.is_empty() {
+    if !layers.is_empty() {
         for x in [wall.x, wall.x + wall.width] {
             svg.line("wall", (x, wall.y), (x, wall.y + wall.height));
         }

@@ -4,15 +4,19 @@ use super::number::plain;
 use super::scene::{View, WIDTH};
 use super::svg::{Anchor, Frame, Svg, text_width};
 use super::symbols::draw_stones;
-use crate::scenario::{Layer, Material, Scenario, Section};
+use crate::scenario::{ApproachSlab, Groundwork, Layer, Material, Scenario, Section};
 
 const MARGIN: f64 = 26.0;
-/// Half the length that is shown at each transition, m.
+/// Half the length that is shown at each transition, m; more where stretches change the layers, but not beyond this.
 const HALF: f64 = 6.0;
+const FARTHEST: f64 = 30.0;
 /// Layers below this depth under the sleepers are cut off, m.
 const DEEPEST: f64 = 3.0;
 /// Points of a boundary between two layers a metre of track.
 const POINTS: f64 = 8.0;
+/// Soils are coloured by Young's modulus, Pa: treated ground and concrete from here on, mats up to here.
+const FIRM: f64 = 300e6;
+const SOFT: f64 = 5e6;
 const PAD: f64 = 0.035;
 const SLAB: f64 = 0.25;
 
@@ -39,12 +43,12 @@ pub(super) fn draw(svg: &mut Svg, scenario: &Scenario) -> f64 {
 
 fn draw_place(svg: &mut Svg, scenario: &Scenario, (place, title): (f64, &str), index: usize, top: f64) -> f64 {
     let track = &scenario.track;
-    let (start, end) = ((place - HALF).max(track.start()), (place + HALF).min(track.end()));
+    let (start, end) = shown(scenario, place);
     let view = View { start, end, scale: ((WIDTH - 2.0 * MARGIN) / (end - start)).min(90.0), rail: top + 40.0 };
     svg.text("strong", (6.0, top + 18.0), Anchor::Start, title);
-    let shown = |section: &Section| section.end > start && section.start < end;
-    let sections = || track.sections.iter().enumerate().filter(|(_, section)| shown(section));
-    let deepest = sections().map(|(n, s)| base(scenario, n) + depth(s, start, end)).fold(0.0, f64::max);
+    let inside = |section: &Section| section.end > start && section.start < end;
+    let sections = || track.sections.iter().enumerate().filter(|(_, section)| inside(section));
+    let deepest = sections().map(|(n, _)| base(scenario, n) + depth(scenario, n, start, end)).fold(0.0, f64::max);
     let bottom = view.y(deepest) + 2.0;
     let frame =
         Frame { x: MARGIN, y: view.rail - 4.0, width: (end - start) * view.scale, height: bottom - view.rail + 4.0 };
@@ -67,24 +71,32 @@ fn base(scenario: &Scenario, number: usize) -> f64 {
     scenario.track.sections[number].rail.height + PAD + sleeper.map_or(SLAB, |sleeper| sleeper.height)
 }
 
+/// From where to where a transition is drawn, m: with the stretches near it that change the layers.
+fn shown(scenario: &Scenario, place: f64) -> (f64, f64) {
+    let track = &scenario.track;
+    let near = |work: &&Groundwork| work.start < place + HALF && work.end > place - HALF;
+    let works = || track.groundworks.iter().filter(near);
+    let start = works().map(|work| work.start - 1.0).fold(place - HALF, f64::min);
+    let end = works().map(|work| work.end + 1.0).fold(place + HALF, f64::max);
+    (start.max(place - FARTHEST).max(track.start()), end.min(place + FARTHEST).min(track.end()))
+}
+
 /// Depth of a section's layers below the sleepers where it is drawn, m.
-fn depth(section: &Section, start: f64, end: f64) -> f64 {
-    let (from, to) = (section.start.max(start), section.end.min(end));
-    let all = |x: f64| section.layers.iter().map(|layer| layer.thickness.at(x)).sum::<f64>();
-    all(from).max(all(0.5 * (from + to))).max(all(to)).min(DEEPEST)
+fn depth(scenario: &Scenario, number: usize, start: f64, end: f64) -> f64 {
+    let parts = scenario.track.ground(number);
+    let deepest = |part: &Groundwork| {
+        let (from, to) = (part.start.max(start), part.end.min(end));
+        let all = |x: f64| part.layers.iter().map(|layer| layer.thickness.at(x)).sum::<f64>();
+        if from < to { all(from).max(all(0.5 * (from + to))).max(all(to)) } else { 0.0 }
+    };
+    parts.iter().map(deepest).fold(0.0, f64::max).min(DEEPEST)
 }
 
 fn draw_section(svg: &mut Svg, scenario: &Scenario, view: &View, number: usize, section: &Section) {
     let (start, end) = (section.start.max(view.start), section.end.min(view.end));
-    let steps = (POINTS * (end - start)).ceil().max(1.0);
-    let places: Vec<f64> = (0..=steps as usize).map(|k| start + (end - start) * k as f64 / steps).collect();
     let under = base(scenario, number);
-    let mut upper: Vec<f64> = vec![under; places.len()];
-    for layer in &section.layers {
-        let lower: Vec<f64> =
-            places.iter().zip(&upper).map(|(x, top)| (top + layer.thickness.at(*x)).min(under + DEEPEST)).collect();
-        draw_layer(svg, view, layer, &places, (&upper, &lower));
-        upper = lower;
+    for part in scenario.track.ground(number) {
+        draw_part(svg, view, &part, under);
     }
     if section.slab.is_some() {
         svg.rect("slab", view.area(start, end, under - SLAB, under));
@@ -96,6 +108,47 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, view: &View, number: usize, 
         }
     }
     svg.rect("steel", view.area(start, end, 0.0, section.rail.height));
+}
+
+/// The layers of a part of a section, and the plate in them.
+fn draw_part(svg: &mut Svg, view: &View, part: &Groundwork, under: f64) {
+    let (start, end) = (part.start.max(view.start), part.end.min(view.end));
+    if start >= end {
+        return;
+    }
+    let steps = (POINTS * (end - start)).ceil().max(1.0);
+    let places: Vec<f64> = (0..=steps as usize).map(|k| start + (end - start) * k as f64 / steps).collect();
+    let mut upper: Vec<f64> = vec![under; places.len()];
+    for layer in &part.layers {
+        let lower: Vec<f64> =
+            places.iter().zip(&upper).map(|(x, top)| (top + layer.thickness.at(*x)).min(under + DEEPEST)).collect();
+        draw_layer(svg, view, layer, &places, (&upper, &lower));
+        upper = lower;
+    }
+    if let Some(plate) = &part.approach_slab {
+        draw_plate(svg, view, plate, under);
+    }
+}
+
+fn draw_plate(svg: &mut Svg, view: &View, plate: &ApproachSlab, under: f64) {
+    let [structure, far] = plate.ends;
+    let (top, bottom) = (under + *plate.depth, under + *plate.depth + *plate.thickness);
+    let area = view.area(structure.min(far), structure.max(far), top, bottom);
+    let hinged = if plate.hinged { ", hinged" } else { "" };
+    let text = format!(
+        "approach slab: {} mm, {} GPa{hinged}",
+        plain(1e3 * *plate.thickness, 4),
+        plain(1e-9 * *plate.youngs_modulus, 3)
+    );
+    svg.titled_rect("slab", area, &text);
+    if plate.hinged {
+        let (x, y) = (view.x(structure), view.y(0.5 * (top + bottom)));
+        let corner = |k: u32| (f64::from(k) * std::f64::consts::FRAC_PI_4).sin_cos();
+        let ring: Vec<(f64, f64)> = (0..8).map(corner).map(|(sin, cos)| (x + 4.0 * cos, y + 4.0 * sin)).collect();
+        svg.path("ring", &ring, true, "hinge");
+    }
+    let y = area.y + if area.height > 12.0 { 0.5 * area.height + 4.0 } else { area.height + 12.0 };
+    svg.text("small halo", (area.x + 0.5 * area.width, y), Anchor::Middle, &text);
 }
 
 /// One layer between its upper and its lower boundary, named where it is thick enough.
@@ -134,8 +187,8 @@ fn label(layer: &Layer, places: &[f64]) -> String {
         }
     };
     let mut text = format!("{}: {} mm", layer.name, range(&|x| 1e3 * layer.thickness.at(x), 4));
-    if let Some(soil) = layer.soil() {
-        text += &format!(", {} MPa", range(&|x| 1e-6 * soil.youngs_modulus.at(x), 3));
+    if let Some(modulus) = layer.youngs_modulus() {
+        text += &format!(", {} MPa", range(&|x| 1e-6 * modulus.at(x), 3));
     }
     text
 }
@@ -145,6 +198,8 @@ pub(super) fn class(material: &Material) -> &'static str {
     match material {
         Material::Granular(granular) if granular.bond.is_some() => "bonded",
         Material::Granular(_) => "stones",
+        Material::Soil(soil) if soil.youngs_modulus.largest() >= FIRM => "firm",
+        Material::Soil(soil) if soil.youngs_modulus.largest() <= SOFT => "mat",
         Material::Soil(_) => "soil",
     }
 }

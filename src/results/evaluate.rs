@@ -31,6 +31,13 @@ pub fn contact_pressures<'a>(track: &Track, rows: impl Iterator<Item = &'a Sleep
     rows.filter_map(|row| Some((row.x_m, row.max_contact_force_N / areas.get(&row.sleeper)?))).collect()
 }
 
+/// Chainage and largest pressure on the lowest layer of each row whose layers are known, m and Pa.
+pub fn subgrade_pressures<'a>(track: &Track, rows: impl Iterator<Item = &'a SleeperRow>) -> Vec<(f64, f64)> {
+    let known = |seat| Some((track.seat_name(seat), seat.onto_subgrade?));
+    let by_name: HashMap<String, f64> = track.seats.iter().filter_map(known).collect();
+    rows.filter_map(|row| Some((row.x_m, row.max_contact_force_N * by_name.get(&row.sleeper)?))).collect()
+}
+
 /// The value of an expression in SI units, or why it has none. The value is finite.
 pub fn evaluate(expression: &Expression, tables: Tables<'_>) -> Result<f64, String> {
     let value = match expression {
@@ -221,6 +228,9 @@ fn kept(measure: &Measure, graph: &Graph) -> bool {
             let by_loads = matches!(response, Response::RailDisplacement | Response::RailMoment);
             by_loads || matches!(graph.schedule, Schedule::Blocks(_))
         }
+        Place::Seat if response == Response::SubgradePressure => {
+            graph.track.track.seats.iter().any(|seat| seat.onto_subgrade.is_some())
+        }
         Place::Seat if response == Response::ContactPressure || sleeper_column(response).is_some() => true,
         Place::Seat => graph.records.iter().any(|record| record.quantities.contains(&response)),
     }
@@ -248,10 +258,13 @@ fn values(measure: &Measure, tables: Tables<'_>) -> Result<Vec<(f64, f64)>, Stri
         let rows = tables.sleepers.iter().filter(|row| Some(row.axles) == axles && inside(row.x_m));
         return Ok(rows.map(|row| (row.x_m, column(row))).collect());
     }
-    if measure.response == Response::ContactPressure {
+    if matches!(measure.response, Response::ContactPressure | Response::SubgradePressure) {
         let axles = measure.after.or_else(|| tables.sleepers.iter().map(|row| row.axles).max());
         let rows = tables.sleepers.iter().filter(|row| Some(row.axles) == axles && inside(row.x_m));
-        return Ok(contact_pressures(tables.track, rows));
+        return Ok(match measure.response {
+            Response::ContactPressure => contact_pressures(tables.track, rows),
+            _ => subgrade_pressures(tables.track, rows),
+        });
     }
     // a static check has its rail in the histories
     if let Some(column) = rail_column(measure).filter(|_| !tables.rail.is_empty()) {

@@ -98,6 +98,7 @@ pub(crate) fn transition() -> Run {
         foot: if number < 0 { ballast.clone() } else { Foot::Slab },
         sleeper: (number < 0).then(sleeper),
         initial_settlement: 0.0,
+        onto_subgrade: None,
     };
     let expectation = |text: &str, low: f64, high: f64, reduction, response, unit: (&str, f64)| Expectation {
         text: text.to_owned(),
@@ -119,6 +120,7 @@ pub(crate) fn transition() -> Run {
             seats: (-69..=40).filter(|n| *n != 0).map(seat).collect(),
             auxiliary_rails: vec![],
             stretches: vec![],
+            groundworks: vec![],
             rail_ends: RailEnds::Clamped,
             irregularity: None,
             bed: Bed::default(),
@@ -301,6 +303,7 @@ pub(crate) fn bench() -> Run {
             foot: Foot::Rigid,
             sleeper: Some(sleeper()),
             initial_settlement: 0.0,
+            onto_subgrade: None,
         })
         .collect();
     let load = seats[9].x;
@@ -322,6 +325,7 @@ pub(crate) fn bench() -> Run {
             seats,
             auxiliary_rails: vec![],
             stretches: vec![],
+            groundworks: vec![],
             rail_ends: RailEnds::Free,
             irregularity: None,
             bed: Bed::default(),

@@ -25,7 +25,9 @@ pub(crate) mod example;
 
 pub use atomic::write as write_atomically;
 pub use error::ResultsError;
-pub use evaluate::{Tables, contact_pressures, evaluate, holds, known, not_kept, verdict, verdicts};
+pub use evaluate::{
+    Tables, contact_pressures, evaluate, holds, known, not_kept, subgrade_pressures, verdict, verdicts,
+};
 pub use failure::diagnose;
 pub use files::{read, read_timings, write, write_timings};
 pub use grains::{Grain, Link, grains, links, places};

@@ -82,6 +82,8 @@ pub fn summarise(
         let pressure =
             |(seat, row): &(&Seat, &SleeperRow)| Some(row.max_contact_force_N / scenario.track.bearing_area(seat)?);
         put("max_contact_pressure", largest(ballasted.iter().filter_map(pressure)), "Pa");
+        let deeper = |(seat, row): &(&Seat, &SleeperRow)| Some(row.max_contact_force_N * seat.onto_subgrade?);
+        put("max_subgrade_pressure", largest(ballasted.iter().filter_map(deeper)), "Pa");
     }
     if let Some(block) = blocks.last() {
         put("update_error", Some(blocks.iter().map(|b| b.error_m).sum()), "m");

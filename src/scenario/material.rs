@@ -41,6 +41,12 @@ pub struct Granular {
     pub dashpots_pull: bool,
     pub packing: Packing,
     pub bond: Option<Bond>,
+    /// Of the layer as a continuum, Pa; grains do not read it.
+    pub youngs_modulus: Option<Varying>,
+    /// Of the layer as a continuum.
+    pub poisson_ratio: Given,
+    /// At which the layer spreads a load, rad against the vertical.
+    pub spread: Given,
 }
 
 /// The shape of grains. A grain has the volume of the sphere of its size.
@@ -107,6 +113,8 @@ pub struct Soil {
     pub poisson_ratio: Given,
     /// kg/m^3.
     pub density: Given,
+    /// At which the layer spreads a load, rad against the vertical.
+    pub spread: Given,
     pub strength: Strength,
 }
 
@@ -133,5 +141,13 @@ impl Layer {
 
     pub fn soil(&self) -> Option<&Soil> {
         if let Material::Soil(soil) = &self.material { Some(soil) } else { None }
+    }
+
+    /// As a continuum, Pa; `None` where grains are known by their contacts alone.
+    pub fn youngs_modulus(&self) -> Option<&Varying> {
+        match &self.material {
+            Material::Granular(granular) => granular.youngs_modulus.as_ref(),
+            Material::Soil(soil) => Some(&soil.youngs_modulus),
+        }
     }
 }

@@ -29,8 +29,8 @@ pub use sequence::{Order, Sequence, Share};
 pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spread, Study, Values};
 pub use tamping::Tamping;
 pub use track::{
-    AuxiliaryRailSpan, AuxiliaryRails, Foot, Pad, Rail, RailEnds, Seat, Seating, Section, Side, Slab, SleeperBody,
-    Spring, Stretch, Support, Track, Transition, Usp,
+    ApproachSlab, AuxiliaryRailSpan, AuxiliaryRails, Foot, Groundwork, Pad, Rail, RailEnds, Seat, Seating, Section,
+    Side, Slab, SleeperBody, Spring, Stretch, Support, Track, Transition, Usp,
 };
 pub use traffic::{Direction, StaticLoad, Target, Traffic, Train, Vehicle};
 

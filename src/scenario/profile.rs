@@ -73,6 +73,14 @@ impl Varying {
         }
     }
 
+    /// Chainages between which the value runs without corner; none where it does not vary.
+    pub fn knots(&self) -> Vec<f64> {
+        match self {
+            Varying::Constant(_) => Vec::new(),
+            Varying::Profile(profile) => profile.pieces.iter().flat_map(Piece::knots).collect(),
+        }
+    }
+
     /// The largest value between the points of its curves, exact where these run straight or level out.
     pub fn largest(&self) -> f64 {
         self.extreme(f64::max)

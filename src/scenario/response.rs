@@ -16,6 +16,8 @@ pub enum Response {
     GravityContactForce,
     /// `contact_force` over the bearing area of half a sleeper, Pa.
     ContactPressure,
+    /// Vertical pressure on the lowest layer under `contact_force`, Pa, where the layers are known.
+    SubgradePressure,
     /// Force of a wheel on the rail, N.
     WheelForce,
     /// Downward displacement of the rail from the unloaded state of that axle count, m.
@@ -159,6 +161,7 @@ impl Response {
         Response::ContactForce,
         Response::GravityContactForce,
         Response::ContactPressure,
+        Response::SubgradePressure,
         Response::WheelForce,
         Response::RailDisplacement,
         Response::RailLevel,
@@ -187,6 +190,7 @@ impl Response {
             Response::ContactForce => "contact_force",
             Response::GravityContactForce => "gravity_contact_force",
             Response::ContactPressure => "contact_pressure",
+            Response::SubgradePressure => "subgrade_pressure",
             Response::WheelForce => "wheel_force",
             Response::RailDisplacement => "rail_displacement",
             Response::RailLevel => "rail_level",
@@ -240,7 +244,7 @@ impl Response {
             Response::SleeperVelocity | Response::BallastVelocity => "m/s",
             Response::SleeperAcceleration | Response::BallastAcceleration => "m/s^2",
             Response::SupportStiffness | Response::RailStiffness => "N/m",
-            Response::ContactPressure | Response::BallastStress => "Pa",
+            Response::ContactPressure | Response::SubgradePressure | Response::BallastStress => "Pa",
             Response::ContactLoss => "s",
             Response::VoidedSleepers | Response::Porosity | Response::CoordinationNumber => "1",
             _ => "m",

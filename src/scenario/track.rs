@@ -18,6 +18,8 @@ pub struct Track {
     pub auxiliary_rails: Vec<AuxiliaryRailSpan>,
     /// What was said of parts of it: seats and rails have it already.
     pub stretches: Vec<Stretch>,
+    /// Where stretches change the layers of a section, left to right, without overlap.
+    pub groundworks: Vec<Groundwork>,
     pub rail_ends: RailEnds,
     /// Level of the rail as built, m, positive down, over the whole track; `None` is level.
     pub irregularity: Option<Profile>,
@@ -44,6 +46,34 @@ pub struct Stretch {
     pub end: f64,
     /// The paths that it sets: `usp`, `pad.stiffness`.
     pub changes: String,
+}
+
+/// The layers over a part of a section where they are not those of the section.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Groundwork {
+    /// Chainage of its ends, m.
+    pub start: f64,
+    pub end: f64,
+    /// Under the sleepers, downwards.
+    pub layers: Vec<Layer>,
+    pub approach_slab: Option<ApproachSlab>,
+}
+
+/// A plate in the layers, which it displaces.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ApproachSlab {
+    /// m.
+    pub thickness: Given,
+    /// Pa.
+    pub youngs_modulus: Given,
+    /// kg/m^3.
+    pub density: Given,
+    /// Of its top below the sleepers, m.
+    pub depth: Given,
+    /// Chainage of its ends, m; the first is that at the structure.
+    pub ends: [f64; 2],
+    /// Whether it rests on the structure there.
+    pub hinged: bool,
 }
 
 /// A part of the track of one trackform.
@@ -261,6 +291,9 @@ pub struct Seat {
     pub sleeper: Option<SleeperBody>,
     /// Permanent settlement of its support at the start, m; 0 where nothing settles.
     pub initial_settlement: f64,
+    /// Vertical pressure on the lowest layer for each newton of contact force, 1/m^2; `None` where layers or their moduli are
+    /// not known.
+    pub onto_subgrade: Option<f64>,
 }
 
 /// Size of a whole sleeper.
@@ -300,6 +333,22 @@ impl Track {
     /// The rail at a chainage.
     pub fn rail_at(&self, x: f64) -> Option<&Rail> {
         self.sections.iter().find(|s| x <= s.end).or(self.sections.last()).map(|s| &s.rail)
+    }
+
+    /// What lies under a section, from left to right: chainage of both ends, m, layers, and a plate in them.
+    pub fn ground(&self, section: usize) -> Vec<Groundwork> {
+        let whole = &self.sections[section];
+        let own = |start: f64, end: f64| Groundwork { start, end, layers: whole.layers.clone(), approach_slab: None };
+        let mut parts = Vec::new();
+        let mut from = whole.start;
+        for part in self.groundworks.iter().filter(|g| g.start < whole.end && g.end > whole.start) {
+            let (start, end) = (part.start.max(whole.start), part.end.min(whole.end));
+            parts.extend((start > from).then(|| own(from, start)));
+            parts.push(Groundwork { start, end, ..part.clone() });
+            from = end;
+        }
+        parts.extend((from < whole.end).then(|| own(from, whole.end)));
+        parts
     }
 
     /// Area on which half a sleeper lies, m^2; `None` for a seat without a sleeper or with one of unknown size.

@@ -91,6 +91,7 @@ const AUTO: &[Word] = &[word("auto", "chosen by the planner")];
 const USP: Form = Form::OneOf(&[Form::Object("usp"), Form::Words(NONE)]);
 const SEATING: Form = Form::OneOf(&[Form::Object("seating"), Form::Words(NONE)]);
 const AUXILIARY_RAILS: Form = Form::OneOf(&[Form::Object("auxiliary_rails"), Form::Words(NONE)]);
+const APPROACH_SLAB: Form = Form::OneOf(&[Form::Object("approach_slab"), Form::Words(NONE)]);
 const RAIL: Form = Form::OneOf(&[Form::Object("rail"), Form::Words(NONE)]);
 const PAD: Form = Form::OneOf(&[Form::Object("pad"), Form::Words(NONE)]);
 const SLEEPER: Form = Form::OneOf(&[Form::Object("sleeper"), Form::Words(NONE)]);
@@ -343,9 +344,13 @@ pub const KINDS: &[Kind] = &[
             optional(
                 "layers",
                 LAYERS,
-                "under the sleepers, downwards, each with its thickness: what grain tiers model",
+                "under the sleepers, downwards, each with its thickness: what carries them, and what grain tiers model",
             ),
-            optional("support", SUPPORT, "carries the sleepers; beside `layers` it serves where no 3D model gives one"),
+            optional(
+                "support",
+                SUPPORT,
+                "carries the sleepers; beside `layers` it serves where no 3D model gives one, and without it they do",
+            ),
             default(
                 "settlement",
                 along(number("mm", -100.0, 100.0)),
@@ -386,10 +391,12 @@ pub const KINDS: &[Kind] = &[
                 Form::List(&Form::Name),
                 "the transitions from which `over` counts, mirrored at each; needed where there are several",
             ),
+            default("approach_slab", APPROACH_SLAB, "none", "a plate in the layers, towards a structure"),
         ],
         alternatives: &[],
-        planned: &["approach_slab"],
+        planned: &[],
     },
+    materials::APPROACH_SLAB,
     Kind {
         name: "track",
         doc: "The track: sections of trackform side by side. x = 0 is the first transition.",
@@ -705,6 +712,25 @@ pub const KINDS: &[Kind] = &[
                 Form::OneOf(&[Form::Object("law"), Form::List(&Form::Object("law"))]),
                 "laws.varandas_2014",
                 "by which the supports settle; of several the first drives, all are shown as a spread",
+            ),
+            default(
+                "support_method",
+                Form::Words(&[
+                    word("stress_cone", "the load spreads at an angle; neighbours share what lies below their meeting"),
+                    Word {
+                        name: "layered_elastic",
+                        doc: "linear elasticity of bonded layers under a uniform pressure",
+                        arguments: &[default(
+                            "neighbours",
+                            number("", 0.0, 1.0),
+                            "0.73",
+                            "what the next sleepers bear, as share of the load of this one",
+                        )],
+                        planned: false,
+                    },
+                ]),
+                "stress_cone",
+                "by which layers become the support of a sleeper",
             ),
             default(
                 "update_every",

@@ -46,6 +46,7 @@ pub(super) const GRADING: Kind = Kind {
     planned: &[],
 };
 
+const SPREAD: Form = number("deg", 0.0, 60.0);
 const CUT: Form = Form::OneOf(&[number("mm", 1e-3, 1000.0), Form::Words(NONE)]);
 
 pub(super) const GRANULAR: Kind = Kind {
@@ -86,6 +87,13 @@ pub(super) const GRANULAR: Kind = Kind {
         default("shear_ratio", number("", 0.0, 1.5), "1", "tangential stiffness / normal stiffness"),
         required("friction", number("", 0.0, 1.5), "between grains, under traffic"),
         optional("wall_friction", number("", 0.0, 1.5), "to walls and sleepers; that between grains where absent"),
+        optional(
+            "youngs_modulus",
+            along(number("MPa", 1.0, 50_000.0)),
+            "of the layer as a continuum, from which supports are computed; grains do not read it",
+        ),
+        default("poisson_ratio", number("", 0.0, 0.49), "0.3", "of the layer as a continuum"),
+        default("spread", SPREAD, "35 deg", "angle against the vertical at which the layer spreads a load"),
         default(
             "local_damping",
             number("", 0.0, 0.9),
@@ -189,6 +197,7 @@ pub(super) const SOIL: Kind = Kind {
         way("bulk_modulus", number("MPa", 0.3, 1e6), ""),
         way("shear_modulus", number("MPa", 0.3, 25_000.0), ""),
         required("density", number("kg/m^3", 100.0, 3500.0), "with its pores and water"),
+        default("spread", SPREAD, "35 deg", "angle against the vertical at which the layer spreads a load"),
         default(
             "strength",
             Form::Words(&[
@@ -210,5 +219,28 @@ pub(super) const SOIL: Kind = Kind {
         ),
     ],
     alternatives: &[either(&[&["youngs_modulus", "poisson_ratio"], &["bulk_modulus", "shear_modulus"]])],
+    planned: &[],
+};
+
+pub(super) const APPROACH_SLAB: Kind = Kind {
+    name: "approach_slab",
+    doc: "A plate in the layers before a structure. It spreads the load; hinged to the structure, it keeps its end from sinking.",
+    role: Role::Nested,
+    fields: &[
+        required("thickness", number("m", 0.1, 1.0), ""),
+        required("youngs_modulus", number("GPa", 5.0, 60.0), "of the plate, such as concrete"),
+        required("density", number("kg/m^3", 1000.0, 3500.0), "kept; the tier `law` has no use for it"),
+        required("depth", number("m", 0.1, 5.0), "of its top below the sleepers"),
+        default(
+            "hinged",
+            Form::Words(&[
+                word("yes", "its end at the boundary rests on the structure"),
+                word("no", "it lies on the ground"),
+            ]),
+            "yes",
+            "at the boundary from which `over` counts",
+        ),
+    ],
+    alternatives: &[],
     planned: &[],
 };

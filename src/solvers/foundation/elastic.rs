@@ -27,23 +27,55 @@ const NODES: [[f64; 2]; 3] = [
     [0.932_469_514_203_152, 0.171_324_492_379_170_4],
 ];
 
-/// A loaded rectangle beside the one that is asked for.
-struct Neighbour {
-    /// Along and across, m.
-    apart: [f64; 2],
-    /// Its load over that of the one.
-    share: f64,
+/// What is loaded: rectangles in rows along the track, equal rows across it.
+struct Around {
+    /// Distance along, m, and load over that of the one that is asked for; that one first.
+    along: [(f64, f64); 3],
+    /// Distance to the row of the other half sleeper, m.
+    across: Option<f64>,
+}
+
+impl Around {
+    fn of(bearing: &Bearing, neighbours: f64) -> Around {
+        let [left, right] = bearing.spacings;
+        let across = bearing.to_centre.map(|gap| bearing.length + 2.0 * gap);
+        Around { along: [(0.0, 1.0), (-left, neighbours), (right, neighbours)], across }
+    }
+
+    /// Farthest of them along and across together, m.
+    fn reach(&self) -> f64 {
+        let along = self.along.iter().filter(|n| n.1 > 0.0).map(|n| n.0.abs()).fold(0.0, f64::max);
+        along + self.across.unwrap_or(0.0)
+    }
+
+    /// Settlement of a half-space under all of them, m/N.
+    fn endless(&self, sides: [f64; 2], youngs_modulus: f64, poisson_ratio: f64) -> f64 {
+        let rows = [Some(0.0), self.across];
+        let one = |y: f64, x: f64| mean_settlement(sides, [x, y], youngs_modulus, poisson_ratio);
+        let row = |y: f64| self.along.iter().filter(|n| n.1 > 0.0).map(|n| n.1 * one(y, n.0)).sum::<f64>();
+        rows.into_iter().flatten().map(row).sum()
+    }
+
+    /// Share of a wave that they make, seen from the first.
+    fn wave(&self, kx: f64, ky: f64) -> f64 {
+        let [_, (left, share), (right, _)] = self.along;
+        let along = match (share > 0.0, -left == right) {
+            (false, _) => 1.0,
+            (true, true) => 1.0 + 2.0 * share * (kx * right).cos(),
+            (true, false) => 1.0 + share * ((kx * left).cos() + (kx * right).cos()),
+        };
+        along * self.across.map_or(1.0, |y| 1.0 + (ky * y).cos())
+    }
 }
 
 pub(super) fn support(bearing: &Bearing, layers: &[Layer], below: Below, neighbours: f64) -> Support {
     // a layer that has run out is not there; its bottom lies where that of the one above does
     let solid: Vec<Layer> = layers.iter().filter(|layer| layer.thickness > 0.0).copied().collect();
     let sides = [bearing.width, bearing.length];
-    let around = around(bearing, neighbours);
+    let around = Around::of(bearing, neighbours);
     let top = solid[0];
-    let endless = |n: &Neighbour| n.share * mean_settlement(sides, n.apart, top.youngs_modulus, top.poisson_ratio);
     let (difference, below_axis) = integrals(sides, &around, &solid, below);
-    let compliance = around.iter().map(endless).sum::<f64>() + difference;
+    let compliance = around.endless(sides, top.youngs_modulus, top.poisson_ratio) + difference;
     let at_sleeper = 1.0 / (bearing.width * bearing.length);
     let mut deeper = below_axis.into_iter();
     let mut pressures = vec![at_sleeper];
@@ -54,35 +86,21 @@ pub(super) fn support(bearing: &Bearing, layers: &[Layer], below: Below, neighbo
     Support { stiffness: 1.0 / compliance, masses: Vec::new(), pressures }
 }
 
-/// All that is loaded, the rectangle itself first.
-fn around(bearing: &Bearing, neighbours: f64) -> Vec<Neighbour> {
-    let [left, right] = bearing.spacings;
-    let along = [(0.0, 1.0), (-left, neighbours), (right, neighbours)];
-    let other_half = bearing.to_centre.map(|gap| bearing.length + 2.0 * gap);
-    let across = [Some(0.0), other_half];
-    across
-        .into_iter()
-        .flatten()
-        .flat_map(|y| along.map(|(x, share)| Neighbour { apart: [x, y], share }))
-        .filter(|n| n.share > 0.0)
-        .collect()
-}
-
 /// Settlement beyond that of the first layer's half-space, m/N, and pressure below the axis at the bottom of each layer,
 /// 1/m^2, for each newton of load.
-fn integrals(sides: [f64; 2], around: &[Neighbour], layers: &[Layer], below: Below) -> (f64, Vec<f64>) {
+fn integrals(sides: [f64; 2], around: &Around, layers: &[Layer], below: Below) -> (f64, Vec<f64>) {
     let [a, b] = sides;
     let top = layers[0];
     let endless = 2.0 * (1.0 - top.poisson_ratio * top.poisson_ratio) / top.youngs_modulus;
     let kernel = Kernel::new(layers, below);
-    let reach = around.iter().map(|n| n.apart[0].abs() + n.apart[1]).fold(0.0, f64::max) + a + b;
+    let reach = around.reach() + a + b;
     let depth: f64 = layers.iter().map(|layer| layer.thickness).sum();
     let last = (SHORTEST / top.thickness).min(FINEST / a.min(b));
     let (mut settlement, mut pressures) = (0.0, vec![0.0; layers.len()]);
     let mut from = 0.0;
     while from < last {
         // short panels where the depth of the whole is felt, later as long as the plan of the load allows
-        let to = f64::min(from + (0.5 * from).clamp(0.3 / depth.max(reach), 2.0 / reach), last);
+        let to = f64::min(from + (0.5 * from).clamp(0.3 / depth.max(reach), 4.0 / reach), last);
         for [node, weight] in NODES.iter().flat_map(|[x, w]| [[*x, *w], [-x, *w]]) {
             let k = 0.5 * (from + to) + 0.5 * (to - from) * node;
             let weight = 0.5 * (to - from) * weight / (2.0 * PI);
@@ -100,14 +118,14 @@ fn integrals(sides: [f64; 2], around: &[Neighbour], layers: &[Layer], below: Bel
 
 /// Averages over all directions of a wave: of the load's plan seen by the mean of the rectangle, and by its middle. The
 /// midpoint rule over a period converges faster than any power once it resolves the plan.
-fn averages(k: f64, [a, b]: [f64; 2], around: &[Neighbour], reach: f64) -> [f64; 2] {
+fn averages(k: f64, [a, b]: [f64; 2], around: &Around, reach: f64) -> [f64; 2] {
     let points = 8 + (0.4 * k * reach).ceil() as usize;
     let mut sums = [0.0; 2];
     for i in 0..points {
         let (sin, cos) = ((i as f64 + 0.5) / points as f64 * FRAC_PI_2).sin_cos();
         let (kx, ky) = (k * cos, k * sin);
         let plan = sinc(0.5 * kx * a) * sinc(0.5 * ky * b);
-        let others: f64 = around.iter().map(|n| n.share * (kx * n.apart[0]).cos() * (ky * n.apart[1]).cos()).sum();
+        let others = around.wave(kx, ky);
         sums[0] += plan * plan * others;
         sums[1] += plan * others;
     }

@@ -3,8 +3,8 @@
 use super::{Bearing, Below, Layer, Method};
 use std::fmt;
 
-/// Cones that spread more than this are no cones any more, rad: 60 degrees.
-const WIDEST: f64 = std::f64::consts::FRAC_PI_3;
+/// A load spreads by less than this, rad; only stiff plates come near it.
+const WIDEST: f64 = std::f64::consts::FRAC_PI_2;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FoundationError {
@@ -12,7 +12,7 @@ pub enum FoundationError {
     NoLayers,
     /// A value that must be positive is not; `layer` counts from the sleeper down, from 0, `None` is not of a layer.
     NotPositive { what: &'static str, layer: Option<usize>, value: f64 },
-    /// The angle at which a layer spreads the load, rad, is not in 0 .. 60 degrees.
+    /// The angle at which a layer spreads the load, rad, is not in 0 .. 90 degrees, the end left out.
     Spread { layer: usize, value: f64 },
     /// Poisson's ratio is not in 0 .. 0.5, the end left out; `None` is the ground below.
     PoissonRatio { layer: Option<usize>, value: f64 },
@@ -35,7 +35,7 @@ impl fmt::Display for FoundationError {
             }
             FoundationError::Spread { layer, value } => write!(
                 f,
-                "expected the load to spread at 0 .. 60 degrees in layer {}, found {}",
+                "expected the load to spread at 0 to below 90 degrees in layer {}, found {}",
                 layer + 1,
                 value.to_degrees()
             ),
@@ -95,7 +95,7 @@ fn check_layer(i: usize, layer: &Layer) -> Result<(), FoundationError> {
     positive("Young's modulus", Some(i), layer.youngs_modulus)?;
     positive("density", Some(i), layer.density)?;
     poisson(Some(i), layer.poisson_ratio)?;
-    if !(0.0..=WIDEST + 1e-12).contains(&layer.spread) {
+    if !(0.0..WIDEST).contains(&layer.spread) {
         return Err(FoundationError::Spread { layer: i, value: layer.spread });
     }
     Ok(())
