@@ -184,11 +184,11 @@ fn repeats_need_a_seed_to_change() {
 #[test]
 fn responses_that_are_not_kept_are_told_before_a_run() {
     let (plan, _) = planned(
-        "study s { vary = [ore.direction: [forward, backward]], minimise = max(sleeper_velocity), report = dip }",
+        "study s { vary = [ore.direction: [forward, backward]], minimise = max(ballast_velocity), report = dip }",
     );
     let [only] = plan.diagnostics.as_slice() else { panic!("{:#?}", plan.diagnostics) };
     assert_eq!(only.code, Code::E0705);
-    assert!(only.message.contains("2 of 2 points") && only.message.contains("`sleeper_velocity`"), "{}", only.message);
+    assert!(only.message.contains("2 of 2 points") && only.message.contains("`ballast_velocity`"), "{}", only.message);
 }
 
 #[test]
@@ -363,7 +363,7 @@ fn a_study_is_chosen_by_its_name() {
 /// `check` looks at every point of the shipped studies.
 #[test]
 fn the_shipped_studies_are_without_a_mistake() {
-    for name in ["study_speed", "study_pads", "study_support", "study_usp", "study_wedge"] {
+    for name in ["study_speed", "study_pads", "study_support", "study_usp", "study_spacing", "study_wedge"] {
         let file = format!("scenarios/{name}.track");
         let output = trackbed(&["check", &file]);
         assert_eq!((output.status.code(), said(&output)), (Some(0), format!("{file}: no errors\n")));

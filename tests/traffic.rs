@@ -323,8 +323,8 @@ fn records_and_loads_are_mirrored_at_several_transitions() {
     };
     let compiled = scene(
         "traffic { trains = ore, total = 8 axles }
-record { from = [west, east], at = [-3, +1] sleepers, quantities = contact_force }
-record { from = east, over = -1.2 .. 0 m, quantities = rail_moment }",
+record near { from = [west, east], at = [-3, +1] sleepers, quantities = contact_force }
+record edge { from = east, over = -1.2 .. 0 m, quantities = rail_moment }",
     );
     let scenario = compiled.scenario.as_ref().unwrap_or_else(|| panic!("{}", told(&compiled)));
     let track = &scenario.track;
@@ -346,4 +346,77 @@ record {{ from = {from}, at = -3 sleepers, quantities = contact_force }}"
         ));
         assert!(wrong.diagnostics.iter().filter(|d| d.is_error()).map(|d| d.code).eq([code]), "{}", told(&wrong));
     }
+}
+
+/// Chainages of the seats, m.
+fn seats(track: &str, lets: &str) -> Vec<f64> {
+    let text =
+        SCENE.replace("track line { sections = [open: 15 m, stiff: 12 m] }", track).replace("  spacing = 0.6 m", lets);
+    let compiled = compile("scene.track", &text, &NoModules, &[]);
+    let scenario = compiled.scenario.as_ref().unwrap_or_else(|| panic!("{}", told(&compiled)));
+    scenario.track.seats.iter().map(|seat| seat.x).collect()
+}
+
+fn about(found: &[f64], expected: &[f64]) {
+    assert!(found.len() == expected.len(), "{found:?}");
+    assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}");
+}
+
+#[test]
+fn seats_beside_a_transition_lie_where_it_says() {
+    let usual = "  spacing = 0.6 m";
+    let track =
+        |side: &str| format!("track line {{ sections = [open: 2 m, stiff: 2 m], transitions = [edge: {side}] }}");
+    about(&seats(&track("soft_to_stiff"), usual), &[-1.8, -1.2, -0.6, 0.0, 0.6, 1.2, 1.8]);
+    let moved = seats(&track("soft_to_stiff(seats = -0.3 .. 0.3 m)"), usual);
+    about(&moved, &[-1.5, -0.9, -0.3, 0.3, 0.9, 1.5]);
+    let seated = seats(&track("soft_to_stiff(seats = -0.4 .. 0 m)"), usual);
+    about(&seated, &[-1.6, -1.0, -0.4, 0.0, 0.6, 1.2, 1.8]);
+    // the other way round, and counted in sleepers
+    let mirrored = "track line { sections = [stiff: 3 sleepers, open: 2 sleepers, stiff: 2 sleepers], transitions = \
+                    [west: stiff_to_soft(seats = -0.5 .. 0.2 m), east: soft_to_stiff(seats = -0.3 .. 0.3 m)] }";
+    about(&seats(mirrored, usual), &[-1.4, -0.8, -0.2, 0.5, 1.1, 1.7, 2.3]);
+    let wrong = SCENE.replace(
+        "[open: 15 m, stiff: 12 m]",
+        "[open: 15 m, stiff: 12 m], transitions = [edge: soft_to_stiff(seats = 0 .. 0.3 m)]",
+    );
+    let compiled = compile("scene.track", &wrong, &NoModules, &[]);
+    assert!(
+        compiled.diagnostics.iter().filter(|d| d.is_error()).map(|d| d.code).eq([Code::E0514]),
+        "{}",
+        told(&compiled)
+    );
+}
+
+#[test]
+fn the_spacing_of_a_whole_section_varies() {
+    let fixed = "trackform stiff : open { sleeper = none, support = none, slab = slabs.half_width_1600 }";
+    let stiff =
+        "trackform stiff : open { sleeper = none, support = none, slab = slabs.half_width_1600, spacing = 0.6 m }";
+    let of = |track: &str, spacing: &str| {
+        let text = SCENE
+            .replace("track line { sections = [open: 15 m, stiff: 12 m] }", track)
+            .replace("  spacing = 0.6 m", &format!("  spacing = {spacing}"))
+            .replace(fixed, stiff);
+        let compiled = compile("scene.track", &text, &NoModules, &[]);
+        let scenario = compiled.scenario.as_ref().unwrap_or_else(|| panic!("{}", told(&compiled)));
+        scenario.track.seats.iter().map(|seat| seat.x).collect::<Vec<f64>>()
+    };
+    // sleepers -3 .. -1 at 0.6, 0.55 and 0.5 m: each bay is that of the sleeper from which it leads away
+    let track = "track line { sections = [open: 3 sleepers, stiff: 2 sleepers] }";
+    about(&of(track, "ramp(0.6 .. 0.5 m)"), &[-1.55, -1.0, -0.5, 0.0, 0.6]);
+    let behind = "track line { sections = [stiff: 2 sleepers, open: 3 sleepers], transitions = [edge: stiff_to_soft] }";
+    about(&of(behind, "ramp(0.5 .. 0.6 m)"), &[-0.6, 0.0, 0.5, 1.0, 1.55]);
+    let alone = "track line { sections = [open: 3 sleepers] }";
+    let alone = of(alone, "ramp(0.6 .. 0.5 m)");
+    about(&[alone[1] - alone[0], alone[2] - alone[1]], &[0.6, 0.55]);
+    // in metres as many as fit
+    let metres = of("track line { sections = [open: 12 m, stiff: 6 m] }", "ramp(0.7 .. 0.5 m)");
+    let bays: Vec<f64> = metres.windows(2).map(|pair| pair[1] - pair[0]).take_while(|bay| *bay < 0.7).collect();
+    assert!(metres[0] > -12.0 && metres[0] < -11.0, "{metres:?}");
+    assert!(bays.windows(2).take(15).all(|pair| pair[1] < pair[0]), "{bays:?}");
+    // and between two transitions
+    let bridge = "track line { sections = [stiff: 2 sleepers, open: 3 sleepers, stiff: 2 sleepers], transitions = \
+                  [west: stiff_to_soft, east: soft_to_stiff] }";
+    about(&of(bridge, "ramp(0.5 .. 0.6 m)"), &[-0.6, 0.0, 0.5, 1.0, 1.55, 2.15, 2.75]);
 }

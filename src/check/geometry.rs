@@ -1,6 +1,6 @@
 //! Lays the sections out side by side, puts a seat on every place, and turns places into chainages.
 //!
-//! Sleeper -1 lies one spacing before a boundary, seat +1 on it; a section in metres holds the sleepers that fit inside,
+//! Sleeper -1 lies one spacing before a boundary, seat +1 on it, unless the transition says otherwise; a section in metres holds the sleepers that fit inside,
 //! one in sleepers ends one spacing beyond its last. On a track of one section the sleepers stand in the middle of
 //! their bays.
 
@@ -16,6 +16,8 @@ pub(super) struct Plan {
     pub spacing: f64,
     /// Bays of another spacing, counted inwards from its left and from its right boundary, m.
     pub bays: [Vec<f64>; 2],
+    /// Distance of the nearest seat from its left and from its right boundary, m, where the transition states it.
+    pub first: [Option<f64>; 2],
     /// m, or a number of sleepers.
     pub length: Number,
     /// Where the length stands.
@@ -45,10 +47,10 @@ pub(super) struct Places {
 enum Edge {
     /// An end of the model.
     End,
-    /// The boundary of a transition, on its softer side: the last sleeper lies one spacing before it.
-    Soft,
-    /// On its stiffer side: a seat lies on it.
-    Stiff,
+    /// The boundary of a transition, a bay away from the nearest seat: as on its softer side.
+    Apart,
+    /// The boundary of a transition, with a seat on it: as on its stiffer side.
+    Seated,
 }
 
 pub(super) const MOST_SEATS: usize = 1_000_000;
@@ -58,7 +60,7 @@ const TINY: f64 = 1e-6; // m: two places closer than this are one
 impl Checker<'_> {
     /// Places sections and seats; sides are one a boundary.
     pub(super) fn lay_out(&mut self, plans: &[Plan], sides: &[(String, Side)]) -> Option<Places> {
-        let edges: Vec<(Edge, Edge)> = (0..plans.len()).map(|i| edges(i, plans.len(), sides)).collect();
+        let edges: Vec<(Edge, Edge)> = (0..plans.len()).map(|i| edges(i, plans, sides)).collect();
         let mut sections = Vec::new();
         let mut offsets = Vec::new();
         let mut x = 0.0;
@@ -109,7 +111,7 @@ impl Checker<'_> {
     fn section(&mut self, plan: &Plan, (left, right): (Edge, Edge)) -> Option<(f64, Vec<f64>)> {
         let alone = left == Edge::End && right == Edge::End;
         // bays before the first seat and after the last
-        let [before, after] = if alone { [0, 0] } else { [left, right].map(|edge| usize::from(edge != Edge::Stiff)) };
+        let [before, after] = if alone { [0, 0] } else { [left, right].map(|edge| usize::from(edge != Edge::Seated)) };
         let [from_left, from_right] = [0, 1].map(|end| Row::new(plan.spacing, &plan.bays[end]));
         let changed = from_left.changed() + from_right.changed();
         if plan.length.dimension == Dimension::SLEEPERS {
@@ -374,18 +376,19 @@ impl Places {
     }
 }
 
-fn edges(i: usize, n: usize, sides: &[(String, Side)]) -> (Edge, Edge) {
-    let left = match i.checked_sub(1).and_then(|b| sides.get(b)) {
-        None => Edge::End,
-        Some((_, Side::SoftToStiff)) => Edge::Stiff,
-        Some((_, Side::StiffToSoft)) => Edge::Soft,
+fn edges(i: usize, plans: &[Plan], sides: &[(String, Side)]) -> (Edge, Edge) {
+    let edge = |stiffer: bool, first: Option<f64>| match first {
+        Some(distance) if distance > TINY => Edge::Apart,
+        Some(_) => Edge::Seated,
+        None if stiffer => Edge::Seated,
+        None => Edge::Apart,
     };
-    let right = match sides.get(i).filter(|_| i + 1 < n) {
-        None => Edge::End,
-        Some((_, Side::SoftToStiff)) => Edge::Soft,
-        Some((_, Side::StiffToSoft)) => Edge::Stiff,
-    };
-    (left, right)
+    let first = plans[i].first;
+    let left = i.checked_sub(1).and_then(|b| sides.get(b));
+    let right = sides.get(i).filter(|_| i + 1 < plans.len());
+    let left = left.map(|(_, side)| edge(*side == Side::SoftToStiff, first[0]));
+    let right = right.map(|(_, side)| edge(*side == Side::StiffToSoft, first[1]));
+    (left.unwrap_or(Edge::End), right.unwrap_or(Edge::End))
 }
 
 /// Bays from one end of a section on: some of another spacing, then as usual.

@@ -1,4 +1,4 @@
-//! Spacing that varies in a stretch: bays laid out from the transition outwards, each as long as the spacing at the sleeper that
+//! Spacing that varies in a stretch or over a section: bays laid out from the transition outwards, each as long as the spacing at the sleeper that
 //! it follows. The bay between a boundary and sleeper -1 is that of sleeper -1.
 
 use super::Checker;
@@ -6,7 +6,7 @@ use super::geometry::{MOST_SEATS, Plan};
 use super::profile::{Shape, ShapeKind};
 use super::value::{Number, Record, Val};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::scenario::Side;
+use crate::scenario::{Given, Side};
 use crate::units::Dimension;
 use std::rc::Rc;
 
@@ -29,14 +29,16 @@ enum Bank {
 }
 
 impl Checker<'_> {
-    /// A section has one spacing; only stretches vary it.
-    pub(super) fn one_spacing(&mut self, form: &Record) {
-        if let Some(Val::Profile(shape)) = form.get("spacing").map(|slot| &slot.value) {
-            self.report(
-                Diagnostic::new(Code::E0411, "this version varies the `spacing` of a stretch only")
-                    .at(shape.span, "of a whole section")
-                    .help("write one spacing here, and `stretch closer { over = ..., spacing = ramp(a .. b) }`"),
-            );
+    /// The spacing of a section, m; where it varies the mean of both ends.
+    pub(super) fn usual_spacing(&mut self, form: &Record) -> Option<Given> {
+        let slot = form.get("spacing")?;
+        match &slot.value {
+            Val::Number(n) => Some(Given { value: n.value, origin: slot.origin }),
+            Val::Profile(_) => {
+                let (ends, ..) = self.graded(form)??;
+                Some(Given { value: 0.5 * (ends[0] + ends[1]), origin: slot.origin })
+            }
+            _ => None,
         }
     }
 
@@ -45,6 +47,7 @@ impl Checker<'_> {
         &mut self,
         plans: &mut [Plan],
         sides: &[(String, Side)],
+        forms: &[Rc<Record>],
         stretches: &[Rc<Record>],
     ) -> Option<()> {
         let mut graded: Vec<(usize, Graded)> = Vec::new();
@@ -59,7 +62,17 @@ impl Checker<'_> {
                 graded.push((transition, Graded { over: [*a, *b], ends, smooth }));
             }
         }
-        for (section, plan) in plans.iter_mut().enumerate() {
+        for (section, (plan, form)) in plans.iter().zip(forms).enumerate() {
+            if let Some(Val::Profile(_)) = form.get("spacing").map(|slot| &slot.value) {
+                let (ends, smooth, span) = self.graded(form)??;
+                let Some(own) = whole_section(section, plan, sides, ends, smooth) else {
+                    self.only_graded(span, "one value in a section in metres between two transitions");
+                    return None;
+                };
+                graded.push(own);
+            }
+        }
+        for (section, (plan, form)) in plans.iter_mut().zip(forms).enumerate() {
             // a section lies right of the transition before it and left of the one after it
             let [before, after] = [section.checked_sub(1), Some(section)].map(|t| Some((t?, sides.get(t?)?.1)));
             let bank = |side: Side, left_of_it: bool| match (side == Side::SoftToStiff) == left_of_it {
@@ -68,12 +81,27 @@ impl Checker<'_> {
             };
             let of = |transition: usize| graded.iter().filter(|g| g.0 == transition).map(|g| &g.1).collect::<Vec<_>>();
             if let Some((transition, side)) = before {
-                plan.bays[0] = bays(&of(transition), bank(side, false), plan);
+                plan.bays[0] = bays(&of(transition), bank(side, false), plan, plan.first[0]);
             } else if sides.is_empty() {
-                plan.bays[0] = bays(&of(0), Bank::Stiff, plan);
+                plan.bays[0] = bays(&of(0), Bank::Stiff, plan, None);
             }
             if let Some((transition, side)) = after {
-                plan.bays[1] = bays(&of(transition), bank(side, true), plan);
+                plan.bays[1] = bays(&of(transition), bank(side, true), plan, plan.first[1]);
+            }
+            if let (Some(Val::Profile(_)), Dimension::SLEEPERS) =
+                (form.get("spacing").map(|slot| &slot.value), plan.length.dimension)
+            {
+                // a bay at an end where no seat stands on the boundary
+                let alone = sides.is_empty();
+                let apart = |stiffer: Option<bool>, first: Option<f64>| match (stiffer, first) {
+                    (_, Some(distance)) => distance > TINY,
+                    (Some(stiffer), None) => !stiffer,
+                    (None, None) => !alone,
+                };
+                let left = apart(before.map(|(_, side)| side == Side::SoftToStiff), plan.first[0]);
+                let right = apart(after.map(|(_, side)| side == Side::StiffToSoft), plan.first[1]);
+                let count = (plan.length.value as usize + usize::from(left) + usize::from(right)).saturating_sub(1);
+                plan.bays.iter_mut().for_each(|bays| bays.truncate(count));
             }
         }
         Some(())
@@ -90,7 +118,10 @@ impl Checker<'_> {
                     Some(Some(([from.value, to.value], *smooth, *span)))
                 }
                 other => {
-                    self.only_graded(other.span, "constant, `ramp(a .. b)` or `smooth(a .. b)` over its stretch");
+                    self.only_graded(
+                        other.span,
+                        "constant, `ramp(a .. b)` or `smooth(a .. b)` over its stretch or section",
+                    );
                     None
                 }
             },
@@ -99,7 +130,7 @@ impl Checker<'_> {
     }
 
     fn only_graded(&mut self, span: Span, how: &str) {
-        let message = format!("this version takes the `spacing` of a stretch {how}");
+        let message = format!("this version takes a `spacing` that varies {how}");
         self.report(Diagnostic::new(Code::E0411, message).at(span, "not this one"));
     }
 }
@@ -119,18 +150,48 @@ fn from_of(stretch: &Record, sides: &[(String, Side)]) -> Vec<usize> {
     }
 }
 
-/// Bays outwards from a boundary, as far as any is changed: first the one between the boundary and sleeper -1, on its softer
-/// side, then the bay beyond each sleeper in turn, no more than the section may have.
-fn bays(graded: &[&Graded], bank: Bank, plan: &Plan) -> Vec<f64> {
+/// The spacing of a whole section as if a stretch set it, counted from the transition at its left, or else at its right; `None` for a
+/// section in metres between two transitions, where the bays would have to meet.
+fn whole_section(
+    section: usize,
+    plan: &Plan,
+    sides: &[(String, Side)],
+    [left, right]: [f64; 2],
+    smooth: bool,
+) -> Option<(usize, Graded)> {
+    let by_sleepers = plan.length.dimension == Dimension::SLEEPERS;
+    let before = section.checked_sub(1).filter(|t| *t < sides.len());
+    let after = Some(section).filter(|t| *t < sides.len());
+    if before.is_some() && after.is_some() && !by_sleepers {
+        return None;
+    }
+    let transition = before.or(after).unwrap_or(0);
+    let side = sides.get(transition).map_or(Side::SoftToStiff, |(_, side)| *side);
+    let soft = sides.len() > transition && (before.is_none() == (side == Side::SoftToStiff));
+    let end = |value: f64| Number { value, ..plan.length };
+    let reach = plan.length.value;
+    let first = if by_sleepers { 1.0 } else { 0.0 };
+    let over = if soft { [end(-reach), end(-first)] } else { [end(first), end(reach)] };
+    // places count as x grows, unless the softer side lies right
+    let ends = if side == Side::SoftToStiff { [left, right] } else { [right, left] };
+    Some((transition, Graded { over, ends, smooth }))
+}
+
+/// Bays outwards from a boundary, as far as any is changed: first the one between the boundary and the nearest seat, where that lies
+/// apart from it (`first` m away, where the transition says so), then the bay beyond each sleeper in turn, no more than the
+/// section may have.
+fn bays(graded: &[&Graded], bank: Bank, plan: &Plan, first: Option<f64>) -> Vec<f64> {
     let usual = plan.spacing;
-    let most = plan.most_seats().min(MOST_SEATS);
+    // one bay more than sleepers: the one before the first
+    let most = (plan.most_seats() + 1).min(MOST_SEATS);
     let mut bays = Vec::new();
     let mut distance = 0.0;
     let mut changed = 0;
-    if bank == Bank::Soft {
-        let first = graded.iter().find_map(|g| g.at(1, distance, bank));
-        changed = usize::from(first.is_some());
-        bays.push(first.unwrap_or(usual));
+    if bank == Bank::Soft || first.is_some_and(|first| first > TINY) {
+        let graded = graded.iter().find_map(|g| g.at(1, distance, bank)).filter(|_| bank == Bank::Soft);
+        let stated = first.or(graded);
+        changed = usize::from(stated.is_some());
+        bays.push(stated.unwrap_or(usual));
         distance = bays[0];
     }
     let mut sleeper = 1;

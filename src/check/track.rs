@@ -27,6 +27,9 @@ pub(super) fn given(record: &Record, field: &str) -> Option<Given> {
     Given::of(record, field)
 }
 
+/// The least distance of sleeper -1 from its boundary, m.
+const CLOSE: f64 = 0.01;
+
 impl Checker<'_> {
     /// The track, from a complete record.
     pub(super) fn track(&mut self, record: &Record) -> Option<Track> {
@@ -39,10 +42,10 @@ impl Checker<'_> {
         for (key, length) in pairs {
             let Val::Record(form) = &key.value else { continue };
             forms.push(form.clone());
-            self.one_spacing(form);
-            if let (Some(spacing), Val::Number(n)) = (form.number("spacing"), &length.value) {
-                let (name, spacing, span) = (form.name.clone(), spacing.value, length.span);
-                plans.push(Plan { name, spacing, bays: Default::default(), length: *n, span });
+            if let (Some(spacing), Val::Number(n)) = (self.usual_spacing(form), &length.value) {
+                let (name, spacing, span) = (form.name.clone(), *spacing, length.span);
+                let (bays, first) = (Default::default(), Default::default());
+                plans.push(Plan { name, spacing, bays, first, length: *n, span });
             }
         }
         let built: Vec<Built> = forms.iter().map(|form| self.trackform(form, false)).collect();
@@ -55,7 +58,8 @@ impl Checker<'_> {
             return None;
         }
         let sides = sides?;
-        self.spread(&mut plans, &sides, &stretches)?;
+        self.first_seats(record, &mut plans, &sides)?;
+        self.spread(&mut plans, &sides, &forms, &stretches)?;
         let places = self.lay_out(&plans, &sides)?;
         self.seat_places = Some(places.clone());
         let irregularity = self.irregularity(record, &places);
@@ -70,6 +74,7 @@ impl Checker<'_> {
         for (i, built) in built.iter().enumerate() {
             let layers = self.lay_layers(built, &places, i);
             let mut laid = self.seats(built, &places, i, places.seats_of(i), Under::Section(layers.as_deref()));
+            let spacing = built.spacing.or_else(|| self.usual_spacing(&forms[i]));
             if let Some(laid) = &mut laid {
                 sound &= self.change_seats(&forms[i], &stood, &places, i, layers.as_deref(), laid);
             }
@@ -78,7 +83,7 @@ impl Checker<'_> {
                 sound &= found.is_some();
                 groundworks.extend(found.unwrap_or_default());
             }
-            let section = layers.and_then(|layers| section(built, places.sections[i], lengths[i], layers));
+            let section = layers.and_then(|layers| section(built, spacing, places.sections[i], lengths[i], layers));
             sound &= laid.is_some() && section.is_some() && built.auxiliary_rails.is_some();
             seats.extend(laid.unwrap_or_default());
             sections.extend(section);
@@ -169,6 +174,32 @@ impl Checker<'_> {
             .collect()
     }
 
+    /// Places the seats beside a boundary where its transition states them.
+    fn first_seats(&mut self, record: &Record, plans: &mut [Plan], sides: &[(String, Side)]) -> Option<()> {
+        let Some(Val::Pairs(pairs)) = record.get("transitions").map(|slot| &slot.value) else { return Some(()) };
+        let mut sound = true;
+        for (boundary, ((_, word), (_, side))) in pairs.iter().zip(sides).enumerate() {
+            let Val::Word { arguments, .. } = &word.value else { continue };
+            let Some(slot) = arguments.get("seats") else { continue };
+            let Val::Range(before, behind) = slot.value else { return None };
+            if before.value > -CLOSE || behind.value < 0.0 {
+                let text = format!("`seats` goes from {} m to {} m", number(before.value), number(behind.value));
+                self.report(
+                    Diagnostic::new(Code::E0514, text)
+                        .at(slot.span, "from sleeper -1, before the boundary, to seat +1, on or behind it")
+                        .help("write something like `seats = -0.3 .. 0.3 m`"),
+                );
+                sound = false;
+                continue;
+            }
+            let (soft, stiff) = (Some(-before.value), Some(behind.value));
+            let (left, right) = if *side == Side::SoftToStiff { (soft, stiff) } else { (stiff, soft) };
+            plans[boundary].first[1] = left;
+            plans[boundary + 1].first[0] = right;
+        }
+        sound.then_some(())
+    }
+
     /// The level of the rail as built; `None` where it is not understood.
     fn irregularity(&mut self, record: &Record, places: &Places) -> Option<Option<Profile>> {
         let (start, end) = (places.sections.first()?.0, places.sections.last()?.1);
@@ -215,14 +246,20 @@ impl Checker<'_> {
 }
 
 /// What a section is made of, as far as it does not vary.
-fn section(built: &Built, (start, end): (f64, f64), length_origin: Origin, layers: Vec<Layer>) -> Option<Section> {
+fn section(
+    built: &Built,
+    spacing: Option<Given>,
+    (start, end): (f64, f64),
+    length_origin: Origin,
+    layers: Vec<Layer>,
+) -> Option<Section> {
     Some(Section {
         name: built.name.clone(),
         start,
         end,
         length_origin,
         rail: built.rail.clone()?,
-        spacing: built.spacing?,
+        spacing: spacing?,
         slab: built.slab.clone(),
         layers,
     })

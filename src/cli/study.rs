@@ -135,7 +135,9 @@ fn in_pool(arguments: &Arguments, compiled: &Compiled, study: &Study) -> Outcome
         let title = compiled.scenario.as_ref().map_or("", |s| s.title.as_str());
         let answer = Answer::new(title, &plan, results);
         let name = arguments.scene.file.file_name().unwrap_or_default().to_string_lossy();
-        let page = report::study_page(&answer, &name);
+        let best = answer.best().first().map(|index| scene.compile(&plan.points[*index].overrides));
+        let design = best.as_ref().and_then(|compiled| compiled.scenario.as_ref());
+        let page = report::study_page(&answer, &name, design);
         if let Err(message) = folder.finish(&answer, &page, compiled, started.elapsed().as_secs_f64()) {
             say(&[Diagnostic::new(Code::E0802, message)], compiled);
             return Outcome::Failed;

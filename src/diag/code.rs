@@ -92,6 +92,7 @@ codes! {
     E0510 Error "row of a data file that is not data"
     E0511 Error "layer too thin for its grains"
     E0512 Error "stretches that set the same thing"
+    E0514 Error "seats on the wrong side of their transition"
     E0601 Error "scene without something to run"
     E0602 Error "axle counts that do not divide"
     E0603 Error "step too coarse to be stable"

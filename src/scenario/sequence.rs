@@ -66,7 +66,7 @@ impl Sequence {
             let trains = u128::from(share.trains);
             let ticks = due * trains;
             let ticks = if other <= kind { ticks } else { ticks - 1 };
-            ((ticks / of + 1) / 2).min(trains) as u64
+            (ticks / of).div_ceil(2).min(trains) as u64
         };
         let before: u64 = self.shares.iter().enumerate().filter(|(_, s)| s.trains > 0).map(earlier).sum();
         before - 1 // itself is among them

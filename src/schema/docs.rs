@@ -13,7 +13,9 @@ pub fn index() -> String {
     for kind in KINDS.iter().filter(|k| k.role == Role::Nested) {
         out.push_str(&format!("  {:<21} {}\n", kind.name, kind.doc));
     }
-    out.push_str(&format!("\nNot in this version: {}.\n", PLANNED_KINDS.join(", ")));
+    if !PLANNED_KINDS.is_empty() {
+        out.push_str(&format!("\nNot in this version: {}.\n", PLANNED_KINDS.join(", ")));
+    }
     out
 }
 

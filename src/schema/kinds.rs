@@ -44,6 +44,14 @@ pub(super) const fn word(name: &'static str, doc: &'static str) -> Word {
 const fn planned(name: &'static str) -> Word {
     Word { name, doc: "not in this version", arguments: &[], planned: true }
 }
+const fn side(name: &'static str, doc: &'static str) -> Word {
+    const SEATS: &[Field] = &[optional(
+        "seats",
+        Form::Interval(measure("m", -1.2, 1.2)),
+        "where sleeper -1 and seat +1 lie, from the boundary; one spacing before it and on it where absent",
+    )];
+    Word { name, doc, arguments: SEATS, planned: false }
+}
 const fn sampled(name: &'static str, doc: &'static str) -> Word {
     const POINTS: &[Field] = &[required("points", Form::Integer { min: 1, max: 100_000 }, "how many")];
     Word { name, doc, arguments: POINTS, planned: false }
@@ -416,8 +424,8 @@ pub const KINDS: &[Kind] = &[
                 Form::Pairs {
                     key: &Form::Name,
                     value: &Form::Words(&[
-                        word("soft_to_stiff", "the softer side lies at smaller x"),
-                        word("stiff_to_soft", "the softer side lies at greater x"),
+                        side("soft_to_stiff", "the softer side lies at smaller x"),
+                        side("stiff_to_soft", "the softer side lies at greater x"),
                     ]),
                     implied: None,
                 },

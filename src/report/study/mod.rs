@@ -6,19 +6,29 @@ mod plane;
 
 use super::number::plain;
 use super::page::opening;
+use super::scene::scene_svg;
 use super::svg::{STYLE, escape};
-use crate::scenario::{Goal, Sampling, Study};
+use crate::scenario::{Goal, Sampling, Scenario, Study};
 use crate::study::{Answer, PointOutcome, Row};
 use std::fmt::Write;
 
 /// Best designs that the page spells out.
 const MOST_SHOWN: usize = 12;
 
-/// Makes the whole page. `file` is the name of the scene's file.
-pub fn study_page(answer: &Answer, file: &str) -> String {
+/// Makes the whole page. `file` is the name of the scene's file, `design` the scene of the first of the best points.
+pub fn study_page(answer: &Answer, file: &str, design: Option<&Scenario>) -> String {
     let title = format!("{}: study {}", answer.title, answer.study.name);
     let mut html = opening(&title, &subtitle(answer));
     best(&mut html, answer, file);
+    if let (Some(design), Some(first)) = (design, answer.best().first()) {
+        let row = &answer.rows[*first];
+        let caption = format!(
+            "Point {}: {}. Places, spacings, sleepers and rail are to scale; the depth of the bed is a symbol.",
+            row.number,
+            answer.lines(row).join(", ")
+        );
+        picture(&mut html, "design", "The design", &caption, &scene_svg(design));
+    }
     if let Some((svg, caption)) = front::pareto(answer) {
         picture(&mut html, "front", "Pareto front", &caption, &svg);
     }
