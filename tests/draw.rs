@@ -43,7 +43,7 @@ fn wedges_and_approach_slabs_are_drawn_in_their_layers() {
         ),
         (
             "bridge.track",
-            ["approach: 6 m, approach_slab", "approach slab: 300 mm, 34 GPa, hinged", "ballasted at 72 m"],
+            ["approach: 6 m, approach_slab", "approach slab: 300 mm, 34 GPa, hinged", "ballasted at 60 m"],
         ),
     ] {
         assert!(draw(&shipped(scene), &out).status.success());

@@ -183,6 +183,9 @@ fn an_approach_slab_is_stiffest_at_its_hinge() {
         let share = -seat(&hinged, number).x / 6.0;
         close(stiffness(&hinged, number), series(&[(0.4, 100e6), (0.3, 30e9), (1.7, 50e6 / (share * share))]));
     }
+    // by the lever the structure bears the rest
+    let onto = |scenario: &Scenario, number: i32| seat(scenario, number).onto_subgrade.unwrap();
+    close(onto(&hinged, -4), onto(&loose, -4) * 2.4 / 6.0);
     let falls: Vec<f64> = (1..=10).map(|n| stiffness(&hinged, -n)).collect();
     assert!(falls.windows(2).all(|pair| pair[0] > pair[1]), "{falls:?}");
     close(stiffness(&hinged, -10), stiffness(&loose, -10));
@@ -268,6 +271,18 @@ fn a_stretch_cannot_change_ground_that_nobody_knows() {
     let compiled = checked(&text);
     let found: Vec<Code> = compiled.diagnostics.iter().filter(|d| d.is_error()).map(|d| d.code).collect();
     assert_eq!(found, [Code::E0418], "{}", told(&compiled));
+}
+
+#[test]
+fn a_support_that_changes_as_the_layers_do_needs_both_stacks() {
+    let stone = "granular stone { grading = gradings.ballast_31_63, density = 2650 kg/m^3, contact_stiffness = 13 MN/m per contact, friction = 0.7 }";
+    let stretch = "stretch a { over = -9 .. -1 sleepers, layers = [top: 0.4 m, fill: rest] }";
+    let text = embankment(stone, "stone: 0.4 m, fill: 2 m", stretch)
+        .replace("  layers =", "  support = { stiffness = 40 MN/m per seat }\n  layers =");
+    let compiled = checked(&text);
+    let found: Vec<_> = compiled.diagnostics.iter().filter(|d| d.is_error()).collect();
+    assert!(found.len() == 1 && found[0].code == Code::E0419, "{}", told(&compiled));
+    assert!(found[0].message.contains("`stone` under the stretch"), "{}", told(&compiled));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::Checker;
 use super::geometry::Places;
+use super::layers::Stratum;
 use super::tier::Asked;
 use super::trackform::Built;
 use crate::diag::{Code, Diagnostic, Span};
@@ -83,16 +84,19 @@ fn equivalent(plate: &ApproachSlab, ground: f64) -> f64 {
     *plate.thickness * (ODEMARK * (*plate.youngs_modulus / ground).cbrt()).max(1.0)
 }
 
-/// Layers with a plate in them that displaces what it fills.
+/// How far a load is from the hinge of a plate, as share of its length: by the lever, what of the load the ground bears.
+fn lever(plate: &ApproachSlab, x: f64) -> f64 {
+    let [structure, far] = plate.ends;
+    if plate.hinged { ((x - structure) / (far - structure)).abs().clamp(AT_HINGE, 1.0) } else { 1.0 }
+}
+
+/// Layers with a plate in them that displaces what it fills. Of its own compliance the ground below keeps the share `yields`.
 ///
 /// In the stress cone it spreads the load as its [`equivalent`] of the ground below. A hinge keeps its end in place. A stiff
 /// plate that turns about it moves by s / L of its far end at a distance s, and a load there turns it by s / L of what it
 /// would at the far end: the compliance of the ground below goes with `(s / L)^2`.
-fn with_plate(layers: Vec<foundation::Layer>, plate: &ApproachSlab, x: f64) -> Vec<foundation::Layer> {
+fn with_plate(layers: Vec<foundation::Layer>, plate: &ApproachSlab, yields: f64) -> Vec<foundation::Layer> {
     let (top, bottom) = (*plate.depth, *plate.depth + *plate.thickness);
-    let [structure, far] = plate.ends;
-    let share = ((x - structure) / (far - structure)).abs().clamp(AT_HINGE, 1.0);
-    let yields = if plate.hinged { share * share } else { 1.0 };
     let (mut above, mut below) = (Vec::new(), Vec::new());
     let mut ground = None;
     let mut z = 0.0;
@@ -156,12 +160,7 @@ impl Checker<'_> {
         let regrade = if let Under::Regraded(regrade) = under { Some(regrade) } else { None };
         let depends = built.stands_on_layers() || regrade.is_some_and(|regrade| regrade.scales);
         let (Some(body), false) = (built.sleeper_body(), strata.is_empty()) else { return Some(Vec::new()) };
-        let unknown: Vec<&super::layers::Stratum> = strata.iter().filter(|s| s.modulus_unknown()).collect();
-        if !unknown.is_empty() {
-            if depends && !self.asked.layers_do {
-                unknown.into_iter().for_each(|stratum| self.without_modulus(&built.name, stratum));
-                return None;
-            }
+        if !self.knows_moduli(built, strata, regrade, depends)? {
             return Some(Vec::new());
         }
         let layers = match under {
@@ -171,17 +170,24 @@ impl Checker<'_> {
         }?;
         let plate = regrade.and_then(|regrade| regrade.plate);
         let mut asked = Vec::with_capacity(seats.len());
-        let mut before = Vec::new();
+        let (mut pressed, mut before) = (Vec::new(), Vec::new());
         for seat in seats.clone() {
             let x = places.seats[seat].0;
             let bearing = bearing(&body, places.spacings(seat, built.spacing.map_or(0.6, |s| *s)));
             let stack_here = stack(&layers, x)?;
-            let stack_here = plate.iter().fold(stack_here, |stack, plate| with_plate(stack, plate, x));
+            let stack_here = match &plate {
+                Some(plate) => {
+                    let share = lever(plate, x);
+                    pressed.push((bearing, with_plate(stack_here.clone(), plate, 1.0)));
+                    with_plate(stack_here, plate, share * share)
+                }
+                None => stack_here,
+            };
             asked.push((bearing, stack_here));
             let scaled = regrade.filter(|regrade| regrade.scales && !built.stands_on_layers());
             before.extend(scaled.and_then(|regrade| stack(regrade.before, x)).map(|stack| (bearing, stack)));
         }
-        let (found, before) = (self.supports(&asked), self.supports(&before));
+        let (found, pressed, before) = (self.supports(&asked), self.supports(&pressed), self.supports(&before));
         let mut carried = Vec::with_capacity(seats.len());
         for (i, seat) in seats.enumerate() {
             if found[i].is_err() && !depends {
@@ -191,6 +197,11 @@ impl Checker<'_> {
             let change = match before.get(i) {
                 Some(plain) => stiffness / self.held_up(built, places, seat, *plain)?.0,
                 None => 1.0,
+            };
+            // of the load on a hinged plate the structure bears what the ground does not
+            let onto_subgrade = match (&plate, pressed.get(i)) {
+                (Some(plate), Some(Ok((_, pressure)))) => lever(plate, places.seats[seat].0) * pressure,
+                _ => onto_subgrade,
             };
             carried.push(Carried { stiffness, onto_subgrade, change });
         }
@@ -231,7 +242,37 @@ impl Checker<'_> {
         }
     }
 
-    fn without_modulus(&mut self, form: &str, stratum: &super::layers::Stratum) {
+    /// Whether every layer has a modulus; `None` where one has none and something depends on it.
+    fn knows_moduli(
+        &mut self,
+        built: &Built,
+        strata: &[Stratum],
+        regrade: Option<&Regrade<'_>>,
+        depends: bool,
+    ) -> Option<bool> {
+        let scaled = regrade.filter(|regrade| regrade.scales && !built.stands_on_layers());
+        let before = scaled.and_then(|regrade| regrade.before.iter().find(|layer| layer.youngs_modulus().is_none()));
+        let unknown: Vec<&Stratum> = strata.iter().filter(|stratum| stratum.modulus_unknown()).collect();
+        if unknown.is_empty() && before.is_none() {
+            return Some(true);
+        }
+        if !depends || self.asked.layers_do {
+            return Some(false);
+        }
+        if unknown.is_empty() {
+            let name = before.map_or("", |layer| layer.name.as_str());
+            let message = format!(
+                "granular `{name}` under the stretch needs its `youngs_modulus`: the support changes as the layers do"
+            );
+            self.report(Diagnostic::new(Code::E0419, message).at(built.layers_span, "compared with the layers under them").help(
+                "add `youngs_modulus = 110 MPa` to it (ballast of Zhai, Wang and Lin 2004), or let the stretch state its `support`",
+            ));
+        }
+        unknown.into_iter().for_each(|stratum| self.without_modulus(&built.name, stratum));
+        None
+    }
+
+    fn without_modulus(&mut self, form: &str, stratum: &Stratum) {
         let (name, at, used): (&str, Span, Span) = stratum.places();
         self.report(
             Diagnostic::new(

@@ -126,6 +126,23 @@ impl Checker<'_> {
         Some(found).filter(|_| sound)
     }
 
+    /// Refuses to change the layers of a trackform that has none.
+    pub(super) fn has_ground(&mut self, instance: &Instance, form: &Record) -> Option<()> {
+        let set = instance.stretch.get(if instance.sets("layers") { "layers" } else { "approach_slab" });
+        let Some(slot) = set.filter(|_| instance.regrades()) else { return Some(()) };
+        let message = format!(
+            "stretch `{}` changes the ground, but trackform `{}` does not say what lies under its sleepers",
+            instance.stretch.name, form.name
+        );
+        self.report(
+            Diagnostic::new(Code::E0418, message)
+                .at(slot.span, "in the place of what?")
+                .at(form.span, "no `layers`")
+                .help("give the trackform its `layers`; its `support` may stay beside them and changes as they do"),
+        );
+        None
+    }
+
     /// The track keeps its level: what a stretch puts under the sleepers is as deep as what was there.
     fn goes_as_deep(
         &mut self,
@@ -188,4 +205,12 @@ impl Checker<'_> {
         self.report(Diagnostic::new(Code::E0426, message).at(at, "depth of its top").help(help));
         false
     }
+}
+
+/// Two stretches that put a plate under the same seats.
+pub(super) fn two_plates(first: &Instance, later: &Instance, seats: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0512, format!("two approach slabs lie in one place at {seats}"))
+        .at(later.over(), format!("that of `{}`", later.stretch.name))
+        .at(first.over(), format!("that of `{}`", first.stretch.name))
+        .help("let one span end where the other begins")
 }

@@ -4,6 +4,7 @@
 use super::Checker;
 use super::geometry::Places;
 use super::ground::{Regrade, Under};
+use super::groundwork::two_plates;
 use super::value::{Change, Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{ApproachSlab, AuxiliaryRailSpan, Layer, Seat, Stretch};
@@ -281,23 +282,6 @@ impl Checker<'_> {
         None
     }
 
-    /// Refuses to change the layers of a trackform that has none.
-    fn has_ground(&mut self, instance: &Instance, form: &Record) -> Option<()> {
-        let set = instance.stretch.get(if instance.sets("layers") { "layers" } else { "approach_slab" });
-        let Some(slot) = set.filter(|_| instance.regrades()) else { return Some(()) };
-        let message = format!(
-            "stretch `{}` changes the ground, but trackform `{}` does not say what lies under its sleepers",
-            instance.stretch.name, form.name
-        );
-        self.report(
-            Diagnostic::new(Code::E0418, message)
-                .at(slot.span, "in the place of what?")
-                .at(form.span, "no `layers`")
-                .help("give the trackform its `layers`; its `support` may stay beside them and changes as they do"),
-        );
-        None
-    }
-
     /// Auxiliary rails along the track: those of sections, cut where a stretch says otherwise, and those of stretches.
     pub(super) fn auxiliary_spans(
         &mut self,
@@ -352,13 +336,6 @@ pub(super) fn described(stood: &[Instance]) -> Vec<Stretch> {
 /// Whether one path is the other, or lies inside it.
 fn overlap(a: &Change, b: &Change) -> bool {
     a.field.path.names.iter().zip(&b.field.path.names).all(|(a, b)| a.text == b.text)
-}
-
-fn two_plates(first: &Instance, later: &Instance, seats: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0512, format!("two approach slabs lie in one place at {seats}"))
-        .at(later.over(), format!("that of `{}`", later.stretch.name))
-        .at(first.over(), format!("that of `{}`", first.stretch.name))
-        .help("let one span end where the other begins")
 }
 
 fn clash(first: &Instance, a: &Change, later: &Instance, b: &Change, seats: &str) -> Diagnostic {

@@ -7,7 +7,7 @@ mod schedule;
 
 use crate::diag::{Code, Diagnostic, Severity};
 use crate::graph::{Decision, Graph, NamedLaw, Schedule, SubstructureNode, TrackNode};
-use crate::scenario::{Loading, Scenario, SettlementLaw};
+use crate::scenario::{Foot, Loading, Origin, Scenario, SettlementLaw};
 
 /// Lowers a scene. Without a graph there is at least one diagnostic.
 pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
@@ -26,7 +26,9 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
             (SubstructureNode::Fixed, Some(Schedule::Static { loads: loads.clone() }))
         }
         Some(Loading::Traffic(traffic)) => {
-            pass.decide("tier", "a settlement law under each sleeper", "the scene gives the stiffness of its supports");
+            let stated = "the scene gives the stiffness of its supports";
+            let why = if stands_on_layers(scenario) { "the layers give the stiffness of the supports" } else { stated };
+            pass.decide("tier", "a settlement law under each sleeper", why);
             let law = SubstructureNode::Law {
                 law: named(&scenario.solve.law),
                 followers: scenario.solve.other_laws.iter().map(named).collect(),
@@ -47,6 +49,14 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
     let records = records::records(&mut pass, scenario);
     let graph = Graph { track, substructure, schedule, records, decisions: pass.decisions, estimate };
     (Some(graph), pass.diagnostics)
+}
+
+/// Whether a sleeper stands on layers alone.
+fn stands_on_layers(scenario: &Scenario) -> bool {
+    scenario.track.seats.iter().any(|seat| match &seat.foot {
+        Foot::Sleeper { support, .. } => support.stiffness.origin == Origin::Derived && seat.onto_subgrade.is_some(),
+        _ => false,
+    })
 }
 
 fn named(law: &SettlementLaw) -> NamedLaw {

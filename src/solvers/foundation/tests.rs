@@ -210,9 +210,12 @@ struct Known {
     below: Below,
 }
 
-fn known() -> [Known; 4] {
+fn known() -> [Known; 7] {
     let (ballast, subballast) = (layer(0.3, 110e6, 0.2), layer(0.3, 150e6, 0.3));
     let soil = |h: f64, e: f64| Layer { density: 2000.0, spread: 30f64.to_radians(), ..layer(h, e, 0.3) };
+    // a plate spreads the load as 0.9 t (E / E_soil)^(1/3) of the soil (Odemark 1949)
+    let odemark = 0.9 * f64::cbrt(34e9 / 60e6) * 30f64.to_radians().tan();
+    let plate = Layer { spread: odemark.atan(), ..layer(0.3, 34e9, 0.2) };
     let ground = |e: f64| Below::HalfSpace { youngs_modulus: e, poisson_ratio: 0.3 };
     [
         Known {
@@ -234,6 +237,21 @@ fn known() -> [Known; 4] {
             name: "cement-treated: 300 mm of 5 GPa, 2 m of 60 MPa on 60 MPa without end",
             layers: vec![ballast, layer(0.3, 5e9, 0.2), soil(2.0, 60e6)],
             below: ground(60e6),
+        },
+        Known {
+            name: "300 mm subballast, 2 m of 60 MPa on rock",
+            layers: vec![ballast, subballast, soil(2.0, 60e6)],
+            below: Below::Rigid,
+        },
+        Known {
+            name: "the same with a wedge, 0.8 m of 900 MPa on 1.2 m of 60 MPa",
+            layers: vec![ballast, subballast, soil(0.8, 900e6), soil(1.2, 60e6)],
+            below: Below::Rigid,
+        },
+        Known {
+            name: "the same with an approach slab, 0.3 m of 34 GPa on 1.7 m of 60 MPa",
+            layers: vec![ballast, subballast, plate, soil(1.7, 60e6)],
+            below: Below::Rigid,
         },
     ]
 }
