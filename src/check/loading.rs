@@ -43,7 +43,8 @@ impl Checker<'_> {
                     Code::E0407,
                     format!("the shares of the trains sum to {} %, not to 100 %", number(100.0 * share)),
                 )
-                .at(pairs[0].1.span, "of `total`"),
+                .at(pairs[0].1.span, "of `total`")
+                .help("shares are of the whole traffic: give the rest to another train, or `100 %` to this one"),
             );
             return None;
         }
