@@ -174,7 +174,8 @@ impl Checker<'_> {
                 let Some(dimension) = dimension else {
                     self.report(
                         Diagnostic::new(Code::E0305, "an exponent is a plain number from -9 to 9")
-                            .at(right.span, b.dimension.describe()),
+                            .at(right.span, b.dimension.describe())
+                            .help("powers of ten stand in the number: `40e6 N/m`"),
                     );
                     return None;
                 };
@@ -201,7 +202,9 @@ impl Checker<'_> {
             self.report(
                 Diagnostic::new(Code::E0408, format!("expected a number, found the word `{}`", word.text))
                     .at(word.span, "not a function of numbers")
-                    .maybe_help(near.map(|n| format!("did you mean `{n}`?"))),
+                    .help(near.map_or("functions of numbers are `sqrt`, `abs`, `min` and `max`".to_string(), |n| {
+                        format!("did you mean `{n}`?")
+                    })),
             );
             return None;
         }
@@ -262,9 +265,16 @@ impl From<Raw> for Number {
 fn unit_mistake(unit: &UnitText, error: &UnitError) -> Diagnostic {
     match error {
         UnitError::Unknown { symbol, instead } => {
-            let help = instead.as_ref().map(|ours| {
-                let whole = unit.text.replacen(symbol.as_str(), ours, 1);
-                if ours.contains('(') { format!("write {ours}") } else { format!("did you mean `{whole}`?") }
+            let of_what = crate::schema::basis_name(symbol).then(|| {
+                let rest = unit.text.replacen(symbol.as_str(), "", 1);
+                let rest = rest.trim_end_matches(['/', '*', ' ']);
+                format!("write `{}per {symbol}`", if rest.is_empty() { String::new() } else { format!("{rest} ") })
+            });
+            let help = of_what.or_else(|| {
+                instead.as_ref().map(|ours| {
+                    let whole = unit.text.replacen(symbol.as_str(), ours, 1);
+                    if ours.contains('(') { format!("write {ours}") } else { format!("did you mean `{whole}`?") }
+                })
             });
             Diagnostic::new(Code::E0303, format!("unknown unit `{symbol}`"))
                 .at(unit.span, "not a unit")

@@ -5,7 +5,7 @@ use super::arithmetic::shape;
 use super::modules::ScopeId;
 use super::profile::is_profile;
 use super::value::{Slot, Val};
-use crate::diag::{Code, Diagnostic, Span, or_list};
+use crate::diag::{Code, Diagnostic, Label, Span, or_list};
 use crate::scenario::Origin;
 use crate::schema::{self, Form, Measure, Varies};
 use crate::syntax::tree::{Entry, Item, Name, UnitText, Value, ValueKind};
@@ -45,6 +45,26 @@ impl Checker<'_> {
 
     /// What could stand in the place of a hole.
     fn fitting(&self, form: &Form) -> String {
+        let entries = self.entries(form);
+        if entries.is_empty() {
+            return "write a value here, or give one with `--set`".into();
+        }
+        format!("write a value here, such as {}, or give one with `--set`", or_list(&entries))
+    }
+
+    /// Objects of the main file that a form takes.
+    fn declared(&self, form: &Form) -> Vec<String> {
+        let main = self.scopes.iter().find(|scope| scope.tree.file == super::modules::Loader::main_file());
+        let items = main.map_or(&[][..], |scope| scope.tree.items.as_slice());
+        let fits = |item: &Item| match item {
+            Item::Declaration(d) if form_has_object(form, &d.kind.text) => Some(format!("`{}`", d.name.as_ref()?.text)),
+            _ => None,
+        };
+        items.iter().filter_map(fits).collect()
+    }
+
+    /// Entries of the standard library that a form takes.
+    fn entries(&self, form: &Form) -> Vec<String> {
         let mut entries = Vec::new();
         for (module, scope) in &self.scopes[self.standard].modules {
             for item in &self.scopes[*scope].tree.items {
@@ -56,10 +76,7 @@ impl Checker<'_> {
                 }
             }
         }
-        if entries.is_empty() {
-            return "write a value here, or give one with `--set`".into();
-        }
-        format!("write a value here, such as {}, or give one with `--set`", or_list(&entries))
+        entries
     }
 
     pub(super) fn origin(&self, span: Span, scope: ScopeId) -> Origin {
@@ -80,10 +97,18 @@ impl Checker<'_> {
         if reads_names(form) {
             return None;
         }
+        let bare = path.names.len() == 1;
         let bound = |c: &Self, name: &Name| match c.scopes[scope].names.get(&name.text) {
             Some(item) => matches!(c.scopes[scope].tree.items.get(*item), Some(Item::Let(_))),
             None => false,
         };
+        if let Form::Pairs { key, .. } = form
+            && bare
+            && reads_names(key)
+            && !bound(self, &path.names[0])
+        {
+            return None;
+        }
         let words = form.words();
         if let [name] = path.names.as_slice()
             && let Some(word) = words.iter().find(|w| w.name == name.text)
@@ -121,11 +146,9 @@ impl Checker<'_> {
             }
             Val::Error | Val::Hole => Some(Slot { value: Val::Error, ..slot }),
             Val::Record(record) => {
-                let found = record.kind.name;
-                self.report(
-                    Diagnostic::new(Code::E0406, format!("expected {}, found a {found}", form.describe()))
-                        .at(path.span, format!("a {found}")),
-                );
+                let found = format!("a {}", record.kind.name);
+                self.wrong_form(form, &found, path.span);
+                self.also_at(path.span, record.span, "declared here");
                 Some(error)
             }
             Val::Text(_) if matches!(form, Form::Text) => Some(slot),
@@ -201,10 +224,40 @@ impl Checker<'_> {
     }
 
     pub(super) fn wrong_form(&mut self, form: &Form, found: &str, span: Span) {
+        let instead = self.instead(form, found, span);
         self.report(
             Diagnostic::new(Code::E0406, format!("expected {}, found {found}", form.describe()))
-                .at(span, found.to_string()),
+                .at(span, found.to_string())
+                .maybe_help(instead),
         );
+    }
+
+    /// Shows the other party of the mistake that was just reported at a place.
+    fn also_at(&mut self, place: Span, span: Span, text: &str) {
+        if let Some(last) = self.diagnostics.last_mut().filter(|d| d.labels.len() == 1 && d.labels[0].span == place) {
+            last.labels.push(Label { span, text: text.into() });
+        }
+    }
+
+    /// What to write where something of another form stands.
+    fn instead(&self, form: &Form, found: &str, span: Span) -> Option<String> {
+        let text = self.loader.sources.text(span);
+        if let Some(inner) = text.strip_prefix('"').and_then(|t| t.strip_suffix('"')).filter(|t| !t.is_empty()) {
+            return Some(format!("write `{inner}`, without quotes"));
+        }
+        if matches!(form, Form::Text) && !text.contains(['\n', '"', '\\']) {
+            return Some(format!("write `\"{text}\"`"));
+        }
+        if let Form::Span = form {
+            return span_of(text).map(|span| format!("write `{span}`"));
+        }
+        if found == "a range" && matches!(form, Form::Number(m) if m.varies == Varies::Yes) {
+            return Some(format!("write `ramp({text})`, if it goes from one to the other along the track"));
+        }
+        let own = self.declared(form);
+        let entries = if own.is_empty() { self.entries(form) } else { own };
+        let such = or_list(&entries.into_iter().take(3).collect::<Vec<_>>());
+        (!such.is_empty()).then(|| format!("name one, such as {such}, or write `{{ field = value }}`"))
     }
 
     fn shape_of(&mut self, value: &Value, scope: ScopeId, depth: u32) -> Shape {
@@ -303,6 +356,7 @@ impl Checker<'_> {
 
     fn list(&mut self, item: &'static Form, entries: &[Entry], unit: Option<&UnitText>, scope: ScopeId) -> Option<Val> {
         let mut slots = Vec::with_capacity(entries.len());
+        let before = self.diagnostics.len();
         for entry in entries {
             if let Some(key) = &entry.key {
                 self.report(
@@ -313,6 +367,7 @@ impl Checker<'_> {
             }
             slots.push(self.fit(item, &with_unit(&entry.value, unit), scope));
         }
+        self.one_missing_unit(before, entries);
         Some(Val::List(slots))
     }
 
@@ -327,22 +382,58 @@ impl Checker<'_> {
             }
         };
         let mut pairs = Vec::with_capacity(entries.len());
+        let before = self.diagnostics.len();
+        let mut lone = false;
         for entry in entries {
             let pair = match (&entry.key, implied) {
                 (Some(k), _) => (self.fit(key, k, scope), self.fit(content, &with_unit(&entry.value, unit), scope)),
                 (None, Some(text)) => (self.fit(key, &entry.value, scope), self.default_value(content, text)),
                 (None, None) => {
-                    self.report(
-                        Diagnostic::new(Code::E0406, format!("expected {}", form.describe()))
-                            .at(entry.value.span, "a pair is needed here")
-                            .help("write `[key: value]`"),
-                    );
-                    continue;
+                    // what could not be read behind it may have been the other half
+                    let rest =
+                        |s: &Span| s.file == entry.value.span.file && s.start.abs_diff(entry.value.span.end) <= 1;
+                    let torn = self.unreadable.iter().any(rest);
+                    if !torn && !lone {
+                        self.report(
+                            Diagnostic::new(Code::E0406, format!("expected {}", form.describe()))
+                                .at(entry.value.span, "a pair is needed here")
+                                .help("write `[key: value]`"),
+                        );
+                    }
+                    // one such list is one mistake
+                    lone = true;
+                    let nothing = Slot { value: Val::Error, span: entry.value.span, origin: Origin::Derived };
+                    (nothing.clone(), nothing)
                 }
             };
             pairs.push(pair);
         }
+        self.one_missing_unit(before, entries);
         Some(Val::Pairs(pairs))
+    }
+
+    /// Numbers of a list that all lack the same unit lack it once: behind the list.
+    fn one_missing_unit(&mut self, before: usize, entries: &[Entry]) {
+        let found = &self.diagnostics[before.min(self.diagnostics.len())..];
+        let (Some(first), Some(last)) = (entries.first(), entries.last()) else { return };
+        if found.len() < 2 || found.len() != entries.len() || found.iter().any(|d| d.code != Code::E0301) {
+            return;
+        }
+        let start = first.key.as_ref().map_or(first.value.span, |key| key.span);
+        let whole = start.to(last.value.span);
+        // `write `-20 sleepers` or `-20 m`` says which units there are
+        let help = found[0].help.as_deref().unwrap_or_default();
+        let wrote = self.loader.sources.text(first.value.span);
+        let units = help.split('`').skip(1).step_by(2).filter_map(|code| code.strip_prefix(wrote));
+        let list = self.loader.sources.text(whole);
+        let write: Vec<String> = units.map(|unit| format!("`[{list}]{unit}`")).collect();
+        let message = found[0].message.replace("a number without a unit", "numbers without a unit");
+        self.diagnostics.truncate(before);
+        self.report(
+            Diagnostic::new(Code::E0301, message)
+                .at(whole, "their unit is missing")
+                .help(format!("write {}", or_list(&write))),
+        );
     }
 }
 
@@ -381,6 +472,16 @@ pub(super) fn with_unit(value: &Value, unit: Option<&UnitText>) -> Value {
         other => other.clone(),
     };
     Value { kind, span: value.span }
+}
+
+/// The span that a difference or a list of two ends was meant for: `-20 - -1 sleepers`, `[-20, -1] sleepers`.
+fn span_of(text: &str) -> Option<String> {
+    if let Some((ends, unit)) = text.strip_prefix('[').and_then(|t| t.split_once(']')) {
+        let (from, to) = ends.split_once(',')?;
+        return Some(format!("{} .. {}{unit}", from.trim(), to.trim()));
+    }
+    let (from, to) = text.split_once(" - ")?;
+    Some(format!("{} .. {}", from.trim(), to.trim()))
 }
 
 /// Whether a bare name is read by the form itself, not looked up.

@@ -4,10 +4,20 @@ use super::Checker;
 use super::arithmetic::{Raw, shape};
 use super::modules::ScopeId;
 use super::value::{Number, Val};
-use crate::diag::{Code, Diagnostic, Span};
+use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
 use crate::schema::{Form, Measure};
 use crate::syntax::tree::{Value, ValueKind};
 use crate::units::{Dimension, Quantity, number, parse_unit};
+
+/// What engineers call the parts of which a value is.
+const ALSO_CALLED: [(&str, &str); 6] = [
+    ("axle", "wheelset"),
+    ("half_sleeper", "seat"),
+    ("rail_seat", "seat"),
+    ("wagon", "vehicle"),
+    ("car", "vehicle"),
+    ("grain", "particle"),
+];
 
 impl Checker<'_> {
     pub(super) fn number(&mut self, measure: &'static Measure, value: &Value, scope: ScopeId) -> Option<Number> {
@@ -40,19 +50,37 @@ impl Checker<'_> {
                         number(shown)
                     ),
                 )
-                .at(raw.span, "out of range"),
+                .at(raw.span, "out of range")
+                .maybe_help(self.in_range(measure, &raw, shown)),
             );
             return None;
         }
         Some(Number { value: raw.value, dimension: raw.dimension, basis, factor })
     }
 
+    /// What was probably meant by a value out of range: a share without its sign, a sign too many, another prefix.
+    fn in_range(&self, measure: &Measure, raw: &Raw, shown: f64) -> Option<String> {
+        let fits = |x: f64| (measure.min..=measure.max).contains(&x);
+        let per = measure.basis.map_or(String::new(), |b| format!(" per {}", b.names[0].0));
+        if raw.bare && measure.unit == "%" && fits(raw.value) {
+            return Some(format!("write `{} %`", number(raw.value)));
+        }
+        if shown < 0.0 && fits(-shown) {
+            return Some(format!("write `{} {}{per}`, without the sign", number(-shown), measure.unit));
+        }
+        let thousands = [1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9].into_iter().map(|step| shown * step).find(|x| fits(*x))?;
+        let there = format!("{} {}{per}", number(thousands), measure.unit);
+        (!measure.unit.is_empty()).then(|| format!("`{there}` would be in range: is the prefix of the unit right?"))
+    }
+
     /// Refuses `per` of a value that is of one thing only.
     fn of_one_thing(&mut self, raw: &Raw) -> Option<()> {
         let Some((name, span)) = &raw.basis else { return Some(()) };
+        let text = self.loader.sources.text(raw.span).to_string();
         self.report(
             Diagnostic::new(Code::E0304, format!("`per {name}` says nothing here: the value is of one thing only"))
-                .at(*span, "leave it out"),
+                .at(*span, "leave it out")
+                .help(format!("write `{text}`")),
         );
         None
     }
@@ -67,9 +95,18 @@ impl Checker<'_> {
             (Some(basis), Some((name, span))) => match basis.names.iter().find(|(n, _)| n == name) {
                 Some((known, factor)) => Some((Some(known), *factor)),
                 None => {
+                    let text = self.loader.sources.text(raw.span).to_string();
+                    let known = || basis.names.iter().map(|(n, _)| *n);
+                    let called = ALSO_CALLED.iter().find(|(theirs, _)| theirs == name).map(|(_, ours)| *ours);
+                    let meant = called.filter(|ours| known().any(|n| n == *ours)).or_else(|| nearest(name, known()));
+                    let help = match meant {
+                        Some(meant) => format!("did you mean `{text} per {meant}`?"),
+                        None => format!("write `{text} per {}`, if that is what it is", basis.names[0].0),
+                    };
                     self.report(
                         Diagnostic::new(Code::E0304, format!("expected {}, found `per {name}`", basis.list()))
-                            .at(*span, "not of this"),
+                            .at(*span, "not of this")
+                            .help(help),
                     );
                     None
                 }
@@ -202,12 +239,17 @@ impl Checker<'_> {
     pub fn span(&mut self, from: &Value, to: &Value, scope: ScopeId) -> Option<Val> {
         let (a, b) = self.ends(from, to, scope)?;
         let whole = from.span.to(to.span);
+        if a.bare && b.bare {
+            // one unit is missing, for both
+            self.hold_place(Raw { span: whole, ..b.clone() })?;
+        }
         let (a, b) = (self.hold_place(a), self.hold_place(b));
         let (a, b) = (a?, b?);
         if a.dimension != b.dimension {
             self.report(
                 Diagnostic::new(Code::E0305, "both ends of a span are in `m`, or both in `sleepers`")
-                    .at(whole, "mixed"),
+                    .at(whole, "mixed")
+                    .help("a sleeper lies at its number times the spacing: write both ends in one of the two"),
             );
             return None;
         }

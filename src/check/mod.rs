@@ -110,6 +110,7 @@ fn with_checker<T>(
         circles: BTreeSet::new(),
         used: BTreeSet::new(),
         library_uses: BTreeMap::new(),
+        without_library: BTreeSet::new(),
         defaults: HashMap::new(),
         numbers: HashMap::new(),
         tables: HashMap::new(),
@@ -141,6 +142,8 @@ struct Checker<'a> {
     /// Where defaults are read: every module of the standard library is known there.
     standard: ScopeId,
     diagnostics: Vec<Diagnostic>,
+    /// Files that name modules of the standard library without bringing it in.
+    without_library: BTreeSet<ScopeId>,
     /// Objects evaluated so far.
     records: HashMap<ItemId, Option<Rc<Record>>>,
     /// Items being evaluated, with the place that asked.

@@ -128,6 +128,15 @@ impl Modules for NoModules {
     }
 }
 
+/// What was meant by a module that has no file: the standard library, or one of its modules.
+fn missing_file(name: &str) -> Option<String> {
+    if ["stdlib", "standard"].contains(&name) {
+        return Some("the standard library is called `std`: write `use std`".into());
+    }
+    let module = library::MODULES.iter().any(|(module, _)| *module == name);
+    module.then(|| format!("it is a module of the standard library: write `use std` or `use std.{name}`"))
+}
+
 /// Index of a scope: one file.
 pub(super) type ScopeId = usize;
 
@@ -256,6 +265,10 @@ impl<'a> Loader<'a> {
         } else {
             self.file(&names, used.path.span)
         };
+        // nobody else calls a file so: what stands in the library is not missed a second time
+        if scope.is_none() && ["stdlib", "standard"].contains(&names[0]) {
+            brought.broken.extend(library::MODULES.iter().map(|(module, _)| module.to_string()));
+        }
         let place = used.alias.as_ref().map_or(used.path.span, |n| n.span);
         if let Some(first) = brought.places.insert(alias.clone(), place)
             && scope.is_none_or(|s| brought.modules.get(&alias) != Some(&s))
@@ -306,7 +319,8 @@ impl<'a> Loader<'a> {
         let Some(bytes) = self.modules.read(Path::new(&relative)) else {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0204, format!("there is no file `{relative}` below the main file's folder"))
-                    .at(span, "not found"),
+                    .at(span, "not found")
+                    .maybe_help(missing_file(names[0])),
             );
             return None;
         };

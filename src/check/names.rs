@@ -90,7 +90,15 @@ impl Checker<'_> {
         let near = nearest(&name.text, candidates).map(|n| format!("did you mean `{n}`?"));
         let library = super::library::MODULES.iter().any(|(m, _)| *m == name.text);
         let help = if library && !here.modules.contains_key(&name.text) {
+            // one line is missing, however many modules it would have brought in
+            if !self.without_library.insert(scope) || self.wanted_library(name.span) {
+                return;
+            }
             Some("it is a module of the standard library: begin the file with `use std`".to_string())
+        } else if let Some(entry) = self.entry_called(&name.text).filter(|_| near.is_none()) {
+            Some(format!("did you mean `{entry}` of the standard library?"))
+        } else if near.is_none() && crate::units::parse_unit(&name.text).is_ok() {
+            Some(format!("is `{}` a unit? it stands without blanks around `/` and `*`: `km/h`, `kN s/m`", name.text))
         } else if near.is_none() && !words.is_empty() {
             let words: Vec<String> = words.iter().map(|w| format!("`{w}`")).collect();
             Some(format!("expected {}", crate::diag::or_list(&words)))
@@ -102,6 +110,33 @@ impl Checker<'_> {
                 .at(name.span, "unknown name")
                 .maybe_help(help),
         );
+    }
+
+    /// Whether a line of that file which has been reported was to bring the standard library in: `import std`.
+    fn wanted_library(&self, place: Span) -> bool {
+        let lost = self.diagnostics.iter().filter(|d| matches!(d.code, Code::E0101 | Code::E0105 | Code::E0204));
+        let mut labels = lost.filter_map(|d| d.labels.first()).filter(|label| label.span.file == place.file);
+        let text = &self.loader.sources.get(place.file).text;
+        labels.any(|label| {
+            let start = text[..label.span.start as usize].rfind('\n').map_or(0, |i| i + 1);
+            let line = text[start..].lines().next().unwrap_or_default();
+            line.contains("std") && !line.contains('=')
+        })
+    }
+
+    /// The entry of the standard library with that name, else one with a name near to it, with its module.
+    fn entry_called(&self, name: &str) -> Option<String> {
+        let modules = &self.scopes[self.standard].modules;
+        let entries = modules.iter().flat_map(|(module, scope)| {
+            let names = self.scopes[*scope].names.keys();
+            names.map(move |entry| (module, entry))
+        });
+        let exact = entries.clone().find(|(_, entry)| *entry == name);
+        let found = exact.or_else(|| {
+            let near = nearest(name, entries.clone().map(|(_, entry)| entry.as_str())).filter(|_| name.len() > 3)?;
+            entries.clone().find(|(_, entry)| *entry == near)
+        });
+        found.map(|(module, entry)| format!("{module}.{entry}"))
     }
 
     /// Whether a name may have been declared where the text could not be read.

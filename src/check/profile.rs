@@ -103,6 +103,12 @@ impl Checker<'_> {
             if measure.varies == Varies::Yes && self.misspelt_profile(value) {
                 return None;
             }
+            if let ValueKind::Range(..) | ValueKind::Text(_) | ValueKind::List { .. } = value.kind {
+                if !self.misspelt_inside(value.span) {
+                    self.wrong_form(&Form::Number(*measure), shape(&value.kind), value.span);
+                }
+                return None;
+            }
             return self.number(measure, value, scope).map(Val::Number);
         }
         if measure.varies == Varies::Yes {
@@ -113,6 +119,14 @@ impl Checker<'_> {
                 .at(value.span, "a profile"),
         );
         None
+    }
+
+    /// Whether a sign of another language has been reported inside a span, and says what to write instead.
+    fn misspelt_inside(&self, span: Span) -> bool {
+        let inside = |label: &crate::diag::Label| {
+            label.span.file == span.file && label.span.start >= span.start && label.span.end <= span.end
+        };
+        self.diagnostics.iter().any(|d| d.code == Code::E0105 && d.labels.first().is_some_and(inside))
     }
 
     /// Reports a word that is nearly that of a profile.

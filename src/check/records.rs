@@ -95,6 +95,14 @@ impl Checker<'_> {
             );
             return None;
         }
+        // `const x = 1`: the sign has been reported, with what to write instead
+        let text = &self.loader.sources.get(name.span.file).text;
+        let end = text[name.span.end as usize..].find('\n').map_or(text.len(), |i| name.span.end as usize + i);
+        let on_line = |s: Span| s.file == name.span.file && s.start >= name.span.end && s.end as usize <= end;
+        let mut foreign = self.diagnostics.iter().filter(|d| d.code == Code::E0105);
+        if foreign.any(|d| d.labels.first().is_some_and(|label| on_line(label.span))) {
+            return None;
+        }
         // what is misspelt is read on as what was probably meant
         let near = nearest(&name.text, schema::KINDS.iter().filter(stands).map(|k| k.name));
         let help = near.map_or("`trackbed docs` lists the kinds".to_string(), |k| format!("did you mean `{k}`?"));
@@ -119,7 +127,8 @@ impl Checker<'_> {
                         Code::E0205,
                         format!("a {} cannot extend `{}`, which is a {}", kind.name, path.text(), record.kind.name),
                     )
-                    .at(path.span, format!("expected a {}, found a {}", kind.name, record.kind.name)),
+                    .at(path.span, format!("expected a {}, found a {}", kind.name, record.kind.name))
+                    .at(record.span, "declared here"),
                 );
                 None
             }
@@ -229,7 +238,7 @@ impl Checker<'_> {
         if record.kind.plans(&name.text) {
             return;
         }
-        if let Some(near) = nearest(&name.text, record.kind.field_names())
+        if let Some(near) = record.kind.meant(&name.text)
             && let Some(known) = record.kind.field(near)
         {
             let origin = Origin::Written(field.span);
@@ -240,6 +249,11 @@ impl Checker<'_> {
     /// Follows a path into a record and replaces what is there.
     fn put(&mut self, record: &mut Record, path: &[Name], field: &Field, scope: ScopeId) {
         let name = &path[0];
+        // a line that could not be read may not begin with a name of a field at all
+        if matches!(field.value.kind, ValueKind::Error) && record.kind.field(&name.text).is_none() {
+            self.excuse(record, name, field);
+            return;
+        }
         let Some(known) = self.field_of(record.kind, name) else {
             self.excuse(record, name, field);
             return;
@@ -325,7 +339,7 @@ impl Checker<'_> {
             );
             return None;
         }
-        let near = nearest(&name.text, kind.field_names()).map(|n| format!("did you mean `{n}`?"));
+        let near = kind.meant(&name.text).map(|n| format!("did you mean `{n}`?"));
         let help = near.unwrap_or_else(|| format!("`trackbed docs {}` lists its fields", kind.name));
         self.report(
             Diagnostic::new(Code::E0402, format!("`{}` has no field `{}`", kind.name, name.text))

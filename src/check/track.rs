@@ -34,7 +34,9 @@ impl Checker<'_> {
     /// The track, from a complete record.
     pub(super) fn track(&mut self, record: &Record) -> Option<Track> {
         let Val::Pairs(pairs) = &record.get("sections")?.value else { return None };
-        let sides = self.sides(record, pairs.len());
+        // how many there are is not known where one could not be read
+        let read = pairs.iter().all(|(key, _)| !matches!(key.value, Val::Error));
+        let sides = if read { self.sides(record, pairs.len()) } else { None };
         let (stretches, mut sound) = self.listed(record);
         let mut forms: Vec<Rc<Record>> = Vec::new();
         let mut plans = Vec::new();

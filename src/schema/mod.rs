@@ -146,9 +146,42 @@ pub struct Alternative {
 /// Kinds of the language that this version does not read yet.
 pub const PLANNED_KINDS: &[&str] = &[];
 
+/// What engineers call fields in formulas, in other programs and in speech.
+const ALSO_CALLED: [(&str, &str); 22] = [
+    ("velocity", "speed"),
+    ("v", "speed"),
+    ("E", "youngs_modulus"),
+    ("modulus", "youngs_modulus"),
+    ("nu", "poisson_ratio"),
+    ("EI", "bending_stiffness"),
+    ("I", "second_moment"),
+    ("A", "area"),
+    ("k", "stiffness"),
+    ("c", "damping"),
+    ("m", "mass"),
+    ("weight", "mass"),
+    ("rho", "density"),
+    ("mu", "friction"),
+    ("dt", "time_step"),
+    ("width", "base_width"),
+    ("sleeper_spacing", "spacing"),
+    ("distance", "spacing"),
+    ("wheelbase", "spacing"),
+    ("inertia", "pitch_inertia"),
+    ("gradation", "grading"),
+    ("axles", "total"),
+];
+
 /// The kind of that name, nested ones included.
 pub fn kind(name: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|k| k.name == name)
+}
+
+/// Whether a value may be `per` that.
+pub fn basis_name(name: &str) -> bool {
+    let fields = KINDS.iter().flat_map(|k| k.fields);
+    let mut bases = fields.filter_map(|f| f.form.measure()?.basis);
+    bases.any(|basis| basis.names.iter().any(|(known, _)| *known == name))
 }
 
 /// The word of that name, in whichever field it stands.
@@ -178,6 +211,13 @@ impl Kind {
     /// Names of its fields, and of those that it may change.
     pub fn field_names(&self) -> impl Iterator<Item = &'static str> {
         self.fields.iter().chain(self.changes().into_iter().flat_map(|k| k.fields)).map(|f| f.name)
+    }
+
+    /// The field that a name which it does not have most likely stands for.
+    pub fn meant(&self, name: &str) -> Option<&'static str> {
+        let called = ALSO_CALLED.iter().find(|(theirs, _)| *theirs == name).map(|(_, ours)| *ours);
+        let known = called.filter(|ours| self.field_names().any(|field| field == *ours));
+        known.or_else(|| crate::diag::nearest::nearest(name, self.field_names()))
     }
 
     /// Whether the language has such a field, and this version does not read it.

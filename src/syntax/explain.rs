@@ -97,19 +97,53 @@ impl<'p> Builder<'p> {
         if first && found.is_some_and(|t| t.start == start) && opens(word) {
             return Some(format!("a line goes on behind an operator: end the line above with `{word}`"));
         }
+        if word == "." {
+            return Some("the factors of a unit are parted by a blank: `kN s/m`".to_owned());
+        }
+        let mut before = text[start..found.map_or(end, |t| t.start)].split_whitespace().rev();
+        if let (Some(half), Some("per")) = (before.next(), before.next()) {
+            return Some(format!("behind `per` stands one word: not `{half} {word}`, but such as `seat` or `sleeper`"));
+        }
         match exact {
+            Rule::exact_entry => {
+                let key = leading(part);
+                let rest = part[key.len()..].trim_start();
+                let value = rest.starts_with(|c: char| c.is_alphanumeric());
+                (!key.is_empty() && value && !rest.starts_with("per ")).then(|| format!("write `{key}: {rest}`"))
+            }
             Rule::exact_field if matches!(first_word(part), "let" | "use") => {
                 Some(format!("`{}` stands outside of braces", first_word(part)))
             }
             Rule::exact_field => {
                 let path = leading(part);
                 let rest = part[path.len()..].trim_start();
+                // two words before the sign are one name
+                let second = leading(rest);
+                let after = rest[second.len()..].trim_start();
+                if !path.is_empty() && !second.is_empty() && after.starts_with('=') && !after.starts_with("==") {
+                    return Some(format!("a name has no blanks: write `{path}_{second} {after}`"));
+                }
                 let value = rest.starts_with(|c: char| c.is_alphanumeric() || "\"([-?".contains(c));
                 (!path.is_empty() && value).then(|| format!("write `{path} = {rest}`"))
             }
-            Rule::exact_item if first_word(part) == "let" => Some("write `let name = value`".to_owned()),
+            Rule::exact_item if first_word(part) == "let" => {
+                let name = part["let".len()..].trim_start();
+                let (first, rest) = name.split_at(leading(name).len());
+                let second = leading(rest.trim_start());
+                let after = rest.trim_start()[second.len()..].trim_start();
+                Some(match !first.is_empty() && !second.is_empty() && after.starts_with('=') {
+                    true => format!("a name has no blanks: write `let {first}_{second} {after}`"),
+                    false => "write `let name = value`".to_owned(),
+                })
+            }
+            Rule::exact_item if matches!(first_word(part), "import" | "include" | "using" | "require") => {
+                Some(format!("write `use {}`", part[first_word(part).len()..].trim().trim_matches('"')))
+            }
             Rule::exact_item if first_word(part) == "use" => {
                 Some("write `use module` or `use module as name`".to_owned())
+            }
+            Rule::exact_item if matches!(word, "extends" | "(" | "-" | "from" | "is") || found.is_some_and(is_text) => {
+                Some("a declaration is `kind name : base { field = value }`".to_owned())
             }
             Rule::exact_item if start == junk => Some("a declaration is `kind name { field = value }`".to_owned()),
             _ => None,
@@ -202,6 +236,10 @@ fn leading(text: &str) -> &str {
         }
         end += 1;
     }
+}
+
+fn is_text(token: Token) -> bool {
+    matches!(token.kind, Kind::Text { .. })
 }
 
 fn first_word(text: &str) -> &str {

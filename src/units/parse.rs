@@ -58,7 +58,7 @@ const PLAIN: [(&str, f64, Dimension); 16] = [
 ];
 
 /// Spellings that people use elsewhere, and ours.
-const FOREIGN: [(&str, &str); 31] = [
+const FOREIGN: [(&str, &str); 38] = [
     ("tonne", "t"),
     ("tonnes", "t"),
     ("ton", "t"),
@@ -72,6 +72,13 @@ const FOREIGN: [(&str, &str); 31] = [
     ("second", "s"),
     ("seconds", "s"),
     ("minutes", "min"),
+    ("millisecond", "ms"),
+    ("milliseconds", "ms"),
+    ("millimetres", "mm"),
+    ("millimeters", "mm"),
+    ("kilonewtons", "kN"),
+    ("mt", "MGT"),
+    ("trains", "axles"),
     ("day", "d"),
     ("days", "d"),
     ("meter", "m"),

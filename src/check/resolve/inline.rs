@@ -47,9 +47,10 @@ impl Resolver<'_, '_> {
             ValueKind::Range(a, b) => format!("{} .. {}", self.inline(a, scope), self.inline(b, scope)),
             ValueKind::Per(inner, basis) => format!("{} per {}", self.inline(inner, scope), basis.text),
             ValueKind::Binary(a, op, b) => {
-                format!("({} {} {})", self.inline(a, scope), op.symbol(), self.inline(b, scope))
+                let (a, b) = (operand(self.inline(a, scope)), operand(self.inline(b, scope)));
+                format!("({a} {} {b})", op.symbol())
             }
-            ValueKind::Negate(inner) => format!("-{}", self.inline(inner, scope)),
+            ValueKind::Negate(inner) => format!("-{}", operand(self.inline(inner, scope))),
             ValueKind::Compare { operands, operators } => {
                 let operands: Vec<String> = operands.iter().map(|o| self.inline(o, scope)).collect();
                 let rest = operands[1..].iter().zip(operators).map(|(o, op)| format!(" {} {o}", op.symbol()));
@@ -83,7 +84,7 @@ impl Resolver<'_, '_> {
         }
         match self.checker.slot_at(&target, path).map(|slot| slot.value) {
             Some(Val::Number(Number { value, dimension, basis, factor })) => {
-                format!("({})", literal::number(Number { value, dimension, basis, factor }, &Form::Text))
+                literal::number(Number { value, dimension, basis, factor }, &Form::Text)
             }
             _ => path.text(),
         }
@@ -92,4 +93,9 @@ impl Resolver<'_, '_> {
     fn scope_of(&self, span: Span) -> ScopeId {
         self.checker.scopes.iter().position(|scope| scope.tree.file == span.file).unwrap_or(self.main)
     }
+}
+
+/// `per` holds for all before it: in arithmetic what it is of stands in brackets.
+fn operand(text: String) -> String {
+    if text.contains(" per ") && !text.starts_with('(') { format!("({text})") } else { text }
 }
