@@ -50,6 +50,9 @@ pub(super) struct Carried {
 /// Stiffness, N/m, and pressure on the lowest layer for each newton, 1/m^2.
 type Found = Result<(f64, f64), foundation::FoundationError>;
 
+/// A sleeper's half on a stack of layers.
+type Stacked = (Bearing, Vec<foundation::Layer>);
+
 /// Answers by the bits of what was asked: seats under several stretches are asked for again.
 pub(super) type Supports = HashMap<Vec<u64>, Found>;
 
@@ -209,9 +212,9 @@ impl Checker<'_> {
     }
 
     /// Answers in the order of what is asked; each is computed once in a check, and independent ones side by side.
-    fn supports(&mut self, asked: &[(Bearing, Vec<foundation::Layer>)]) -> Vec<Found> {
+    fn supports(&mut self, asked: &[Stacked]) -> Vec<Found> {
         let keys: Vec<Vec<u64>> = asked.iter().map(|(bearing, stack)| key(bearing, stack)).collect();
-        let mut missing: Vec<(&Vec<u64>, &(Bearing, Vec<foundation::Layer>))> =
+        let mut missing: Vec<(&Vec<u64>, &Stacked)> =
             keys.iter().zip(asked).filter(|(key, _)| !self.supports.contains_key(*key)).collect();
         missing.sort_by_key(|(key, _)| *key);
         missing.dedup_by_key(|(key, _)| *key);
