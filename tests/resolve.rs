@@ -127,7 +127,7 @@ let longest = -1 - 19
 granular medium : ballasts.basalt_31_63 { friction = 0.65 }
 trackform open : yard.old { pad.stiffness = 0.1 kN/um + 7 MN/m, settlement = bumps, layers.granite_31_63 = 300 mm }
 trackform deck : open { sleeper = none, settlement = 0 mm, slab = slabs.half_width_1600 }
-stretch behind { over = longest * 0.3 m .. -1 m, layers.sandy_gravel = ramp(2 .. 1.5 m), support.damping_time = 0.5 ms }
+stretch behind { over = longest * 0.3 m .. -1 m, layers = [ballasts.granite_31_63: ramp(300 .. 500 mm), soils.sandy_gravel: rest], support.damping_time = 0.5 ms }
 stretch before : yard.soft { usp.bedding_modulus = ramp(0.1 .. 0.3 N/mm^3) }
 stretch beside { over = 1 .. 8 sleepers, pad = pads.medium { stiffness = smooth(20 .. 40 MN/m) } }
 track line {

@@ -86,7 +86,7 @@ fn the_mitigations_that_come_with_the_program_run() {
         let text = std::fs::read_to_string(&path).unwrap();
         let folder = Folder("scenarios".into());
         let few = ["traffic.total=4 axles", "solve.elements_per_bay=2", "solve.time_step=2e-4 s"];
-        let every = ["at_the_ends.after=4 axles"].iter().filter(|_| name == "bridge");
+        let every = ["traffic.trains=freight", "at_the_ends.after=4 axles"].iter().filter(|_| name == "bridge");
         let few: Vec<&str> = few.into_iter().chain(every.copied()).collect();
         let few: Vec<Override> = few.iter().map(|set| Override::parse(set).unwrap()).collect();
         let whole = compile(&path, &text, &folder, &[]);

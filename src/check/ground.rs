@@ -137,15 +137,20 @@ fn key(bearing: &Bearing, stack: &[foundation::Layer]) -> Vec<u64> {
     plan.into_iter().chain(bearing.to_centre).chain(stack.iter().flat_map(layer)).map(f64::to_bits).collect()
 }
 
-fn solve(asked: &Asked, bearing: &Bearing, stack: &[foundation::Layer]) -> Found {
-    let below = match stack.last() {
+/// Answers for stacks under the same bearing.
+fn solve(asked: &Asked, bearing: &Bearing, stacks: &[&[foundation::Layer]]) -> Vec<Found> {
+    let below = |stack: &[foundation::Layer]| match stack.last() {
         Some(ground) if asked.quiet_base => {
             Below::HalfSpace { youngs_modulus: ground.youngs_modulus, poisson_ratio: ground.poisson_ratio }
         }
         _ => Below::Rigid,
     };
-    let support = foundation::support(bearing, stack, below, asked.support_method)?;
-    Ok((support.stiffness, support.pressures[stack.len() - 1]))
+    let grounded: Vec<_> = stacks.iter().map(|stack| (*stack, below(stack))).collect();
+    let supports = foundation::supports(bearing, &grounded, asked.support_method);
+    let of = |(support, stack): (Result<foundation::Support, _>, &&[foundation::Layer])| {
+        support.map(|support| (support.stiffness, support.pressures[stack.len() - 1]))
+    };
+    supports.into_iter().zip(stacks).map(of).collect()
 }
 
 impl Checker<'_> {
@@ -219,11 +224,17 @@ impl Checker<'_> {
         missing.sort_by_key(|(key, _)| *key);
         missing.dedup_by_key(|(key, _)| *key);
         let settings = self.asked;
-        let found: Vec<(Vec<u64>, Found)> = missing
-            .into_par_iter()
-            .map(|(key, (bearing, stack))| (key.clone(), solve(&settings, bearing, stack)))
+        // keys begin with the bearing, so stacks under the same one stand together
+        let groups: Vec<_> = missing.chunk_by(|(_, (a, _)), (_, (b, _))| a == b).collect();
+        let found: Vec<Vec<Found>> = groups
+            .par_iter()
+            .map(|group| {
+                let stacks: Vec<&[foundation::Layer]> = group.iter().map(|(_, (_, stack))| stack.as_slice()).collect();
+                solve(&settings, &group[0].1.0, &stacks)
+            })
             .collect();
-        self.supports.extend(found);
+        let keyed = missing.iter().map(|(key, _)| (*key).clone());
+        self.supports.extend(keyed.zip(found.into_iter().flatten()).collect::<Vec<_>>());
         keys.iter().map(|key| self.supports[key]).collect()
     }
 

@@ -108,6 +108,8 @@ struct Excerpt<'a> {
 
 /// Longer lines are shown in part.
 const LONG_LINE: usize = 400;
+/// Lines between two excerpts that are drawn rather than left out.
+const NEAR: usize = 4;
 /// What is shown of a long line on either side of a label.
 const MARGIN: usize = 60;
 
@@ -163,7 +165,8 @@ impl SourceCode for Excerpt<'_> {
         let column = self.text[self.line_starts[first]..start].chars().count();
         // miette takes the line of the contents for the gutter and that of the label, read alone, for the header.
         let (line, column) = if lines_before == 0 && lines_after == 0 { (first, column) } else { (self.line(from), 0) };
-        let line_count = self.line_starts.len();
+        // excerpts that this brings together are drawn as one
+        let line_count = to_line + 1 - from_line + NEAR;
         let name = self.name.to_owned();
         let data = &self.text.as_bytes()[from..to];
         Ok(Box::new(MietteSpanContents::new_named(name, data, (from, to - from).into(), line, column, line_count)))

@@ -15,7 +15,7 @@ const FEWEST: f64 = 3.0;
 pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for bed in beds(scenario).into_iter().filter(|bed| bed.top) {
-        let seats = scenario.track.seats.iter().filter(|seat| seat.section == bed.index);
+        let seats = scenario.track.seats[scenario.track.seats_of(bed.index)].iter();
         let Some(width) = seats.filter_map(|seat| seat.sleeper).map(|body| body.base_width).reduce(f64::min) else {
             continue;
         };

@@ -2,7 +2,7 @@
 
 use crate::graph::{Blocks, Graph, Schedule};
 use crate::lint::dynamic::amplification;
-use crate::lint::winkler::seat_loads;
+use crate::lint::winkler::seat_load;
 use crate::scenario::{Contact, Granular, Layer, Origin, Scenario, Section};
 use std::f64::consts::PI;
 
@@ -63,8 +63,8 @@ impl Bed<'_> {
 /// Pressure under the sleepers of a section as a wheel passes, Pa; 0 where nobody knows their size.
 fn under_sleepers(scenario: &Scenario, blocks: &Blocks, section: usize) -> f64 {
     let track = &scenario.track;
-    let Some(load) = seat_loads(scenario, blocks).into_iter().find(|load| load.section == section) else { return 0.0 };
-    let area = track.seats.iter().filter(|s| s.section == section).find_map(|s| track.bearing_area(s));
+    let Some(load) = seat_load(scenario, blocks, section) else { return 0.0 };
+    let area = track.seats[track.seats_of(section)].iter().find_map(|s| track.bearing_area(s));
     area.map_or(0.0, |area| load.peak.force * amplification(*blocks.train.speed) / area)
 }
 

@@ -71,7 +71,7 @@ impl Swinging {
 /// The sleeper of a section with the strongest dampers: pad and support on the same mass.
 fn sleeper(scenario: &Scenario, section: usize) -> Option<Swinging> {
     let track = &scenario.track;
-    let seats = track.seats.iter().filter(|seat| seat.section == section);
+    let seats = track.seats[track.seats_of(section)].iter();
     let swinging = seats.filter_map(|seat| {
         let Foot::Sleeper { mass, support } = &seat.foot else { return None };
         let (pad, spring) = (&seat.pad, support.spring());

@@ -55,7 +55,7 @@ pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
 /// Distance, m, of the two seats that are compared: the nearest ones on either side.
 fn apart(track: &Track, left: usize, x: f64) -> f64 {
     let nearest = |section: usize| {
-        let seats = track.seats.iter().filter(|s| s.section == section);
+        let seats = track.seats[track.seats_of(section)].iter();
         seats.map(|s| (s.x - x).abs()).fold(f64::INFINITY, f64::min)
     };
     nearest(left) + nearest(left + 1)

@@ -73,27 +73,22 @@ pub(super) struct SeatLoad {
     pub peak: Peak,
 }
 
-/// The ballasted sections under the heaviest wheel of the train: the seat's share of it and its own weight, and the deflection
-/// of its support.
+/// The ballasted sections under the heaviest wheel of the train.
 pub(super) fn seat_loads(scenario: &Scenario, blocks: &Blocks) -> Vec<SeatLoad> {
-    let track = &scenario.track;
+    (0..scenario.track.sections.len()).filter_map(|section| seat_load(scenario, blocks, section)).collect()
+}
+
+/// A ballasted section under the heaviest wheel of the train: the seat's share of it and its own weight, and the deflection of
+/// its support.
+pub(super) fn seat_load(scenario: &Scenario, blocks: &Blocks, section: usize) -> Option<SeatLoad> {
+    let (track, gravity) = (&scenario.track, *scenario.solve.gravity);
     let heaviest = blocks.train.vehicles.iter().map(Vehicle::mass).fold(0.0, f64::max);
-    let wheel = heaviest / Vehicle::AXLES as f64 * *scenario.solve.gravity;
-    let of_section = |section: usize| {
-        let first = track.seats_of(section).find(|seat| track.seats[*seat].is_ballasted())?;
-        let seat = &track.seats[first];
-        let winkler = Winkler::of(track, section)?;
-        let spacing = track.bay(first);
-        let Foot::Sleeper { support, .. } = &seat.foot else { return None };
-        let weight = winkler.mass * spacing * *scenario.solve.gravity;
-        let force = wheel * winkler.seat_share(spacing) + weight;
-        Some(SeatLoad {
-            section,
-            winkler,
-            spacing,
-            wheel,
-            peak: Peak { force, deflection: force / *support.stiffness },
-        })
-    };
-    (0..track.sections.len()).filter_map(of_section).collect()
+    let wheel = heaviest / Vehicle::AXLES as f64 * gravity;
+    let first = track.seats_of(section).find(|seat| track.seats[*seat].is_ballasted())?;
+    let winkler = Winkler::of(track, section)?;
+    let spacing = track.bay(first);
+    let Foot::Sleeper { support, .. } = &track.seats[first].foot else { return None };
+    let force = wheel * winkler.seat_share(spacing) + winkler.mass * spacing * gravity;
+    let peak = Peak { force, deflection: force / *support.stiffness };
+    Some(SeatLoad { section, winkler, spacing, wheel, peak })
 }

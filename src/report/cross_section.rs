@@ -112,6 +112,7 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place
     if let Some(first) = layers.first() {
         svg.rect(class(&first.material), place.area(-half, half, foot + 0.25 * height, depth));
     }
+    let mut named = f64::NEG_INFINITY;
     for layer in layers {
         let thickness = layer.thickness.at(cut.x);
         if thickness < 1e-3 {
@@ -124,7 +125,9 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place
             draw_stones(svg, area, place.scale);
         }
         svg.line("ground", (area.x, area.y + area.height), (area.x + area.width, area.y + area.height));
-        let (x, y) = (area.x + area.width + 8.0, area.y + 0.5 * area.height);
+        // names of thin layers make room for each other
+        let (x, y) = (area.x + area.width + 8.0, (area.y + 0.5 * area.height).max(named + 28.0));
+        named = y;
         let cut = if thickness > DEEPEST { ", cut off" } else { "" };
         svg.text("small", (x, y), Anchor::Start, &layer.name);
         svg.text("small muted", (x, y + 13.0), Anchor::Start, &format!("{} mm{cut}", plain(1e3 * thickness, 4)));

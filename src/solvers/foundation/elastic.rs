@@ -16,8 +16,9 @@ use super::rectangle::mean_settlement;
 use super::{Bearing, Below, Layer, Support};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Waves shorter than this over the first layer's thickness are not felt below it.
-const SHORTEST: f64 = 16.0;
+/// Waves shorter than this over the first layer's thickness are not felt below it: the pressure there by less than 1e-4 of
+/// itself, settlement by 1e-10.
+const SHORTEST: f64 = 12.0;
 /// Nor do those matter that go so often into the shorter side, however thin the first layer is.
 const FINEST: f64 = 200.0;
 /// Nodes and weights of Gauss and Legendre on -1 .. 1, the positive half of six.
@@ -68,13 +69,25 @@ impl Around {
     }
 }
 
-pub(super) fn support(bearing: &Bearing, layers: &[Layer], below: Below, neighbours: f64) -> Support {
+/// The support, with `waves` of a stack before, which may serve again.
+pub(super) fn support(
+    bearing: &Bearing,
+    layers: &[Layer],
+    below: Below,
+    neighbours: f64,
+    waves: &mut Option<Waves>,
+) -> Support {
     // a layer that has run out is not there; its bottom lies where that of the one above does
     let solid: Vec<Layer> = layers.iter().filter(|layer| layer.thickness > 0.0).copied().collect();
     let sides = [bearing.width, bearing.length];
     let around = Around::of(bearing, neighbours);
     let top = solid[0];
-    let (difference, below_axis) = integrals(sides, &around, &solid, below);
+    let depth = solid.iter().map(|layer| layer.thickness).sum();
+    if waves.as_ref().is_none_or(|waves| waves.of != [top.thickness, depth]) {
+        *waves = Some(Waves::new(sides, &around, top.thickness, depth));
+    }
+    let each = waves.as_ref().map_or(&[][..], |waves| &waves.each);
+    let (difference, below_axis) = integrals(each, &solid, below);
     let compliance = around.endless(sides, top.youngs_modulus, top.poisson_ratio) + difference;
     let at_sleeper = 1.0 / (bearing.width * bearing.length);
     let mut deeper = below_axis.into_iter();
@@ -86,32 +99,57 @@ pub(super) fn support(bearing: &Bearing, layers: &[Layer], below: Below, neighbo
     Support { stiffness: 1.0 / compliance, masses: Vec::new(), pressures }
 }
 
+/// What the plan of the load makes of the waves that are integrated over: the same for every stack whose first layer and
+/// whole are as thick, and most of the work.
+pub(super) struct Waves {
+    /// Thickness of the first layer and of all, m.
+    of: [f64; 2],
+    each: Vec<Wave>,
+}
+
+struct Wave {
+    /// 1/m.
+    k: f64,
+    /// Of its node, 1/m.
+    weight: f64,
+    /// See [`averages`].
+    mean: f64,
+    axis: f64,
+}
+
+impl Waves {
+    fn new(sides: [f64; 2], around: &Around, first: f64, depth: f64) -> Waves {
+        let [a, b] = sides;
+        let reach = around.reach() + a + b;
+        let last = (SHORTEST / first).min(FINEST / a.min(b));
+        let (mut each, mut from) = (Vec::new(), 0.0);
+        while from < last {
+            // short panels where the depth of the whole is felt, later as long as the plan of the load allows
+            let to = f64::min(from + (0.5 * from).clamp(0.3 / depth.max(reach), 4.0 / reach), last);
+            each.extend(NODES.iter().flat_map(|[x, w]| [[*x, *w], [-x, *w]]).map(|[node, weight]| {
+                let k = 0.5 * (from + to) + 0.5 * (to - from) * node;
+                let [mean, axis] = averages(k, sides, around, reach);
+                Wave { k, weight: 0.5 * (to - from) * weight / (2.0 * PI), mean, axis }
+            }));
+            from = to;
+        }
+        Waves { of: [first, depth], each }
+    }
+}
+
 /// Settlement beyond that of the first layer's half-space, m/N, and pressure below the axis at the bottom of each layer,
 /// 1/m^2, for each newton of load.
-fn integrals(sides: [f64; 2], around: &Around, layers: &[Layer], below: Below) -> (f64, Vec<f64>) {
-    let [a, b] = sides;
+fn integrals(waves: &[Wave], layers: &[Layer], below: Below) -> (f64, Vec<f64>) {
     let top = layers[0];
     let endless = 2.0 * (1.0 - top.poisson_ratio * top.poisson_ratio) / top.youngs_modulus;
     let kernel = Kernel::new(layers, below);
-    let reach = around.reach() + a + b;
-    let depth: f64 = layers.iter().map(|layer| layer.thickness).sum();
-    let last = (SHORTEST / top.thickness).min(FINEST / a.min(b));
     let (mut settlement, mut pressures) = (0.0, vec![0.0; layers.len()]);
-    let mut from = 0.0;
-    while from < last {
-        // short panels where the depth of the whole is felt, later as long as the plan of the load allows
-        let to = f64::min(from + (0.5 * from).clamp(0.3 / depth.max(reach), 4.0 / reach), last);
-        for [node, weight] in NODES.iter().flat_map(|[x, w]| [[*x, *w], [-x, *w]]) {
-            let k = 0.5 * (from + to) + 0.5 * (to - from) * node;
-            let weight = 0.5 * (to - from) * weight / (2.0 * PI);
-            let answer = kernel.answer(k);
-            let [mean, axis] = averages(k, sides, around, reach);
-            settlement += weight * (answer.settlement - endless) * mean;
-            for (pressure, found) in pressures.iter_mut().zip(&answer.pressures) {
-                *pressure += weight * k * found * axis;
-            }
+    for Wave { k, weight, mean, axis } in waves {
+        let answer = kernel.answer(*k);
+        settlement += weight * (answer.settlement - endless) * mean;
+        for (pressure, found) in pressures.iter_mut().zip(&answer.pressures) {
+            *pressure += weight * k * found * axis;
         }
-        from = to;
     }
     (settlement, pressures)
 }
@@ -121,9 +159,12 @@ fn integrals(sides: [f64; 2], around: &Around, layers: &[Layer], below: Below) -
 fn averages(k: f64, [a, b]: [f64; 2], around: &Around, reach: f64) -> [f64; 2] {
     let points = 8 + (0.4 * k * reach).ceil() as usize;
     let mut sums = [0.0; 2];
-    for i in 0..points {
-        let (sin, cos) = ((i as f64 + 0.5) / points as f64 * FRAC_PI_2).sin_cos();
+    // from one angle to the next by the theorem of addition: a fifth of the time, and exact to rounding
+    let angle = FRAC_PI_2 / points as f64;
+    let ((step_sin, step_cos), (mut sin, mut cos)) = (angle.sin_cos(), (0.5 * angle).sin_cos());
+    for _ in 0..points {
         let (kx, ky) = (k * cos, k * sin);
+        (sin, cos) = (sin * step_cos + cos * step_sin, cos * step_cos - sin * step_sin);
         let plan = sinc(0.5 * kx * a) * sinc(0.5 * ky * b);
         let others = around.wave(kx, ky);
         sums[0] += plan * plan * others;

@@ -102,12 +102,33 @@ impl Support {
 /// # Errors
 /// A length, modulus or density that is not positive, an angle or Poisson's ratio out of its range, or no layer at all.
 pub fn support(bearing: &Bearing, layers: &[Layer], below: Below, method: Method) -> Result<Support, FoundationError> {
+    support_after(bearing, layers, below, method, &mut None)
+}
+
+/// The supports of one seat on several stacks, each as [`support`] gives it. Elastic stacks as deep as the one before, under a
+/// first layer as thick, share most of the work.
+pub fn supports(
+    bearing: &Bearing,
+    stacks: &[(&[Layer], Below)],
+    method: Method,
+) -> Vec<Result<Support, FoundationError>> {
+    let mut waves = None;
+    stacks.iter().map(|(layers, below)| support_after(bearing, layers, *below, method, &mut waves)).collect()
+}
+
+fn support_after(
+    bearing: &Bearing,
+    layers: &[Layer],
+    below: Below,
+    method: Method,
+    waves: &mut Option<elastic::Waves>,
+) -> Result<Support, FoundationError> {
     error::check(bearing, layers, below, method)?;
     let cone = cone::support(bearing, layers, below);
     Ok(match method {
         Method::StressCone => cone,
         Method::LayeredElastic { neighbours } => {
-            Support { masses: cone.masses, ..elastic::support(bearing, layers, below, neighbours) }
+            Support { masses: cone.masses, ..elastic::support(bearing, layers, below, neighbours, waves) }
         }
     })
 }
