@@ -39,7 +39,7 @@ trackform stiff : open {
 }
 
 track line {
-  sections    = [open: 42 m, stiff: 24 m], stretches = [firm, low]
+  sections    = [open: 42 m, stiff: 24 m], stretches = [firm, low, wedge]
   transitions = [edge: soft_to_stiff]
   rail_ends   = clamped
 }
@@ -120,11 +120,24 @@ study what_helps {
     bay: [0.55, 0.6, 0.65] m
     low.support.stiffness: steps(30 .. 60 MN/m per seat, by = 10 MN/m per seat)
   ]
-  set        = [traffic.total: 100 axles]
+  set        = [ore.speed: 60 km/h]
   minimise   = max(settlement)
   report     = [far_field_settlement, mean(contact_force, over = -20 .. -1 sleepers)]
   subject_to = max(wheel_force) < 200 kN per wheel
 }
+
+tamping levelling {
+  after = 200 axles
+  over  = -20 .. -1 sleepers
+  left  = 10 %
+}
+
+stretch wedge {
+  over   = -12 .. 0 m
+  layers = [stone: 0.35 m, treated: ramp(0.2 .. 0.6 m), fill: rest]
+}
+
+soil treated : fill { youngs_modulus = 300 MPa }
 "#;
 
 struct Planted {
@@ -138,7 +151,8 @@ struct Planted {
     /// stiffness of the pads, `k`, the trackform with the slab, `f`,
     /// which `c`ar runs at all, which `s`ections there are, the `g`rains and the ground of their layers, the `l`ength of sleepers,
     /// what the b`a`y is, which st`r`etches there are, where they lie and what they set, `x`, what one of them changes, `y`, what the
-    /// study asks, `q`, the number of the pads' stiffness, `z`.
+    /// study asks, `q`, the number of the pads' stiffness, `z`,
+    /// when the track is tamped, `m`.
     breaks: &'static str,
     /// What must be known for the mistake to be seen; `*` is everything.
     needs: &'static str,
@@ -299,8 +313,8 @@ const PLANTED: &[Planted] = &[
     breaks("g", needs("s", below(-2, plant("a missing density", "  density        = 2000 kg/m^3", "", Code::E0403)))),
     needs("p", plant("a window off the track", "elements_per_bay = 4", "window           = -80 .. 6 m", Code::E0501)),
     // stretches
-    breaks("r", plant("a stretch of nothing known", "stretches = [firm, low]", "stretches = [firm, lwo]", Code::E0201)),
-    breaks("r", plant("a stretch that is none", "stretches = [firm, low]", "stretches = [firm, wagon]", Code::E0406)),
+    breaks("r", plant("a stretch of nothing known", "stretches = [firm, low, wedge]", "stretches = [firm, lwo, wedge]", Code::E0201)),
+    breaks("r", plant("a stretch that is none", "stretches = [firm, low, wedge]", "stretches = [firm, wagon, wedge]", Code::E0406)),
     breaks("x", below(-1, plant("a stretch without a place", "  over          = -20 .. -1 sleepers", "", Code::E0403))),
     breaks("x", plant("a stretch the wrong way round", "over    = -10 .. -5 sleepers", "over    = -5 .. -10 sleepers", Code::E0505)),
     breaks("x", needs("pr", plant("a stretch off the track", "over    = -10 .. -5 sleepers", "over    = -100 .. -5 sleepers", Code::E0501))),
@@ -324,14 +338,30 @@ const PLANTED: &[Planted] = &[
     breaks("q", plant("values without basis", "steps(30 .. 60 MN/m per seat, by = 10 MN/m per seat)", "[30, 60] MN/m", Code::E0304)),
     breaks("q", plant("steps that miss the end", "by = 10 MN/m per seat)", "by = 20 MN/m per seat)", Code::E0706)),
     needs("q", plant("a range in a grid", "    bay: [0.55, 0.6, 0.65] m", "    bay: 0.55 .. 0.65 m", Code::E0706)),
-    needs("q", plant("a value varied and set", "set        = [traffic.total: 100 axles]", "set        = [bay: 0.6 m]", Code::E0707)),
-    needs("q", plant("a value varied twice", "set        = [traffic.total: 100 axles]", "set        = [low.support: { stiffness = 40 MN/m per seat }]", Code::E0707)),
+    needs("q", plant("a value varied and set", "set        = [ore.speed: 60 km/h]", "set        = [bay: 0.6 m]", Code::E0707)),
+    needs("q", plant("a value varied twice", "set        = [ore.speed: 60 km/h]", "set        = [low.support: { stiffness = 40 MN/m per seat }]", Code::E0707)),
     breaks("q", plant("an unknown sampling", "  minimise   = max(settlement)", "  minimise   = max(settlement), sampling = soboll(16)", Code::E0408)),
     plant("a study of an unknown response", "  minimise   = max(settlement)", "  minimise   = max(setlement)", Code::E0408),
     plant("a goal that is no number", "  minimise   = max(settlement)", "  minimise   = settlement", Code::E0406),
     plant("a limit of something else", "max(wheel_force) < 200 kN per wheel", "max(wheel_force) < 200 mm", Code::E0305),
     plant("a limit that is none", "subject_to = max(wheel_force) < 200 kN per wheel", "subject_to = max(wheel_force)", Code::E0406),
-    below(-6, plant("a goal that is missing", "  minimise   = max(settlement)\n  report     = [far_field_settlement, mean(contact_force, over = -20 .. -1 sleepers)]\n", "", Code::E0403)),
+    below(-6, plant("a goal that is missing", "  minimise   = max(settlement)\n  report     = [far_field_settlement, mean(contact_force, over = -20 .. -1 sleepers)]\n", "\n\n", Code::E0403)),
+    // tamping, trains, layers of stretches
+    needs("tm", plant("tamping in the middle of a train", "  after = 200 axles", "  after = 202 axles", Code::E0602)),
+    needs("tm", plant("tamping after the end", "  after = 200 axles", "  after = 600 axles", Code::E0602)),
+    plant("tamping after sleepers", "  after = 200 axles", "  after = 200 sleepers", Code::E0302),
+    needs("pm", plant("tamping off the track", "  over  = -20 .. -1 sleepers", "  over  = -200 .. -1 sleepers", Code::E0501)),
+    plant("more left than there was", "  left  = 10 %", "  left  = 110 %", Code::E0405),
+    breaks("m", plant("tamping of another kind", "tamping levelling {", "tmaping levelling {", Code::E0401)),
+    breaks("t", plant("half of the traffic", "  trains = ore", "  trains = [ore: 50 %]", Code::E0407)),
+    breaks("t", plant("a train twice", "  trains = ore", "  trains = [ore: 50 %, ore: 50 %]", Code::E0404)),
+    needs("*", plant("two layers of what is left", "treated: ramp(0.2 .. 0.6 m), fill: rest]", "treated: rest, fill: rest]", Code::E0423)),
+    needs("*", plant("a stretch of nothing left", "treated: ramp(0.2 .. 0.6 m), fill: rest]", "treated: ramp(0.2 .. 1.6 m), fill: rest]", Code::E0423)),
+    needs("*", plant("a stretch of another depth", "treated: ramp(0.2 .. 0.6 m), fill: rest]", "treated: ramp(0.2 .. 0.6 m), fill: 1 m]", Code::E0424)),
+    plant("a layer of a stretch of nothing known", "treated: ramp(0.2 .. 0.6 m), fill: rest]", "treatde: ramp(0.2 .. 0.6 m), fill: rest]", Code::E0201),
+    breaks("x", plant("an approach slab without a modulus", "  over   = -12 .. 0 m", "  over   = -12 .. 0 m, approach_slab = { thickness = 0.3 m, density = 2500 kg/m^3, depth = 0.5 m }", Code::E0403)),
+    breaks("x", needs("psb", plant("an approach slab that hangs nowhere", "  over   = -12 .. 0 m", "  over   = -12 .. -6 m, approach_slab = { thickness = 0.3 m, youngs_modulus = 34 GPa, density = 2500 kg/m^3, depth = 0.5 m }", Code::E0425))),
+    needs("*", plant("an approach slab in the air", "  over   = -12 .. 0 m", "  over   = -12 .. 0 m, approach_slab = { thickness = 0.3 m, youngs_modulus = 34 GPa, density = 2500 kg/m^3, depth = 1.2 m }", Code::E0426)),
     // places
     needs("p", plant("sleeper 0", "[-20, -5, -1, +1] sleepers", "[-20, -5, -1, 0] sleepers", Code::E0501)),
     needs("p", plant("a sleeper off the track", "[-20, -5, -1, +1] sleepers", "[-200, -5, -1, +1] sleepers", Code::E0501)),

@@ -190,21 +190,21 @@ impl Checker<'_> {
         let whole = places.seats_of(section);
         let here: Vec<(&Instance, Range<usize>)> =
             stood.iter().filter_map(|instance| Some((instance, instance.common(&whole)?))).collect();
-        let mut sound = true;
-        let mut put = |checker: &mut Self, stretches: &[&Instance], seats: Range<usize>| match checker.changed(
-            form,
-            stretches,
-            places,
-            (section, layers),
-            seats.clone(),
-        ) {
-            Some(changed) => laid[seats.start - whole.start..seats.end - whole.start].clone_from_slice(&changed),
-            None => sound = false,
+        let mut put = |checker: &mut Self, stretches: &[&Instance], seats: Range<usize>| {
+            let changed = checker.changed(form, stretches, places, (section, layers), seats.clone());
+            if let Some(changed) = &changed {
+                laid[seats.start - whole.start..seats.end - whole.start].clone_from_slice(changed);
+            }
+            changed.is_some()
         };
         // each alone first, so that a mistake in one is said once
-        for (instance, seats) in &here {
-            put(self, &[instance], seats.clone());
-        }
+        let wrong: Vec<&Instance> = here
+            .iter()
+            .filter(|(instance, seats)| !put(self, &[instance], seats.clone()))
+            .map(|(instance, _)| *instance)
+            .collect();
+        let mut sound = wrong.is_empty();
+        let told = |stretches: &[&Instance]| wrong.iter().any(|w| stretches.iter().any(|s| std::ptr::eq(*w, *s)));
         let over =
             |seat: usize| here.iter().filter(|(_, seats)| seats.contains(&seat)).map(|(i, _)| *i).collect::<Vec<_>>();
         let same =
@@ -213,8 +213,8 @@ impl Checker<'_> {
         while start < whole.end && here.len() > 1 {
             let stretches = over(start);
             let end = (start + 1..whole.end).find(|seat| !same(&over(*seat), &stretches)).unwrap_or(whole.end);
-            if stretches.len() > 1 {
-                put(self, &stretches, start..end);
+            if stretches.len() > 1 && !told(&stretches) {
+                sound &= put(self, &stretches, start..end);
             }
             start = end;
         }
