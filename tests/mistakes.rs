@@ -616,6 +616,20 @@ fn a_file_that_says_nothing_is_told_so() {
     assert_eq!(codes("use std\n"), []);
 }
 
+/// Nobody waits for so many passages, and no plan lists them.
+#[test]
+fn a_run_of_too_many_blocks_is_refused_at_once() {
+    let long = SCENE.replace("total  = 500 axles", "total  = 1_000_000_000 axles");
+    for trains in ["ore", "[ore: 60 %, empty: 40 %]"] {
+        let text =
+            long.replace("trains = ore", &format!("trains = {trains}")) + "\ntrain empty : ore { speed = 60 km/h }\n";
+        let text = text.replace("geometric(4 axles, 0.2)", "4 axles");
+        let refused = compiled(&text);
+        let limit: Vec<_> = refused.diagnostics.iter().filter(|d| d.is_error()).map(|d| d.code).collect();
+        assert_eq!(limit, [Code::E0103], "{}", told(&refused));
+    }
+}
+
 #[test]
 fn deep_nesting_is_refused() {
     for open in ["{ a = ", "[", "(", "f("] {

@@ -1,7 +1,7 @@
 //! Which trains run between two exchanges: whole trains, up to the next stop, in the order and directions of the traffic.
 
 use super::{Block, Blocks, PassagePlan, Runner};
-use crate::scenario::{Direction, Tamping, Train, Update};
+use crate::scenario::{Direction, Tamping, Train};
 
 /// Parts into which a block of unlike trains is divided when it settles the track: within a part they run one kind after the
 /// other, so that the order of the trains is kept to within a sixteenth of the block.
@@ -52,11 +52,7 @@ impl Blocks {
 
     /// Trains that the policy wants to send next, where it knows without a look at forces.
     pub fn wanted(&self, before: u64) -> Option<u64> {
-        let axles = match self.update {
-            Update::Fixed { axles } => axles,
-            Update::Geometric { first, ratio } => first.max((ratio * before as f64) as u64),
-            Update::Adaptive { .. } => return None,
-        };
+        let axles = self.update.axles_after(before)?;
         let wanted = self.position(before + axles) - self.position(before);
         Some(wanted.clamp(1, self.trains_left(before)))
     }

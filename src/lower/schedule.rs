@@ -20,7 +20,7 @@ pub(super) fn blocks(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic) ->
     if !traffic.is_mixed() {
         sound &= between_trains(pass, &recorded, total, &traffic.train);
     }
-    if !sound {
+    if !sound || !few_enough(pass, scenario, update, total) {
         return None;
     }
     let sequence = traffic.sequence();
@@ -50,6 +50,31 @@ pub(super) fn blocks(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic) ->
     }
     share(pass, &blocks);
     Some(blocks)
+}
+
+/// Blocks of a run at most: each is a passage of every kind of train.
+const MOST_BLOCKS: u64 = 20_000;
+
+/// Whether the policy cuts the run into as many blocks as anybody could wait for.
+fn few_enough(pass: &mut Pass, scenario: &Scenario, update: Update, total: u64) -> bool {
+    let (mut before, mut blocks) = (0, 0);
+    while before < total && blocks <= MOST_BLOCKS {
+        let Some(axles) = update.axles_after(before) else { return true };
+        before += axles.max(1);
+        blocks += 1;
+    }
+    if blocks <= MOST_BLOCKS {
+        return true;
+    }
+    let message =
+        format!("{total} axles make more than {MOST_BLOCKS} blocks between two exchanges of forces and settlement");
+    let mut mistake = Diagnostic::new(Code::E0103, message)
+        .help("let them grow with the axles, `update_every = adaptive(0.003 mm)` or `geometric(4 axles, ratio = 0.2)`");
+    if let Some(span) = scenario.solve.update_span {
+        mistake = mistake.at(span, "too short");
+    }
+    pass.diagnostics.push(mistake);
+    false
 }
 
 /// Whether total and blocks of traffic of one kind are whole trains.
