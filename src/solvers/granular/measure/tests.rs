@@ -100,13 +100,11 @@ proptest! {
         for region in boxes(&cuts) {
             let integral = clump::union_in(&region.0, &[(centre, radius)]);
             let error = (region.share_of_sphere((centre, radius)) - integral).abs() / radius.powi(3);
-            dbg!(error);
             prop_assert!(error < 1e-10, "{error}");
         }
         let region = Region::sphere([0.3, 0.2, 0.1], 1.0).unwrap();
         let integral = clump::union_in(&region.0, &[(centre, radius)]);
         let error = (region.share_of_sphere((centre, radius)) - integral).abs() / radius.powi(3);
-        dbg!(error);
         prop_assert!(error < 1e-10, "{error}");
     }
 }
