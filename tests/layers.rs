@@ -3,7 +3,7 @@
 
 use trackbed::check::NoModules;
 use trackbed::diag::Code;
-use trackbed::scenario::{Foot, Scenario, Seat};
+use trackbed::scenario::{Scenario, Seat};
 use trackbed::{Compiled, compile};
 
 /// Half a B70: 1.3 m x 0.3 m.
@@ -55,10 +55,8 @@ fn seat(scenario: &Scenario, number: i32) -> &Seat {
 
 /// Stiffness and damping of a support, N/m and N s/m.
 fn support(scenario: &Scenario, number: i32) -> (f64, f64) {
-    match &seat(scenario, number).foot {
-        Foot::Sleeper { support, .. } => (*support.stiffness, *support.damping),
-        other => panic!("{other:?}"),
-    }
+    let support = seat(scenario, number).support().unwrap();
+    (*support.stiffness, *support.damping)
 }
 
 fn stiffness(scenario: &Scenario, number: i32) -> f64 {

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 use trackbed::check::{Modules, NoModules, Override};
 use trackbed::diag::{Code, Severity};
-use trackbed::scenario::{BedEnds, Contact, Foot, Scenario, Shape, Strength, Tier, Volume};
+use trackbed::scenario::{BedEnds, Contact, Force, Loading, Scenario, Seat, Shape, Strength, Tier, Volume};
 use trackbed::{Compiled, compile};
 
 fn shipped(name: &str, overrides: &[&str]) -> Compiled {
@@ -92,11 +92,8 @@ fn with_a_law_the_papers_scene_runs_as_without_grains() {
     assert!(codes(&full).contains(&Code::E0422), "what grains would have given is noted");
     let supports = |compiled: &Compiled| -> Vec<(f64, Option<(f64, f64)>)> {
         let seats = &compiled.scenario.as_ref().unwrap().track.seats;
-        let support = |foot: &Foot| match foot {
-            Foot::Sleeper { support, .. } => Some((*support.stiffness, *support.damping)),
-            _ => None,
-        };
-        seats.iter().map(|seat| (seat.x, support(&seat.foot))).collect()
+        let support = |seat: &Seat| seat.support().map(|support| (*support.stiffness, *support.damping));
+        seats.iter().map(|seat| (seat.x, support(seat))).collect()
     };
     assert_eq!(supports(&full), supports(&plain));
 }
@@ -126,6 +123,29 @@ fn the_box_test_is_checked_whole() {
         let errors: Vec<Code> = found.diagnostics.iter().filter(|d| d.is_error()).map(|d| d.code).collect();
         assert!(!errors.is_empty() && errors.iter().all(|c| *c == code), "{wrong}\n{}", told(&found));
     }
+}
+
+#[test]
+fn a_rig_is_a_scene_without_rails() {
+    let scene = |overrides: &[&str]| shipped("box_test.track", overrides).scenario.unwrap();
+    let scenario = scene(&[]);
+    let Some(Loading::Rig(loads)) = &scenario.loading else { panic!("{:?}", scenario.loading) };
+    let Force::Cyclic { range, frequency, .. } = loads[0].force else { panic!("{:?}", loads[0].force) };
+    // of one rail: half of what acts on the sleeper
+    assert_eq!((*range[0], *range[1], *frequency, loads[0].cycles), (2.5e3, 30e3, 5.0, 10_000));
+    let (section, seat) = (&scenario.track.sections[0], &scenario.track.seats[0]);
+    assert!(section.rail.is_none() && seat.pad.is_none() && seat.support().is_some(), "{seat:?}");
+    let drawn = trackbed::report::drawing_svg(&scenario);
+    assert!(drawn.contains("actuator: 2.5 to 30 kN per seat, 5 Hz, 10\u{2009}000 times"), "{drawn}");
+    assert!(!drawn.contains("class=\"steel\""), "nothing is drawn that is not there");
+    // grains alone know the support of a sleeper on layers without a modulus
+    let text = std::fs::read_to_string("scenarios/box_test.track").unwrap();
+    let grains = "granular stone { grading = gradings.ballast_16_64, density = 2700 kg/m^3, contact_stiffness = 13 MN/m per contact, friction = 0.7 }";
+    let text = text.replace("granular stone : ballasts.granite_31_63 { grading = gradings.ballast_16_64 }", grains);
+    let scenario = compile("box.track", &text, &NoModules, &[]).scenario.unwrap();
+    let seat = &scenario.track.seats[0];
+    assert!(seat.support().is_none() && seat.spring().is_none() && seat.is_ballasted(), "{seat:?}");
+    assert!(trackbed::report::drawing_svg(&scenario).contains("actuator"));
 }
 
 #[test]

@@ -727,7 +727,9 @@ fn set(overrides: &[&str]) -> Compiled {
 
 #[test]
 fn overrides_act_as_if_the_line_had_been_edited() {
-    let pad = |c: &Compiled, seat: usize| c.scenario.as_ref().unwrap().track.seats[seat].pad.stiffness.value;
+    let pad = |c: &Compiled, seat: usize| {
+        c.scenario.as_ref().unwrap().track.seats[seat].pad.as_ref().unwrap().stiffness.value
+    };
     let total = |c: &Compiled| match &c.scenario.as_ref().unwrap().loading {
         Some(trackbed::scenario::Loading::Traffic(t)) => t.total.value,
         _ => 0,

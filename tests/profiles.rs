@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use trackbed::check::{DataError, Folder, LARGEST_DATA_FILE, Modules};
 use trackbed::diag::Code;
-use trackbed::scenario::{Beam, Foot, Integrator, Loading, RailEnds, Scenario, Seat, Support, TimeStep, Train};
+use trackbed::scenario::{Beam, Integrator, Loading, RailEnds, Scenario, Seat, Support, TimeStep, Train};
 use trackbed::{Compiled, compile, graph, results};
 
 /// Files in memory.
@@ -64,10 +64,7 @@ fn seat(scenario: &Scenario, number: i32) -> &Seat {
 }
 
 fn support(scenario: &Scenario, number: i32) -> &Support {
-    match &seat(scenario, number).foot {
-        Foot::Sleeper { support, .. } => support,
-        other => panic!("{other:?}"),
-    }
+    seat(scenario, number).support().unwrap()
 }
 
 fn train(scenario: &Scenario) -> &Train {
@@ -124,9 +121,9 @@ fn pads_and_supports_vary_with_their_damping() {
         .replacen("pad = pads.ahmadi_2026,", "", 1)
         .replacen("  support = { stiffness = 50 MN/m per seat, damping_time = 1 ms }\n", "", 1),
     );
-    close(*seat(&scenario, -19).pad.stiffness, 40e6);
-    close(*seat(&scenario, -1).pad.stiffness, 100e6);
-    close(*seat(&scenario, -1).pad.damping, 20e3);
+    close(*seat(&scenario, -19).pad.as_ref().unwrap().stiffness, 40e6);
+    close(*seat(&scenario, -1).pad.as_ref().unwrap().stiffness, 100e6);
+    close(*seat(&scenario, -1).pad.as_ref().unwrap().damping, 20e3);
     close(*support(&scenario, -19).stiffness, 15e6);
     // per sleeper: half of 30 + 60 (5.4 / 6)
     close(*support(&scenario, -1).stiffness, 42e6);
@@ -145,7 +142,7 @@ fn profiles_have_names_and_can_be_taken_over() {
     .replace("pad = pads.ahmadi_2026, sleeper", "pad = { stiffness = graded.stiffness }, sleeper")
     .replace("  pad.damping_time = 0.1 ms\n", "")
     .replace("\nlet k = graded.stiffness", "");
-    close(*seat(&sound(&text), -9).pad.stiffness, (40.0 + 60.0 * 6.6 / 12.0) * 1e6);
+    close(*seat(&sound(&text), -9).pad.as_ref().unwrap().stiffness, (40.0 + 60.0 * 6.6 / 12.0) * 1e6);
     let basis = scene("", "", "support s { stiffness = ramp(40 .. 50 MN/m) per seat }\nlet x = 1")
         .replace("stiffness = 50 MN/m per seat,", "stiffness = s.stiffness,")
         .replace("\nlet x = 1", "");
@@ -379,14 +376,14 @@ fn a_timoshenko_beam_needs_its_rails_shear_stiffness() {
     let given =
         text.replace("bending_stiffness = 6.4 MN m^2 }", "bending_stiffness = 6.4 MN m^2, shear_stiffness = 240 MN }");
     let scenario = sound(&given);
-    let rail = &scenario.track.sections[0].rail;
+    let rail = &scenario.track.sections[0].rail.as_ref().unwrap();
     close(*rail.shear_stiffness.unwrap(), 240e6);
     close(rail.rotary_inertia, 6.4e6 * 7850.0 / 210e9);
     let stated = given.replace(
         "mass = 60 kg/m, bending_stiffness = 6.4 MN m^2",
         "density = 7800 kg/m^3, area = 77 cm^2, youngs_modulus = 210 GPa, second_moment = 3038 cm^4",
     );
-    close(sound(&stated).track.sections[0].rail.rotary_inertia, 7800.0 * 3038e-8);
+    close(sound(&stated).track.sections[0].rail.as_ref().unwrap().rotary_inertia, 7800.0 * 3038e-8);
 }
 
 /// Rows of the table of a run, by sleeper, at the first count.
@@ -419,7 +416,7 @@ fn an_under_sleeper_pad_is_a_spring_in_series() {
     }
     let small = scene("usp = { bedding_modulus = 0.2 N/mm^3 }, sleeper = sleepers.B70 { base_area = 0.5 m^2 }", "", "")
         .replacen("sleeper = sleepers.B70, spacing", "spacing", 1);
-    close(*support(&sound(&small), -5).usp.unwrap().stiffness, 50e6);
+    close(*seat(&sound(&small), -5).usp().unwrap().stiffness, 50e6);
 }
 
 #[test]
@@ -541,11 +538,7 @@ fn random_levels_and_pieces_run_on_where_they_meet() {
     let whole = parts.replacen("more: 12 m, open: 12 m", "open: 12 m, more: 12 m", 1);
     let supports = |text: &str| -> Vec<f64> {
         let scenario = sound(text);
-        let feet = scenario.track.seats.iter().filter_map(|seat| match &seat.foot {
-            Foot::Sleeper { support, .. } => Some(*support.stiffness),
-            _ => None,
-        });
-        feet.collect()
+        scenario.track.seats.iter().filter_map(|seat| Some(*seat.support()?.stiffness)).collect()
     };
     assert_eq!(supports(&parts), supports(&whole));
 }
@@ -573,7 +566,7 @@ fn arithmetic_acts_on_every_value_of_a_profile() {
     let stiffness = |lets: &str, value: &str| {
         let pad = format!("pad = {{ damping = 5 kN s/m, stiffness = {value} }}, sleeper");
         let scenario = sound(&scene("", "", lets).replacen("pad = pads.ahmadi_2026, sleeper", &pad, 1));
-        let of = |number: i32| *seat(&scenario, number).pad.stiffness / 1e6;
+        let of = |number: i32| *seat(&scenario, number).pad.as_ref().unwrap().stiffness / 1e6;
         [of(-19), of(-10), of(-1)]
     };
     let plain = stiffness("let k = ramp(40 .. 60 MN/m)", "k");

@@ -2,18 +2,19 @@
 
 use super::Checker;
 use super::geometry::Places;
-use super::tier::changes;
 use super::track::given;
-use super::value::{Record, Slot, Val};
+use super::value::{Number, Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::response::{Place, Response};
 use crate::scenario::{
-    Beam, Given, Integrator, Record as Kept, Solve, StaticLoad, Target, TimeStep, Traffic, Update, VolumeRecord,
+    Beam, Force, Given, Integrator, Record as Kept, RigLoad, Solve, Target, TimeStep, Traffic, Update, VolumeRecord,
+    Wave,
 };
 use crate::units::Dimension;
 
 impl Checker<'_> {
-    pub(super) fn loads(&mut self, record: &Record, places: &Option<Places>) -> Option<Vec<StaticLoad>> {
+    /// A load at each of its places.
+    pub(super) fn loads(&mut self, record: &Record, places: &Option<Places>) -> Option<Vec<RigLoad>> {
         let on = if record.word("on")? == "rail" { Target::Rail } else { Target::Sleepers };
         let force = record.get("force")?;
         let of = match &force.value {
@@ -33,16 +34,13 @@ impl Checker<'_> {
         }
         let places = places.as_ref()?;
         let chainages = self.chainages_at(record, "at", places)?;
-        let loads: Vec<Option<StaticLoad>> = chainages
-            .into_iter()
-            .map(|(x, _)| {
-                let x = if on == Target::Sleepers { places.seats[places.nearest_seat(x)?].0 } else { x };
-                // the other forces are checked and cannot be run yet
-                let force = given(record, "force").filter(|_| changes(record).is_none())?;
-                Some(StaticLoad { name: record.name.clone(), on, x, force })
-            })
-            .collect();
-        loads.into_iter().collect()
+        let (force, speed) = (acting(record)?, given(record, "speed")?);
+        let cycles = record.number("total")?.value as u64;
+        let load = |x: f64| {
+            let x = if on == Target::Sleepers { places.seats[places.nearest_seat(x)?].0 } else { x };
+            Some(RigLoad { name: record.name.clone(), on, x, force, speed, cycles })
+        };
+        chainages.into_iter().map(|(x, _)| load(x)).collect()
     }
 
     pub(super) fn solve(&mut self, record: &Record, places: &Option<Places>) -> Option<Solve> {
@@ -188,6 +186,20 @@ impl Checker<'_> {
         }
         Some(count)
     }
+}
+
+/// The force of a load over one rail.
+fn acting(record: &Record) -> Option<Force> {
+    let Val::Word { arguments, .. } = &record.get("force")?.value else {
+        return given(record, "force").map(Force::Constant);
+    };
+    let range = arguments.get("range")?;
+    let (Val::Range(least, most), Val::Number(frequency)) = (&range.value, &arguments.get("frequency")?.value) else {
+        return None;
+    };
+    let of_rail = |n: Number| Given { value: n.of_rail(), origin: range.origin };
+    let frequency = Given { value: frequency.value, origin: arguments.get("frequency")?.origin };
+    Some(Force::Cyclic { range: [of_rail(*least), of_rail(*most)], frequency, wave: Wave::Sine })
 }
 
 /// The most cycles of any load that comes back.

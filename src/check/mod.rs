@@ -54,7 +54,7 @@ pub use overrides::Override;
 pub use resolve::resolve;
 
 use crate::diag::{self, Code, Diagnostic, FileId, Sources, Span};
-use crate::scenario::{Evidence, LibraryEntry, Loading, Scenario, Study, Traffic};
+use crate::scenario::{Evidence, LibraryEntry, Loading, RigLoad, Scenario, Study, Traffic};
 use crate::schema::{self, Role};
 use crate::syntax::tree::{Item, Value};
 use geometry::Places;
@@ -370,7 +370,10 @@ impl Checker<'_> {
         let loads: Vec<_> = loads.into_iter().collect::<Option<Vec<_>>>()?.into_iter().flatten().collect();
         let loading = match (traffic_record.is_some(), loads.is_empty()) {
             (true, _) => Some(Loading::Traffic(traffic?)),
-            (false, false) => Some(Loading::Static(loads)),
+            (false, false) => Some(match loads.iter().map(RigLoad::at_rest).collect() {
+                Some(at_rest) => Loading::Static(at_rest),
+                None => Loading::Rig(loads),
+            }),
             (false, true) => None,
         };
         let kept: Vec<_> = records.into_iter().collect::<Option<_>>()?;

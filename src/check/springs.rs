@@ -58,7 +58,11 @@ impl Checker<'_> {
             seats: Some(range.clone()),
             smooth: false,
         };
-        let pad = built.pad.as_ref().and_then(|pad| self.lay_spring(pad, places, "pad", &cover));
+        let pad = match &built.pad {
+            Some(Some(pad)) => self.lay_spring(pad, places, "pad", &cover).map(Some),
+            Some(None) => Some(None),
+            None => None,
+        };
         let settlement = built.settlement.as_ref().and_then(|along| self.lay(along, places, &cover("settlement")));
         let foot = match built.foot.as_ref() {
             Some(Base::Sleeper(bed)) => self.lay_bed(built, bed, places, range.clone(), &cover),
@@ -70,27 +74,31 @@ impl Checker<'_> {
         let (pad, settlement, foot, carried) = (pad?, settlement?, foot?, carried?);
         let mut seats = Vec::with_capacity(range.len());
         for (i, &(x, section, transition, number)) in places.seats[range].iter().enumerate() {
-            let (stiffness, damping) = self.spring_at(&pad, x)?;
+            let pad = match &pad {
+                Some(pad) => Some(self.pad_at(pad, x)?),
+                None => None,
+            };
             let foot = match &foot {
                 LaidFoot::Sleeper { mass, support, seating, usp } => {
-                    let (stiffness, damping) = match support {
+                    let support = match support {
                         LaidSupport::Stated(spring) => {
                             let by = carried.get(i).map_or(1.0, |carried| carried.change);
                             let (stiffness, damping) = self.spring_at(spring, x)?;
-                            (scaled(stiffness, by), scaled(damping, by))
+                            let (stiffness, damping) = (scaled(stiffness, by), scaled(damping, by));
+                            Some(Support { stiffness, damping, seating: *seating })
                         }
-                        LaidSupport::OfLayers { time } => {
-                            let stiffness = Given::derived(carried.get(i)?.stiffness);
-                            (stiffness, Given { value: **time * *stiffness, origin: time.origin })
-                        }
+                        LaidSupport::OfLayers { time } => carried.get(i).map(|carried| {
+                            let stiffness = Given::derived(carried.stiffness);
+                            let damping = Given { value: **time * *stiffness, origin: time.origin };
+                            Support { stiffness, damping, seating: *seating }
+                        }),
                     };
                     let usp = usp.as_ref().map(|(usp, modulus)| usp.at(modulus, x));
-                    Foot::Sleeper { mass: *mass, support: Support { stiffness, damping, seating: *seating, usp } }
+                    Foot::Sleeper { mass: *mass, support, usp }
                 }
                 LaidFoot::Fixed(foot) => foot.clone(),
             };
             let (initial_settlement, sleeper) = (*settlement.at(x), built.sleeper_body());
-            let pad = Pad { stiffness, damping };
             let onto_subgrade = carried.get(i).map(|carried| carried.onto_subgrade);
             seats.push(Seat { number, transition, x, section, pad, foot, sleeper, initial_settlement, onto_subgrade });
         }
@@ -175,6 +183,11 @@ impl Checker<'_> {
             None => None,
         };
         Some(LaidSpring { record: &spring.record, stiffness: stiffness?, damping, time: spring.time })
+    }
+
+    fn pad_at(&mut self, pad: &LaidSpring<'_>, x: f64) -> Option<Pad> {
+        let (stiffness, damping) = self.spring_at(pad, x)?;
+        Some(Pad { stiffness, damping })
     }
 
     /// Stiffness and damping at a chainage; a damping time goes with the stiffness there.

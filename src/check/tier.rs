@@ -75,7 +75,7 @@ fn forms(track: &Record) -> impl Iterator<Item = &Record> {
 }
 
 /// What of a load is more than a constant force at one place.
-pub(super) fn changes(load: &Record) -> Option<&Slot> {
+fn changes(load: &Record) -> Option<&Slot> {
     let cyclic = load.get("force").filter(|force| matches!(force.value, Val::Word { .. }));
     let moves = load.get("speed").filter(|speed| matches!(speed.value, Val::Number(n) if n.value > 0.0));
     cyclic.or(moves)

@@ -18,12 +18,14 @@ const STEEL_MODULUS: f64 = 210e9;
 /// A trackform as far as it is understood; the outer `None` of a part is one that is not.
 pub(super) struct Built {
     pub name: String,
-    pub rail: Option<Rail>,
+    /// None at all in a rig that leaves it out.
+    pub rail: Option<Option<Rail>>,
     pub spacing: Option<Given>,
     pub slab: Option<Slab>,
     pub sleeper: Option<Rc<Record>>,
     pub auxiliary_rails: Option<Option<AuxiliaryRails>>,
-    pub pad: Option<Damped>,
+    /// As `rail`.
+    pub pad: Option<Option<Damped>>,
     pub foot: Option<Base>,
     pub settlement: Option<Along>,
     pub layers: Option<Vec<Stratum>>,
@@ -93,8 +95,8 @@ fn base_area(sleeper: &Record) -> Option<f64> {
 impl Checker<'_> {
     /// The parts of a trackform, or of one that a stretch extends.
     pub(super) fn trackform(&mut self, form: &Record, of_stretch: bool) -> Built {
-        let rail = self.upper(form, "rail", "to carry the wheels").and_then(|r| self.rail(&r));
-        let pad = self.upper(form, "pad", "between rail and seat").and_then(|r| self.damped(&r));
+        let rail = self.upper(form, "rail", "to carry the wheels", |checker, record| checker.rail(record));
+        let pad = self.upper(form, "pad", "between rail and seat", |checker, record| checker.damped(record));
         let spacing = given(form, "spacing");
         let auxiliary_rails = self.auxiliary_rails(form);
         let settlement = self.along(form, "settlement");
@@ -169,10 +171,19 @@ impl Checker<'_> {
         }
     }
 
-    /// A part above the sleepers, which a rig for sleepers does without.
-    fn upper(&mut self, form: &Record, name: &str, why: &str) -> Option<Rc<Record>> {
-        let left_out = self.asked.rig && form.record(name).is_none();
-        if left_out { None } else { self.part(form, name, why) }
+    /// A part above the sleepers, which a rig for sleepers does without: `Some(None)`.
+    fn upper<T>(
+        &mut self,
+        form: &Record,
+        name: &str,
+        why: &str,
+        read: fn(&mut Self, &Rc<Record>) -> Option<T>,
+    ) -> Option<Option<T>> {
+        if self.asked.rig && form.record(name).is_none() {
+            return (!form.unknown(name)).then_some(None);
+        }
+        let record = self.part(form, name, why)?;
+        read(self, &record).map(Some)
     }
 
     /// A part that a trackform cannot do without.

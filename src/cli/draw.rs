@@ -21,9 +21,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     show(&compiled);
     let Some(scenario) = compiled.scenario.as_ref().filter(|_| !failed(&compiled)) else {
         if !failed(&compiled) {
-            terminal::error(
-                "there is nothing to draw: the scene is not complete, the file has no `track`, or its track has no rails, which this version cannot draw",
-            );
+            terminal::error("there is nothing to draw: the scene is not complete, or the file has no `track`");
         }
         return Outcome::Failed;
     };

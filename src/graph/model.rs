@@ -9,7 +9,7 @@ pub fn model(node: &TrackNode) -> solver::TrackModel {
     let track = &node.track;
     solver::TrackModel {
         ends: [track.start(), track.end()],
-        rail: track.sections.iter().map(|section| rail(section, node.beam)).collect(),
+        rail: track.sections.iter().filter_map(|section| rail(section, node.beam)).collect(),
         seats: track.seats.iter().map(seat).collect(),
         slabs: track.sections.iter().filter_map(slab).collect(),
         auxiliary_rails: track.auxiliary_rails.iter().map(auxiliary_rail).collect(),
@@ -32,34 +32,39 @@ fn irregularity(profile: &Profile) -> solver::Irregularity {
     solver::Irregularity::cubics(cubics.map(cubic).collect())
 }
 
-fn rail(section: &Section, beam: Beam) -> solver::RailSection {
-    solver::RailSection {
+fn rail(section: &Section, beam: Beam) -> Option<solver::RailSection> {
+    let rail = section.rail.as_ref()?;
+    Some(solver::RailSection {
         start: section.start,
         end: section.end,
-        mass: *section.rail.mass,
-        bending_stiffness: *section.rail.bending_stiffness,
-        shear: match (beam, section.rail.shear_stiffness) {
+        mass: *rail.mass,
+        bending_stiffness: *rail.bending_stiffness,
+        shear: match (beam, rail.shear_stiffness) {
             (Beam::Timoshenko, Some(stiffness)) => {
-                Some(solver::Shear { stiffness: *stiffness, rotary_inertia: section.rail.rotary_inertia })
+                Some(solver::Shear { stiffness: *stiffness, rotary_inertia: rail.rotary_inertia })
             }
             _ => None,
         },
-    }
+    })
 }
 
+/// A pad or a support that is not there has no stiffness, which the solver refuses.
 fn seat(seat: &scenario::Seat) -> solver::Seat {
+    let (pad_stiffness, pad_damping) = seat.pad.as_ref().map_or((0.0, 0.0), |pad| (*pad.stiffness, *pad.damping));
     solver::Seat {
         x: seat.x,
-        pad_stiffness: *seat.pad.stiffness,
-        pad_damping: *seat.pad.damping,
+        pad_stiffness,
+        pad_damping,
         foot: match &seat.foot {
-            Foot::Sleeper { mass, support } => {
-                let spring = support.spring();
+            Foot::Sleeper { mass, .. } => {
+                let spring = seat.spring();
                 solver::Foot::Sleeper {
                     mass: **mass,
-                    support_stiffness: spring.stiffness,
-                    support_damping: spring.damping,
-                    seating: spring.seating.map(|(stiffness, closure)| solver::Seating { stiffness, closure }),
+                    support_stiffness: spring.map_or(0.0, |spring| spring.stiffness),
+                    support_damping: spring.map_or(0.0, |spring| spring.damping),
+                    seating: spring
+                        .and_then(|spring| spring.seating)
+                        .map(|(stiffness, closure)| solver::Seating { stiffness, closure }),
                 }
             }
             Foot::Rigid => solver::Foot::Rigid,
@@ -144,18 +149,21 @@ pub fn level(node: &TrackNode, settlement: &[f64]) -> solver::TrackLevel {
     solver::TrackLevel { settlements: settlement.to_vec(), ends: [end(0), end(last)] }
 }
 
-/// Deflection of the rail under gravity, m, of a long track that is everywhere as at one seat.
+/// Deflection of the rail under gravity, m, of a long track that is everywhere as at one seat; none without a rail.
 fn sag(track: &Track, seat: usize, gravity: f64) -> f64 {
     let per_seat = track.bay(seat) * gravity;
     let seat = &track.seats[seat];
     let form = &track.sections[seat.section];
-    let rail = *form.rail.mass * per_seat; // N a seat
+    let (Some(rail), Some(pad)) = (&form.rail, &seat.pad) else { return 0.0 };
+    let on_seat = *rail.mass * per_seat; // N
     let above = track.auxiliary_rails.iter().find(|span| (span.start..=span.end).contains(&seat.x));
     let beside = above.map_or(0.0, |span| *span.rails.rail.mass * per_seat);
     let below = match (&seat.foot, &form.slab) {
-        (Foot::Sleeper { mass, support }, _) => support.spring().compression(rail + beside + **mass * gravity),
-        (Foot::Slab, Some(slab)) => *form.rail.mass * gravity / *slab.foundation_stiffness,
+        (Foot::Sleeper { mass, .. }, _) => {
+            seat.spring().map_or(0.0, |spring| spring.compression(on_seat + beside + **mass * gravity))
+        }
+        (Foot::Slab, Some(slab)) => *rail.mass * gravity / *slab.foundation_stiffness,
         _ => 0.0,
     };
-    rail / *seat.pad.stiffness + below
+    on_seat / *pad.stiffness + below
 }

@@ -57,11 +57,12 @@ fn contact(scenario: &Scenario, blocks: &Blocks) -> f64 {
 }
 
 fn sleeper(scenario: &Scenario) -> f64 {
-    let of_seat = |seat: &crate::scenario::Seat| match &seat.foot {
-        Foot::Sleeper { mass, support } => ((*seat.pad.stiffness + *support.stiffness) / **mass).sqrt() / (2.0 * PI),
-        _ => 0.0,
+    let of_seat = |seat: &crate::scenario::Seat| {
+        let Foot::Sleeper { mass, .. } = &seat.foot else { return None };
+        let (pad, support) = (seat.pad.as_ref()?, seat.support()?);
+        Some(((*pad.stiffness + *support.stiffness) / **mass).sqrt() / (2.0 * PI))
     };
-    scenario.track.seats.iter().map(of_seat).fold(0.0, f64::max)
+    scenario.track.seats.iter().filter_map(of_seat).fold(0.0, f64::max)
 }
 
 fn passing(scenario: &Scenario, blocks: &Blocks) -> f64 {

@@ -73,8 +73,8 @@ fn sleeper(scenario: &Scenario, section: usize) -> Option<Swinging> {
     let track = &scenario.track;
     let seats = track.seats[track.seats_of(section)].iter();
     let swinging = seats.filter_map(|seat| {
-        let Foot::Sleeper { mass, support } = &seat.foot else { return None };
-        let (pad, spring) = (&seat.pad, support.spring());
+        let Foot::Sleeper { mass, .. } = &seat.foot else { return None };
+        let (pad, support, spring) = (seat.pad.as_ref()?, seat.support()?, seat.spring()?);
         let stronger: Given = if *pad.damping > spring.damping { pad.damping } else { support.damping };
         Some(Swinging {
             what: format!("a sleeper of `{}` between pad and support", track.sections[section].name),

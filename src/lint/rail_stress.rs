@@ -22,7 +22,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let stress = |section: usize| {
         let winkler = Winkler::of(track, section)?;
         let moment = wheel / (4.0 * winkler.lambda());
-        Some((section, moment, factor * moment / track.sections[section].rail.foot_modulus()))
+        Some((section, moment, factor * moment / track.sections[section].rail.as_ref()?.foot_modulus()))
     };
     let worst = (0..track.sections.len()).filter_map(stress).max_by(|a, b| a.2.total_cmp(&b.2));
     let Some((section, moment, stress)) = worst.filter(|(_, _, stress)| *stress > LARGEST) else { return Vec::new() };
@@ -40,7 +40,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         ),
     )
     .help(format!("{} MPa are usual at most: a stiffer rail or support, lighter axles or less speed", LARGEST / 1e6));
-    vec![match section.rail.bending_stiffness.origin.span() {
+    vec![match section.rail.as_ref().and_then(|rail| rail.bending_stiffness.origin.span()) {
         Some(span) => diagnostic.at(span, "of this rail"),
         None => diagnostic,
     }]

@@ -6,7 +6,7 @@
 use super::winkler::Winkler;
 use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
-use crate::scenario::{Foot, Scenario, Track};
+use crate::scenario::{Scenario, Seat, Track};
 use crate::units::number;
 
 const LARGEST_RATIO: f64 = 1.15;
@@ -39,11 +39,11 @@ pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
         .help(format!("bring both sides within a factor of {LARGEST_RATIO}: softer pads on the stiff side, a stiffer support before it"));
         for section in [i, i + 1] {
             let seat = track.seats[track.seats_of(section)].first();
-            let origin = match seat.map(|s| &s.foot) {
-                Some(Foot::Sleeper { support, .. }) => support.stiffness.origin,
-                _ => seat.map_or(crate::scenario::Origin::Default, |s| s.pad.stiffness.origin),
+            let stiffness = |seat: &Seat| match seat.support() {
+                Some(support) => Some(support.stiffness),
+                None => seat.pad.as_ref().map(|pad| pad.stiffness),
             };
-            if let Some(span) = origin.span() {
+            if let Some(span) = seat.and_then(stiffness).and_then(|given| given.origin.span()) {
                 diagnostic = diagnostic.at(span, format!("section `{}`", track.sections[section].name));
             }
         }

@@ -5,7 +5,7 @@
 
 use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
-use crate::scenario::{Foot, Given, Scenario, Seat};
+use crate::scenario::{Given, Scenario, Seat};
 use crate::units::number;
 
 /// N/m per seat.
@@ -14,10 +14,7 @@ const STIFFEST: f64 = 200e6;
 
 pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
     let track = &scenario.track;
-    let stiffness = |seat: &Seat| match &seat.foot {
-        Foot::Sleeper { support, .. } => Some(support.stiffness),
-        _ => None,
-    };
+    let stiffness = |seat: &Seat| seat.support().map(|support| support.stiffness);
     let mut found: Vec<Diagnostic> = Vec::new();
     for (i, section) in track.sections.iter().enumerate() {
         let supports = || track.seats[track.seats_of(i)].iter().filter_map(stiffness);

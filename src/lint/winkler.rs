@@ -16,7 +16,7 @@ pub struct Winkler {
 
 impl Winkler {
     /// A seat is pad and support in series; a slab adds its foundation over one bay. Where they vary, those of the
-    /// section's left end.
+    /// section's left end. `None` without seats, or where rail, pads or supports are not known.
     pub fn of(track: &Track, section: usize) -> Option<Winkler> {
         Winkler::beside(track, section, track.sections[section].start)
     }
@@ -29,11 +29,12 @@ impl Winkler {
         let seat = &track.seats[index];
         let spacing = track.bay(index);
         let (below, mass) = match (&seat.foot, slab) {
-            (Foot::Sleeper { mass, support }, _) => (1.0 / support.spring().stiffness, **mass / spacing),
+            (Foot::Sleeper { mass, .. }, _) => (1.0 / seat.spring()?.stiffness, **mass / spacing),
             (Foot::Slab, Some(slab)) => (1.0 / (*slab.foundation_stiffness * spacing), 0.0),
             _ => (0.0, 0.0),
         };
-        let stiffness = 1.0 / (1.0 / *seat.pad.stiffness + below);
+        let (rail, pad) = (rail.as_ref()?, seat.pad.as_ref()?);
+        let stiffness = 1.0 / (1.0 / *pad.stiffness + below);
         Some(Winkler {
             modulus: stiffness / spacing,
             bending_stiffness: *rail.bending_stiffness,
@@ -87,7 +88,7 @@ pub(super) fn seat_load(scenario: &Scenario, blocks: &Blocks, section: usize) ->
     let first = track.seats_of(section).find(|seat| track.seats[*seat].is_ballasted())?;
     let winkler = Winkler::of(track, section)?;
     let spacing = track.bay(first);
-    let Foot::Sleeper { support, .. } = &track.seats[first].foot else { return None };
+    let support = track.seats[first].support()?;
     let force = wheel * winkler.seat_share(spacing) + winkler.mass * spacing * gravity;
     let peak = Peak { force, deflection: force / *support.stiffness };
     Some(SeatLoad { section, winkler, spacing, wheel, peak })

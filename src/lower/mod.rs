@@ -7,12 +7,17 @@ mod schedule;
 
 use crate::diag::{Code, Diagnostic, Severity};
 use crate::graph::{Decision, Graph, NamedLaw, Schedule, SubstructureNode, TrackNode};
-use crate::scenario::{Foot, Loading, Origin, Scenario, SettlementLaw};
+use crate::scenario::{Loading, Origin, Scenario, Seat, SettlementLaw};
 
-/// Lowers a scene. Without a graph there is at least one diagnostic.
+/// Lowers a scene. Without a graph there is at least one diagnostic, here or of the check: what only grains can run is told
+/// there.
 pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
     let mut pass = Pass { decisions: Vec::new(), diagnostics: Vec::new() };
+    if !scenario.track.is_sprung() {
+        return (None, pass.diagnostics);
+    }
     let (substructure, schedule) = match &scenario.loading {
+        Some(Loading::Rig(_)) => return (None, pass.diagnostics),
         None => {
             pass.diagnostics.push(
                 Diagnostic::new(Code::E0601, "nothing acts on the track: there is neither `traffic` nor `load`")
@@ -53,10 +58,8 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
 
 /// Whether a sleeper stands on layers alone.
 fn stands_on_layers(scenario: &Scenario) -> bool {
-    scenario.track.seats.iter().any(|seat| match &seat.foot {
-        Foot::Sleeper { support, .. } => support.stiffness.origin == Origin::Derived && seat.onto_subgrade.is_some(),
-        _ => false,
-    })
+    let derived = |seat: &Seat| seat.support().is_some_and(|support| support.stiffness.origin == Origin::Derived);
+    scenario.track.seats.iter().any(|seat| derived(seat) && seat.onto_subgrade.is_some())
 }
 
 fn named(law: &SettlementLaw) -> NamedLaw {

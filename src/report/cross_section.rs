@@ -2,7 +2,7 @@
 
 use super::layers::class;
 use super::number::plain;
-use super::scene::WIDTH;
+use super::scene::{WIDTH, seat_depth};
 use super::svg::{Anchor, Frame, Svg};
 use super::symbols::{draw_dimension, draw_stones};
 use crate::scenario::{Groundwork, Scenario, Seat, Section, SleeperBody};
@@ -14,7 +14,6 @@ const MARGIN: f64 = 26.0;
 const NAMES: f64 = 92.0;
 /// What of a deep layer is shown, m.
 const DEEPEST: f64 = 1.5;
-const PAD: f64 = 0.035;
 const RAIL_WIDTH: f64 = 0.15;
 
 /// Where a section is drawn: the centre line and the rail's top, px, and px a metre.
@@ -106,7 +105,7 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place
     let gauge = sleeper.seat_distance;
     let name = if cut.changed { format!("{} at {} m", section.name, plain(cut.x, 3)) } else { section.name.clone() };
     svg.text("small halo", (place.centre, place.top - 34.0), Anchor::Middle, &name);
-    let (foot, rail) = (section.rail.height + PAD, section.rail.height);
+    let foot = seat_depth(section);
     let mut depth = foot + height;
     // beside the sleeper the bed reaches up to its top
     if let Some(first) = layers.first() {
@@ -140,12 +139,8 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place
         svg.text("small halo", (place.centre, area.y + 0.5 * area.height + 4.0), Anchor::Middle, "approach slab");
     }
     svg.rect("sleeper", place.area(-0.5 * length, 0.5 * length, foot, foot + height));
-    for side in [-0.5, 0.5] {
-        let x = side * gauge;
-        svg.rect("pad", place.area(x - 0.5 * RAIL_WIDTH, x + 0.5 * RAIL_WIDTH, rail, foot));
-        svg.rect("steel", place.area(x - 0.5 * RAIL_WIDTH, x + 0.5 * RAIL_WIDTH, rail - 0.02, rail));
-        svg.rect("steel", place.area(x - 0.012, x + 0.012, 0.04, rail));
-        svg.rect("steel", place.area(x - 0.036, x + 0.036, 0.0, 0.045));
+    if let Some(rail) = &section.rail {
+        [-0.5, 0.5].iter().for_each(|side| draw_rail(svg, place, side * gauge, [rail.height, foot]));
     }
     let wall = place.area(-half, half, foot, depth);
     if !layers.is_empty() {
@@ -153,13 +148,23 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place
             svg.line("wall", (x, wall.y), (x, wall.y + wall.height));
         }
     }
-    draw_widths(svg, place, &[(gauge, place.top - 12.0)]);
+    if section.rail.is_some() {
+        draw_widths(svg, place, &[(gauge, place.top - 12.0)]);
+    }
     let bottom = place.top + depth * place.scale;
     draw_widths(svg, place, &[(length, bottom + 24.0)]);
     if 2.0 * half > length + 1e-6 {
         draw_widths(svg, place, &[(2.0 * half, bottom + 50.0)]);
     }
     bottom + 58.0
+}
+
+/// A rail of that height on its pad, which ends at the seat, m.
+fn draw_rail(svg: &mut Svg, place: &Place, x: f64, [height, seat]: [f64; 2]) {
+    svg.rect("pad", place.area(x - 0.5 * RAIL_WIDTH, x + 0.5 * RAIL_WIDTH, height, seat));
+    svg.rect("steel", place.area(x - 0.5 * RAIL_WIDTH, x + 0.5 * RAIL_WIDTH, height - 0.02, height));
+    svg.rect("steel", place.area(x - 0.012, x + 0.012, 0.04, height));
+    svg.rect("steel", place.area(x - 0.036, x + 0.036, 0.0, 0.045));
 }
 
 /// Dimension lines of widths \[m\] about the centre line, with their texts.

@@ -1,7 +1,7 @@
 //! The layers along the track, to scale: each transition from below the rail down to the lowest layer.
 
 use super::number::plain;
-use super::scene::{View, WIDTH};
+use super::scene::{View, scale, seat_depth};
 use super::svg::{Anchor, Frame, Svg, text_width};
 use super::symbols::draw_stones;
 use crate::scenario::{ApproachSlab, Groundwork, Layer, Material, Scenario, Section};
@@ -17,7 +17,6 @@ const POINTS: f64 = 8.0;
 /// Soils are coloured by Young's modulus, Pa: treated ground and concrete from here on, mats up to here.
 const FIRM: f64 = 300e6;
 const SOFT: f64 = 5e6;
-const PAD: f64 = 0.035;
 const SLAB: f64 = 0.25;
 
 /// Draws the layers at every transition; gives the height. Nothing where the scene has none.
@@ -44,7 +43,7 @@ pub(super) fn draw(svg: &mut Svg, scenario: &Scenario) -> f64 {
 fn draw_place(svg: &mut Svg, scenario: &Scenario, (place, title): (f64, &str), index: usize, top: f64) -> f64 {
     let track = &scenario.track;
     let (start, end) = shown(scenario, place);
-    let view = View { start, end, scale: ((WIDTH - 2.0 * MARGIN) / (end - start)).min(90.0), rail: top + 40.0 };
+    let view = View { start, end, scale: scale(end - start), rail: top + 40.0 };
     svg.text("strong", (6.0, top + 18.0), Anchor::Start, title);
     let inside = |section: &Section| section.end > start && section.start < end;
     let sections = || track.sections.iter().enumerate().filter(|(_, section)| inside(section));
@@ -68,7 +67,7 @@ fn draw_place(svg: &mut Svg, scenario: &Scenario, (place, title): (f64, &str), i
 fn base(scenario: &Scenario, number: usize) -> f64 {
     let sleeper =
         scenario.track.seats.iter().filter(|seat| seat.section == number).find_map(|seat| seat.sleeper.as_ref());
-    scenario.track.sections[number].rail.height + PAD + sleeper.map_or(SLAB, |sleeper| sleeper.height)
+    seat_depth(&scenario.track.sections[number]) + sleeper.map_or(SLAB, |sleeper| sleeper.height)
 }
 
 /// From where to where a transition is drawn, m: with the stretches near it that change the layers.
@@ -107,7 +106,9 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, view: &View, number: usize, 
             svg.rect("sleeper", view.area(seat.x - half, seat.x + half, under - sleeper.height, under));
         }
     }
-    svg.rect("steel", view.area(start, end, 0.0, section.rail.height));
+    if let Some(rail) = &section.rail {
+        svg.rect("steel", view.area(start, end, 0.0, rail.height));
+    }
 }
 
 /// The layers of a part of a section, and the plate in them.

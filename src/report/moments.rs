@@ -22,7 +22,8 @@ pub fn rail_moments(run: &Run) -> Option<Figure> {
     let mut unloaded = track_chart(run, "Rail moment without a vehicle", "N m", true);
     unloaded.series = counts.iter().map(|count| along_profile(run, count, |row| row.moment_N_m)).collect();
 
-    let moduli: Vec<f64> = run.scenario.track.sections.iter().map(|section| section.rail.foot_modulus()).collect();
+    let moduli: Vec<f64> =
+        run.scenario.track.sections.iter().filter_map(|section| Some(section.rail.as_ref()?.foot_modulus())).collect();
     let same = moduli.iter().all(|modulus| (modulus / moduli[0] - 1.0).abs() < 1e-9);
     let stress = match moduli.first() {
         Some(modulus) if same => {

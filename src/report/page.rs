@@ -2,6 +2,7 @@
 
 use super::headline::headline;
 use super::number::{plain, significant, whole};
+use super::scene::force;
 use super::svg::{STYLE, escape};
 use super::{Figure, figures, laws};
 use crate::results::{Run, Verdict};
@@ -57,6 +58,10 @@ fn subtitle(scenario: &Scenario) -> String {
         Some(Loading::Static(loads)) => {
             let list = loads.iter().map(|load| format!("{} {} kN", load.name, plain(*load.force / 1e3, 4)));
             format!("Static check: {}. ", list.collect::<Vec<_>>().join(", "))
+        }
+        Some(Loading::Rig(loads)) => {
+            let list = loads.iter().map(|load| format!("{} {}", load.name, force(load)));
+            format!("Test rig: {}. ", list.collect::<Vec<_>>().join(", "))
         }
         None => String::new(),
     };

@@ -7,7 +7,7 @@ use super::number::{plain, tick_label, ticks, whole};
 use super::svg::{Anchor, Frame, Svg, text_width};
 use super::symbols::{draw_dimension, draw_spring, draw_stones};
 use super::vehicle;
-use crate::scenario::{Foot, Loading, Scenario, Seat, Section, StaticLoad, Tamping};
+use crate::scenario::{Foot, Force, Loading, RigLoad, Scenario, Seat, Section, StaticLoad, Tamping, Target};
 
 pub const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 26.0;
@@ -15,8 +15,19 @@ const MARGIN: f64 = 26.0;
 const CLOSE: f64 = 6.0;
 /// Depth of the drawn bed under the sleepers' base, m.
 const BED: f64 = 0.40;
+/// Thickness of a drawn rail pad, m.
 const PAD: f64 = 0.035;
 const SLAB: f64 = 0.25;
+
+/// Depth of a section's rail seats, m, below the top of what is drawn: of the rail, or of the sleepers where there is none.
+pub(super) fn seat_depth(section: &Section) -> f64 {
+    section.rail.as_ref().map_or(0.0, |rail| rail.height + PAD)
+}
+
+/// At which a length (m) is drawn, px a metre: as wide as there is room, without a short rig growing high.
+pub(super) fn scale(length: f64) -> f64 {
+    ((WIDTH - 2.0 * MARGIN) / length).min((400.0 / length).clamp(90.0, 200.0))
+}
 
 /// A window on the track at one scale.
 pub(super) struct View {
@@ -69,6 +80,7 @@ pub(super) fn draw_scene(svg: &mut Svg, scenario: &Scenario) -> f64 {
     if length > 3.0 * CLOSE {
         let places: Vec<f64> = match &scenario.loading {
             Some(Loading::Static(loads)) if track.transitions.is_empty() => loads.iter().map(|load| load.x).collect(),
+            Some(Loading::Rig(loads)) if track.transitions.is_empty() => loads.iter().map(|load| load.x).collect(),
             _ => track.transitions.iter().map(|transition| transition.x).collect(),
         };
         for (index, place) in places.iter().take(4).enumerate() {
@@ -81,8 +93,12 @@ pub(super) fn draw_scene(svg: &mut Svg, scenario: &Scenario) -> f64 {
 fn draw_whole(svg: &mut Svg, scenario: &Scenario) -> f64 {
     let track = &scenario.track;
     let length = (track.end() - track.start()).max(1e-3);
-    let scale = ((WIDTH - 2.0 * MARGIN) / length).min(90.0);
-    let head = if matches!(scenario.loading, Some(Loading::Static(_))) { 76.0 } else { 48.0 + 3.9 * scale.min(30.0) };
+    let scale = scale(length);
+    let head = if matches!(scenario.loading, Some(Loading::Static(_) | Loading::Rig(_))) {
+        76.0
+    } else {
+        48.0 + 3.9 * scale.min(30.0)
+    };
     let view = View { start: track.start(), end: track.end(), scale, rail: head };
     svg.text("strong", (6.0, 16.0), Anchor::Start, "The track to scale");
     let place = Frame { x: MARGIN - 8.0, y: 0.0, width: length * scale + 16.0, height: 1000.0 };
@@ -155,7 +171,7 @@ fn sleeper_size(seat: &Seat) -> (f64, f64) {
 /// Depth of the ground below the rail's top, m: one level for the whole track.
 fn ground(scenario: &Scenario) -> f64 {
     let track = &scenario.track;
-    let depth = |seat: &Seat| track.sections[seat.section].rail.height + PAD + sleeper_size(seat).1.max(SLAB) + BED;
+    let depth = |seat: &Seat| seat_depth(&track.sections[seat.section]) + sleeper_size(seat).1.max(SLAB) + BED;
     track.seats.iter().map(depth).fold(0.0, f64::max)
 }
 
@@ -165,7 +181,7 @@ fn draw_track(svg: &mut Svg, scenario: &Scenario, view: &View) {
         if section.end <= view.start || section.start >= view.end {
             continue;
         }
-        let base = section.rail.height + PAD;
+        let base = seat_depth(section);
         let seats: Vec<&Seat> = scenario.track.seats.iter().filter(|s| s.section == index && view.shows(s.x)).collect();
         if let Some(seat) = seats.iter().find(|seat| seat.is_ballasted()) {
             let (_, height) = sleeper_size(seat);
@@ -179,7 +195,9 @@ fn draw_track(svg: &mut Svg, scenario: &Scenario, view: &View) {
         for seat in &seats {
             draw_seat(svg, view, section, seat, ground);
         }
-        svg.rect("steel", view.area(section.start, section.end, 0.0, section.rail.height.max(2.0 / view.scale)));
+        if let Some(rail) = &section.rail {
+            svg.rect("steel", view.area(section.start, section.end, 0.0, rail.height.max(2.0 / view.scale)));
+        }
     }
     let y = view.y(ground);
     svg.line("ground", (view.x(view.start), y), (view.x(view.end), y));
@@ -192,11 +210,11 @@ fn draw_track(svg: &mut Svg, scenario: &Scenario, view: &View) {
 }
 
 fn draw_seat(svg: &mut Svg, view: &View, section: &Section, seat: &Seat, ground: f64) {
-    let base = section.rail.height + PAD;
+    let base = seat_depth(section);
     let (width, height) = sleeper_size(seat);
     let close = view.scale > 30.0;
-    if close {
-        svg.rect("pad", view.area(seat.x - 0.08, seat.x + 0.08, section.rail.height, base));
+    if let Some(rail) = section.rail.as_ref().filter(|_| close) {
+        svg.rect("pad", view.area(seat.x - 0.08, seat.x + 0.08, rail.height, base));
     }
     let x = view.x(seat.x);
     match &seat.foot {
@@ -217,20 +235,47 @@ fn draw_seat(svg: &mut Svg, view: &View, section: &Section, seat: &Seat, ground:
 
 /// Arrows of a static check; gives the lower edge of the track.
 fn draw_loads(svg: &mut Svg, scenario: &Scenario, view: &View) -> f64 {
-    if let Some(Loading::Static(loads)) = &scenario.loading {
-        for load in loads.iter().filter(|load| view.shows(load.x)) {
-            draw_load(svg, view, load);
+    let loads: Vec<(f64, String)> = match &scenario.loading {
+        Some(Loading::Static(loads)) => {
+            let text = |load: &StaticLoad| format!("{}: {} kN {}", load.name, plain(*load.force / 1e3, 4), on(load.on));
+            loads.iter().map(|load| (load.x, text(load))).collect()
         }
+        Some(Loading::Rig(loads)) => {
+            loads.iter().map(|load| (load.x, format!("{}: {}", load.name, force(load)))).collect()
+        }
+        _ => Vec::new(),
+    };
+    for (x, text) in loads.iter().filter(|(x, _)| view.shows(*x)) {
+        draw_load(svg, view, *x, text);
     }
     view.y(ground(scenario)) + 6.0
 }
 
-fn draw_load(svg: &mut Svg, view: &View, load: &StaticLoad) {
-    let (x, tip) = (view.x(load.x), view.rail - 1.0);
+fn on(target: Target) -> &'static str {
+    if target == Target::Rail { "per rail" } else { "per seat" }
+}
+
+/// `2.5 to 30 kN per seat, 5 Hz, 10000 times`
+pub(super) fn force(load: &RigLoad) -> String {
+    let kilonewtons = |force: f64| plain(force / 1e3, 4);
+    let mut text = match &load.force {
+        Force::Constant(force) => format!("{} kN {}", kilonewtons(**force), on(load.on)),
+        Force::Cyclic { range: [least, most], frequency, .. } => {
+            let (least, most, frequency) = (kilonewtons(**least), kilonewtons(**most), plain(**frequency, 3));
+            format!("{least} to {most} kN {}, {frequency} Hz, {} times", on(load.on), whole(load.cycles))
+        }
+    };
+    if *load.speed > 0.0 {
+        text += &format!(", {} m/s", plain(*load.speed, 3));
+    }
+    text
+}
+
+fn draw_load(svg: &mut Svg, view: &View, x: f64, text: &str) {
+    let (x, tip) = (view.x(x), view.rail - 1.0);
     svg.path("push", &[(x, tip - 34.0), (x, tip)], false, "");
     svg.path("push", &[(x - 5.0, tip - 9.0), (x, tip), (x + 5.0, tip - 9.0)], false, "");
-    let text = format!("{}: {} kN", load.name, plain(*load.force / 1e3, 4));
-    svg.text("halo", (x + 9.0, tip - 22.0), Anchor::Start, &text);
+    svg.text("halo", (x + 9.0, tip - 22.0), Anchor::Start, text);
 }
 
 fn draw_numbers(svg: &mut Svg, scenario: &Scenario, view: &View, bottom: f64) -> f64 {
@@ -271,21 +316,18 @@ fn carried(section: &Section, seats: &[&Seat]) -> String {
         let show = |value: f64| plain(value / 1e6, 3);
         if high - low < 1e-3 * high { show(high) } else { format!("{} to {}", show(low), show(high)) }
     };
-    let pads = range(seats.iter().map(|seat| *seat.pad.stiffness).collect());
-    let mut text = format!("{}: pads {pads} MN/m", section.name);
-    let supports: Vec<f64> = seats
-        .iter()
-        .filter_map(|seat| match &seat.foot {
-            Foot::Sleeper { support, .. } => Some(support.spring().stiffness),
-            _ => None,
-        })
-        .collect();
-    if !supports.is_empty() {
-        text += &format!(", support {} MN/m per seat", range(supports));
-    } else if let Some(slab) = &section.slab {
-        text += &format!(", foundation {} MN/m per m", plain(*slab.foundation_stiffness / 1e6, 3));
+    let pads: Vec<f64> = seats.iter().filter_map(|seat| Some(*seat.pad.as_ref()?.stiffness)).collect();
+    let supports: Vec<f64> = seats.iter().filter_map(|seat| Some(seat.spring()?.stiffness)).collect();
+    let mut parts = Vec::new();
+    if !pads.is_empty() {
+        parts.push(format!("pads {} MN/m", range(pads)));
     }
-    text
+    if !supports.is_empty() {
+        parts.push(format!("support {} MN/m per seat", range(supports)));
+    } else if let Some(slab) = &section.slab {
+        parts.push(format!("foundation {} MN/m per m", plain(*slab.foundation_stiffness / 1e6, 3)));
+    }
+    if parts.is_empty() { section.name.clone() } else { format!("{}: {}", section.name, parts.join(", ")) }
 }
 
 /// Name, length and content of each stretch, and what is tamped, one below the other where they overlap.
@@ -350,7 +392,8 @@ fn draw_chainage(svg: &mut Svg, view: &View, y: f64) -> f64 {
     let y = y + 4.0;
     let (left, right) = (view.x(view.start), view.x(view.end));
     svg.line("axis", (left, y), (right, y));
-    let marks = ticks(view.start, view.end, 10);
+    let room = ((right - left) / 60.0).clamp(1.0, 10.0);
+    let marks = ticks(view.start, view.end, room as usize);
     let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
     for mark in marks {
         svg.line("axis", (view.x(mark), y), (view.x(mark), y + 4.0));

@@ -75,7 +75,7 @@ pub(crate) fn transition() -> Run {
         name: name.to_owned(),
         start,
         end,
-        rail: rail(),
+        rail: Some(rail()),
         spacing: given(0.6),
         slab,
         layers: vec![],
@@ -87,14 +87,14 @@ pub(crate) fn transition() -> Run {
         foundation_stiffness: given(1e8),
         foundation_damping: given(1e5),
     };
-    let support = Support { stiffness: given(40e6), damping: given(4e4), seating: None, usp: None };
-    let ballast = Foot::Sleeper { mass: given(150.0), support };
+    let support = Support { stiffness: given(40e6), damping: given(4e4), seating: None };
+    let ballast = Foot::Sleeper { mass: given(150.0), support: Some(support), usp: None };
     let seat = |number: i32| Seat {
         number,
         transition: 0,
         x: if number < 0 { 0.6 * number as f64 } else { 0.6 * (number - 1) as f64 },
         section: usize::from(number > 0),
-        pad: pad(),
+        pad: Some(pad()),
         foot: if number < 0 { ballast.clone() } else { Foot::Slab },
         sleeper: (number < 0).then(sleeper),
         initial_settlement: 0.0,
@@ -299,7 +299,7 @@ pub(crate) fn bench() -> Run {
             transition: 0,
             x: 0.6 * (f64::from(number) - 0.5),
             section: 0,
-            pad: pad(),
+            pad: Some(pad()),
             foot: Foot::Rigid,
             sleeper: Some(sleeper()),
             initial_settlement: 0.0,
@@ -315,7 +315,7 @@ pub(crate) fn bench() -> Run {
                 name: "seats".to_owned(),
                 start: 0.0,
                 end: 12.0,
-                rail: rail(),
+                rail: Some(rail()),
                 spacing: given(0.6),
                 slab: None,
                 layers: vec![],

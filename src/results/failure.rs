@@ -2,7 +2,7 @@
 
 use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::{Graph, RunError, Schedule};
-use crate::scenario::{Foot, Loading, Scenario, Section, Traffic};
+use crate::scenario::{Loading, Scenario, Section, Traffic};
 use crate::solvers::track::TrackError;
 use crate::units::number;
 
@@ -104,10 +104,7 @@ impl Scene<'_> {
     fn support(&self, x: f64) -> (Option<Span>, String) {
         let distance = |seat: &&crate::scenario::Seat| (seat.x - x).abs();
         let nearest = self.scenario.track.seats.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let span = nearest.and_then(|seat| match &seat.foot {
-            Foot::Sleeper { support, .. } => support.stiffness.origin.span(),
-            _ => None,
-        });
+        let span = nearest.and_then(|seat| seat.support()?.stiffness.origin.span());
         (span, "the nearest support".into())
     }
 

@@ -8,7 +8,7 @@ use super::{
 };
 use crate::graph::{self, Block, Measured, PassageOutcome, Recorder, Runner, Unloaded};
 use crate::scenario::response::Response;
-use crate::scenario::{Foot, Loading, Scenario, Track, Traffic};
+use crate::scenario::{Loading, Scenario, Track, Traffic};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -151,10 +151,7 @@ impl<'a> RunRecorder<'a> {
     fn keep_sleepers(&mut self, axles: u64, unloaded: &Unloaded, passage: &PassageOutcome) {
         let track = self.track();
         for ((seat, outcome), rest) in track.seats.iter().zip(&passage.seats).zip(&unloaded.seats) {
-            let stiffness = match &seat.foot {
-                Foot::Sleeper { support, .. } => support.spring().stiffness,
-                Foot::Rigid | Foot::Slab => 0.0,
-            };
+            let stiffness = seat.spring().map_or(0.0, |spring| spring.stiffness);
             self.tables.sleepers.push(SleeperRow {
                 axles,
                 sleeper: track.seat_name(seat),
@@ -352,10 +349,7 @@ impl Recorder for RunRecorder<'_> {
         self.keep_rail(0, Response::RailDisplacement, state.rail.iter().map(|p| (p.x, p.deflection)));
         self.keep_rail(0, Response::RailMoment, state.rail.iter().map(|p| (p.x, p.moment)));
         for (seat, rest) in track.seats.iter().zip(&state.seats) {
-            let stiffness = match &seat.foot {
-                Foot::Sleeper { support, .. } => support.spring().stiffness,
-                Foot::Rigid | Foot::Slab => 0.0,
-            };
+            let stiffness = seat.spring().map_or(0.0, |spring| spring.stiffness);
             self.tables.sleepers.push(SleeperRow {
                 axles: 0,
                 sleeper: track.seat_name(seat),

@@ -32,7 +32,7 @@ pub use track::{
     ApproachSlab, AuxiliaryRailSpan, AuxiliaryRails, Foot, Groundwork, Pad, Rail, RailEnds, Seat, Seating, Section,
     Side, Slab, SleeperBody, Spring, Stretch, Support, Track, Transition, Usp,
 };
-pub use traffic::{Direction, StaticLoad, Target, Traffic, Train, Vehicle};
+pub use traffic::{Direction, Force, RigLoad, StaticLoad, Target, Traffic, Train, Vehicle, Wave};
 
 use crate::diag::Span;
 use crate::units::number;
@@ -66,6 +66,7 @@ pub struct Scenario {
 pub enum Loading {
     Traffic(Traffic),
     Static(Vec<StaticLoad>),
+    Rig(Vec<RigLoad>),
 }
 
 /// How the answer is computed.

@@ -86,7 +86,8 @@ pub struct Section {
     pub end: f64,
     /// Where its length is given.
     pub length_origin: Origin,
-    pub rail: Rail,
+    /// `None` in a rig, which loads sleepers.
+    pub rail: Option<Rail>,
     /// Sleeper or seat spacing where no stretch says another, m.
     pub spacing: Given,
     pub slab: Option<Slab>,
@@ -196,8 +197,6 @@ pub struct Support {
     pub damping: Given,
     /// Softer while the sleeper seats itself.
     pub seating: Option<Seating>,
-    /// Under sleeper pad, in series with the support.
-    pub usp: Option<Usp>,
 }
 
 /// The first part of a support's compression: unloaded ballast is far softer than ballast under a wheel.
@@ -232,7 +231,7 @@ pub struct Spring {
 }
 
 impl Support {
-    /// Support and under sleeper pad in series.
+    /// Support and under sleeper pad, where there is one, in series.
     ///
     /// Each is a spring beside a damper: Z = k + i w c. In series 1/Z = 1/Z1 + 1/Z2, and to first order in the frequency w
     ///
@@ -244,10 +243,10 @@ impl Support {
     /// The next term is of the order (w c / k)^2: with damping times below 1 ms it is 4 % at 30 Hz, the passing of axles, and the
     /// stiffness of the two dampers alone takes over far above. The softer first part of a support runs in series too: it ends
     /// at the same force, so the pad's compression under that force is added to its closure.
-    pub fn spring(&self) -> Spring {
+    pub fn below(&self, usp: Option<&Usp>) -> Spring {
         let (k, c) = (*self.stiffness, *self.damping);
         let seating = self.seating.map(|s| (*s.stiffness, *s.closure));
-        let Some(usp) = &self.usp else { return Spring { stiffness: k, damping: c, seating } };
+        let Some(usp) = usp else { return Spring { stiffness: k, damping: c, seating } };
         let (pad, pad_damping) = (*usp.stiffness, *usp.damping);
         let series = |k: f64| k * pad / (k + pad);
         Spring {
@@ -274,7 +273,7 @@ fn tidy(x: f64) -> f64 {
     (x * 1e9).round() / 1e9
 }
 
-/// A rail seat: the pad under the rail and what it stands on.
+/// A rail seat: the pad under the rail and what it stands on; in a rig half a sleeper.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Seat {
     /// Counted from the transition `transition`: ..., -2, -1 on its softer side, +1, +2, ... on its stiffer side.
@@ -285,7 +284,8 @@ pub struct Seat {
     pub x: f64,
     /// Index into [`Track::sections`].
     pub section: usize,
-    pub pad: Pad,
+    /// `None` where there is no rail.
+    pub pad: Option<Pad>,
     pub foot: Foot,
     /// The whole sleeper, where there is one whose size is known.
     pub sleeper: Option<SleeperBody>,
@@ -312,7 +312,13 @@ pub struct SleeperBody {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Foot {
     /// A rigid sleeper, its half mass in kg, on a support that can only push.
-    Sleeper { mass: Given, support: Support },
+    Sleeper {
+        mass: Given,
+        /// `None` where only grains can say what it is.
+        support: Option<Support>,
+        /// In series with the support.
+        usp: Option<Usp>,
+    },
     /// A seat that does not move.
     Rigid,
     /// A seat on the slab of its section.
@@ -330,9 +336,15 @@ impl Track {
         self.sections.last().map_or(0.0, |s| s.end)
     }
 
+    /// Whether rails, pads and supports of known stiffness carry a wheel all along it.
+    pub fn is_sprung(&self) -> bool {
+        let held = |seat: &Seat| seat.pad.is_some() && (!seat.is_ballasted() || seat.support().is_some());
+        self.sections.iter().all(|section| section.rail.is_some()) && self.seats.iter().all(held)
+    }
+
     /// The rail at a chainage.
     pub fn rail_at(&self, x: f64) -> Option<&Rail> {
-        self.sections.iter().find(|s| x <= s.end).or(self.sections.last()).map(|s| &s.rail)
+        self.sections.iter().find(|s| x <= s.end).or(self.sections.last())?.rail.as_ref()
     }
 
     /// What lies under a section, from left to right: chainage of both ends, m, layers, and a plate in them.
@@ -396,20 +408,36 @@ impl Seat {
     pub fn is_ballasted(&self) -> bool {
         matches!(self.foot, Foot::Sleeper { .. })
     }
+
+    /// Under its sleeper; `None` without a sleeper, or where only grains can say.
+    pub fn support(&self) -> Option<&Support> {
+        if let Foot::Sleeper { support, .. } = &self.foot { support.as_ref() } else { None }
+    }
+
+    /// Under its sleeper, with the under sleeper pad.
+    pub fn spring(&self) -> Option<Spring> {
+        Some(self.support()?.below(self.usp()))
+    }
+
+    /// Under its sleeper.
+    pub fn usp(&self) -> Option<&Usp> {
+        if let Foot::Sleeper { usp, .. } = &self.foot { usp.as_ref() } else { None }
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn support(seating: Option<(f64, f64)>, usp: Option<(f64, f64)>) -> Support {
+    fn spring(seating: Option<(f64, f64)>, usp: Option<(f64, f64)>) -> Spring {
         let given = Given::<f64>::derived;
-        Support {
+        let support = Support {
             stiffness: given(40e6),
             damping: given(4e4),
             seating: seating.map(|(k, closure)| Seating { stiffness: given(k), closure: given(closure) }),
-            usp: usp.map(|(k, c)| Usp { stiffness: given(k), damping: given(c), thickness: 0.01 }),
-        }
+        };
+        let usp = usp.map(|(k, c)| Usp { stiffness: given(k), damping: given(c), thickness: 0.01 });
+        support.below(usp.as_ref())
     }
 
     /// Real and imaginary part / w of the exact series at a circular frequency.
@@ -425,7 +453,7 @@ mod tests {
 
     #[test]
     fn a_pad_and_a_support_are_a_series_at_low_frequency() {
-        let spring = support(None, Some((60e6, 1.2e4))).spring();
+        let spring = spring(None, Some((60e6, 1.2e4)));
         assert!((spring.stiffness - 24e6).abs() < 1e-6);
         let error = |hertz: f64| {
             let (k, c) = exact(40e6, 4e4, 60e6, 1.2e4, 2.0 * std::f64::consts::PI * hertz);
@@ -435,16 +463,16 @@ mod tests {
         assert!(far.0 < 1e-3 && far.1 < 1e-3, "{far:?}");
         // what is left out is of second order in the frequency
         assert!((far.0 / near.0 - 100.0).abs() < 1.0 && (far.1 / near.1 - 100.0).abs() < 1.0);
-        assert_eq!(support(None, None).spring(), Spring { stiffness: 40e6, damping: 4e4, seating: None });
+        assert_eq!(self::spring(None, None), Spring { stiffness: 40e6, damping: 4e4, seating: None });
     }
 
     #[test]
     fn a_seating_support_is_soft_first_with_a_pad_too() {
-        let alone = support(Some((5e6, 4e-4)), None).spring();
+        let alone = spring(Some((5e6, 4e-4)), None);
         assert_eq!(alone.compression(1e3), 2e-4);
         assert_eq!(alone.compression(2e3), 4e-4);
         assert!((alone.compression(42e3) - 1.4e-3).abs() < 1e-12);
-        let padded = support(Some((5e6, 4e-4)), Some((60e6, 1.2e4))).spring();
+        let padded = spring(Some((5e6, 4e-4)), Some((60e6, 1.2e4)));
         for force in [0.5e3, 2e3, 10e3, 60e3] {
             assert!((padded.compression(force) - alone.compression(force) - force / 60e6).abs() < 1e-12, "{force}");
         }

@@ -158,6 +158,50 @@ pub struct StaticLoad {
     pub force: Given,
 }
 
+/// A force on a sleeper or the rail that changes or moves: a test rig, or a load that only grains can follow.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RigLoad {
+    pub name: String,
+    pub on: Target,
+    /// Chainage at the start, m.
+    pub x: f64,
+    pub force: Force,
+    /// Along the rail, m/s; 0 stays.
+    pub speed: Given,
+    /// Times that a cyclic force comes back.
+    pub cycles: u64,
+}
+
+/// N over one rail, positive down.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Force {
+    Constant(Given),
+    /// From the smaller to the greater force and back.
+    Cyclic {
+        range: [Given; 2],
+        /// Hz.
+        frequency: Given,
+        wave: Wave,
+    },
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Wave {
+    Sine,
+}
+
+impl RigLoad {
+    /// A load that stays as it is, where this is one.
+    pub fn at_rest(&self) -> Option<StaticLoad> {
+        match self.force {
+            Force::Constant(force) if *self.speed == 0.0 => {
+                Some(StaticLoad { name: self.name.clone(), on: self.on, x: self.x, force })
+            }
+            _ => None,
+        }
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Target {
     Rail,

@@ -143,8 +143,10 @@ fn of_train(scenario: &mut Scenario, change: impl Fn(&mut Train)) {
 
 fn undamp(scenario: &mut Scenario) {
     for seat in &mut scenario.track.seats {
-        seat.pad.damping.value = 0.0;
-        if let Foot::Sleeper { support, .. } = &mut seat.foot {
+        if let Some(pad) = &mut seat.pad {
+            pad.damping.value = 0.0;
+        }
+        if let Foot::Sleeper { support: Some(support), .. } = &mut seat.foot {
             support.damping.value = 0.0;
         }
     }
@@ -161,7 +163,7 @@ fn undamp(scenario: &mut Scenario) {
 
 fn supports(scenario: &mut Scenario, factor: f64) {
     for seat in &mut scenario.track.seats {
-        if let Foot::Sleeper { support, .. } = &mut seat.foot {
+        if let Foot::Sleeper { support: Some(support), .. } = &mut seat.foot {
             support.stiffness.value *= factor;
         }
     }
