@@ -39,6 +39,7 @@ mod domain;
 mod energy;
 mod fault;
 mod force;
+pub mod grains;
 mod gravity;
 mod inspect;
 mod integrate;

@@ -15,7 +15,8 @@ const CERTAIN: f64 = 1e-9;
 const ALONG: f64 = 1e-6;
 
 impl Mesh {
-    pub(super) fn contains(&self, point: &Vector3<f64>) -> bool {
+    /// Whether a point lies in what is solid; never in a sheet.
+    pub fn contains(&self, point: &Vector3<f64>) -> bool {
         match self.kind {
             MeshKind::OneSided | MeshKind::TwoSided => false,
             MeshKind::Solid => self.winding(point) > 0,

@@ -7,6 +7,7 @@
 mod block;
 mod check;
 mod contact;
+mod distance;
 mod generate;
 mod history;
 mod inside;
@@ -20,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 pub use check::{Fault, FaultKind, MeshError, Place};
+pub use distance::Nearest;
 pub use history::inherit;
 pub use mesh::{Mesh, MeshKind};
 

@@ -1,0 +1,160 @@
+//! Bubble-pack: a few of the largest balls that fit into a surface, so that their union looks like it.
+//!
+//! Taghavi (2011) keeps of the maximal inscribed balls of a surface, largest first, those of a radius of at least ρ times the largest whose
+//! distance to all that are kept leaves the union no smoother than asked for. His balls are circumspheres of Delaunay tetrahedra;
+//! ours touch the surface at points spread over it and are shrunk until nothing else of the surface is in them (Ma, Bae and
+//! Choi 2012, The Visual Computer 28). Both sets are samples of the medial axis. The largest is brought to its place by ascent on the
+//! distance to the surface.
+//!
+//! Smoothness is the angle φ at which two balls meet: with θ the angle between their radii at the common circle, φ = 180° - θ and
+//! `d² = r₁² + r₂² + 2 r₁ r₂ cos φ`. Balls that touch have 0°, equal ones at φ = 110° are 1.147 r apart. A larger φ lets them stand closer.
+
+use super::super::clump::Pebble;
+use super::super::shape::Mesh;
+use super::likeness::on_facets;
+use nalgebra::Vector3;
+use std::f64::consts::PI;
+
+/// Points of the surface at which balls are grown.
+const POINTS: usize = 1500;
+/// A ball whose radius changes by less than this share is at rest.
+const AT_REST: f64 = 1e-6;
+/// Balls that hang together by less than this share of the smaller radius hang apart.
+const HOLD: f64 = 0.05;
+/// How the rule is relaxed until there are enough pebbles: steps, and what each does to ratio and angle.
+const STEPS: usize = 40;
+const NARROWER: f64 = 0.95;
+const CLOSER: f64 = 2.0 * PI / 180.0;
+/// Balls closer than this angle say all the same thing.
+const CLOSEST: f64 = 165.0 * PI / 180.0;
+
+/// The rule of bubble-pack.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rule {
+    /// Fewest and most pebbles.
+    pub pebbles: [usize; 2],
+    /// Smallest pebble over largest pebble, above 0 to 1.
+    pub ratio: f64,
+    /// φ, rad, 0 to π: larger is smoother and has more pebbles.
+    pub distance: f64,
+}
+
+/// Pebbles that fill a surface, largest first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bubbles {
+    pub pebbles: Vec<Pebble>,
+    /// The ratio and the angle that gave so many: those of the rule, or relaxed step by step where these gave too few.
+    pub ratio: f64,
+    pub distance: f64,
+    /// Pebbles by the rule as it stands, before the fewest and the most were looked at.
+    pub by_rule: usize,
+}
+
+impl Bubbles {
+    /// Fills a closed surface. More pebbles than the most are cut off, smallest first. Where the rule gives fewer than the fewest, its ratio
+    /// and angle are relaxed together until there are enough; a surface that is all but a ball has fewer all the same.
+    pub fn fill(surface: &Mesh, rule: &Rule) -> Self {
+        let balls = maximal_balls(surface);
+        let [fewest, most] = rule.pebbles;
+        let (mut ratio, mut distance) = (rule.ratio, rule.distance);
+        let mut pebbles = keep(&balls, ratio, distance, usize::MAX);
+        let by_rule = pebbles.len();
+        for _ in 0..STEPS {
+            if pebbles.len() >= fewest {
+                break;
+            }
+            ratio *= NARROWER;
+            distance = (distance + CLOSER).min(CLOSEST.max(rule.distance));
+            let more = keep(&balls, ratio, distance, fewest);
+            if more.len() > pebbles.len() {
+                pebbles = more;
+            }
+        }
+        pebbles.truncate(most.max(1));
+        Self { pebbles, ratio, distance, by_rule }
+    }
+}
+
+/// Balls, largest first, that the rule lets stand together, and that hang together.
+fn keep(balls: &[Pebble], ratio: f64, distance: f64, enough: usize) -> Vec<Pebble> {
+    let Some(largest) = balls.first() else { return Vec::new() };
+    let mut kept = vec![*largest];
+    let candidates: Vec<&Pebble> = balls.iter().take_while(|b| b.radius >= ratio * largest.radius).collect();
+    // what hangs on nothing yet may hang on what comes later
+    loop {
+        let before = kept.len();
+        for ball in &candidates {
+            let clear = kept.iter().all(|other| smoothness(ball, other) <= distance);
+            if clear && kept.len() < enough && kept.iter().any(|other| hang_together(ball, other)) {
+                kept.push(**ball);
+            }
+        }
+        if kept.len() == before {
+            return kept;
+        }
+    }
+}
+
+fn hang_together(a: &Pebble, b: &Pebble) -> bool {
+    (a.centre - b.centre).norm() <= a.radius + b.radius - HOLD * a.radius.min(b.radius)
+}
+
+/// φ of two balls, rad: 0 where they touch or are apart, π where one touches the other from inside or lies in it.
+fn smoothness(a: &Pebble, b: &Pebble) -> f64 {
+    let square = (a.centre - b.centre).norm_squared();
+    let cosine = (square - a.radius.powi(2) - b.radius.powi(2)) / (2.0 * a.radius * b.radius);
+    cosine.clamp(-1.0, 1.0).acos()
+}
+
+/// Maximal inscribed balls of a surface, largest first.
+fn maximal_balls(surface: &Mesh) -> Vec<Pebble> {
+    let [low, high] = surface.bounds();
+    let grow = |point: &super::likeness::Point| shrunk(surface, &point.at, &-point.normal, (high - low).norm());
+    let mut balls: Vec<Pebble> = on_facets(surface, POINTS).iter().filter_map(grow).collect();
+    let order = |a: &Pebble, b: &Pebble| b.radius.total_cmp(&a.radius);
+    balls.sort_by(order);
+    if let Some(largest) = balls.first().map(|ball| ascended(surface, ball)) {
+        balls.insert(0, largest);
+    }
+    balls
+}
+
+/// The largest ball that touches the surface from inside at a point: while something of the surface is in it, it is made to touch
+/// that. A ball that touches q as well has the radius |q - p|²/2n·(q - p).
+fn shrunk(surface: &Mesh, point: &Vector3<f64>, inward: &Vector3<f64>, start: f64) -> Option<Pebble> {
+    let mut radius = start;
+    loop {
+        let centre = point + inward * radius;
+        let Some(nearest) = surface.nearest(&centre, radius * (1.0 - AT_REST)) else {
+            return Some(Pebble { centre, radius });
+        };
+        let apart = nearest.at - point;
+        let smaller = apart.norm_squared() / (2.0 * inward.dot(&apart));
+        if !(smaller > 0.0 && smaller < radius * (1.0 - AT_REST)) {
+            // the point itself is nearest, or lies in a fold
+            return (nearest.distance > 0.0 && surface.contains(&centre))
+                .then_some(Pebble { centre, radius: nearest.distance });
+        }
+        radius = smaller;
+    }
+}
+
+/// A ball moved to where the nearest surface is as far as it can be: steps along the axes and the diagonals, halved where none
+/// goes up.
+fn ascended(surface: &Mesh, ball: &Pebble) -> Pebble {
+    let mut best = *ball;
+    let mut step = 0.25 * ball.radius;
+    while step > AT_REST * ball.radius {
+        let directions =
+            (0..27).filter(|k| *k != 13).map(|k| Vector3::new(k % 3, k / 3 % 3, k / 9).map(|c| f64::from(c) - 1.0));
+        let better = directions.map(|d| best.centre + d.normalize() * step).find_map(|centre| {
+            let radius = surface.nearest(&centre, f64::MAX.sqrt())?.distance;
+            (radius > best.radius && surface.contains(&centre)).then_some(Pebble { centre, radius })
+        });
+        match better {
+            Some(larger) => best = larger,
+            None => step *= 0.5,
+        }
+    }
+    best
+}

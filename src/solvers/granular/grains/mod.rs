@@ -1,0 +1,38 @@
+//! Grains before they are packed: their sizes, their shapes, and clumps of pebbles in place of the shapes.
+//!
+//! [`Curve::sample`] gives the sizes of the grains of a solid volume, [`ClumpShape::templates`] the clumps that they are copies of, and
+//! [`grains`] puts the two together. A clump of a template goes into a bed as the template scaled by the grain's size.
+//!
+//! ```
+//! use trackbed::solvers::granular::grains::*;
+//!
+//! let curve = Curve::new(&[[0.032, 0.0], [0.05, 0.6], [0.08, 1.0]])?;
+//! let sample = curve.sample(0.02, 1)?;
+//! let templates = ClumpShape::default().templates(1)?;
+//! let grains = grains(&sample, templates.len(), 1);
+//!
+//! let clump = templates[grains[0].template].scaled(grains[0].size);
+//! assert!((clump.equivalent_diameter() / grains[0].size - 1.0).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod angular;
+mod bubble;
+mod form;
+mod grading;
+mod likeness;
+mod polyhedron;
+mod random;
+mod templates;
+
+pub use angular::{Angular, AngularError};
+pub use bubble::{Bubbles, Rule};
+pub use form::Form;
+pub use grading::{Class, Curve, GradingError, Sample};
+pub use likeness::ShapeError;
+pub use templates::{ClumpShape, Fitted, Grain, Surfaces, TemplatesError, grains};
+
+use random::Random;
+
+#[cfg(test)]
+mod tests;

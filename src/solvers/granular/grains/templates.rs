@@ -1,0 +1,120 @@
+//! Templates of clumps from surfaces, and grains that are copies of them.
+
+use super::super::clump::{Template, TemplateError};
+use super::super::shape::Mesh;
+use super::{Angular, AngularError, Bubbles, Random, Rule, Sample};
+use std::f64::consts::PI;
+use std::fmt;
+
+/// A grain of a bed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Grain {
+    /// Which of the templates it is a copy of.
+    pub template: usize,
+    /// Diameter of the ball of its volume, m: by this its template is scaled.
+    pub size: f64,
+}
+
+/// The grains of a sample: every template as often as any other, by chance.
+pub fn grains(sample: &Sample, templates: usize, seed: u64) -> Vec<Grain> {
+    let mut template: Vec<usize> = (0..sample.sizes.len()).map(|k| k % templates.max(1)).collect();
+    Random::new(seed, TEMPLATES).shuffle(&mut template);
+    sample.sizes.iter().zip(template).map(|(size, template)| Grain { template, size: *size }).collect()
+}
+
+/// Which numbers by chance are those of the choice of templates.
+const TEMPLATES: u64 = 2;
+
+/// The shape of grains: surfaces, and how pebbles fill them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClumpShape {
+    pub surfaces: Surfaces,
+    pub rule: Rule,
+}
+
+/// Closed surfaces of any size: templates have the volume of the ball of diameter 1.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Surfaces {
+    /// So many angular grains of equal indices.
+    Angular { indices: Angular, count: usize },
+    /// Scans.
+    Meshes(Vec<Mesh>),
+}
+
+/// A template beside the surface that it was made for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fitted {
+    pub surface: Mesh,
+    pub bubbles: Bubbles,
+    /// Of the volume of the ball of diameter 1.
+    pub template: Template,
+}
+
+/// Why there are no templates.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TemplatesError {
+    Surface(AngularError),
+    /// Pebbles that make no clump.
+    Clump(TemplateError),
+    /// A surface into which no ball fits, or fewer balls than asked for: it is all but a ball itself.
+    TooFew {
+        surface: usize,
+        found: usize,
+        fewest: usize,
+    },
+}
+
+impl Default for ClumpShape {
+    /// Clumps of two or three pebbles (Ahmadi et al. 2026, 2.1) in five angular grains.
+    fn default() -> Self {
+        let indices = Angular { flatness: 0.7, elongation: 0.7, roundness: 0.15 };
+        let rule = Rule { pebbles: [2, 3], ratio: 0.8, distance: 110.0 * PI / 180.0 };
+        Self { surfaces: Surfaces::Angular { indices, count: 5 }, rule }
+    }
+}
+
+impl ClumpShape {
+    /// A template of each surface, of the volume of the ball of diameter 1.
+    pub fn templates(&self, seed: u64) -> Result<Vec<Template>, TemplatesError> {
+        Ok(self.fitted(seed)?.into_iter().map(|fitted| fitted.template).collect())
+    }
+
+    /// The same, each beside its surface.
+    pub fn fitted(&self, seed: u64) -> Result<Vec<Fitted>, TemplatesError> {
+        let surfaces = match &self.surfaces {
+            Surfaces::Angular { indices, count } => {
+                let surface = |number| indices.surface(seed, number as u64);
+                (0..*count).map(surface).collect::<Result<Vec<_>, _>>().map_err(TemplatesError::Surface)?
+            }
+            Surfaces::Meshes(meshes) => meshes.clone(),
+        };
+        let fitted = |(number, surface)| self.fit(number, surface);
+        surfaces.into_iter().enumerate().map(fitted).collect()
+    }
+
+    fn fit(&self, number: usize, surface: Mesh) -> Result<Fitted, TemplatesError> {
+        let bubbles = Bubbles::fill(&surface, &self.rule);
+        let (found, fewest) = (bubbles.pebbles.len(), self.rule.pebbles[0].max(1));
+        if found < fewest {
+            return Err(TemplatesError::TooFew { surface: number, found, fewest });
+        }
+        let clump = Template::of(&bubbles.pebbles).map_err(TemplatesError::Clump)?;
+        let template = clump.scaled(1.0 / clump.equivalent_diameter());
+        Ok(Fitted { surface, bubbles, template })
+    }
+}
+
+impl fmt::Display for TemplatesError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            TemplatesError::Surface(error) => error.fmt(f),
+            TemplatesError::Clump(error) => error.fmt(f),
+            TemplatesError::TooFew { surface, found, fewest } => write!(
+                f,
+                "{found} pebbles fit into surface {surface} where {fewest} are asked for; it is all but a ball: ask for fewer"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for TemplatesError {}
