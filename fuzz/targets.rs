@@ -1,6 +1,7 @@
 //! What must hold of any text.
 
-use trackbed::check::NoModules;
+use std::cell::RefCell;
+use trackbed::check::{NoModules, Remembered};
 use trackbed::diag::{Diagnostic, FileId, Sources};
 use trackbed::{compile, syntax};
 
@@ -27,16 +28,33 @@ pub fn format(text: &str) {
     assert_eq!(syntax::parse(FileId(0), &once).1, [], "formatted text does not parse");
 }
 
+/// Checks between which the texts that are remembered are forgotten: the standard library stays for a while, and memory is kept.
+const MEMORY: u32 = 1000;
+
+thread_local! {
+    static KNOWN: RefCell<(u32, Remembered<'static>)> = RefCell::new((0, Remembered::new(&NoModules)));
+}
+
 /// Checking and planning end, twice with the same diagnostics, whose spans stand in their files.
 pub fn check(text: &str) {
-    let compiled = compile("fuzz.track", text, &NoModules, &[]);
+    KNOWN.with_borrow_mut(|(runs, known)| {
+        *runs += 1;
+        if *runs % MEMORY == 0 {
+            *known = Remembered::new(&NoModules);
+        }
+        check_with(text, known);
+    });
+}
+
+fn check_with(text: &str, known: &Remembered) {
+    let compiled = compile("fuzz.track", text, known, &[]);
     compiled.diagnostics.iter().for_each(|d| inside(d, &compiled.sources));
     if compiled.graph.is_some() {
         let errors: Vec<&str> =
             compiled.diagnostics.iter().filter(|d| d.is_error()).map(|d| d.message.as_str()).collect();
         assert!(compiled.scenario.is_some(), "a plan without a scene beside {errors:?}");
     }
-    let again = compile("fuzz.track", text, &NoModules, &[]);
+    let again = compile("fuzz.track", text, known, &[]);
     assert_eq!(format!("{:?}", compiled.diagnostics), format!("{:?}", again.diagnostics), "checking twice differs");
 }
 

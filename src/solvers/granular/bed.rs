@@ -258,6 +258,14 @@ impl<R: Real> Bed<R> {
         self.unchecked = true;
     }
 
+    /// Puts a wall elsewhere at once, with its motion. What it passes on the way does not feel it.
+    pub fn stand(&mut self, wall: WallId, place: [f64; 3]) {
+        let (cell, position) = self.domain.split(place);
+        let wall = &mut self.walls[wall.0 as usize];
+        (wall.cell, wall.pose.position) = (cell, position.into());
+        self.build.outdated = true;
+    }
+
     /// Sets velocity \[m/s\] and angular velocity \[rad/s\] of a body.
     pub fn set_velocity(&mut self, id: BodyId, velocity: [f64; 3], spin: [f64; 3]) {
         self.unchecked = true;
@@ -323,6 +331,16 @@ impl<R: Real> Bed<R> {
     /// Changes every contact law, friction for example.
     pub fn change_laws(&mut self, change: impl FnMut(&mut Law)) {
         self.laws.change(change);
+        self.unchecked = true;
+    }
+
+    /// Takes other laws between the same surfaces. Contacts keep their histories.
+    ///
+    /// # Panics
+    /// If there are fewer or more surfaces than before.
+    pub fn set_laws(&mut self, laws: Laws) {
+        assert_eq!(laws.surfaces(), self.laws.surfaces(), "surfaces of a bed");
+        self.laws = laws;
         self.unchecked = true;
     }
 

@@ -48,6 +48,7 @@ mod law;
 pub mod measure;
 pub mod motion;
 mod order;
+pub mod packing;
 mod prefetch;
 mod record;
 mod replicate;

@@ -14,6 +14,7 @@
 //!
 //! Every class follows its own closed form: between two sieves u is straight over ln d, so that n is an exponential of ln d.
 
+use serde::{Deserialize, Serialize};
 use super::Random;
 use std::f64::consts::PI;
 use std::fmt;
@@ -23,7 +24,7 @@ const MOST_GRAINS: f64 = 2e7;
 
 /// Share of the mass that is modelled, by size: from 0 at the finest grain to 1 at the coarsest, straight over the logarithm of the
 /// size in between. Two points of one size are a jump: many grains of that size.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
     /// Size, m, and share of the modelled mass that is finer.
     points: Vec<[f64; 2]>,

@@ -32,7 +32,7 @@ pub use grading::{Class, Curve, GradingError, Sample};
 pub use likeness::ShapeError;
 pub use templates::{ClumpShape, Fitted, Grain, Surfaces, TemplatesError, grains};
 
-use random::Random;
+pub(super) use random::Random;
 
 #[cfg(test)]
 mod tests;

@@ -13,13 +13,13 @@ pub struct Coordination {
     pub without_rattlers: f64,
     /// Bodies with fewer than two neighbours.
     pub rattlers: usize,
-    /// Pairs of bodies in contact, each once.
+    /// Pairs of bodies in contact, each once; of some bodies only, half of the touches that they have.
     pub pairs: usize,
 }
 
-/// Coordination of `bodies` bodies whose touching pairs are given, in any order and as often as their pebbles touch. A body is not
-/// its own neighbour, and neither is a wall: pairs that name a body beyond the last are left out. 0 where there are no bodies.
-pub fn coordination(bodies: usize, pairs: &[(u32, u32)]) -> Coordination {
+/// How many others each of `bodies` bodies touches, whose touching pairs are given, in any order and as often as their pebbles
+/// touch. A body is not its own neighbour, and neither is a wall: pairs that name a body beyond the last are left out.
+pub fn neighbours(bodies: usize, pairs: &[(u32, u32)]) -> Vec<u32> {
     let inside = |(i, j): &(u32, u32)| i != j && (*i as usize) < bodies && (*j as usize) < bodies;
     let mut distinct: Vec<_> = pairs.iter().filter(|p| inside(p)).map(|(i, j)| (*i.min(j), *i.max(j))).collect();
     distinct.sort_unstable();
@@ -29,13 +29,25 @@ pub fn coordination(bodies: usize, pairs: &[(u32, u32)]) -> Coordination {
         neighbours[*i as usize] += 1;
         neighbours[*j as usize] += 1;
     }
-    let held: Vec<_> = neighbours.iter().filter(|n| **n >= 2).collect();
-    let links: u64 = held.iter().map(|n| u64::from(**n)).sum();
-    Coordination {
-        mean: 2.0 * distinct.len() as f64 / bodies.max(1) as f64,
-        without_rattlers: links as f64 / held.len().max(1) as f64,
-        rattlers: bodies - held.len(),
-        pairs: distinct.len(),
+    neighbours
+}
+
+/// Coordination of `bodies` bodies with these touching pairs, see [`neighbours`]. 0 where there are no bodies.
+pub fn coordination(bodies: usize, pairs: &[(u32, u32)]) -> Coordination {
+    Coordination::of(&neighbours(bodies, pairs))
+}
+
+impl Coordination {
+    /// Of bodies that touch so many others: of all that there are, or of some of them, whose neighbours may be others.
+    pub fn of(neighbours: &[u32]) -> Coordination {
+        let held: Vec<_> = neighbours.iter().filter(|n| **n >= 2).collect();
+        let [all, links] = [neighbours.iter().sum::<u32>(), held.iter().copied().sum()];
+        Coordination {
+            mean: f64::from(all) / neighbours.len().max(1) as f64,
+            without_rattlers: f64::from(links) / held.len().max(1) as f64,
+            rattlers: neighbours.len() - held.len(),
+            pairs: all as usize / 2,
+        }
     }
 }
 

@@ -9,7 +9,7 @@ mod contacts;
 #[cfg(test)]
 mod tests;
 
-pub use contacts::{Contact, Coordination, coordination, stress};
+pub use contacts::{Contact, Coordination, coordination, neighbours, stress};
 
 use std::f64::consts::PI;
 use std::fmt;

@@ -1,0 +1,247 @@
+//! A compacted bed from gradings: lifts of loose grains fall and are pressed by a plate, without friction, until they are at
+//! rest; then the plate goes and friction comes back (Ahmadi et al. 2026, section 2.1.2; methods 1.7).
+//!
+//! The bed is one periodic cell along x, between walls across or periodic there too, on a floor at z = 0. Every stage ends when
+//! forces are in balance, never by a count of steps; one that does not get there is told with what it reached.
+
+mod describe;
+mod error;
+mod place;
+mod press;
+mod rest;
+#[cfg(test)]
+mod tests;
+
+pub use describe::{LayerState, Stage, State};
+pub use error::PackingError;
+
+use super::bed::{Bed, Placed};
+use super::clump::Template;
+use super::domain::Domain;
+use super::grains::{Curve, Random, Sample, grains};
+use super::gravity::Gravity;
+use super::lanes::Real;
+use super::law::{Law, Laws, Surface};
+use press::Press;
+use serde::{Deserialize, Serialize};
+
+/// What is packed, and how.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Recipe {
+    /// Of the cell along x and across, m.
+    pub plan: [f64; 2],
+    /// Whether walls stand at both ends across; else the bed is periodic there too.
+    pub walls: bool,
+    /// From the floor upwards.
+    pub layers: Vec<Layer>,
+    /// Downwards, m/s2.
+    pub gravity: f64,
+    /// Local damping of the finished bed.
+    pub local_damping: f64,
+    pub rest: Rest,
+    pub seed: u64,
+}
+
+/// A layer of one material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Layer {
+    pub name: String,
+    pub curve: Curve,
+    /// Of unit size; grains are copies of them as often of one as of another.
+    pub templates: Vec<Template>,
+    /// Of a grain, kg/m3.
+    pub density: f64,
+    /// Of the finished bed.
+    pub surface: Surface,
+    /// To walls, floor and plate.
+    pub wall_friction: f64,
+    /// m.
+    pub thickness: f64,
+    pub lifts: u32,
+    /// On each lift, Pa.
+    pub pressure: f64,
+    /// While it is packed.
+    pub packing: Packing,
+}
+
+/// How a layer is damped while it is packed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Packing {
+    pub friction: f64,
+    pub local_damping: f64,
+    /// Share of critical damping of contacts.
+    pub viscous_damping: f64,
+}
+
+/// When a stage is at its end.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Rest {
+    /// Force out of balance over the forces that act, mean over all bodies, of a lift under its plate.
+    pub lift: f64,
+    /// The same of the finished bed.
+    pub bed: f64,
+    /// Share by which the plate may miss its pressure.
+    pub pressure: f64,
+    /// Time that a stage may take, s.
+    pub longest: f64,
+}
+
+impl Default for Rest {
+    fn default() -> Self {
+        Rest { lift: 0.01, bed: 1e-3, pressure: 0.02, longest: 4.0 }
+    }
+}
+
+/// A finished bed, and what became of it on the way.
+#[derive(Clone)]
+pub struct Packed<R: Real> {
+    pub bed: Bed<R>,
+    /// Of the cell along x and across, m.
+    pub plan: [f64; 2],
+    /// Of the grains of each layer, kg/m3.
+    pub densities: Vec<f64>,
+    /// Where the bodies of each layer begin, and the end of the last.
+    pub bodies: Vec<u32>,
+    /// What was taken of each grading.
+    pub samples: Vec<Sample>,
+    /// Level at which the plate stood on each layer under its pressure, m.
+    pub levels: Vec<f64>,
+    /// Each stage as it ended.
+    pub stages: Vec<Stage>,
+}
+
+/// How far packing is, for people who wait.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Progress {
+    pub stage: String,
+    /// Of all stages, 0 .. 1; an estimate.
+    pub share: f64,
+    pub bodies: usize,
+    pub steps: u64,
+}
+
+/// Solid share that a layer will have, before a lift of it has shown its own.
+const SOLID: f64 = 0.60;
+
+/// Builds the bed. `tell` hears how far it is.
+pub fn pack<R: Real>(recipe: &Recipe, tell: impl FnMut(&Progress)) -> Result<Packed<R>, PackingError> {
+    error::check(recipe)?;
+    let mut press = Press::<R, _>::new(recipe, tell);
+    let mut packed = Contents::default();
+    for (number, layer) in recipe.layers.iter().enumerate() {
+        packed.bodies.push(press.bed.len() as u32);
+        let sample = fill(&mut press, recipe, number, layer)?;
+        packed.samples.push(sample);
+        packed.levels.push(press.level());
+    }
+    packed.bodies.push(press.bed.len() as u32);
+    press.finish(recipe)?;
+    let Contents { bodies, samples, levels } = packed;
+    let densities = recipe.layers.iter().map(|layer| layer.density).collect();
+    Ok(Packed { bed: press.bed, plan: recipe.plan, densities, bodies, samples, levels, stages: press.stages })
+}
+
+#[derive(Default)]
+struct Contents {
+    bodies: Vec<u32>,
+    samples: Vec<Sample>,
+    levels: Vec<f64>,
+}
+
+/// Packs a layer lift by lift. All but the last have their share of what the layer is thought to hold; the last has what the
+/// thickness lacks, at the porosity that those before have reached.
+fn fill<R: Real, T: FnMut(&Progress)>(
+    press: &mut Press<'_, R, T>,
+    recipe: &Recipe,
+    number: usize,
+    layer: &Layer,
+) -> Result<Sample, PackingError> {
+    let area = recipe.plan[0] * recipe.plan[1];
+    let base = press.level();
+    let mut lifts = Vec::<Sample>::new();
+    let mut taken = 0.0;
+    for lift in 0..layer.lifts {
+        let left = f64::from(layer.lifts - lift);
+        let reached = press.level() - base;
+        let solid = if taken > 0.0 { taken / (area * reached) } else { SOLID };
+        let volume = area * ((layer.thickness - reached) * solid / left).max(0.0);
+        let sample = layer.curve.sample(volume, recipe.seed.wrapping_add((number as u64) << 32 | u64::from(lift)))?;
+        taken += sample.volume;
+        let copies = grains(&sample, layer.templates.len(), recipe.seed ^ (u64::from(lift) << 8));
+        press.lay(recipe, number, lift, &copies)?;
+        lifts.push(sample);
+    }
+    let sizes = lifts.iter().flat_map(|sample| sample.sizes.iter().copied()).collect();
+    let volume = lifts.iter().map(|sample| sample.volume).sum();
+    Ok(Sample { sizes, volume, curve: layer.curve.clone() })
+}
+
+impl Recipe {
+    /// Laws of the finished bed: surface `i` is layer `i`, the last one is walls, floor and plate, as stiff as the grains.
+    pub fn laws(&self) -> Laws {
+        self.between(|layer| (layer.surface, layer.wall_friction))
+    }
+
+    /// Laws while it is packed.
+    fn packing_laws(&self) -> Laws {
+        self.between(|layer| {
+            let Packing { friction, viscous_damping, .. } = layer.packing;
+            let surface = Surface { friction, damping: [viscous_damping; 2], ..layer.surface };
+            (surface, friction.min(layer.wall_friction))
+        })
+    }
+
+    fn between(&self, of: impl Fn(&Layer) -> (Surface, f64)) -> Laws {
+        let surfaces: Vec<(Surface, f64)> = self.layers.iter().map(of).collect();
+        let mut all: Vec<Surface> = surfaces.iter().map(|(surface, _)| *surface).collect();
+        all.extend(all.last().copied());
+        let mut laws = Laws::of(&all);
+        for (number, (surface, friction)) in surfaces.iter().enumerate() {
+            let mut law = surface.meet(surface);
+            if let Law::Linear(law) = &mut law {
+                law.friction = *friction;
+            }
+            laws.set(number as u16, self.wall_surface(), law);
+        }
+        laws
+    }
+
+    fn wall_surface(&self) -> u16 {
+        self.layers.len() as u16
+    }
+
+    /// An empty bed of this plan, with floor and walls, as it is packed.
+    fn ground<R: Real>(&self) -> Bed<R> {
+        let [length, width] = self.plan;
+        let domain = Domain::open().periodic(0, length);
+        let domain = if self.walls { domain } else { domain.periodic(1, width) };
+        let mut bed = Bed::new(domain, self.packing_laws());
+        bed.set_gravity(Gravity::Constant([0.0, 0.0, -self.gravity]));
+        bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], self.wall_surface());
+        if self.walls {
+            bed.add_plane([0.0; 3], [0.0, 1.0, 0.0], self.wall_surface());
+            bed.add_plane([0.0, width, 0.0], [0.0, -1.0, 0.0], self.wall_surface());
+        }
+        bed
+    }
+}
+
+/// Puts grains into a bed, falling.
+fn put<R: Real>(bed: &mut Bed<R>, loose: &[place::Loose], layer: &Layer, surface: u16, fall: f64) {
+    for grain in loose {
+        let placed = Placed {
+            template: &grain.template,
+            centre: grain.centre,
+            attitude: grain.attitude,
+            density: layer.density,
+            surface,
+        };
+        let body = bed.add_clump(&placed);
+        bed.set_velocity(body, [0.0, 0.0, -fall], [0.0; 3]);
+    }
+}
+
+/// Numbers by chance of one lift.
+fn chance(recipe: &Recipe, layer: usize, lift: u32) -> Random {
+    Random::new(recipe.seed, 1 << 48 | (layer as u64) << 32 | u64::from(lift))
+}

@@ -1,0 +1,152 @@
+//! Grains set loosely above a bed: by chance, the largest first, none touching another.
+
+use super::super::clump::Template;
+use super::super::grains::{Grain, Random};
+use super::super::vector::Vec3;
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+
+/// Solid share of the room in which places are sought first.
+const LOOSE: f64 = 0.25;
+/// Places tried before the room grows.
+const TRIES: usize = 60;
+/// By how much it grows, and how often at most: then it is eighty times as high, and nothing fits.
+const GROWTH: f64 = 1.05;
+const MOST_GROWTHS: usize = 90;
+
+/// Room above a bed, m.
+pub(super) struct Room {
+    /// Along x, which is periodic.
+    pub length: f64,
+    /// Across, from 0.
+    pub width: f64,
+    /// Whether y is periodic too; else walls stand at both ends of it.
+    pub periodic: bool,
+    /// What lies below.
+    pub base: f64,
+}
+
+/// A grain in its place.
+pub(super) struct Loose {
+    /// Scaled to its size.
+    pub template: Template,
+    /// Of the centroid, m.
+    pub centre: Vec3,
+    pub attitude: UnitQuaternion<f64>,
+}
+
+/// Places of all grains, and the level below which they lie, m; `None` where one of them is too large for the plan.
+pub(super) fn set_loose(
+    grains: &[Grain],
+    templates: &[Template],
+    room: &Room,
+    random: &mut Random,
+) -> Option<(Vec<Loose>, f64)> {
+    let mut scaled: Vec<Template> = grains.iter().map(|grain| templates[grain.template].scaled(grain.size)).collect();
+    scaled.sort_by(|a, b| b.volume.total_cmp(&a.volume));
+    let solid: f64 = scaled.iter().map(|template| template.volume).sum();
+    let widest = scaled.iter().flat_map(|t| &t.pebbles).map(|p| 2.0 * p.radius).fold(0.0, f64::max);
+    let highest = scaled.iter().map(|t| 2.0 * t.bounding_radius()).fold(0.0, f64::max);
+    let mut height = (solid / (room.length * room.width * LOOSE)).max(highest);
+    let mut taken = Taken::new(room, widest.max(f64::MIN_POSITIVE));
+    let mut placed = Vec::with_capacity(scaled.len());
+    for template in scaled {
+        let mut growths = 0;
+        let (centre, attitude) = loop {
+            match (0..TRIES).find_map(|_| taken.try_place(&template, height, random)) {
+                Some(found) => break found,
+                None if growths == MOST_GROWTHS => return None,
+                None => (height, growths) = (height * GROWTH, growths + 1),
+            }
+        };
+        placed.push(Loose { template, centre, attitude });
+    }
+    Some((placed, room.base + height))
+}
+
+/// Pebbles that have their places, by cells as wide as the widest.
+struct Taken<'a> {
+    room: &'a Room,
+    cells: [usize; 2],
+    edge: Vec3,
+    /// Level by level.
+    pebbles: Vec<Vec<(Vec3, f64)>>,
+}
+
+impl Taken<'_> {
+    fn new(room: &Room, widest: f64) -> Taken<'_> {
+        let cells = [room.length, room.width].map(|side| ((side / widest).floor() as usize).max(1));
+        let edge = [room.length / cells[0] as f64, room.width / cells[1] as f64, widest];
+        Taken { room, cells, edge, pebbles: Vec::new() }
+    }
+
+    /// A place by chance, taken where it is free.
+    fn try_place(
+        &mut self,
+        template: &Template,
+        height: f64,
+        random: &mut Random,
+    ) -> Option<(Vec3, UnitQuaternion<f64>)> {
+        let room = self.room;
+        let attitude = even_attitude(random);
+        let arms: Vec<(Vector3<f64>, f64)> = template.pebbles.iter().map(|p| (attitude * p.centre, p.radius)).collect();
+        let reach = |axis: usize, side: f64| arms.iter().map(|(arm, r)| side * arm[axis] + r).fold(0.0, f64::max);
+        let between = |low: f64, high: f64, random: &mut Random| (low <= high).then(|| random.between(low, high));
+        let x = random.between(0.0, room.length);
+        let y = if room.periodic {
+            random.between(0.0, room.width)
+        } else {
+            between(reach(1, -1.0), room.width - reach(1, 1.0), random)?
+        };
+        let z = between(room.base + reach(2, -1.0), room.base + height - reach(2, 1.0), random)?;
+        let centre = Vector3::new(x, y, z);
+        let pebbles: Vec<(Vec3, f64)> = arms.iter().map(|(arm, r)| ((centre + arm).into(), *r)).collect();
+        if pebbles.iter().any(|pebble| self.meets(pebble)) {
+            return None;
+        }
+        pebbles.into_iter().for_each(|pebble| self.take(pebble));
+        Some((centre.into(), attitude))
+    }
+
+    fn cell(&self, place: &Vec3) -> [isize; 3] {
+        let of = |axis: usize, origin: f64| ((place[axis] - origin) / self.edge[axis]).floor() as isize;
+        [of(0, 0.0), of(1, 0.0), of(2, self.room.base)]
+    }
+
+    fn index(&self, [x, y, z]: [isize; 3]) -> usize {
+        let [nx, ny] = self.cells;
+        let (x, y) = (x.rem_euclid(nx as isize) as usize, y.rem_euclid(ny as isize) as usize);
+        (z.max(0) as usize * ny + y) * nx + x
+    }
+
+    fn take(&mut self, pebble: (Vec3, f64)) {
+        let index = self.index(self.cell(&pebble.0));
+        if self.pebbles.len() <= index {
+            self.pebbles.resize(index + 1, Vec::new());
+        }
+        self.pebbles[index].push(pebble);
+    }
+
+    fn meets(&self, pebble: &(Vec3, f64)) -> bool {
+        let [x, y, z] = self.cell(&pebble.0);
+        let meets = |other: &(Vec3, f64)| self.square(&pebble.0, &other.0) < (pebble.1 + other.1).powi(2);
+        (0..27).map(|k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]).any(|cell| {
+            cell[2] >= 0 && self.pebbles.get(self.index(cell)).is_some_and(|there| there.iter().any(meets))
+        })
+    }
+
+    /// Square of the distance the shorter way round, m2.
+    fn square(&self, a: &Vec3, b: &Vec3) -> f64 {
+        let around = |d: f64, period: f64| d - period * (d / period).round();
+        let dx = around(a[0] - b[0], self.room.length);
+        let dy = if self.room.periodic { around(a[1] - b[1], self.room.width) } else { a[1] - b[1] };
+        dx * dx + dy * dy + (a[2] - b[2]).powi(2)
+    }
+}
+
+/// Every attitude as likely as any other (Shoemake 1992).
+fn even_attitude(random: &mut Random) -> UnitQuaternion<f64> {
+    let share = random.share();
+    let [a, b] = [(); 2].map(|()| std::f64::consts::TAU * random.share());
+    let (small, large) = ((1.0 - share).sqrt(), share.sqrt());
+    UnitQuaternion::new_normalize(Quaternion::new(large * b.cos(), small * a.sin(), small * a.cos(), large * b.sin()))
+}
