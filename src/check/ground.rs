@@ -7,9 +7,9 @@ use super::tier::Asked;
 use super::trackform::Built;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{ApproachSlab, Layer, Material, SleeperBody};
-use crate::solvers::foundation::{self, Bearing, Below};
+use crate::solvers::foundation::{self, Bearing, Below, Footing};
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 /// Poisson's ratio of concrete.
@@ -53,8 +53,13 @@ type Found = Result<(f64, f64), foundation::FoundationError>;
 /// A sleeper's half on a stack of layers.
 type Stacked = (Bearing, Vec<foundation::Layer>);
 
-/// Answers by the bits of what was asked: seats under several stretches are asked for again.
-pub(super) type Supports = HashMap<Vec<u64>, Found>;
+/// What has been asked of the ground in a check; seats under several stretches are asked for again.
+#[derive(Default)]
+pub(super) struct Supports {
+    /// Answers by the bits of what was asked.
+    found: HashMap<Vec<u64>, Found>,
+    footings: HashMap<Vec<u64>, Footing>,
+}
 
 /// How half a sleeper lies: its bearing area under the seat as far as the sleeper reaches.
 fn bearing(body: &SleeperBody, spacings: [f64; 2]) -> Bearing {
@@ -137,20 +142,16 @@ fn key(bearing: &Bearing, stack: &[foundation::Layer]) -> Vec<u64> {
     plan.into_iter().chain(bearing.to_centre).chain(stack.iter().flat_map(layer)).map(f64::to_bits).collect()
 }
 
-/// Answers for stacks under the same bearing.
-fn solve(asked: &Asked, bearing: &Bearing, stacks: &[&[foundation::Layer]]) -> Vec<Found> {
-    let below = |stack: &[foundation::Layer]| match stack.last() {
+/// The answer for one stack under a bearing.
+fn solve(asked: &Asked, footing: &mut Footing, stack: &[foundation::Layer]) -> Found {
+    let below = match stack.last() {
         Some(ground) if asked.quiet_base => {
             Below::HalfSpace { youngs_modulus: ground.youngs_modulus, poisson_ratio: ground.poisson_ratio }
         }
         _ => Below::Rigid,
     };
-    let grounded: Vec<_> = stacks.iter().map(|stack| (*stack, below(stack))).collect();
-    let supports = foundation::supports(bearing, &grounded, asked.support_method);
-    let of = |(support, stack): (Result<foundation::Support, _>, &&[foundation::Layer])| {
-        support.map(|support| (support.stiffness, support.pressures[stack.len() - 1]))
-    };
-    supports.into_iter().zip(stacks).map(of).collect()
+    let support = footing.support(stack, below)?;
+    Ok((support.stiffness, support.pressures[stack.len() - 1]))
 }
 
 impl Checker<'_> {
@@ -216,26 +217,29 @@ impl Checker<'_> {
         Some(carried)
     }
 
-    /// Answers in the order of what is asked; each is computed once in a check, and independent ones side by side.
+    /// Answers in the order of what is asked; each is computed once in a check, and those under different bearings side by
+    /// side.
     fn supports(&mut self, asked: &[Stacked]) -> Vec<Found> {
-        let keys: Vec<Vec<u64>> = asked.iter().map(|(bearing, stack)| key(bearing, stack)).collect();
-        let mut missing: Vec<(&Vec<u64>, &Stacked)> =
-            keys.iter().zip(asked).filter(|(key, _)| !self.supports.contains_key(*key)).collect();
-        missing.sort_by_key(|(key, _)| *key);
-        missing.dedup_by_key(|(key, _)| *key);
         let settings = self.asked;
+        let Supports { found, footings } = &mut self.supports;
+        let keys: Vec<Vec<u64>> = asked.iter().map(|(bearing, stack)| key(bearing, stack)).collect();
+        let missing: BTreeMap<&Vec<u64>, &Stacked> =
+            keys.iter().zip(asked).filter(|(key, _)| !found.contains_key(*key)).collect();
         // keys begin with the bearing, so stacks under the same one stand together
-        let groups: Vec<_> = missing.chunk_by(|(_, (a, _)), (_, (b, _))| a == b).collect();
-        let found: Vec<Vec<Found>> = groups
-            .par_iter()
-            .map(|group| {
-                let stacks: Vec<&[foundation::Layer]> = group.iter().map(|(_, (_, stack))| stack.as_slice()).collect();
-                solve(&settings, &group[0].1.0, &stacks)
-            })
+        let missing: Vec<(&Vec<u64>, &Stacked)> = missing.into_iter().collect();
+        let groups = missing.chunk_by(|(_, (a, _)), (_, (b, _))| a == b).map(|group| {
+            let bearing = group[0].1.0;
+            let footing = footings.remove(&key(&bearing, &[]));
+            (footing.unwrap_or_else(|| Footing::new(bearing, settings.support_method)), group)
+        });
+        let mut groups: Vec<(Footing, &[(&Vec<u64>, &Stacked)])> = groups.collect();
+        let answers: Vec<Vec<Found>> = groups
+            .par_iter_mut()
+            .map(|(footing, group)| group.iter().map(|(_, (_, stack))| solve(&settings, footing, stack)).collect())
             .collect();
-        let keyed = missing.iter().map(|(key, _)| (*key).clone());
-        self.supports.extend(keyed.zip(found.into_iter().flatten()).collect::<Vec<_>>());
-        keys.iter().map(|key| self.supports[key]).collect()
+        found.extend(missing.iter().map(|(key, _)| (*key).clone()).zip(answers.into_iter().flatten()));
+        footings.extend(groups.into_iter().map(|(footing, group)| (key(&group[0].1.0, &[]), footing)));
+        keys.iter().map(|key| found[key]).collect()
     }
 
     fn held_up(&mut self, built: &Built, places: &Places, seat: usize, found: Found) -> Option<(f64, f64)> {

@@ -119,7 +119,7 @@ fn with_checker<T>(
         unreadable,
         depth: 0,
         operands: 0,
-        supports: HashMap::new(),
+        supports: ground::Supports::default(),
         seat_places: None,
         asked: Asked::default(),
         counted: None,

@@ -13,82 +13,113 @@
 
 use super::kernel::Kernel;
 use super::rectangle::mean_settlement;
+use super::sine::{LANES, sine};
 use super::{Bearing, Below, Layer, Support};
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::iter;
 
 /// Waves shorter than this over the first layer's thickness are not felt below it: the pressure there by less than 1e-4 of
 /// itself, settlement by 1e-10.
 const SHORTEST: f64 = 12.0;
 /// Nor do those matter that go so often into the shorter side, however thin the first layer is.
 const FINEST: f64 = 200.0;
-/// Nodes and weights of Gauss and Legendre on -1 .. 1, the positive half of six.
-const NODES: [[f64; 2]; 3] = [
-    [0.238_619_186_083_196_9, 0.467_913_934_572_691],
-    [0.661_209_386_466_264_5, 0.360_761_573_048_138_6],
-    [0.932_469_514_203_152, 0.171_324_492_379_170_4],
+/// The longest panel of the integral, times the way over which waves of the plan meet: what its nodes follow to 1e-9.
+const PANEL: f64 = 24.0;
+/// Nodes and weights of Gauss and Legendre on -1 .. 1, the positive half of sixteen.
+const NODES: [[f64; 2]; 8] = [
+    [0.095_012_509_837_637_44, 0.189_450_610_455_068_5],
+    [0.281_603_550_779_258_9, 0.182_603_415_044_923_6],
+    [0.458_016_777_657_227_4, 0.169_156_519_395_002_5],
+    [0.617_876_244_402_643_7, 0.149_595_988_816_576_7],
+    [0.755_404_408_355_003, 0.124_628_971_255_533_9],
+    [0.865_631_202_387_831_7, 0.095_158_511_682_492_8],
+    [0.944_575_023_073_232_6, 0.062_253_523_938_647_9],
+    [0.989_400_934_991_649_9, 0.027_152_459_411_754_1],
 ];
 
 /// What is loaded: rectangles in rows along the track, equal rows across it.
-struct Around {
-    /// Distance along, m, and load over that of the one that is asked for; that one first.
-    along: [(f64, f64); 3],
+struct Plan {
+    /// Along and across the track, m.
+    sides: [f64; 2],
+    /// Distances to the neighbours along, m, and their load over that of the one that is asked for.
+    spacings: [f64; 2],
+    share: f64,
     /// Distance to the row of the other half sleeper, m.
     across: Option<f64>,
 }
 
-impl Around {
-    fn of(bearing: &Bearing, neighbours: f64) -> Around {
-        let [left, right] = bearing.spacings;
-        let across = bearing.to_centre.map(|gap| bearing.length + 2.0 * gap);
-        Around { along: [(0.0, 1.0), (-left, neighbours), (right, neighbours)], across }
+impl Plan {
+    fn of(bearing: &Bearing, neighbours: f64) -> Plan {
+        Plan {
+            sides: [bearing.width, bearing.length],
+            spacings: bearing.spacings,
+            share: neighbours,
+            across: bearing.to_centre.map(|gap| bearing.length + 2.0 * gap),
+        }
     }
 
     /// The longest way over which their waves meet, m: from corner to corner of the plan.
-    fn reach(&self, [a, b]: [f64; 2]) -> f64 {
-        let along = self.along.iter().filter(|n| n.1 > 0.0).map(|n| n.0.abs()).fold(0.0, f64::max);
-        f64::hypot(along + a, self.across.unwrap_or(0.0) + b)
+    fn reach(&self) -> f64 {
+        let along = if self.share > 0.0 { self.spacings[0].max(self.spacings[1]) } else { 0.0 };
+        f64::hypot(along + self.sides[0], self.across.unwrap_or(0.0) + self.sides[1])
     }
 
     /// Settlement of a half-space under all of them, m/N.
-    fn endless(&self, sides: [f64; 2], youngs_modulus: f64, poisson_ratio: f64) -> f64 {
-        let rows = [Some(0.0), self.across];
-        let one = |y: f64, x: f64| mean_settlement(sides, [x, y], youngs_modulus, poisson_ratio);
-        let row = |y: f64| self.along.iter().filter(|n| n.1 > 0.0).map(|n| n.1 * one(y, n.0)).sum::<f64>();
-        rows.into_iter().flatten().map(row).sum()
+    fn endless(&self, youngs_modulus: f64, poisson_ratio: f64) -> f64 {
+        let one = |x: f64, y: f64| mean_settlement(self.sides, [x, y], youngs_modulus, poisson_ratio);
+        let [left, right] = self.spacings;
+        let row = |y: f64| one(0.0, y) + self.share * (one(left, y) + one(right, y));
+        row(0.0) + self.across.map_or(0.0, row)
     }
 
-    /// Share of a wave that they make, seen from the first.
-    fn wave(&self, kx: f64, ky: f64) -> f64 {
-        let [_, (left, share), (right, _)] = self.along;
-        let along = match (share > 0.0, -left == right) {
-            (false, _) => 1.0,
-            (true, true) => 1.0 + 2.0 * share * (kx * right).cos(),
-            (true, false) => 1.0 + share * ((kx * left).cos() + (kx * right).cos()),
-        };
-        along * self.across.map_or(1.0, |y| 1.0 + (ky * y).cos())
+    /// Averages over all directions of a wave: of the load seen by the mean of the rectangle, and by its middle. The midpoint
+    /// rule over a period converges faster than any power once it resolves the plan.
+    fn averages(&self, k: f64, reach: f64) -> [f64; 2] {
+        // a quarter for each radian resolves it, a fifth more makes the rest of no account
+        let rounds = 1 + (0.3 * k * reach / LANES as f64).ceil() as usize;
+        let points = (rounds * LANES) as f64;
+        let [a, b] = self.sides.map(|side| 0.5 * k * side);
+        let [left, right] = self.spacings.map(|spacing| k * spacing);
+        let (other, row) = self.across.map_or((0.0, 0.0), |distance| (1.0, k * distance));
+        let mut sums = [[0.0; LANES]; 2];
+        for round in 0..rounds {
+            for lane in 0..LANES {
+                let angle = FRAC_PI_2 / points * ((round * LANES + lane) as f64 + 0.5);
+                let (along, across) = (sine(angle + FRAC_PI_2), sine(angle));
+                let cosine = |x: f64| sine(x + FRAC_PI_2);
+                let plan = sine(a * along) * sine(b * across) / (a * along * b * across);
+                let neighbours = 1.0 + self.share * (cosine(left * along) + cosine(right * along));
+                let all = plan * neighbours * (1.0 + other * cosine(row * across));
+                sums[0][lane] += plan * all;
+                sums[1][lane] += all;
+            }
+        }
+        sums.map(|lanes| lanes.iter().sum::<f64>() / points)
     }
 }
 
-/// The support, with `waves` of a stack before, which may serve again.
+/// The support, with the waves of stacks before, which may serve again.
 pub(super) fn support(
     bearing: &Bearing,
     layers: &[Layer],
     below: Below,
     neighbours: f64,
-    waves: &mut Option<Waves>,
+    known: &mut Vec<Waves>,
 ) -> Support {
     // a layer that has run out is not there; its bottom lies where that of the one above does
     let solid: Vec<Layer> = layers.iter().filter(|layer| layer.thickness > 0.0).copied().collect();
-    let sides = [bearing.width, bearing.length];
-    let around = Around::of(bearing, neighbours);
-    let top = solid[0];
-    let depth = solid.iter().map(|layer| layer.thickness).sum();
-    if waves.as_ref().is_none_or(|waves| waves.of != [top.thickness, depth]) {
-        *waves = Some(Waves::new(sides, &around, top.thickness, depth));
-    }
-    let each = waves.as_ref().map_or(&[][..], |waves| &waves.each);
-    let (difference, below_axis) = integrals(each, &solid, below);
-    let compliance = around.endless(sides, top.youngs_modulus, top.poisson_ratio) + difference;
+    let plan = Plan::of(bearing, neighbours);
+    let (top, depth) = (solid[0], solid.iter().map(|layer| layer.thickness).sum());
+    let panels = panels(&plan, top.thickness, depth);
+    let waves = match known.iter().position(|waves| waves.panels == panels) {
+        Some(waves) => waves,
+        None => {
+            known.push(Waves::new(&plan, panels));
+            known.len() - 1
+        }
+    };
+    let (difference, below_axis) = integrals(&known[waves].each, &solid, below);
+    let compliance = plan.endless(top.youngs_modulus, top.poisson_ratio) + difference;
     let at_sleeper = 1.0 / (bearing.width * bearing.length);
     let mut deeper = below_axis.into_iter();
     let mut pressures = vec![at_sleeper];
@@ -99,11 +130,23 @@ pub(super) fn support(
     Support { stiffness: 1.0 / compliance, masses: Vec::new(), pressures }
 }
 
-/// What the plan of the load makes of the waves that are integrated over: the same for every stack whose first layer and
-/// whole are as thick, and most of the work.
+/// Where the panels of the integral over k end, 1/m: short where the depth of the whole is felt, later as long as the plan of
+/// the load allows.
+///
+/// Depth counts in powers of two and the last panel is whole, so that stacks that differ a little have the same.
+fn panels(plan: &Plan, first: f64, depth: f64) -> Vec<f64> {
+    let reach = plan.reach();
+    let last = (SHORTEST / first).min(FINEST / plan.sides[0].min(plan.sides[1]));
+    // a stiff plate on soft ground is felt several times as far away as it is thick
+    let shortest = 0.25 / depth.log2().ceil().exp2().max(reach);
+    let end = |from: f64| from + (3.0 * from).clamp(shortest, PANEL / reach);
+    iter::successors(Some(end(0.0)), |from| (*from < last).then(|| end(*from))).collect()
+}
+
+/// What the plan of the load makes of the waves that are integrated over: the same for every stack with the same panels, and
+/// most of the work.
 pub(super) struct Waves {
-    /// Thickness of the first layer and of all, m.
-    of: [f64; 2],
+    panels: Vec<f64>,
     each: Vec<Wave>,
 }
 
@@ -112,28 +155,26 @@ struct Wave {
     k: f64,
     /// Of its node, 1/m.
     weight: f64,
-    /// See [`averages`].
+    /// See [`Plan::averages`].
     mean: f64,
     axis: f64,
 }
 
 impl Waves {
-    fn new(sides: [f64; 2], around: &Around, first: f64, depth: f64) -> Waves {
-        let [a, b] = sides;
-        let reach = around.reach(sides);
-        let last = (SHORTEST / first).min(FINEST / a.min(b));
-        let (mut each, mut from) = (Vec::new(), 0.0);
-        while from < last {
-            // short panels where the depth of the whole is felt, later as long as the plan of the load allows
-            let to = f64::min(from + (0.5 * from).clamp(0.3 / depth.max(reach), 4.0 / reach), last);
-            each.extend(NODES.iter().flat_map(|[x, w]| [[*x, *w], [-x, *w]]).map(|[node, weight]| {
-                let k = 0.5 * (from + to) + 0.5 * (to - from) * node;
-                let [mean, axis] = averages(k, sides, around, reach);
-                Wave { k, weight: 0.5 * (to - from) * weight / (2.0 * PI), mean, axis }
-            }));
-            from = to;
-        }
-        Waves { of: [first, depth], each }
+    fn new(plan: &Plan, panels: Vec<f64>) -> Waves {
+        let reach = plan.reach();
+        let starts = iter::once(0.0).chain(panels.iter().copied());
+        let both = NODES.iter().flat_map(|[x, w]| [[*x, *w], [-x, *w]]);
+        let nodes = starts.zip(&panels).flat_map(|(from, to)| {
+            let half = 0.5 * (to - from);
+            both.clone().map(move |[x, w]| (from + half * (1.0 + x), half * w))
+        });
+        let wave = |(k, weight)| {
+            let [mean, axis] = plan.averages(k, reach);
+            Wave { k, weight: weight / (2.0 * PI), mean, axis }
+        };
+        let each = nodes.map(wave).collect();
+        Waves { panels, each }
     }
 }
 
@@ -142,38 +183,13 @@ impl Waves {
 fn integrals(waves: &[Wave], layers: &[Layer], below: Below) -> (f64, Vec<f64>) {
     let top = layers[0];
     let endless = 2.0 * (1.0 - top.poisson_ratio * top.poisson_ratio) / top.youngs_modulus;
-    let kernel = Kernel::new(layers, below);
+    let mut kernel = Kernel::new(layers, below);
     let (mut settlement, mut pressures) = (0.0, vec![0.0; layers.len()]);
     for Wave { k, weight, mean, axis } in waves {
-        let answer = kernel.answer(*k);
-        settlement += weight * (answer.settlement - endless) * mean;
-        for (pressure, found) in pressures.iter_mut().zip(&answer.pressures) {
+        settlement += weight * (kernel.settlement(*k) - endless) * mean;
+        for (pressure, found) in pressures.iter_mut().zip(kernel.pressures()) {
             *pressure += weight * k * found * axis;
         }
     }
     (settlement, pressures)
-}
-
-/// Averages over all directions of a wave: of the load's plan seen by the mean of the rectangle, and by its middle. The
-/// midpoint rule over a period converges faster than any power once it resolves the plan.
-fn averages(k: f64, [a, b]: [f64; 2], around: &Around, reach: f64) -> [f64; 2] {
-    // a quarter for each radian resolves it, a fifth more makes the rest of no account
-    let points = 8 + (0.3 * k * reach).ceil() as usize;
-    let mut sums = [0.0; 2];
-    // from one angle to the next by the theorem of addition: a fifth of the time, and exact to rounding
-    let angle = FRAC_PI_2 / points as f64;
-    let ((step_sin, step_cos), (mut sin, mut cos)) = (angle.sin_cos(), (0.5 * angle).sin_cos());
-    for _ in 0..points {
-        let (kx, ky) = (k * cos, k * sin);
-        (sin, cos) = (sin * step_cos + cos * step_sin, cos * step_cos - sin * step_sin);
-        let plan = sinc(0.5 * kx * a) * sinc(0.5 * ky * b);
-        let others = around.wave(kx, ky);
-        sums[0] += plan * plan * others;
-        sums[1] += plan * others;
-    }
-    sums.map(|sum| sum / points as f64)
-}
-
-fn sinc(x: f64) -> f64 {
-    if x.abs() < 1e-4 { 1.0 - x * x / 6.0 } else { x.sin() / x }
 }

@@ -10,6 +10,7 @@ mod elastic;
 mod error;
 mod kernel;
 mod rectangle;
+mod sine;
 #[cfg(test)]
 mod tests;
 
@@ -102,33 +103,35 @@ impl Support {
 /// # Errors
 /// A length, modulus or density that is not positive, an angle or Poisson's ratio out of its range, or no layer at all.
 pub fn support(bearing: &Bearing, layers: &[Layer], below: Below, method: Method) -> Result<Support, FoundationError> {
-    support_after(bearing, layers, below, method, &mut None)
+    Footing::new(*bearing, method).support(layers, below)
 }
 
-/// The supports of one seat on several stacks, each as [`support`] gives it. Elastic stacks as deep as the one before, under a
-/// first layer as thick, share most of the work.
-pub fn supports(
-    bearing: &Bearing,
-    stacks: &[(&[Layer], Below)],
+/// A bearing that is asked for its support on one stack after the other: what is the same for stacks of about the same
+/// thickness is worked out once, which is most of the elastic method. No answer depends on those before.
+pub struct Footing {
+    bearing: Bearing,
     method: Method,
-) -> Vec<Result<Support, FoundationError>> {
-    let mut waves = None;
-    stacks.iter().map(|(layers, below)| support_after(bearing, layers, *below, method, &mut waves)).collect()
+    waves: Vec<elastic::Waves>,
 }
 
-fn support_after(
-    bearing: &Bearing,
-    layers: &[Layer],
-    below: Below,
-    method: Method,
-    waves: &mut Option<elastic::Waves>,
-) -> Result<Support, FoundationError> {
-    error::check(bearing, layers, below, method)?;
-    let cone = cone::support(bearing, layers, below);
-    Ok(match method {
-        Method::StressCone => cone,
-        Method::LayeredElastic { neighbours } => {
-            Support { masses: cone.masses, ..elastic::support(bearing, layers, below, neighbours, waves) }
-        }
-    })
+impl Footing {
+    pub fn new(bearing: Bearing, method: Method) -> Footing {
+        Footing { bearing, method, waves: Vec::new() }
+    }
+
+    /// The same as [`support`] gives.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn support(&mut self, layers: &[Layer], below: Below) -> Result<Support, FoundationError> {
+        let Footing { bearing, method, waves } = self;
+        error::check(bearing, layers, below, *method)?;
+        let cone = cone::support(bearing, layers, below);
+        Ok(match *method {
+            Method::StressCone => cone,
+            Method::LayeredElastic { neighbours } => {
+                Support { masses: cone.masses, ..elastic::support(bearing, layers, below, neighbours, waves) }
+            }
+        })
+    }
 }

@@ -177,6 +177,51 @@ fn mistakes_are_named() {
     );
 }
 
+/// The support without panels, closed sums or what stacks before left: every wave and direction in small even steps.
+fn by_brute_force(bearing: &Bearing, layers: &[Layer], neighbours: f64) -> f64 {
+    let top = layers[0];
+    let endless = 2.0 * (1.0 - top.poisson_ratio * top.poisson_ratio) / top.youngs_modulus;
+    let (apart, length) = (bearing.length + 2.0 * bearing.to_centre.unwrap(), bearing.length);
+    let centres: Vec<(f64, f64, f64)> =
+        [(0.0, 1.0), (-bearing.spacings[0], neighbours), (bearing.spacings[1], neighbours)]
+            .into_iter()
+            .flat_map(|(x, share)| [(x, 0.0, share), (x, apart, share)])
+            .collect();
+    let half_space = |(x, y, share): &(f64, f64, f64)| {
+        share * mean_settlement([bearing.width, length], [*x, *y], top.youngs_modulus, top.poisson_ratio)
+    };
+    let sinc = |x: f64| x.sin() / x;
+    let (step, directions) = (0.01, 160);
+    let wave = |k: f64| {
+        let direction = |i: usize| {
+            let (sin, cos) = (std::f64::consts::FRAC_PI_2 * (i as f64 + 0.5) / directions as f64).sin_cos();
+            let plan = sinc(0.5 * k * cos * bearing.width) * sinc(0.5 * k * sin * length);
+            plan * plan
+                * centres.iter().map(|(x, y, share)| share * (k * cos * x).cos() * (k * sin * y).cos()).sum::<f64>()
+        };
+        let mean = (0..directions).map(direction).sum::<f64>() / directions as f64;
+        (kernel::Kernel::new(layers, Below::Rigid).settlement(k) - endless) * mean / (2.0 * std::f64::consts::PI)
+    };
+    // Simpson's rule, up to waves that are not felt below the first layer
+    let steps = 2 * (6.0 / top.thickness / step).ceil() as usize;
+    let weight = |i: usize| if i == 0 || i == steps { 1.0 } else { 2.0 + 2.0 * (i % 2) as f64 };
+    let integral = (0..=steps).map(|i| weight(i) * wave((i as f64 * step).max(1e-9))).sum::<f64>() * step / 3.0;
+    1.0 / (centres.iter().map(half_space).sum::<f64>() + integral)
+}
+
+#[test]
+fn a_footing_gives_what_brute_force_does_whatever_was_asked_before() {
+    let bearing = Bearing { spacings: [0.55, 0.62], width: 0.4, ..sleeper() };
+    let wedge = |h: f64| [layer(0.4, 110e6, 0.2), layer(h, 700e6, 0.3), layer(2.0 - h, 60e6, 0.35)];
+    let mut footing = Footing::new(bearing, Method::LayeredElastic { neighbours: 0.7 });
+    for h in [0.3, 0.31, 0.8] {
+        let found = footing.support(&wedge(h), Below::Rigid).unwrap();
+        near(found.stiffness, by_brute_force(&bearing, &wedge(h), 0.7), 1e-8);
+        let alone = support(&bearing, &wedge(h), Below::Rigid, Method::LayeredElastic { neighbours: 0.7 }).unwrap();
+        assert_eq!(found, alone);
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
