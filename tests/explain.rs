@@ -8,7 +8,8 @@ use trackbed::study::{Scene, plan};
 use trackbed::{Compiled, compile};
 
 /// Codes that no text alone can show, and what shows them instead.
-const RUN_TIME: [(Code, &str); 9] = [
+const RUN_TIME: [(Code, &str); 11] = [
+    (Code::E0610, "a bed of a scene: `tests/pack.rs`"),
     (Code::E0701, "a chart of a scene without trains: `tests/study.rs`"),
     (Code::E0702, "a chart after a count that is not known: `tests/study.rs`"),
     (Code::E0802, "a run into a directory that is taken: `tests/cli.rs`"),
@@ -18,6 +19,7 @@ const RUN_TIME: [(Code, &str); 9] = [
     (Code::E0806, "a measured curve beside the scene: `tests/calibrate.rs`"),
     (Code::E0808, "a study with a point that fails: `tests/studies.rs`"),
     (Code::E0809, "a study resumed after a change: `tests/studies.rs`"),
+    (Code::E0810, "a bed that is packed: `a_bed_that_moves_on_is_refused` of the packer"),
 ];
 
 /// Pages whose failing example is no scene: the bytes of the file are the mistake.

@@ -11,6 +11,7 @@ mod draw;
 mod explain;
 mod fmt;
 mod new;
+mod pack;
 mod plan;
 mod progress;
 mod report;
@@ -40,6 +41,7 @@ enum Command {
     Draw(draw::Arguments),
     Plan(plan::Arguments),
     Resolve(resolve::Arguments),
+    Pack(pack::Arguments),
     Run(run::Arguments),
     Study(study::Arguments),
     Calibrate(calibrate::Arguments),
@@ -91,6 +93,7 @@ pub fn main() -> ExitCode {
         Command::Draw(arguments) => draw::run(&arguments),
         Command::Plan(arguments) => plan::run(&arguments),
         Command::Resolve(arguments) => resolve::run(&arguments),
+        Command::Pack(arguments) => pack::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),

@@ -1,9 +1,12 @@
 //! From the scenario to the solver graph: passes that choose models, places, steps and blocks, and say why.
 
+mod bed;
 mod estimate;
 mod passage;
 mod records;
 mod schedule;
+
+pub use bed::{BedPlan, beds};
 
 use crate::diag::{Code, Diagnostic, Severity};
 use crate::graph::{Decision, Graph, NamedLaw, Schedule, SubstructureNode, TrackNode};

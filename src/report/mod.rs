@@ -23,6 +23,7 @@ mod level;
 mod limits;
 mod moments;
 mod number;
+mod packed;
 mod page;
 mod panels;
 mod pressure;
@@ -41,6 +42,7 @@ mod work_precision;
 
 pub use bed::{BedView, Colour, Side, bed_svg};
 pub use drawing::drawing_svg;
+pub use packed::BedPage;
 pub use page::page;
 pub use reference::reference;
 pub use scene::scene_svg;

@@ -118,7 +118,7 @@ fn expectations(html: &mut String, verdicts: &[Verdict]) {
     *html += "</table></div></section>\n";
 }
 
-fn picture(html: &mut String, figure: &Figure) {
+pub(super) fn picture(html: &mut String, figure: &Figure) {
     // The page states the pictures' style once.
     let svg = figure.svg.replacen(&format!("<style>{STYLE}</style>"), "", 1);
     let (id, title, caption) = (escape(&figure.id), escape(&figure.title), escape(&figure.caption));

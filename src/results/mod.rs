@@ -4,6 +4,7 @@
 //! tables, [`write()`] and [`read`] move a [`Run`] to a directory and back, bit for bit.
 
 mod atomic;
+mod bed;
 pub mod checkpoint;
 mod error;
 mod evaluate;
@@ -24,6 +25,7 @@ mod vtk;
 pub(crate) mod example;
 
 pub use atomic::write as write_atomically;
+pub use bed::{BedLayer, BedSummary, bed_hash, bed_summary, keep_bed, kept_bed};
 pub use error::ResultsError;
 pub use evaluate::{
     Tables, contact_pressures, evaluate, holds, known, not_kept, subgrade_pressures, verdict, verdicts,

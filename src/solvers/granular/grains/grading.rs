@@ -14,8 +14,8 @@
 //!
 //! Every class follows its own closed form: between two sieves u is straight over ln d, so that n is an exponential of ln d.
 
-use serde::{Deserialize, Serialize};
 use super::Random;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::fmt;
 
@@ -50,7 +50,7 @@ pub enum GradingError {
 }
 
 /// Grains of a curve.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// Diameters of the spheres of equal volume, m, in an order by chance: the first thousand follow the curve as well.
     pub sizes: Vec<f64>,

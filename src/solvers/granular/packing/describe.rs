@@ -33,7 +33,7 @@ pub struct State {
 }
 
 /// Neighbours of the bodies of one layer, those of other layers among them.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct LayerState {
     pub bodies: usize,
     /// Neighbours a body.
@@ -46,9 +46,8 @@ pub struct LayerState {
 
 impl State {
     pub(super) fn of<R: Real>(bed: &Bed<R>, snapshot: &Snapshot, unbalance: f64) -> State {
-        let pair = |contact: &super::super::snapshot::ContactState| {
-            Some((contact.first.body()?.0, contact.second.body()?.0))
-        };
+        let pair =
+            |contact: &super::super::snapshot::ContactState| Some((contact.first.body()?.0, contact.second.body()?.0));
         let pairs: Vec<(u32, u32)> = snapshot.contacts.iter().filter_map(pair).collect();
         let neighbours = neighbours(bed.len(), &pairs);
         let mut layers = vec![Vec::new(); bed.laws.surfaces() - 1];

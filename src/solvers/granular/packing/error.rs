@@ -8,21 +8,49 @@ use std::fmt;
 #[derive(Debug, Clone, PartialEq)]
 pub enum PackingError {
     /// A number of the recipe, and what it should be.
-    Number { layer: Option<String>, quantity: &'static str, value: f64, expected: &'static str },
+    Number {
+        layer: Option<String>,
+        quantity: &'static str,
+        value: f64,
+        expected: &'static str,
+    },
     NoLayers,
     /// A grading that gives no grains.
     Grading(GradingError),
     /// Grains that the plan is too small for.
-    LargeGrain { layer: String, diameter: f64, side: f64 },
+    LargeGrain {
+        layer: String,
+        diameter: f64,
+        side: f64,
+    },
     /// Grains that a layer is too thin for.
-    ThinLayer { layer: String, diameter: f64, thickness: f64 },
+    ThinLayer {
+        layer: String,
+        diameter: f64,
+        thickness: f64,
+    },
     /// Loose grains found no place.
-    NoRoom { layer: String },
+    NoRoom {
+        layer: String,
+    },
     /// The plate has not reached its pressure in time.
-    Pressure { stage: String, reached: f64, target: f64, time: f64 },
+    Pressure {
+        stage: String,
+        reached: f64,
+        target: f64,
+        time: f64,
+    },
     /// Forces are not in balance after the time that a stage may take.
-    Restless { stage: String, unbalance: f64, limit: f64, time: f64 },
-    Failure { stage: String, failure: Failure },
+    Restless {
+        stage: String,
+        unbalance: f64,
+        limit: f64,
+        time: f64,
+    },
+    Failure {
+        stage: String,
+        failure: Failure,
+    },
 }
 
 /// Greatest part of the shorter side of the plan that a grain may take: a third, or it would meet itself.
@@ -51,7 +79,10 @@ impl fmt::Display for PackingError {
                 1e3 * diameter
             ),
             PackingError::NoRoom { layer } => {
-                write!(f, "a grain of `{layer}` finds no place above the bed: take a longer cell, or cut the grading above")
+                write!(
+                    f,
+                    "a grain of `{layer}` finds no place above the bed: take a longer cell, or cut the grading above"
+                )
             }
             PackingError::Pressure { stage, reached, target, time } => write!(
                 f,

@@ -9,11 +9,13 @@ mod error;
 mod place;
 mod press;
 mod rest;
+mod store;
 #[cfg(test)]
 mod tests;
 
 pub use describe::{LayerState, Stage, State};
 pub use error::PackingError;
+pub use store::Stored;
 
 use super::bed::{Bed, Placed};
 use super::clump::Template;
@@ -123,9 +125,16 @@ pub struct Progress {
 /// Solid share that a layer will have, before a lift of it has shown its own.
 const SOLID: f64 = 0.60;
 
+impl Recipe {
+    /// What no bed can be made of, before any is tried.
+    pub fn check(&self) -> Result<(), PackingError> {
+        error::check(self)
+    }
+}
+
 /// Builds the bed. `tell` hears how far it is.
 pub fn pack<R: Real>(recipe: &Recipe, tell: impl FnMut(&Progress)) -> Result<Packed<R>, PackingError> {
-    error::check(recipe)?;
+    recipe.check()?;
     let mut press = Press::<R, _>::new(recipe, tell);
     let mut packed = Contents::default();
     for (number, layer) in recipe.layers.iter().enumerate() {

@@ -129,9 +129,9 @@ impl Taken<'_> {
     fn meets(&self, pebble: &(Vec3, f64)) -> bool {
         let [x, y, z] = self.cell(&pebble.0);
         let meets = |other: &(Vec3, f64)| self.square(&pebble.0, &other.0) < (pebble.1 + other.1).powi(2);
-        (0..27).map(|k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1]).any(|cell| {
-            cell[2] >= 0 && self.pebbles.get(self.index(cell)).is_some_and(|there| there.iter().any(meets))
-        })
+        (0..27)
+            .map(|k| [x + k % 3 - 1, y + k / 3 % 3 - 1, z + k / 9 - 1])
+            .any(|cell| cell[2] >= 0 && self.pebbles.get(self.index(cell)).is_some_and(|there| there.iter().any(meets)))
     }
 
     /// Square of the distance the shorter way round, m2.

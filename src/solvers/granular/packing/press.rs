@@ -177,7 +177,8 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
                 self.drive(target, SLOW);
             }
             let missed = goal.pressure.map_or(0.0, |target| (pressure / target - 1.0).abs());
-            let snapshot = self.bed.snapshot().map_err(|failure| PackingError::Failure { stage: stage.to_owned(), failure })?;
+            let snapshot =
+                self.bed.snapshot().map_err(|failure| PackingError::Failure { stage: stage.to_owned(), failure })?;
             let unbalance = unbalance(&self.bed, &snapshot);
             calm = if unbalance <= goal.unbalance && missed <= self.recipe.rest.pressure { calm + 1 } else { 0 };
             let took = self.bed.time() - start;
@@ -200,8 +201,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
 
     fn say(&mut self, stage: &str, share: f64) {
         let share = (self.stages.len() as f64 + share) / self.count as f64;
-        let progress =
-            Progress { stage: stage.to_owned(), share, bodies: self.bed.len(), steps: self.bed.steps() };
+        let progress = Progress { stage: stage.to_owned(), share, bodies: self.bed.len(), steps: self.bed.steps() };
         (self.tell)(&progress);
     }
 }

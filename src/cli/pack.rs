@@ -1,0 +1,188 @@
+//! `trackbed pack`: builds the bed of a scene, shows it and keeps it.
+
+use super::scene::{SceneArguments, failed, show};
+use super::{Format, Outcome, progress, terminal};
+use crate::Compiled;
+use crate::diag::{Code, Diagnostic, render};
+use crate::lower::{self, BedPlan};
+use crate::report::{BedPage, Side};
+use crate::results::{self, BedSummary};
+use crate::solvers::granular::packing::{Packed, pack};
+use crate::units::number;
+use std::path::{Path, PathBuf};
+
+/// Build the bed of a scene from its grains: packed, described, drawn and kept for runs
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// The trackform whose bed is wanted, where a scene has several
+    #[arg(long, value_name = "NAME")]
+    section: Option<String>,
+    /// The directory for page, pictures and files for ParaView; made where it does not exist
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Where finished beds are kept, by what made them
+    #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]
+    cache: Option<PathBuf>,
+    /// Build it anew, and keep nothing
+    #[arg(long, conflicts_with = "cache")]
+    fresh: bool,
+    #[arg(long, value_enum, default_value = "human")]
+    format: Format,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Outcome {
+    let Some(compiled) = arguments.scene.compile() else { return Outcome::Usage };
+    show(&compiled);
+    let Some(scenario) = compiled.scenario.as_ref().filter(|_| !failed(&compiled)) else { return Outcome::Failed };
+    let plan = match lower::beds(scenario).and_then(|plans| chosen(arguments, plans)) {
+        Ok(plan) => plan,
+        Err(mistakes) => return stop(&compiled, &mistakes),
+    };
+    let cache = cache(arguments);
+    let known = cache.as_deref().and_then(|cache| results::kept_bed(cache, &plan.recipe));
+    let kept = known.is_some();
+    let mut packed = match known.map_or_else(|| build(&plan), Ok) {
+        Ok(packed) => packed,
+        Err(mistake) => return stop(&compiled, &[mistake]),
+    };
+    if let Some(cache) = cache.filter(|_| !kept)
+        && let Err(error) = results::keep_bed(&cache, &plan.recipe, &packed)
+    {
+        terminal::error(&format!("the bed is not kept: {error}"));
+    }
+    let summary = results::bed_summary(&scenario.title, &plan, &packed);
+    if let Some(out) = &arguments.out
+        && let Err(message) = write(out, &summary, &mut packed)
+    {
+        terminal::error(&message);
+        return Outcome::Failed;
+    }
+    tell(arguments, &summary, kept)
+}
+
+/// The bed that is meant.
+fn chosen(arguments: &Arguments, plans: Vec<BedPlan>) -> Result<BedPlan, Vec<Diagnostic>> {
+    let refused = |message: String, help: String| vec![Diagnostic::new(Code::E0610, message).help(help)];
+    let names: Vec<String> = plans.iter().map(|plan| format!("`{}`", plan.section)).collect();
+    let mut plans = plans.into_iter();
+    let Some(name) = &arguments.section else {
+        return plans.next().ok_or_else(|| {
+            let help = "give a trackform `layers` of a `granular` material";
+            refused("this scene has no grains to pack".to_owned(), help.to_owned())
+        });
+    };
+    plans.find(|plan| plan.section == *name).ok_or_else(|| {
+        let help =
+            if names.is_empty() { "no section has any".to_owned() } else { format!("there is {}", names.join(", ")) };
+        refused(format!("no bed of its own lies under a trackform `{name}`"), help)
+    })
+}
+
+/// Where beds are kept: where the user says, else where programs of this machine keep what they can build again.
+fn cache(arguments: &Arguments) -> Option<PathBuf> {
+    if arguments.fresh {
+        return None;
+    }
+    let home = || Some(PathBuf::from(std::env::var_os("HOME")?).join(".cache"));
+    let usual = || Some(std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from).or_else(home)?.join("trackbed/beds"));
+    arguments.cache.clone().or_else(usual)
+}
+
+fn build(plan: &BedPlan) -> Result<Packed<f32>, Diagnostic> {
+    let mut bar = progress::Patient::new("the bed");
+    let packed = pack::<f32>(&plan.recipe, |progress| bar.at((1e4 * progress.share) as u64, 10_000));
+    packed.map_err(|error| {
+        Diagnostic::new(Code::E0810, error.to_string())
+            .help("give the `packing` of the material more `local_damping`, or less `pressure`")
+    })
+}
+
+fn stop(compiled: &Compiled, mistakes: &[Diagnostic]) -> Outcome {
+    terminal::note(&render::human(mistakes, &compiled.sources, terminal::colour(), terminal::width()));
+    Outcome::Failed
+}
+
+/// The page, its pictures, numbers for programs and files for ParaView.
+fn write(out: &Path, summary: &BedSummary, packed: &mut Packed<f32>) -> Result<(), String> {
+    let failure = |error: &dyn std::fmt::Display| format!("cannot write the bed: {error}");
+    std::fs::create_dir_all(out).map_err(|error| failure(&error))?;
+    let snapshot = packed.bed.snapshot().map_err(|error| failure(&error))?;
+    let (grains, links) = (results::grains(&packed.bed, &snapshot, None), results::links(&packed.bed, &snapshot));
+    let page = BedPage {
+        summary,
+        samples: &packed.samples,
+        grains: &grains,
+        links: &links,
+        walls: packed.bed.walls(),
+        domain: packed.bed.domain(),
+    };
+    let (mut bodies, mut contacts) = (Vec::new(), Vec::new());
+    results::bodies_vtk(&grains, &mut bodies)
+        .and(results::contacts_vtk(&links, &mut contacts))
+        .map_err(|error| failure(&error))?;
+    let json = serde_json::to_vec_pretty(summary).map_err(|error| failure(&error))?;
+    let files: [(&str, Vec<u8>); 6] = [
+        ("bodies.vtp", bodies),
+        ("contacts.vtp", contacts),
+        ("along.svg", page.side(Side::X, false, &summary.title).into_bytes()),
+        ("chains.svg", page.side(Side::Y, true, &summary.title).into_bytes()),
+        ("bed.json", json),
+        ("bed.html", page.html().into_bytes()),
+    ];
+    files.iter().try_for_each(|(name, bytes)| {
+        results::write_atomically(&out.join(name), bytes).map_err(|error| failure(&error))
+    })
+}
+
+fn tell(arguments: &Arguments, summary: &BedSummary, kept: bool) -> Outcome {
+    if arguments.format == Format::Json {
+        return match serde_json::to_string_pretty(summary) {
+            Ok(json) => {
+                terminal::out(&format!("{json}\n"));
+                Outcome::Fine
+            }
+            Err(error) => {
+                terminal::error(&format!("cannot write the bed as JSON: {error}"));
+                Outcome::Failed
+            }
+        };
+    }
+    terminal::out(&text(summary, kept));
+    if let Some(out) = &arguments.out {
+        terminal::out(&format!("\nwrote {}\n", out.join("bed.html").display()));
+    }
+    Outcome::Fine
+}
+
+fn text(summary: &BedSummary, kept: bool) -> String {
+    let [length, width] = summary.plan_m;
+    let mut out = format!(
+        "bed of `{}`: {} m x {} m, {} grains of {} pebbles{}\n\n",
+        summary.section,
+        number(length),
+        number(width),
+        summary.bodies,
+        summary.pebbles,
+        if kept { ", as it was kept" } else { "" }
+    );
+    out += "layer               grains  thickness  porosity  inside  neighbours  before friction  rattlers\n";
+    for layer in summary.layers.iter().rev() {
+        out += &format!(
+            "{:18} {:7}  {:6.0} mm {:9.3} {:7.3} {:11.2} {:16.2} {:7.1} %\n",
+            layer.name,
+            layer.bodies,
+            1e3 * layer.thickness_m,
+            layer.porosity,
+            layer.inner_porosity,
+            layer.coordination,
+            layer.coordination_before,
+            100.0 * layer.rattlers
+        );
+    }
+    for note in &summary.notes {
+        out += &format!("\n{note}");
+    }
+    out + "\n"
+}

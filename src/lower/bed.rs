@@ -1,0 +1,170 @@
+//! The beds of grains that a scene has, as recipes of the packer: one for each section with other layers.
+
+use crate::diag::{Code, Diagnostic};
+use crate::scenario::{BedEnds, Contact, Grading, Granular, Layer, Passing, Scenario, Shape};
+use crate::solvers::granular::clump::Template;
+use crate::solvers::granular::grains::{Angular, ClumpShape, Curve, Rule, Surfaces};
+use crate::solvers::granular::packing::{Layer as Filling, Packing, Recipe, Rest};
+use crate::solvers::granular::{DashpotMode, Surface};
+
+/// The bed of a section.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BedPlan {
+    /// The name of the trackform.
+    pub section: String,
+    pub recipe: Recipe,
+    /// What was decided, and why: for people.
+    pub notes: Vec<String>,
+}
+
+/// A cell is this many times as long as the largest grain, at least: then no grain meets itself.
+const CELL: f64 = 3.2;
+/// Points of a curve that has no corners.
+const POINTS: usize = 24;
+/// Of a log-normal grading, the share at either end that has no grains.
+const TAIL: f64 = 0.005;
+/// Half the width of a bed without sleepers and without a stated width, m.
+const HALF_WIDTH: f64 = 1.2;
+
+/// A bed for each section that has grains under its sleepers; none twice.
+pub fn beds(scenario: &Scenario) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
+    let mut found: Vec<BedPlan> = Vec::new();
+    let mut wrong = Vec::new();
+    for section in 0..scenario.track.sections.len() {
+        match bed(scenario, section) {
+            Ok(Some(plan)) if !found.iter().any(|other| other.recipe == plan.recipe) => found.push(plan),
+            Ok(_) => {}
+            Err(diagnostic) => wrong.push(diagnostic),
+        }
+    }
+    if wrong.is_empty() { Ok(found) } else { Err(wrong) }
+}
+
+fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic> {
+    let section = &scenario.track.sections[number];
+    let middle = 0.5 * (section.start + section.end);
+    let seed = scenario.solve.seed;
+    let grains: Vec<(&Layer, &Granular)> =
+        section.layers.iter().filter_map(|layer| Some((layer, layer.granular()?))).collect();
+    let Some((_, top)) = grains.first() else { return Ok(None) };
+    let mut notes = Vec::new();
+    let mut layers = Vec::new();
+    // the packer begins at the bottom
+    for (layer, granular) in grains.iter().rev() {
+        layers.push(filling(layer, granular, middle, seed)?);
+    }
+    let largest = layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
+    let spacing = *section.spacing;
+    let bays = (CELL * largest / spacing).ceil().max(1.0);
+    notes.push(format!("the cell is {bays} x {spacing} m long: {CELL} times its largest grain at least"));
+    if section.layers.len() > grains.len() {
+        notes.push("soil below the grains is a rigid floor while they are packed".to_owned());
+    }
+    if grains.iter().any(|(_, granular)| granular.local_damping.value != top.local_damping.value) {
+        notes.push(format!("a bed has one local damping: {} of its top layer", *top.local_damping));
+    }
+    let recipe = Recipe {
+        plan: [bays * spacing, width(scenario, number)],
+        walls: true,
+        layers,
+        gravity: *scenario.solve.gravity,
+        local_damping: *top.local_damping,
+        rest: Rest::default(),
+        seed,
+    };
+    recipe.check().map_err(|error| refused(&error.to_string()))?;
+    if scenario.track.bed.ends == BedEnds::Walls {
+        notes.push("the cell is periodic along the track; walls close the ends of the whole bed".to_owned());
+    }
+    Ok(Some(BedPlan { section: section.name.clone(), recipe, notes }))
+}
+
+/// Of the bed of one rail, or of both, m: from the centre line to the wall.
+fn width(scenario: &Scenario, section: usize) -> f64 {
+    let track = &scenario.track;
+    let sleeper = track.seats[track.seats_of(section)].iter().find_map(|seat| seat.sleeper);
+    let least = sleeper.map_or(HALF_WIDTH, |sleeper| 0.5 * sleeper.length);
+    let half = track.bed.half_width.map_or(least, |half| *half).max(least);
+    if scenario.solve.grains.both_rails { 2.0 * half } else { half }
+}
+
+fn filling(layer: &Layer, granular: &Granular, x: f64, seed: u64) -> Result<Filling, Diagnostic> {
+    let Contact::Linear { stiffness } = granular.contact else {
+        return Err(refused(&format!(
+            "grains of `{}` meet after Hertz, and this version packs grains of a stated contact stiffness",
+            layer.name
+        )));
+    };
+    // two bodies in series make a contact
+    let normal = 2.0 * *stiffness;
+    let mode = if granular.dashpots_pull { DashpotMode::Full } else { DashpotMode::default() };
+    let surface = Surface {
+        normal_stiffness: normal,
+        shear_stiffness: normal * *granular.shear_ratio,
+        friction: *granular.friction,
+        damping: [*granular.viscous_damping; 2],
+        mode,
+    };
+    let wrong = |error: &dyn std::fmt::Display| refused(&format!("grains of `{}`: {error}", layer.name));
+    Ok(Filling {
+        name: layer.name.clone(),
+        curve: curve(&granular.grading).map_err(|error| wrong(&error))?,
+        templates: templates(&granular.shape, seed).map_err(|error| wrong(&error))?,
+        density: *granular.density,
+        surface,
+        wall_friction: *granular.wall_friction,
+        thickness: layer.thickness.at(x),
+        lifts: granular.packing.lifts,
+        pressure: *granular.packing.pressure,
+        packing: Packing {
+            friction: *granular.packing.friction,
+            local_damping: *granular.packing.local_damping,
+            viscous_damping: *granular.packing.viscous_damping,
+        },
+    })
+}
+
+/// What of a grading is modelled, from corner to corner.
+fn curve(grading: &Grading) -> Result<Curve, impl std::fmt::Display + use<>> {
+    let (low, high) = match grading.passing {
+        Passing::Sieves(_) => (grading.d(0.0), grading.d(100.0)),
+        Passing::LogNormal { .. } => (grading.d(100.0 * TAIL), grading.d(100.0 * (1.0 - TAIL))),
+    };
+    let mut sizes: Vec<f64> = match &grading.passing {
+        Passing::Sieves(sieves) => sieves.iter().map(|sieve| sieve[0]).filter(|s| *s > low && *s < high).collect(),
+        Passing::LogNormal { .. } => (1..POINTS).map(|k| low * (high / low).powf(k as f64 / POINTS as f64)).collect(),
+    };
+    sizes.insert(0, low);
+    sizes.push(high);
+    let last = sizes.len() - 1;
+    let share = |(k, size): (usize, f64)| match k {
+        0 => [size, 0.0],
+        _ if k == last => [size, 1.0],
+        _ => [size, grading.modelled_below(size)],
+    };
+    if low >= high {
+        return Curve::single(high);
+    }
+    Curve::new(&sizes.into_iter().enumerate().map(share).collect::<Vec<_>>())
+}
+
+/// Shapes of unit size that the grains are copies of.
+fn templates(shape: &Shape, seed: u64) -> Result<Vec<Template>, Box<dyn std::error::Error>> {
+    match shape {
+        Shape::Spheres => Ok(vec![Template::sphere(0.5)?]),
+        Shape::Clumps { from: Some(file), .. } => {
+            Err(format!("their shape is `{file}`, and this version packs generated shapes").into())
+        }
+        Shape::Clumps { pebbles, ratio, distance, templates, from: None } => {
+            let rule = Rule { pebbles: pebbles.map(|n| n as usize), ratio: **ratio, distance: **distance };
+            let Surfaces::Angular { indices, .. } = ClumpShape::default().surfaces else { return Ok(Vec::new()) };
+            let indices = Angular { ..indices };
+            let shape = ClumpShape { surfaces: Surfaces::Angular { indices, count: *templates as usize }, rule };
+            Ok(shape.templates(seed)?)
+        }
+    }
+}
+
+fn refused(why: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0610, format!("this bed cannot be packed: {why}"))
+}

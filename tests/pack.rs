@@ -1,0 +1,86 @@
+//! Beds from scenes: packed, described, kept, and refused where there can be none.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Coarse spheres under one short sleeper: a bed that is packed in a moment.
+const SCENE: &str = r#"
+use std
+grading coarse { passing = [45 mm: 0 %, 60 mm: 100 %] }
+granular stone {
+  grading = coarse, density = 2700 kg/m^3, contact_stiffness = 13 MN/m per contact, friction = 0.7
+  packing = { lifts = 1, pressure = 200 kPa }
+}
+trackform bed {
+  sleeper = sleepers.B70 { length = 1.2 m, base_area = none }, spacing = 0.6 m, layers = [stone: 150 mm]
+}
+track box { sections = [bed: 1 sleeper] }
+load actuator { on = sleepers, at = 1 sleeper, force = cyclic(5 .. 60 kN, 5 Hz) per sleeper }
+solve { substructure = full }
+"#;
+
+fn pack(scene: &Path, arguments: &[&str], threads: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_trackbed"));
+    command.arg("pack").arg(scene).args(arguments).env("NO_COLOR", "1").env("RAYON_NUM_THREADS", threads);
+    command.output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+#[test]
+fn a_bed_is_packed_once_and_is_the_same_on_any_number_of_threads() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = dir.path().join("box.track");
+    fs::write(&scene, SCENE).unwrap();
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let built = pack(&scene, &["--cache", &path("cache"), "--out", &path("bed")], "2");
+    assert!(built.status.success(), "{}", said(&built));
+    assert!(!said(&built).contains("as it was kept"), "{}", said(&built));
+    let bed: Value = serde_json::from_str(&fs::read_to_string(path("bed/bed.json")).unwrap()).unwrap();
+    let layer = &bed["layers"][0];
+    let of = |name: &str| layer[name].as_f64().unwrap();
+    assert!((of("thickness_m") / 0.15 - 1.0).abs() < 0.1, "{layer}");
+    // spheres of like sizes without friction: close to random close packing, looser at floor, walls and top
+    assert!((0.33..0.46).contains(&of("inner_porosity")), "{layer}");
+    assert!((4.0..6.5).contains(&of("coordination")), "{layer}");
+    assert!(of("grading_error") < 0.02, "{layer}");
+    let stages: Vec<&str> = bed["stages"].as_array().unwrap().iter().map(|s| s["name"].as_str().unwrap()).collect();
+    assert_eq!(stages, ["stone, lift 1 of 1", "pressed", "plate lifted", "friction restored"]);
+    for stage in bed["stages"].as_array().unwrap() {
+        assert!(stage["state"]["unbalance"].as_f64().unwrap() < 0.011, "{stage}");
+    }
+    for name in ["bed.html", "along.svg", "chains.svg", "bodies.vtp", "contacts.vtp"] {
+        assert!(fs::metadata(dir.path().join("bed").join(name)).unwrap().len() > 1000, "{name}");
+    }
+    let kept = pack(&scene, &["--cache", &path("cache"), "--format", "json"], "2");
+    let again = pack(&scene, &["--fresh", "--format", "json"], "1");
+    for output in [&kept, &again] {
+        let other: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(bed, other);
+    }
+    let kept = pack(&scene, &["--cache", &path("cache")], "2");
+    assert!(said(&kept).contains("as it was kept"), "{}", said(&kept));
+}
+
+#[test]
+fn what_cannot_be_packed_is_refused_before_anything_runs() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = dir.path().join("box.track");
+    fs::write(&scene, SCENE).unwrap();
+    for (wrong, why) in [
+        ("stone.contact=hertz(50 GPa, 0.2)", "meet after Hertz"),
+        ("coarse.passing=[45 mm: 0 %, 160 mm: 100 %]", "thinner than its largest grain"),
+    ] {
+        let output = pack(&scene, &["--set", wrong, "--fresh"], "2");
+        let said = said(&output);
+        assert!(!output.status.success() && said.contains("E0610") && said.contains(why), "{wrong}\n{said}");
+    }
+    let output = pack(&scene, &["--section", "bde", "--fresh"], "2");
+    assert!(said(&output).contains("no bed of its own") && said(&output).contains("`bed`"), "{}", said(&output));
+    let output = pack(Path::new("scenarios/transition.track"), &["--fresh"], "2");
+    assert!(said(&output).contains("this scene has no grains to pack"), "{}", said(&output));
+}
