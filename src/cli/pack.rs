@@ -167,17 +167,17 @@ fn text(summary: &BedSummary, kept: bool) -> String {
         summary.pebbles,
         if kept { ", as it was kept" } else { "" }
     );
-    out += "layer               grains  thickness  porosity  inside  neighbours  before friction  rattlers\n";
+    out += "layer               grains  thickness  porosity  inside  neighbours  without friction  rattlers\n";
     for layer in summary.layers.iter().rev() {
         out += &format!(
-            "{:18} {:7}  {:6.0} mm {:9.3} {:7.3} {:11.2} {:16.2} {:7.1} %\n",
+            "{:18} {:7}  {:6.0} mm {:9.3} {:7.3} {:11.2} {:17.2} {:7.1} %\n",
             layer.name,
             layer.bodies,
             1e3 * layer.thickness_m,
             layer.porosity,
             layer.inner_porosity,
             layer.coordination,
-            layer.coordination_before,
+            layer.coordination_pressed,
             100.0 * layer.rattlers
         );
     }

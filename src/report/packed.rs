@@ -48,7 +48,7 @@ impl BedPage<'_> {
 
     fn layers(&self, html: &mut String) {
         let caption = "Porosity of a whole layer has its loose borders in it, at the floor and at walls; that inside has not. Neighbours \
-             are counted by bodies: two that touch with several pebbles are one pair.";
+             are counted by bodies: two that touch with several pebbles are one pair; pressed means under the plate, before friction came back.";
         *html += &table_head(
             "At a glance",
             caption,
@@ -60,8 +60,8 @@ impl BedPage<'_> {
                 "porosity",
                 "inside",
                 "grading off by",
-                "neighbours before friction",
-                "after",
+                "neighbours pressed",
+                "at rest",
                 "without rattlers",
                 "rattlers",
             ],
@@ -75,7 +75,7 @@ impl BedPage<'_> {
                 plain(layer.porosity, 3),
                 plain(layer.inner_porosity, 3),
                 percent(layer.grading_error),
-                plain(layer.coordination_before, 3),
+                plain(layer.coordination_pressed, 3),
                 plain(layer.coordination, 3),
                 plain(layer.coordination_without_rattlers, 3),
                 percent(layer.rattlers),

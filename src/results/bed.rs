@@ -56,9 +56,9 @@ pub struct BedLayer {
     pub inner_porosity: f64,
     /// Largest distance between the curve that was asked for and that of the grains, as a share of the mass.
     pub grading_error: f64,
-    /// Neighbours a body when the plate was gone, before friction came back; then in the finished bed, of all bodies and
-    /// of those that are no rattlers.
-    pub coordination_before: f64,
+    /// Neighbours a body under the plate, before friction came back; then in the finished bed, of all bodies and of those
+    /// that are no rattlers.
+    pub coordination_pressed: f64,
     pub coordination: f64,
     pub coordination_without_rattlers: f64,
     /// Share of bodies with fewer than two neighbours.
@@ -86,7 +86,7 @@ fn bed_layer(recipe: &Recipe, packed: &Packed<f32>, number: usize) -> BedLayer {
     let asked = &recipe.layers[number];
     let [low, high] = packed.between(number);
     let inset = 0.25 * (high - low);
-    // the last stage is the finished bed, the one before it that without the plate
+    // the last stage is the finished bed, two before it that under the plate without friction
     let state = |back: usize| packed.stages.len().checked_sub(back).map(|k| packed.stages[k].state.layers[number]);
     let finished = state(1).unwrap_or_default();
     BedLayer {
@@ -97,7 +97,7 @@ fn bed_layer(recipe: &Recipe, packed: &Packed<f32>, number: usize) -> BedLayer {
         porosity: packed.porosity([low, high]),
         inner_porosity: packed.porosity([low + inset, high - inset]),
         grading_error: packed.samples[number].error(),
-        coordination_before: state(2).unwrap_or_default().coordination,
+        coordination_pressed: state(3).unwrap_or_default().coordination,
         coordination: finished.coordination,
         coordination_without_rattlers: finished.without_rattlers,
         rattlers: finished.rattlers as f64 / finished.bodies.max(1) as f64,

@@ -95,11 +95,15 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         Ok(())
     }
 
-    /// The whole bed comes to rest under the plate, the plate goes, and friction comes back.
+    /// The whole bed comes to rest under the plate, friction comes back, and the plate goes. The other way round a bed without
+    /// friction and load would flow for seconds, and lose what the plate has gained.
     pub fn finish(&mut self, recipe: &Recipe) -> Result<(), PackingError> {
-        let pressure = recipe.layers.last().map_or(0.0, |layer| layer.pressure);
+        let pressure = recipe.layers.last().map(|layer| layer.pressure);
         let unbalance = recipe.rest.bed;
-        self.until_rest("pressed", Goal { pressure: Some(pressure), unbalance }, self.level)?;
+        self.until_rest("pressed", Goal { pressure, unbalance }, self.level)?;
+        self.bed.set_laws(recipe.laws());
+        self.bed.set_damping(recipe.local_damping);
+        self.until_rest("friction restored", Goal { pressure, unbalance }, self.level)?;
         self.level = self.height();
         let up = Motion::Velocity { linear: Vector3::new(0.0, 0.0, LIFT), angular: Vector3::zeros() };
         self.bed.set_motion(self.plate, up);
@@ -109,10 +113,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
             self.advance("plate lifted")?;
         }
         self.away();
-        self.until_rest("plate lifted", Goal { pressure: None, unbalance }, self.level)?;
-        self.bed.set_laws(recipe.laws());
-        self.bed.set_damping(recipe.local_damping);
-        self.until_rest("friction restored", Goal { pressure: None, unbalance }, self.level)
+        self.until_rest("plate lifted", Goal { pressure: None, unbalance }, self.level)
     }
 
     /// Highest point of any grain, m.
