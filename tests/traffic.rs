@@ -184,6 +184,18 @@ record {{ at = -3 sleepers, after = [0, 60, 400] axles, quantities = contact_for
 }
 
 #[test]
+fn a_track_that_cannot_settle_is_planned_as_it_runs() {
+    let slab = SCENE.replace("[open: 15 m, stiff: 12 m]", "[stiff: 27 m]");
+    let compiled =
+        compile("scene.track", &format!("{slab}traffic {{ trains = ore, total = 80 axles }}"), &NoModules, &[]);
+    let (scenario, graph) = (compiled.scenario.as_ref().unwrap(), compiled.graph.as_ref().unwrap());
+    let mut recorder = RunRecorder::new(scenario, None, |_, _| {});
+    graph::execute(graph, &mut recorder, None).unwrap();
+    let passages: u64 = recorder.tables.blocks.iter().map(|block| block.passages).sum();
+    assert_eq!((graph.estimate.passages, graph.estimate.blocks + 1), (passages, recorder.tables.blocks.len() as u64));
+}
+
+#[test]
 fn counts_may_be_the_mass_that_trains_carry() {
     // wagons of 80 t and 120 t
     let (scenario, graph) = parts(
