@@ -322,6 +322,7 @@ const PLANTED: &[Planted] = &[
     breaks("x", needs("pr", plant("a stretch from nowhere", "over    = -10 .. -5 sleepers", "over    = -10 .. -5 sleepers, from = west", Code::E0504))),
     needs("py", below(-2, plant("a stretch that changes nothing", "  pad.stiffness = ramp(60 .. 80 MN/m)", "", Code::E0417))),
     breaks("x", needs("prx", below(5, plant("two stretches that set the same", "  pad.stiffness = ramp(60", "  support.stiffness = 40 MN/m per seat, pad.stiffness = ramp(60", Code::E0512)))),
+    breaks("x", needs("prx", below(3, plant("two stretches that set the same in two ways", "ramp(60 .. 80 MN/m)\n}\n\nstretch low {\n", "ramp(60 .. 80 MN/m), pad.damping = 5 kN s/m\n}\n\nstretch low { pad.damping_time = 0.1 ms\n", Code::E0512)))),
     breaks("x", needs("psbr", plant("another rail in a stretch", "over    = -10 .. -5 sleepers", "over    = -10 .. -5 sleepers, rail = rails.S49", Code::E0411))),
     breaks("x", plant("a field of something else", "over    = -10 .. -5 sleepers", "over    = -10 .. -5 sleepers, speed = 60 km/h", Code::E0402)),
     plant("a pad of a force", "ramp(60 .. 80 MN/m)", "ramp(60 .. 80 MN)", Code::E0302),

@@ -1,5 +1,6 @@
 //! What the physics rules say in numbers, against the closed forms they state.
 
+use std::f64::consts::PI;
 use trackbed::check::NoModules;
 use trackbed::compile;
 use trackbed::diag::Code;
@@ -14,6 +15,8 @@ struct Scene<'a> {
     level: &'a str,
     vehicle: &'a str,
     speed: f64,
+    /// More declarations.
+    rest: &'a str,
 }
 
 const SCENE: Scene<'_> = Scene {
@@ -24,12 +27,13 @@ const SCENE: Scene<'_> = Scene {
     level: "0 mm",
     vehicle: "vehicles.ore_wagon_20t",
     speed: 60.0,
+    rest: "",
 };
 
 impl Scene<'_> {
     /// The messages of one rule.
     fn says(self, code: Code) -> Vec<String> {
-        let Scene { rail, sleeper, support, spacing, level, vehicle, speed } = self;
+        let Scene { rail, sleeper, support, spacing, level, vehicle, speed, rest } = self;
         let text = format!(
             "use std
 trackform open {{
@@ -40,6 +44,7 @@ track line {{ sections = [open: 42 m], irregularity = {level} }}
 vehicle wagon : {vehicle}
 train ore {{ vehicles = wagon, speed = {speed} km/h }}
 traffic {{ trains = ore, total = 400 axles }}
+{rest}
 "
         );
         let compiled = compile("scene.track", &text, &NoModules, &[]);
@@ -55,12 +60,16 @@ fn lambda(support: f64) -> f64 {
     (modulus / (4.0 * 210e9 * 3038.3e-8)).powf(0.25)
 }
 
-#[test]
-fn a_wheel_on_the_track_has_its_frequency() {
-    let support = 20e6;
+/// Of a wheel on that track, Hz.
+fn resonance(support: f64) -> f64 {
     let modulus = 1.0 / (1.0 / 40e6 + 1.0 / support) / 0.6;
     let mass = 1341.0 / 2.0 + 1.5 * (60.21 + 145.0 / 0.6) / lambda(support);
-    let frequency = (2.0 * modulus / lambda(support) / mass).sqrt() / (2.0 * std::f64::consts::PI);
+    (2.0 * modulus / lambda(support) / mass).sqrt() / (2.0 * PI)
+}
+
+#[test]
+fn a_wheel_on_the_track_has_its_frequency() {
+    let frequency = resonance(20e6);
     let at = |share: f64| {
         let speed = frequency * share * 0.6 * 3.6;
         Scene { support: "20 MN/m per seat", speed, ..SCENE }.says(Code::L1012)
@@ -71,6 +80,48 @@ fn a_wheel_on_the_track_has_its_frequency() {
     );
     assert_eq!(at(1.0), [said]);
     assert!(!at(0.91).is_empty() && !at(1.09).is_empty() && at(0.89).is_empty() && at(1.11).is_empty());
+}
+
+#[test]
+fn samples_see_what_a_wheel_does_on_the_track() {
+    let frequency = resonance(40e6);
+    let at = |every: f64| {
+        let rest = format!("record {{ at = 30 sleepers, every = {every} s, quantities = rail_moment }}");
+        Scene { rest: &rest, ..SCENE }.says(Code::L1025)
+    };
+    assert!(at(0.99 / (10.0 * frequency)).is_empty());
+    assert_eq!(at(1.01 / (10.0 * frequency)).len(), 1);
+    let missed = 100.0 * (1.0 - (PI * frequency * 0.01).cos());
+    let said = format!("a wheel on the track, {frequency:.0} Hz: peaks are missed by up to {missed:.0} %");
+    let found = at(0.01);
+    assert!(found.len() == 1 && found[0].ends_with(&said), "{found:?}, expected {said}");
+    // steps of 0.1 ms have one sample each
+    assert_eq!(
+        at(4e-5),
+        ["samples every 0.04 ms are asked for of a passage in steps of 0.1 ms, which gives one a step"]
+    );
+}
+
+#[test]
+fn waves_of_the_level_have_steps_and_elements() {
+    // a smooth step of that length is a wave of 2 pi / sqrt(10) times as much
+    let wave = |length: f64| 2.0 * PI * length / f64::sqrt(10.0);
+    let at = |length: f64, solve: &str| {
+        let level = format!("smooth(0 .. 0.002 mm, over = 20 .. {} m)", 20.0 + length);
+        Scene { level: &level, rest: solve, ..SCENE }.says(Code::L1026)
+    };
+    let (speed, coarse, one) = (60.0 / 3.6, "solve { time_step = 2e-4 s }", "solve { elements_per_bay = 1 }");
+    let length = 10.0 * speed * 2e-4 / wave(1.0);
+    assert!(at(1.02 * length, coarse).is_empty());
+    let found = at(0.92 * length, coarse);
+    assert!(found.len() == 1 && found[0].contains("runs 3.3 mm a step, 9.2 steps to a wave"), "{found:?}");
+    // rail waves of four elements, 2.4 m
+    let frequency = 2.0 * PI / 2.4f64.powi(2) * f64::sqrt(210e9 * 3038.3e-8 / 60.21);
+    let length = speed / frequency / wave(1.0);
+    assert!(at(1.02 * length, one).is_empty() && at(0.9 * length, "").is_empty());
+    let found = at(0.98 * length, one);
+    let said = format!("shake the rail with {:.0} Hz", frequency / 0.98);
+    assert!(found.len() == 1 && found[0].contains(&said), "{found:?}, expected {said}");
 }
 
 #[test]

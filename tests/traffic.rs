@@ -133,6 +133,68 @@ fn trains_in_turn_end_a_block_where_they_change() {
     );
 }
 
+/// Passages that the plan expects, those that a run computes, and how many blocks it takes back.
+fn passages(rest: &str) -> (u64, u64, u64) {
+    let (scenario, graph) = parts(rest);
+    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
+    graph::execute(&graph, &mut recorder, None).unwrap();
+    let blocks = &recorder.tables.blocks;
+    let sum = |of: fn(&trackbed::results::BlockRow) -> u64| blocks.iter().map(of).sum();
+    (graph.estimate.passages, sum(|block| block.passages), sum(|block| block.rejected))
+}
+
+const BOTH_WAYS: &str = "train ore_both : ore { direction = both }
+train heavy_both : heavy { direction = both }
+";
+
+#[test]
+fn the_plan_counts_every_passage_of_prescribed_blocks() {
+    let tamped = "tamping spring { after = 60 axles }";
+    let back = "train back : ore { direction = backward }";
+    for (trains, rest) in [
+        ("trains = ore", ""),
+        ("trains = ore_both", ""),
+        ("trains = [ore: 60 %, heavy_both: 40 %]", ""),
+        ("trains = [ore_both: 70 %, heavy: 30 %], order = in_turn", ""),
+        ("trains = [ore: 90 %, back: 10 %]", back),
+        ("trains = [ore: 60 %, heavy: 40 %]", tamped),
+    ] {
+        let scene = format!("{BOTH_WAYS}{rest}\n{}", traffic(trains, "bed"));
+        let (planned, run, rejected) = passages(&scene);
+        assert_eq!((planned, rejected), (run, 0), "{trains} {rest}");
+    }
+}
+
+#[test]
+fn the_plan_knows_about_how_many_passages_an_adaptive_run_takes() {
+    for (trains, law, tolerance) in [
+        ("[ore: 60 %, heavy: 40 %]", "bed", "0.003 mm"),
+        ("[ore_both: 70 %, heavy_both: 30 %]", "bed", "0.02 mm"),
+        ("[ore: 80 %, heavy: 20 %]", "hard", "0.003 mm"),
+    ] {
+        let scene = format!(
+            "{BOTH_WAYS}traffic {{ trains = {trains}, total = 400 axles }}
+solve {{ law = {law}, update_every = adaptive({tolerance}), elements_per_bay = 2, time_step = 4e-4 s }}
+record {{ at = -3 sleepers, after = [0, 60, 400] axles, quantities = contact_force }}"
+        );
+        let (planned, run, _) = passages(&scene);
+        let off = planned as f64 / run as f64 - 1.0;
+        assert!(off.abs() < 0.3, "{trains}, {law}: {planned} planned, {run} run");
+    }
+}
+
+#[test]
+fn a_track_that_cannot_settle_is_planned_as_it_runs() {
+    let slab = SCENE.replace("[open: 15 m, stiff: 12 m]", "[stiff: 27 m]");
+    let compiled =
+        compile("scene.track", &format!("{slab}traffic {{ trains = ore, total = 80 axles }}"), &NoModules, &[]);
+    let (scenario, graph) = (compiled.scenario.as_ref().unwrap(), compiled.graph.as_ref().unwrap());
+    let mut recorder = RunRecorder::new(scenario, None, |_, _| {});
+    graph::execute(graph, &mut recorder, None).unwrap();
+    let passages: u64 = recorder.tables.blocks.iter().map(|block| block.passages).sum();
+    assert_eq!((graph.estimate.passages, graph.estimate.blocks + 1), (passages, recorder.tables.blocks.len() as u64));
+}
+
 #[test]
 fn counts_may_be_the_mass_that_trains_carry() {
     // wagons of 80 t and 120 t

@@ -53,6 +53,9 @@ type Found = Result<(f64, f64), foundation::FoundationError>;
 /// A sleeper's half on a stack of layers.
 type Stacked = (Bearing, Vec<foundation::Layer>);
 
+/// A question that has no answer yet, under its key.
+type Question<'a> = (&'a Vec<u64>, &'a Stacked);
+
 /// What has been asked of the ground in a check; seats under several stretches are asked for again.
 #[derive(Default)]
 pub(super) struct Supports {
@@ -226,13 +229,13 @@ impl Checker<'_> {
         let missing: BTreeMap<&Vec<u64>, &Stacked> =
             keys.iter().zip(asked).filter(|(key, _)| !found.contains_key(*key)).collect();
         // keys begin with the bearing, so stacks under the same one stand together
-        let missing: Vec<(&Vec<u64>, &Stacked)> = missing.into_iter().collect();
+        let missing: Vec<Question<'_>> = missing.into_iter().collect();
         let groups = missing.chunk_by(|(_, (a, _)), (_, (b, _))| a == b).map(|group| {
             let bearing = group[0].1.0;
             let footing = footings.remove(&key(&bearing, &[]));
             (footing.unwrap_or_else(|| Footing::new(bearing, settings.support_method)), group)
         });
-        let mut groups: Vec<(Footing, &[(&Vec<u64>, &Stacked)])> = groups.collect();
+        let mut groups: Vec<(Footing, &[Question<'_>])> = groups.collect();
         let answers: Vec<Vec<Found>> = groups
             .par_iter_mut()
             .map(|(footing, group)| group.iter().map(|(_, (_, stack))| solve(&settings, footing, stack)).collect())

@@ -140,12 +140,12 @@ impl Checker<'_> {
         let names = |list: Vec<(Response, Span)>| list.into_iter().map(|(quantity, _)| quantity).collect::<Vec<_>>();
         let (in_volumes, along) = (names(in_volumes), names(along));
         let (seats, after, volume) = (seats?, after?, volume?);
-        let every = record.number("every").map(|n| n.value);
+        let every = given(record, "every");
         let volumes = (!in_volumes.is_empty()).then(|| VolumeRecord {
             quantities: in_volumes,
             seats: seats.clone(),
             after: after.clone(),
-            every,
+            every: every.map(|every| *every),
             depth: record.number("depth").map(|n| n.value),
             volume,
             span: record.get("volume").and_then(|slot| slot.origin.span()),

@@ -5,9 +5,11 @@ use super::Checker;
 use super::geometry::Places;
 use super::ground::{Regrade, Under};
 use super::groundwork::two_plates;
+use super::records::object_kind;
 use super::value::{Change, Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{ApproachSlab, AuxiliaryRailSpan, Layer, Seat, Stretch};
+use crate::schema::{self, Kind};
 use crate::syntax::tree::Name;
 use crate::units::{Dimension, number};
 use std::ops::Range;
@@ -155,7 +157,7 @@ impl Checker<'_> {
                 }
                 let pairs =
                     first.stretch.changes.iter().flat_map(|a| later.stretch.changes.iter().map(move |b| (a, b)));
-                let Some((a, b)) = pairs.into_iter().find(|(a, b)| overlap(a, b)) else { continue };
+                let Some((a, b)) = pairs.into_iter().find(|(a, b)| overlap(a, b) || rivals(a, b)) else { continue };
                 sound = false;
                 self.report(clash(first, a, later, b, &places.named(&seats)));
             }
@@ -336,6 +338,22 @@ pub(super) fn described(stood: &[Instance]) -> Vec<Stretch> {
 /// Whether one path is the other, or lies inside it.
 fn overlap(a: &Change, b: &Change) -> bool {
     a.field.path.names.iter().zip(&b.field.path.names).all(|(a, b)| a.text == b.text)
+}
+
+/// Whether two paths say the same thing in different ways, as `pad.damping` and `pad.damping_time` do.
+fn rivals(a: &Change, b: &Change) -> bool {
+    fn within(kind: &'static Kind, a: &[Name], b: &[Name]) -> bool {
+        let ([a, inside_a @ ..], [b, inside_b @ ..]) = (a, b) else { return false };
+        if a.text == b.text {
+            let inner = kind.field(&a.text).and_then(|field| object_kind(&field.form));
+            return inner.is_some_and(|inner| within(inner, inside_a, inside_b));
+        }
+        kind.alternatives.iter().any(|alternative| {
+            let way = |name: &Name| alternative.ways.iter().position(|way| way.contains(&name.text.as_str()));
+            matches!((way(a), way(b)), (Some(a), Some(b)) if a != b)
+        })
+    }
+    schema::kind("trackform").is_some_and(|form| within(form, &a.field.path.names, &b.field.path.names))
 }
 
 fn clash(first: &Instance, a: &Change, later: &Instance, b: &Change, seats: &str) -> Diagnostic {

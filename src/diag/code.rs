@@ -142,6 +142,8 @@ codes! {
     L1022 Warning "run above its budget"
     L1023 Warning "damper that lets nothing swing"
     L1024 Warning "volume of few grains"
+    L1025 Warning "histories sampled at another rate than they move"
+    L1026 Warning "waves of the level too short for steps or elements"
 }
 
 impl Code {
@@ -177,6 +179,8 @@ impl Code {
             Code::L1022 => "over_budget",
             Code::L1023 => "overdamped",
             Code::L1024 => "small_volume",
+            Code::L1025 => "coarse_record",
+            Code::L1026 => "wavelength",
             _ => return None,
         })
     }

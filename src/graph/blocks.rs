@@ -1,11 +1,18 @@
 //! Which trains run between two exchanges: whole trains, up to the next stop, in the order and directions of the traffic.
 
 use super::{Block, Blocks, PassagePlan, Runner};
-use crate::scenario::{Direction, Tamping, Train};
+use crate::scenario::{Direction, Tamping, Train, Update};
 
 /// Parts into which a block of unlike trains is divided when it settles the track: within a part they run one kind after the
 /// other, so that the order of the trains is kept to within a sixteenth of the block.
 const PARTS: u64 = 16;
+
+/// Passages over the track at an axle count.
+pub struct Due {
+    pub passages: Vec<Runner>,
+    /// Those of them that are recorded: one of each kind of train, the leading one first; none where nothing is.
+    pub shown: Vec<Runner>,
+}
 
 impl Blocks {
     /// A kind of train, and how its passages are integrated; 0 leads the traffic.
@@ -42,7 +49,7 @@ impl Blocks {
     /// The next axle count at which a block ends: something is recorded or done to the track there, or another kind of
     /// train begins, or the run ends.
     pub fn stop(&self, before: u64) -> u64 {
-        self.stops.iter().copied().find(|count| *count > before).unwrap_or(self.total)
+        self.stops.get(self.stops.partition_point(|count| *count <= before)).copied().unwrap_or(self.total)
     }
 
     /// Trains until the next stop.
@@ -54,7 +61,7 @@ impl Blocks {
     pub fn wanted(&self, before: u64) -> Option<u64> {
         let axles = self.update.axles_after(before)?;
         let wanted = self.position(before + axles) - self.position(before);
-        Some(wanted.clamp(1, self.trains_left(before)))
+        Some(wanted.max(1).min(self.trains_left(before)))
     }
 
     /// A block of so many trains after `before` axles.
@@ -76,6 +83,32 @@ impl Blocks {
         runs.retain(|(_, trains)| *trains > 0);
         let axles = runs.iter().map(|(runner, trains)| trains * self.kind(runner.kind).0.axles()).sum();
         Block { before, axles, runs }
+    }
+
+    /// The passages over the track after so many axles, where the next block is expected to have so many trains.
+    pub fn due(&self, axles: u64, trains: u64) -> Due {
+        let adaptive = matches!(self.update, Update::Adaptive { .. });
+        let mut passages = if axles == self.total {
+            self.leading()
+        } else if adaptive && self.tamped_after(axles).next().is_some() {
+            Vec::new() // no train runs before the track is lifted
+        } else {
+            self.block(axles, trains).runners()
+        };
+        let shown = if self.recorded.binary_search(&axles).is_ok() { self.shown(&passages) } else { Vec::new() };
+        let missing: Vec<Runner> = shown.iter().filter(|shown| !passages.contains(shown)).copied().collect();
+        passages.extend(missing);
+        Due { passages, shown }
+    }
+
+    /// The passages that a record shows: one of each kind of train, in its leading direction unless only the other one runs.
+    fn shown(&self, passages: &[Runner]) -> Vec<Runner> {
+        let of = |leading: Runner| {
+            let mut same = passages.iter().filter(|runner| runner.kind == leading.kind);
+            let (first, second) = (same.next().copied(), same.next());
+            first.filter(|_| second.is_none()).unwrap_or(leading)
+        };
+        self.leading().into_iter().map(of).collect()
     }
 
     /// A block in parts that keep the order of its trains.

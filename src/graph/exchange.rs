@@ -65,6 +65,7 @@ impl Exchange {
     /// What its passages took.
     pub fn work(&self) -> Work {
         self.passages().fold(Work::default(), |work, passage| Work {
+            passages: work.passages + 1,
             time_steps: work.time_steps + passage.time_steps,
             newton_iterations: work.newton_iterations + passage.newton_iterations,
         })
@@ -89,6 +90,7 @@ impl Exchange {
 
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Work {
+    pub passages: u64,
     pub time_steps: u64,
     pub newton_iterations: u64,
 }

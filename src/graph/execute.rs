@@ -1,7 +1,7 @@
 //! Runs the schedule: static state, passage, settlement, block by block, until the axles are done (paper, Fig. 3).
 
 use super::control::Control;
-use super::exchange::Exchange;
+use super::exchange::{Exchange, Work};
 use super::step::Measured;
 use super::substructure::{Substructure, SubstructureState, initial_settlement};
 use super::system::{Kept, TrackSystem};
@@ -150,7 +150,9 @@ impl<'a> Run<'a> {
             if here.axles >= self.blocks.total {
                 break;
             }
+            let mut work = Measured::default();
             if self.blocks.tamped_after(here.axles).next().is_some() {
+                work.add(&here, Work::default());
                 here = self.tamp(here.axles)?;
             }
             let done = match self.blocks.update {
@@ -160,7 +162,9 @@ impl<'a> Run<'a> {
             let after = done.after.settlement();
             let passages: Vec<&PassageOutcome> =
                 done.block.runs.iter().filter_map(|(runner, _)| here.of(*runner)).collect();
-            let block = Some((&done.block, &done.measured));
+            work.add(&here, Work::default());
+            let measured = done.measured.with(&work);
+            let block = Some((&done.block, &measured));
             self.recorder.block(here.axles, block, &passages, &here.settlement, &after);
             self.substructure = done.after;
             self.done += 1;
@@ -183,25 +187,16 @@ impl<'a> Run<'a> {
 
     /// The track after so many axles, with the passages that the next block is expected to need.
     pub fn arrive(&self, axles: u64, substructure: &Substructure<'_>) -> Result<Exchange, RunError> {
-        let adaptive = matches!(self.blocks.update, Update::Adaptive { .. });
-        let mut runners = if axles == self.blocks.total {
-            self.blocks.leading()
-        } else if adaptive && self.blocks.tamped_after(axles).next().is_some() {
-            Vec::new() // no train runs before the track is lifted
-        } else {
-            self.expected(axles)
-        };
-        let shown = if self.blocks.recorded.contains(&axles) { self.shown(&runners) } else { Vec::new() };
-        runners.extend(shown.iter().filter(|shown| !runners.contains(shown)).copied().collect::<Vec<_>>());
-        let mut exchange = Exchange::new(axles, substructure.settlement(), shown);
-        self.ensure(&mut exchange, &runners)?;
+        let due = self.blocks.due(axles, self.expected(axles));
+        let mut exchange = Exchange::new(axles, substructure.settlement(), due.shown);
+        self.ensure(&mut exchange, &due.passages)?;
         Ok(exchange)
     }
 
-    /// Passages that the next block is expected to need.
-    fn expected(&self, axles: u64) -> Vec<Runner> {
+    /// Trains that the next block is expected to have at most.
+    fn expected(&self, axles: u64) -> u64 {
         let wanted = self.blocks.wanted(axles).map(|wanted| self.control.bounded(wanted));
-        self.blocks.block(axles, wanted.unwrap_or_else(|| self.blocks.trains_left(axles))).runners()
+        wanted.unwrap_or_else(|| self.blocks.trains_left(axles))
     }
 
     /// Tamps what is due, and arrives at the same count on the track as it lies then.
@@ -216,18 +211,8 @@ impl<'a> Run<'a> {
         self.recorder.tamped(axles, &seats, &before, &after);
         self.recorder.laws(axles, &self.substructure.settlement_by_law());
         let mut exchange = Exchange::new(axles, after, Vec::new());
-        self.ensure(&mut exchange, &self.expected(axles))?;
+        self.ensure(&mut exchange, &self.blocks.block(axles, self.expected(axles)).runners())?;
         Ok(exchange)
-    }
-
-    /// The passages that a record shows: one of each kind of train, in its leading direction unless only the other one runs.
-    fn shown(&self, runners: &[Runner]) -> Vec<Runner> {
-        let of = |leading: Runner| {
-            let mut same = runners.iter().filter(|runner| runner.kind == leading.kind);
-            let (first, second) = (same.next().copied(), same.next());
-            first.filter(|_| second.is_none()).unwrap_or(leading)
-        };
-        self.blocks.leading().into_iter().map(of).collect()
     }
 
     pub fn ensure(&self, exchange: &mut Exchange, runners: &[Runner]) -> Result<(), RunError> {

@@ -125,7 +125,7 @@ impl Graph {
             Schedule::Static { .. } => vec!["one static equilibrium under the test loads".to_string()],
             Schedule::Blocks(b) => {
                 vec![
-                    block_line(b),
+                    block_line(b, &self.estimate),
                     match b.update {
                         Update::Adaptive { .. } => {
                             "each block: static state -> passage -> settlement of half of it -> passage -> settlement of the block"
@@ -169,21 +169,20 @@ fn describe(named: &NamedLaw) -> String {
 }
 
 /// `500 axles in 25 blocks, 20 axles each`
-fn block_line(blocks: &Blocks) -> String {
+fn block_line(blocks: &Blocks, estimate: &Estimate) -> String {
     let total = blocks.total;
-    match (blocks.planned(), blocks.update) {
-        (None, Update::Adaptive { tolerance, cap }) => {
+    match blocks.update {
+        Update::Adaptive { tolerance, cap } => {
             let cap = cap.map_or(String::new(), |cap| format!(" and {} mm of settlement", number(cap * 1e3)));
             format!("{total} axles in blocks that err by at most {} mm{cap}", number(tolerance * 1e3))
         }
-        (planned, _) => {
-            let sizes: Vec<u64> = planned.into_iter().flatten().map(|block| block.axles).collect();
-            let range = match (sizes.iter().min(), sizes.iter().max()) {
-                (Some(min), Some(max)) if min == max => format!("{min} axles each"),
-                (Some(min), Some(max)) => format!("{min} to {max} axles"),
-                _ => "no axles".into(),
+        Update::Fixed { .. } | Update::Geometric { .. } => {
+            let [shortest, longest] = estimate.block_axles;
+            let range = match shortest == longest {
+                true => format!("{longest} axles each"),
+                false => format!("{shortest} to {longest} axles"),
             };
-            format!("{total} axles in {} blocks, {range}", sizes.len())
+            format!("{total} axles in {} blocks, {range}", estimate.blocks)
         }
     }
 }

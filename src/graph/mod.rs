@@ -17,6 +17,7 @@ mod substructure;
 mod system;
 mod track;
 
+pub use blocks::Due;
 pub use control::Control;
 pub use execute::{Checkpoint, Recorder, RunError, execute, execute_all, passage_as_built};
 pub use listing::Listing;
@@ -170,10 +171,14 @@ pub struct Decision {
     pub why: String,
 }
 
-/// What the run will take: an estimate, from the counts of steps and unknowns.
+/// What the run will take: an estimate, from the counts of steps and unknowns. Blocks that are prescribed are counted, as if
+/// none overshot.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     pub unknowns: usize,
+    pub blocks: u64,
+    /// Axles of the shortest and of the longest block.
+    pub block_axles: [u64; 2],
     pub passages: u64,
     pub steps: u64,
     /// On one core, s.

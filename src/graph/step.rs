@@ -1,6 +1,5 @@
 //! One block: as long as the scene prescribes and its exchange stays calm, or as long as its error allows.
 
-use super::control::largest_within;
 use super::exchange::{Exchange, Work};
 use super::execute::{Run, RunError};
 use super::oscillation::{amplification, sawtooth};
@@ -8,7 +7,7 @@ use super::substructure::Substructure;
 use super::{Block, Runner};
 use crate::scenario::Direction;
 
-/// What the exchange of a block was worth, and what it took besides the passages at its start.
+/// What the exchange of a block was worth, and what it took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Measured {
     /// Estimate of the error of settlement that the block adds at the worst seat, m; 0 for a block of one train.
@@ -22,7 +21,8 @@ pub struct Measured {
     pub rejected: u64,
     /// Those of them that overshot.
     pub overshot: u64,
-    /// Work beyond the passages at the start.
+    /// All passages for it, those of blocks thrown away too, and their work.
+    pub passages: u64,
     pub time_steps: u64,
     pub newton_iterations: u64,
 }
@@ -101,7 +101,8 @@ impl<'a> Run<'a> {
         let mut most = self.blocks.trains_left(here.axles);
         let mut middle: Option<Exchange> = None;
         loop {
-            let trains = self.choose(here, most);
+            let left = self.blocks.trains_left(here.axles);
+            let trains = self.control.choose(most, left, |trains| self.predicted(here, trains));
             let block = self.blocks.block(here.axles, trains);
             self.ensure(here, &block.runners())?;
             let whole = here.load(&self.substructure, &self.blocks.parts(&block));
@@ -145,21 +146,6 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Trains whose settlement, with the forces of the start, is the aim, and two at least where so many are left. What is
-    /// left until the next stop is divided evenly where it would take two blocks.
-    fn choose(&self, here: &Exchange, most: u64) -> u64 {
-        let left = self.blocks.trains_left(here.axles);
-        let Some(aim) = self.control.aim else { return left.min(2) };
-        let trains = largest_within(aim, most, |trains| self.predicted(here, trains)).max(left.min(2));
-        if trains == left {
-            trains
-        } else if left < 2 * trains {
-            left.div_ceil(2)
-        } else {
-            trains / 2 * 2 // so that the middle is one
-        }
-    }
-
     /// The most that any seat settles under so many trains with the forces of the start, m. Of unlike trains their order
     /// does not matter here.
     fn predicted(&self, here: &Exchange, trains: u64) -> f64 {
@@ -169,9 +155,20 @@ impl<'a> Run<'a> {
 }
 
 impl Measured {
+    /// The same, with more work.
+    pub(super) fn with(self, more: &Measured) -> Measured {
+        Measured {
+            passages: self.passages + more.passages,
+            time_steps: self.time_steps + more.time_steps,
+            newton_iterations: self.newton_iterations + more.newton_iterations,
+            ..self
+        }
+    }
+
     /// Counts the work of an exchange beyond what was `known` of it before.
-    fn add(&mut self, exchange: &Exchange, known: Work) {
+    pub(super) fn add(&mut self, exchange: &Exchange, known: Work) {
         let work = exchange.work();
+        self.passages += work.passages - known.passages;
         self.time_steps += work.time_steps - known.time_steps;
         self.newton_iterations += work.newton_iterations - known.newton_iterations;
     }

@@ -6,6 +6,7 @@
 mod ballast_pressure;
 mod below_threshold;
 mod car_body_frequency;
+mod coarse_record;
 mod coarse_time_step;
 mod critical_speed;
 mod dynamic;
@@ -27,6 +28,7 @@ mod thin_layer;
 mod track_too_short;
 mod unchecked_values;
 mod update_overshoot;
+mod wavelength;
 mod wheel_on_track;
 mod wheel_unloading;
 mod winkler;
@@ -40,7 +42,7 @@ use std::borrow::Cow;
 
 type Rule = fn(&Scenario, &Graph) -> Vec<Diagnostic>;
 
-const RULES: [Rule; 24] = [
+const RULES: [Rule; 26] = [
     stiffness_jump::check,
     critical_speed::check,
     track_too_short::check,
@@ -65,6 +67,8 @@ const RULES: [Rule; 24] = [
     over_budget::check,
     overdamped::check,
     small_volume::check,
+    coarse_record::check,
+    wavelength::check,
 ];
 
 /// Applies every rule, at the level that the scene gives it. Rules know one train: of a mix each is asked in turn.

@@ -7,11 +7,17 @@
 use super::winkler::Winkler;
 use crate::diag::{Code, Diagnostic};
 use crate::graph::{Graph, Schedule};
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Vehicle};
 use crate::units::number;
 
 /// Frequencies closer than this share are near.
 const NEAR: f64 = 0.1;
+
+/// Of a wheel and the track in phase, Hz.
+pub(super) fn resonance(track: &Winkler, vehicle: &Vehicle) -> f64 {
+    let mass = *vehicle.wheel_mass + 1.5 * track.mass / track.lambda();
+    (track.rail_stiffness() / mass).sqrt() / (2.0 * std::f64::consts::PI)
+}
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
@@ -21,8 +27,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         let Some(winkler) = Winkler::of(track, i) else { continue };
         let passing = *speed / *section.spacing;
         for vehicle in &blocks.train.vehicles {
-            let mass = *vehicle.wheel_mass + 1.5 * winkler.mass / winkler.lambda();
-            let frequency = (winkler.rail_stiffness() / mass).sqrt() / (2.0 * std::f64::consts::PI);
+            let frequency = resonance(&winkler, vehicle);
             if (passing / frequency - 1.0).abs() > NEAR {
                 continue;
             }

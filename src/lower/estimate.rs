@@ -1,46 +1,31 @@
 //! What a run will take, before it runs: counts of unknowns and steps, times a measured cost.
 
-use crate::graph::{Blocks, Estimate, PassagePlan, Schedule, TrackNode};
-use crate::scenario::{Direction, Train};
+use super::outlook::Outlook;
+use crate::graph::{Estimate, PassagePlan, Schedule, TrackNode};
+use crate::scenario::Train;
 
 /// Seconds a step and unknown of one passage on one core, as `cargo bench --bench track_passage` shows.
 const SECONDS: f64 = 2.5e-8;
 
-pub(super) fn estimate(node: &TrackNode, schedule: &Schedule) -> Estimate {
+pub(super) fn estimate(node: &TrackNode, schedule: &Schedule, outlook: &Outlook) -> Estimate {
     let unknowns = unknowns(node);
     let bytes = unknowns as u64 * 6_000; // bands and the windows of the inverse
-    match schedule {
-        Schedule::Static { .. } => Estimate { unknowns, passages: 0, steps: 0, seconds: 0.01, bytes },
-        Schedule::Blocks(b) => {
-            let passages = passages(b);
-            let kinds = b.others.len() as u64 + 1;
-            let steps_of = |(train, plan): (&Train, &PassagePlan)| {
-                let run = plan.right - plan.left - train.wheel_base();
-                (run / *train.speed / plan.usual_step()).ceil() as u64
-            };
-            let steps = b.kinds().map(steps_of).sum::<u64>() * passages / kinds;
-            let vehicles = b.kinds().map(|(train, _)| train.vehicles.len()).max().unwrap_or(0);
-            let unknowns = unknowns + 10 * vehicles;
-            Estimate { unknowns, passages, steps, seconds: steps as f64 * unknowns as f64 * SECONDS, bytes }
-        }
+    let Outlook { blocks, axles, passages: of_kinds } = outlook;
+    let passages = of_kinds.iter().sum();
+    let base = Estimate { unknowns, blocks: *blocks, block_axles: *axles, passages, steps: 0, seconds: 0.01, bytes };
+    let Schedule::Blocks(scheduled) = schedule else { return base };
+    let steps_of = |train: &Train, plan: &PassagePlan| {
+        let run = plan.right - plan.left - train.wheel_base();
+        (run / *train.speed / plan.usual_step()).ceil() as u64
+    };
+    let mut sum = Estimate { seconds: 0.0, ..base };
+    for ((train, plan), passages) in scheduled.kinds().zip(of_kinds) {
+        let (steps, unknowns) = (passages * steps_of(train, plan), unknowns + 10 * train.vehicles.len());
+        sum.unknowns = sum.unknowns.max(unknowns);
+        sum.steps += steps;
+        sum.seconds += (steps * unknowns as u64) as f64 * SECONDS;
     }
-}
-
-/// Passages of a run; of an adaptive one an expectation, from what runs of the shipped scenes took.
-pub(super) fn passages(blocks: &Blocks) -> u64 {
-    match blocks.planned() {
-        Some(planned) => {
-            planned.iter().map(|block| block.runs.len() as u64).sum::<u64>() + blocks.others.len() as u64 + 1
-        }
-        None => {
-            let trains = blocks.sequence.trains();
-            let directions = |train: &Train| if train.direction == Direction::Both { 2 } else { 1 };
-            let directions: u64 = blocks.kinds().map(|(train, _)| directions(train)).sum();
-            (directions * (1.0 + 3.0 * (trains as f64).ln()).ceil() as u64).min(directions * trains)
-                + blocks.others.len() as u64
-                + 1
-        }
-    }
+    sum
 }
 
 /// Rail and slab nodes have two unknowns each, a sleeper one.

@@ -2,6 +2,7 @@
 
 mod bed;
 mod estimate;
+mod outlook;
 mod passage;
 mod records;
 mod schedule;
@@ -11,6 +12,7 @@ pub use bed::{BedPlan, beds};
 use crate::diag::{Code, Diagnostic, Severity};
 use crate::graph::{Decision, Graph, NamedLaw, Schedule, SubstructureNode, TrackNode};
 use crate::scenario::{Loading, Origin, Scenario, Seat, SettlementLaw};
+use outlook::Outlook;
 
 /// Lowers a scene. Without a graph there is at least one diagnostic, here or of the check: what only grains can run is told
 /// there.
@@ -53,7 +55,15 @@ pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
         elements_per_bay: *scenario.solve.elements_per_bay,
         gravity: *scenario.solve.gravity,
     };
-    let estimate = estimate::estimate(&track, &schedule);
+    let outlook = match (&schedule, &substructure) {
+        (Schedule::Blocks(blocks), SubstructureNode::Law { law, .. }) => {
+            let outlook = Outlook::of(&track, &law.law, blocks);
+            schedule::share(&mut pass, blocks, outlook.passages.iter().sum());
+            outlook
+        }
+        _ => Outlook::default(),
+    };
+    let estimate = estimate::estimate(&track, &schedule, &outlook);
     let records = records::records(&mut pass, scenario);
     let graph = Graph { track, substructure, schedule, records, decisions: pass.decisions, estimate };
     (Some(graph), pass.diagnostics)

@@ -30,7 +30,7 @@ pub(super) fn plan(pass: &mut Pass, scenario: &Scenario, train: &Train, named: b
     for decision in pass.decisions[first..].iter_mut().filter(|_| named) {
         decision.what = format!("of `{}`: {}", train.name, decision.what);
     }
-    let every = scenario.records.iter().filter_map(|r| r.every).fold(SAMPLE, f64::min);
+    let every = scenario.records.iter().filter_map(|r| r.every).map(|every| *every).reduce(f64::min).unwrap_or(SAMPLE);
     let sample_every = (every / time_step).round().max(1.0) as u64;
     Some(PassagePlan { left, right, time_step, adaptive, integrator: scenario.solve.integrator, sample_every })
 }

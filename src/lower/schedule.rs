@@ -1,6 +1,6 @@
 //! Divides the axles of a run into blocks, between which forces and settlement are exchanged.
 
-use super::{Pass, estimate, passage};
+use super::{Pass, passage};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::{Blocks, PassagePlan};
 use crate::scenario::{Order, Scenario, Share, Traffic, Train, Update};
@@ -48,7 +48,6 @@ pub(super) fn blocks(pass: &mut Pass, scenario: &Scenario, traffic: &Traffic) ->
     if traffic.is_mixed() {
         mix(pass, &blocks);
     }
-    share(pass, &blocks);
     Some(blocks)
 }
 
@@ -125,20 +124,14 @@ fn mix(pass: &mut Pass, blocks: &Blocks) {
 }
 
 /// Says how many passages stand for all trains.
-fn share(pass: &mut Pass, blocks: &Blocks) {
+pub(super) fn share(pass: &mut Pass, blocks: &Blocks, passages: u64) {
     let trains = blocks.sequence.trains();
     if trains < 2 {
         return;
     }
     let why = "trains of one kind and block run over the same settled track, so one passage gives the forces of all";
-    let passages = match blocks.planned() {
-        Some(planned) => {
-            let passages: usize = planned.iter().map(|block| block.runs.len()).sum();
-            format!("{}", passages + blocks.others.len() + 1)
-        }
-        None => format!("about {}", estimate::passages(blocks)),
-    };
-    pass.decide("share", format!("{passages} passages stand for {trains} trains"), why);
+    let about = if matches!(blocks.update, Update::Adaptive { .. }) { "about " } else { "" };
+    pass.decide("share", format!("{about}{passages} passages stand for {trains} trains"), why);
 }
 
 /// Whether a count is a whole number of trains.

@@ -231,6 +231,7 @@ fn filled(scenario: Scenario) -> Run {
             sawtooth: 0.0,
             rejected: 0,
             overshot: 0,
+            passages: 2,
             time_steps: 15_000,
             newton_iterations: 32_100 + axles,
         });

@@ -272,7 +272,14 @@ impl Recorder for RunRecorder<'_> {
         before: &[f64],
         after: &[f64],
     ) {
-        let measured = block.map_or(Measured::default(), |(_, measured)| *measured);
+        let sum = |of: fn(&PassageOutcome) -> u64| passages.iter().map(|p| of(p)).sum();
+        let last = || Measured {
+            passages: passages.len() as u64,
+            time_steps: sum(|p| p.time_steps),
+            newton_iterations: sum(|p| p.newton_iterations),
+            ..Measured::default()
+        };
+        let measured = block.map_or_else(last, |(_, measured)| *measured);
         let block = block.map(|(block, _)| block);
         let largest = |of: fn(&PassageOutcome) -> f64| passages.iter().map(|p| of(p)).fold(f64::NEG_INFINITY, f64::max);
         let seats = |p: &PassageOutcome, of: fn(&graph::SeatOutcome) -> f64| p.seats.iter().map(of).fold(0.0, f64::max);
@@ -291,8 +298,9 @@ impl Recorder for RunRecorder<'_> {
             sawtooth: measured.sawtooth,
             rejected: measured.rejected,
             overshot: measured.overshot,
-            time_steps: passages.iter().map(|p| p.time_steps).sum::<u64>() + measured.time_steps,
-            newton_iterations: passages.iter().map(|p| p.newton_iterations).sum::<u64>() + measured.newton_iterations,
+            passages: measured.passages,
+            time_steps: measured.time_steps,
+            newton_iterations: measured.newton_iterations,
         });
         if axles == 0 {
             self.keep_settlements(0, before);

@@ -155,6 +155,8 @@ pub struct BlockRow {
     /// Longer blocks that were tried and thrown away, and those of them that overshot.
     pub rejected: u64,
     pub overshot: u64,
+    /// All that were computed for the block, and their work.
+    pub passages: u64,
     pub time_steps: u64,
     pub newton_iterations: u64,
 }
@@ -200,6 +202,7 @@ impl Row for BlockRow {
         "sawtooth",
         "rejected",
         "overshot",
+        "passages",
         "time_steps",
         "newton_iterations",
     ];

@@ -193,8 +193,8 @@ pub struct Record {
     pub seats: Vec<usize>,
     /// Axle counts at which a passage is recorded.
     pub after: Vec<u64>,
-    /// Sampling interval, s; `None` is chosen by the planner.
-    pub every: Option<f64>,
+    /// Sampling interval, s; `None` is chosen by the planner. The shortest of all records is that of the run.
+    pub every: Option<Given>,
     /// Kept only while a wheel is nearer to the seat than this, m; `None` keeps the whole passage.
     pub near: Option<f64>,
 }

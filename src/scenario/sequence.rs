@@ -53,7 +53,10 @@ impl Sequence {
                 self.shares.iter().map(turn).collect()
             }
             Order::Interleaved => (0..self.shares.len())
-                .map(|kind| partition(self.shares[kind].trains, |train| self.place(kind, train) < position))
+                .map(|kind| {
+                    let of = self.shares[kind].trains;
+                    partition(of, part(position, of, self.trains()), |train| self.place(kind, train) < position)
+                })
                 .collect(),
         }
     }
@@ -84,12 +87,16 @@ impl Sequence {
 
     /// The most trains that have no more than so many axles.
     pub fn within(&self, axles: u64) -> u64 {
-        partition(self.trains() + 1, |position| self.axles(position) <= axles).saturating_sub(1)
+        let trains = self.trains();
+        let usual = part(axles, trains, self.axles(trains)).min(trains);
+        partition(trains + 1, usual + 1, |position| self.axles(position) <= axles).saturating_sub(1)
     }
 
     /// The number of trains after which `carried`, which grows with it, is nearest to `amount`.
     pub fn nearest(&self, amount: f64, carried: impl Fn(&Sequence, u64) -> f64) -> u64 {
-        let above = partition(self.trains(), |position| carried(self, position) < amount);
+        let (trains, all) = (self.trains(), carried(self, self.trains()));
+        let usual = (amount / all * trains as f64).clamp(0.0, trains as f64) as u64;
+        let above = partition(trains, usual, |position| carried(self, position) < amount);
         let below = above.saturating_sub(1);
         if amount - carried(self, below) < carried(self, above) - amount { below } else { above }
     }
@@ -107,9 +114,26 @@ impl Sequence {
     }
 }
 
-/// How many of the numbers from 0 below `count` hold `below`, which holds up to some number and from there on does not.
-fn partition(count: u64, below: impl Fn(u64) -> bool) -> u64 {
-    let (mut low, mut high) = (0, count);
+/// `of * some / all`, rounded down.
+fn part(some: u64, of: u64, all: u64) -> u64 {
+    (u128::from(of) * u128::from(some) / u128::from(all.max(1))).min(u128::from(u64::MAX)) as u64
+}
+
+/// How many of the numbers from 0 below `count` hold `below`, which holds up to some number and from there on does not. The
+/// nearer the guess, the sooner it is found.
+fn partition(count: u64, guess: u64, below: impl Fn(u64) -> bool) -> u64 {
+    let (mut low, mut high) = (guess.min(count), guess.min(count));
+    let mut reach = 1;
+    while low > 0 && !below(low - 1) {
+        high = low - 1;
+        low = high.saturating_sub(reach);
+        reach *= 2;
+    }
+    while high < count && below(high) {
+        low = high + 1;
+        high = (low + reach).min(count);
+        reach *= 2;
+    }
     while low < high {
         let middle = low + (high - low) / 2;
         if below(middle) { low = middle + 1 } else { high = middle }

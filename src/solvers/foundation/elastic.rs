@@ -81,20 +81,20 @@ impl Plan {
         let [a, b] = self.sides.map(|side| 0.5 * k * side);
         let [left, right] = self.spacings.map(|spacing| k * spacing);
         let (other, row) = self.across.map_or((0.0, 0.0), |distance| (1.0, k * distance));
-        let mut sums = [[0.0; LANES]; 2];
+        let (mut means, mut axes) = ([0.0; LANES], [0.0; LANES]);
         for round in 0..rounds {
-            for lane in 0..LANES {
+            for (lane, (mean, axis)) in means.iter_mut().zip(&mut axes).enumerate() {
                 let angle = FRAC_PI_2 / points * ((round * LANES + lane) as f64 + 0.5);
                 let (along, across) = (sine(angle + FRAC_PI_2), sine(angle));
                 let cosine = |x: f64| sine(x + FRAC_PI_2);
                 let plan = sine(a * along) * sine(b * across) / (a * along * b * across);
                 let neighbours = 1.0 + self.share * (cosine(left * along) + cosine(right * along));
                 let all = plan * neighbours * (1.0 + other * cosine(row * across));
-                sums[0][lane] += plan * all;
-                sums[1][lane] += all;
+                *mean += plan * all;
+                *axis += all;
             }
         }
-        sums.map(|lanes| lanes.iter().sum::<f64>() / points)
+        [means, axes].map(|lanes| lanes.iter().sum::<f64>() / points)
     }
 }
 

@@ -1,0 +1,71 @@
+//! L1025: histories are sampled more coarsely than what they show moves, or more finely than the run has steps.
+//!
+//! A wheel swings on the track at f, see [`super::wheel_on_track`], and its wheels pass a seat at v / a, with a the distance of
+//! the axles of a bogie. Of a swing sampled every t the largest value is missed by up to 1 - cos(pi f t): 5 % at ten samples a
+//! period, all of it at two.
+
+use super::wheel_on_track::resonance;
+use super::winkler::Winkler;
+use crate::diag::{Code, Diagnostic};
+use crate::graph::{Blocks, Graph, Schedule};
+use crate::scenario::{Given, Scenario};
+use crate::units::number;
+use std::f64::consts::PI;
+
+const SAMPLES_A_PERIOD: f64 = 10.0;
+
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let intervals = scenario.records.iter().filter_map(|record| record.every);
+    let mut found: Vec<Diagnostic> = Vec::new();
+    for every in intervals {
+        let mistake = too_fine(every, blocks).or_else(|| too_coarse(every, scenario, blocks));
+        let mistake = mistake.map(|mistake| match every.origin.span() {
+            Some(span) => mistake.at(span, "of these histories"),
+            None => mistake,
+        });
+        found.extend(mistake.filter(|mistake| !found.contains(mistake)));
+    }
+    found
+}
+
+/// Histories have a value a step at most; those of steps that vary one of the longest.
+fn too_fine(every: Given, blocks: &Blocks) -> Option<Diagnostic> {
+    let step = blocks.passage.time_step;
+    let message = format!(
+        "samples every {} ms are asked for of a passage in steps of {} ms, which gives one a step",
+        number(*every * 1e3),
+        number(step * 1e3)
+    );
+    let help = format!("write `every = {} s`, or a `time_step` as short as the samples", number(step));
+    (*every < 0.6 * step).then(|| Diagnostic::new(Code::L1025, message).help(help))
+}
+
+fn too_coarse(every: Given, scenario: &Scenario, blocks: &Blocks) -> Option<Diagnostic> {
+    let (what, frequency) = fastest(scenario, blocks)?;
+    let samples = 1.0 / (*every * frequency);
+    if samples >= SAMPLES_A_PERIOD {
+        return None;
+    }
+    let missed = if samples > 2.0 { 100.0 * (1.0 - (PI / samples).cos()) } else { 100.0 };
+    let message = format!(
+        "a sample every {} ms leaves {} to a period of {what}, {} Hz: peaks are missed by up to {} %",
+        number(*every * 1e3),
+        number((10.0 * samples).floor() / 10.0),
+        number(frequency.round()),
+        number(missed.round())
+    );
+    let enough = (1e4 / (SAMPLES_A_PERIOD * frequency)).floor() / 1e4;
+    Some(Diagnostic::new(Code::L1025, message).help(format!("write `every = {} s`, or leave it out", number(enough))))
+}
+
+/// What moves fastest of that which every history shows, and its frequency, Hz.
+fn fastest(scenario: &Scenario, blocks: &Blocks) -> Option<(&'static str, f64)> {
+    let (track, speed) = (&scenario.track, *blocks.train.speed);
+    let sections = (0..track.sections.len()).filter_map(|section| Winkler::of(track, section));
+    let vehicles = &blocks.train.vehicles;
+    let wheels = sections.flat_map(|section| vehicles.iter().map(move |v| resonance(&section, v)).collect::<Vec<_>>());
+    let axles = vehicles.iter().map(|vehicle| speed / *vehicle.wheelset_spacing);
+    let all = wheels.map(|f| ("a wheel on the track", f)).chain(axles.map(|f| ("axles that pass", f)));
+    all.max_by(|a, b| a.1.total_cmp(&b.1))
+}
