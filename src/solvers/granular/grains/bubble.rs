@@ -108,8 +108,10 @@ fn smoothness(a: &Pebble, b: &Pebble) -> f64 {
 
 /// Maximal inscribed balls of a surface, largest first.
 fn maximal_balls(surface: &Mesh) -> Vec<Pebble> {
+    // no ball inside is wider than the surface
     let [low, high] = surface.bounds();
-    let grow = |point: &super::likeness::Point| shrunk(surface, &point.at, &-point.normal, (high - low).norm());
+    let widest = 0.5 * (high - low).min();
+    let grow = |point: &super::likeness::Point| shrunk(surface, &point.at, &-point.normal, widest);
     let mut balls: Vec<Pebble> = on_facets(surface, POINTS).iter().filter_map(grow).collect();
     let order = |a: &Pebble, b: &Pebble| b.radius.total_cmp(&a.radius);
     balls.sort_by(order);

@@ -23,6 +23,8 @@ const TRIES: usize = 9;
 pub struct Form {
     /// Shortest, intermediate and longest side of the smallest box, m.
     pub sides: [f64; 3],
+    /// Their directions, unit.
+    pub axes: [Vector3<f64>; 3],
     /// m³.
     pub volume: f64,
     /// Of the surface, m².
@@ -33,7 +35,8 @@ impl Form {
     /// Of a closed surface.
     pub fn of_surface(surface: &Mesh) -> Self {
         let vertices = surface.vertices();
-        Self { sides: Box::round(|n| extent(vertices, n)).sides, volume: surface.volume(), area: surface.area() }
+        let Box { sides, axes } = Box::round(|n| extent(vertices, n));
+        Self { sides, axes, volume: surface.volume(), area: surface.area() }
     }
 
     /// Of a clump; its surface is counted by points, to 1e-3 of it.
@@ -41,11 +44,8 @@ impl Form {
         let pebbles = &clump.pebbles;
         let reach = |n: &Vector3<f64>| pebbles.iter().map(|p| p.centre.dot(n) + p.radius).fold(f64::MIN, f64::max);
         let points = super::likeness::outside(pebbles, 4000);
-        Self {
-            sides: Box::round(|n| reach(n) + reach(&-n)).sides,
-            volume: clump.volume,
-            area: points.iter().map(|point| point.area).sum(),
-        }
+        let Box { sides, axes } = Box::round(|n| reach(n) + reach(&-n));
+        Self { sides, axes, volume: clump.volume, area: points.iter().map(|point| point.area).sum() }
     }
 
     /// S/I.

@@ -23,6 +23,7 @@ mod grading;
 mod likeness;
 mod polyhedron;
 mod random;
+pub mod stl;
 mod templates;
 
 pub use angular::{Angular, AngularError};
