@@ -1,5 +1,5 @@
-//! How many pebbles a grain needs: angular grains, the clumps that stand for them, what is wrong with those and what they cost. Writes the
-//! surfaces of the library as well.
+//! How many pebbles a grain needs: angular grains, the clumps that stand for them, what is wrong with those and what
+//! they cost. Writes the surfaces of the library as well.
 //!
 //!     cargo run --release --example grain_shapes -- docs/charts stdlib/shapes
 

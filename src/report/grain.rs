@@ -81,8 +81,9 @@ pub fn draw_surface(svg: &mut Svg, surface: &Mesh, look: &Look, at: (f64, f64)) 
     }
 }
 
-/// Draws the union of pebbles about a place (px). The far ones come first, each only where it is before all that came before it: there the eye
-/// sees a convex part of it, since the plane in which two balls meet faces the nearer one's side. `id` is unique on a page.
+/// Draws the union of pebbles about a place (px). The far ones come first, each only where it is before all that came
+/// before it: there the eye sees a convex part of it, since the plane in which two balls meet faces the nearer one's
+/// side. `id` is unique on a page.
 pub fn draw_pebbles(svg: &mut Svg, id: &str, pebbles: &[Pebble], look: &Look, at: (f64, f64)) {
     let mut seen: Vec<Pebble> =
         pebbles.iter().map(|p| Pebble { centre: look.seen(&p.centre), radius: p.radius * look.scale }).collect();

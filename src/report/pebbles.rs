@@ -1,4 +1,5 @@
-//! What pebbles buy and what they cost: the error of shape against their number, and the tests of contacts that they make.
+//! What pebbles buy and what they cost: the error of shape against their number, and the tests of contacts that they
+//! make.
 
 use super::chart::{Axis, Chart, Mark, Series};
 use super::scene::WIDTH;

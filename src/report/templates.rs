@@ -111,7 +111,8 @@ fn placed(fitted: &Fitted) -> Vec<Pebble> {
     template.pebbles.iter().map(|p| Pebble { centre: template.axes * p.centre, ..*p }).collect()
 }
 
-/// Surfaces beside their clumps of ever more pebbles: a row a surface, a column a number of pebbles. Rows are as long as the counts.
+/// Surfaces beside their clumps of ever more pebbles: a row a surface, a column a number of pebbles. Rows are as long
+/// as the counts.
 pub fn grain_templates_svg(counts: &[usize], rows: &[Vec<Fitted>]) -> String {
     let mut svg = Svg::default();
     let column = (WIDTH - 10.0) / (counts.len() + 1) as f64;

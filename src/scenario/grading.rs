@@ -85,8 +85,8 @@ impl Grading {
         self.cut_above.map_or(f64::INFINITY, |cut| *cut).min(self.passing.ends()[1])
     }
 
-    /// The curve of what is modelled, for sampling; a log-normal one by so many points that none of its mass is out of place by more
-    /// than a part in ten thousand.
+    /// The curve of what is modelled, for sampling; a log-normal one by so many points that none of its mass is out of
+    /// place by more than a part in ten thousand.
     pub fn curve(&self) -> Result<Curve, GradingError> {
         let (smallest, largest) = (self.smallest(), self.largest());
         let inner: Vec<f64> = match &self.passing {

@@ -1,7 +1,7 @@
 //! Surfaces from the bytes of an STL file, binary or text, and back.
 //!
-//! STL knows neither units nor shared corners: corners nearer than a millionth of the largest extent become one. Normals in the file are
-//! not read; the order of corners says which side is outside.
+//! STL knows neither units nor shared corners: corners nearer than a millionth of the largest extent become one.
+//! Normals in the file are not read; the order of corners says which side is outside.
 
 use super::super::shape::{Mesh, MeshError, MeshKind};
 use nalgebra::Vector3;

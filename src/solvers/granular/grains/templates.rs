@@ -66,8 +66,8 @@ pub enum TemplatesError {
 }
 
 impl Default for ClumpShape {
-    /// Clumps of two or three pebbles (Ahmadi et al. 2026, 2.1) in five angular grains. With these indices the paper's rule itself
-    /// gives two or three in four surfaces of five, and one in the fifth.
+    /// Clumps of two or three pebbles (Ahmadi et al. 2026, 2.1) in five angular grains. With these indices the paper's
+    /// rule itself gives two or three in four surfaces of five, and one in the fifth.
     fn default() -> Self {
         let indices = Angular { flatness: 0.7, elongation: 0.7, roundness: 0.15 };
         let rule = Rule { pebbles: [2, 3], ratio: 0.8, distance: 110.0 * PI / 180.0 };
