@@ -19,7 +19,17 @@ fn layers_cross_sections_and_gradings_are_drawn_with_their_dimensions() {
     let output = draw(&shipped("transition_full.track"), &out);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let picture = std::fs::read_to_string(&out).unwrap();
-    for text in ["ballast: 300 mm", "subgrade: 1000 mm, 472 MPa", "1.5 m", "2.4 m", "Mass passing [%]", "32 to 80 mm"] {
+    for text in [
+        "ballast: 300 mm",
+        "subgrade: 1000 mm, 472 MPa",
+        "1.5 m",
+        "2.4 m",
+        "Mass passing [%]",
+        "32 to 80 mm",
+        "Grains of ballast",
+        "S/I 0.7, I/L 0.7",
+        "2 pebbles",
+    ] {
         assert!(picture.contains(text), "no {text}");
     }
 }

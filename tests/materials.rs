@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 use trackbed::check::{Modules, NoModules, Override};
 use trackbed::diag::{Code, Severity};
-use trackbed::scenario::{BedEnds, Contact, Force, Loading, Scenario, Seat, Shape, Strength, Tier, Volume};
+use trackbed::scenario::{BedEnds, Contact, Force, Loading, Scenario, Seat, Shape, Strength, Surfaces, Tier, Volume};
 use trackbed::{Compiled, compile};
 
 fn shipped(name: &str, overrides: &[&str]) -> Compiled {
@@ -64,8 +64,10 @@ fn the_papers_scene_is_checked_with_all_its_grains() {
     let layers: Vec<(&str, f64)> = open.layers.iter().map(|l| (l.name.as_str(), l.thickness.at(-10.0))).collect();
     assert_eq!(layers, [("ballast", 0.3), ("subballast", 0.3), ("subgrade", 1.0)]);
     let (ballast, sub) = (open.layers[0].granular().unwrap(), open.layers[1].granular().unwrap());
-    assert!(matches!(&ballast.shape, Shape::Clumps { pebbles: [2, 3], ratio, distance, from: None, .. }
-        if **ratio == 0.8 && (**distance - 110f64.to_radians()).abs() < 1e-12));
+    assert!(
+        matches!(&ballast.shape, Shape::Clumps { pebbles: [2, 3], ratio, distance, surfaces: Surfaces::Angular { templates: 5, .. } }
+        if **ratio == 0.8 && (**distance - 110f64.to_radians()).abs() < 1e-12)
+    );
     assert_eq!((*ballast.density, *ballast.friction, *ballast.wall_friction), (2700.0, 0.7, 0.7));
     assert_eq!((ballast.grading.smallest(), ballast.grading.largest()), (0.032, 0.08));
     assert!(matches!(sub.contact, Contact::Linear { stiffness } if *stiffness == 5e6));

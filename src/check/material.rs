@@ -22,7 +22,7 @@ pub(super) enum Ground {
     },
 }
 
-type Arguments = BTreeMap<&'static str, Slot>;
+pub(super) type Arguments = BTreeMap<&'static str, Slot>;
 
 impl Checker<'_> {
     /// The material of a layer; `None` where a diagnostic has been given.
@@ -100,25 +100,13 @@ impl Checker<'_> {
             );
             return None;
         }
-        let from = match arguments.get("from").map(|slot| &slot.value) {
-            Some(Val::Word { arguments, .. }) => Some(self.surface(arguments)?),
-            Some(_) => return None,
-            None => None,
-        };
+        let surfaces = self.grain_surfaces(word, arguments)?;
         Some(Shape::Clumps {
             pebbles: pebbles.map(|n| n as u32),
             ratio: argument(arguments, "ratio")?,
             distance: argument(arguments, "distance")?,
-            templates: argument(arguments, "templates").map(|n| *n as u32)?,
-            from,
+            surfaces,
         })
-    }
-
-    /// The name of a file that is there; what is in it is for the model of grains to read.
-    fn surface(&mut self, arguments: &Arguments) -> Option<String> {
-        let Some(Slot { value: Val::Text(name), span, .. }) = arguments.get("name") else { return None };
-        self.data_file(name, *span)?;
-        Some(name.clone())
     }
 
     fn contact(&mut self, record: &Record) -> Option<Contact> {
@@ -215,7 +203,7 @@ impl Checker<'_> {
     }
 }
 
-fn argument(arguments: &Arguments, name: &str) -> Option<Given> {
+pub(super) fn argument(arguments: &Arguments, name: &str) -> Option<Given> {
     match arguments.get(name)? {
         Slot { value: Val::Number(n), origin, .. } => Some(Given { value: n.of_rail(), origin: *origin }),
         _ => None,

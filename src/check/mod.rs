@@ -36,6 +36,7 @@ mod spacing;
 mod springs;
 mod stretch;
 mod study;
+mod surface;
 mod table;
 mod tamping;
 mod tier;
@@ -56,12 +57,14 @@ pub use resolve::resolve;
 use crate::diag::{self, Code, Diagnostic, FileId, Sources, Span};
 use crate::scenario::{Evidence, LibraryEntry, Loading, RigLoad, Scenario, Study, Traffic};
 use crate::schema::{self, Role};
+use crate::solvers::granular::shape::Mesh;
 use crate::syntax::tree::{Item, Value};
 use geometry::Places;
 use modules::{Loader, Scope, ScopeId};
 use names::ItemId;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::rc::Rc;
+use std::sync::Arc;
 use table::Table;
 use tier::Asked;
 use value::{Record, Val};
@@ -114,6 +117,7 @@ fn with_checker<T>(
         defaults: HashMap::new(),
         numbers: HashMap::new(),
         tables: HashMap::new(),
+        surfaces: HashMap::new(),
         reported: HashSet::new(),
         missing: Vec::new(),
         unreadable,
@@ -160,6 +164,8 @@ struct Checker<'a> {
     numbers: HashMap<ItemId, Option<arithmetic::Raw>>,
     /// Data files by name, read once; `None` where they could not be.
     tables: HashMap<String, Option<Rc<Table>>>,
+    /// Surfaces of grains by name, read once.
+    surfaces: HashMap<String, Option<Arc<Mesh>>>,
     /// What has been reported, by code, message and place.
     reported: HashSet<(Code, String, Option<Span>)>,
     /// What objects lack, until all of them are known.

@@ -98,6 +98,8 @@ codes! {
     E0603 Error "step too coarse to be stable"
     E0604 Warning "scene that only grains can run"
     E0605 Error "random values beyond their range"
+    E0606 Error "surface that cannot be read"
+    E0607 Error "surface that is no closed body"
     E0610 Error "bed that cannot be packed"
     E0701 Error "study of a scene without trains"
     E0702 Error "axle count between two exchanges"

@@ -46,10 +46,10 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
 
     let frequency = speed / wave;
     let bending = |section: &Section| {
-        let rail = &section.rail;
-        2.0 * PI * (*rail.bending_stiffness / (*rail.mass * (2.0 * PI * frequency).powi(2))).powf(0.25)
+        let rail = section.rail.as_ref()?;
+        Some(2.0 * PI * (*rail.bending_stiffness / (*rail.mass * (2.0 * PI * frequency).powi(2))).powf(0.25))
     };
-    let shortest = scenario.track.sections.iter().map(bending).fold(f64::INFINITY, f64::min);
+    let shortest = scenario.track.sections.iter().filter_map(bending).fold(f64::INFINITY, f64::min);
     let element = scenario.track.shortest_bay() / f64::from(*scenario.solve.elements_per_bay);
     if shortest / element < ELEMENTS_A_WAVE {
         let message = format!(

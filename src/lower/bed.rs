@@ -3,7 +3,7 @@
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{BedEnds, Contact, Grading, Granular, Layer, Passing, Scenario, Shape};
 use crate::solvers::granular::clump::Template;
-use crate::solvers::granular::grains::{Angular, ClumpShape, Curve, Rule, Surfaces};
+use crate::solvers::granular::grains::Curve;
 use crate::solvers::granular::packing::{Layer as Filling, Packing, Recipe, Rest};
 use crate::solvers::granular::{DashpotMode, Surface};
 
@@ -150,18 +150,9 @@ fn curve(grading: &Grading) -> Result<Curve, impl std::fmt::Display + use<>> {
 
 /// Shapes of unit size that the grains are copies of.
 fn templates(shape: &Shape, seed: u64) -> Result<Vec<Template>, Box<dyn std::error::Error>> {
-    match shape {
-        Shape::Spheres => Ok(vec![Template::sphere(0.5)?]),
-        Shape::Clumps { from: Some(file), .. } => {
-            Err(format!("their shape is `{file}`, and this version packs generated shapes").into())
-        }
-        Shape::Clumps { pebbles, ratio, distance, templates, from: None } => {
-            let rule = Rule { pebbles: pebbles.map(|n| n as usize), ratio: **ratio, distance: **distance };
-            let Surfaces::Angular { indices, .. } = ClumpShape::default().surfaces else { return Ok(Vec::new()) };
-            let indices = Angular { ..indices };
-            let shape = ClumpShape { surfaces: Surfaces::Angular { indices, count: *templates as usize }, rule };
-            Ok(shape.templates(seed)?)
-        }
+    match shape.clumps() {
+        None => Ok(vec![Template::sphere(0.5)?]),
+        Some(shape) => Ok(shape.templates(seed)?),
     }
 }
 

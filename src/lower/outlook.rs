@@ -2,7 +2,7 @@
 //! are chosen as the run will choose them, on one seat that stands for the worst.
 
 use crate::graph::{Block, Blocks, Control, Runner, TrackNode};
-use crate::scenario::{Foot, Train, Update};
+use crate::scenario::{Train, Update};
 use crate::solvers::settlement::{Law, Peak, SupportState};
 
 /// Share of a static wheel load that the worst seat bears: lambda s / 2 of a beam on springs, and a little for what is dynamic.
@@ -88,10 +88,7 @@ struct WorstSeat<'a> {
 
 impl<'a> WorstSeat<'a> {
     fn new(node: &TrackNode, law: &'a Law, blocks: &'a Blocks, tolerance: f64, cap: Option<f64>) -> Self {
-        let stiffness = node.track.seats.iter().find_map(|seat| match &seat.foot {
-            Foot::Sleeper { support, .. } => Some(support.spring().stiffness),
-            _ => None,
-        });
+        let stiffness = node.track.seats.iter().find_map(|seat| Some(seat.spring()?.stiffness));
         WorstSeat {
             blocks,
             law,

@@ -1,6 +1,7 @@
 //! How the sizes of grains share the mass: sieve curves, and the part of them that is modelled.
 
 use super::Given;
+use crate::solvers::granular::grains::{Curve, GradingError};
 use serde::{Deserialize, Serialize};
 
 /// A grading: its curve, and the sizes between which grains are modelled.
@@ -82,6 +83,22 @@ impl Grading {
     /// Size of the largest modelled grain, m.
     pub fn largest(&self) -> f64 {
         self.cut_above.map_or(f64::INFINITY, |cut| *cut).min(self.passing.ends()[1])
+    }
+
+    /// The curve of what is modelled, for sampling; a log-normal one by so many points that none of its mass is out of
+    /// place by more than a part in ten thousand.
+    pub fn curve(&self) -> Result<Curve, GradingError> {
+        let (smallest, largest) = (self.smallest(), self.largest());
+        let inner: Vec<f64> = match &self.passing {
+            Passing::Sieves(sieves) => sieves.iter().map(|sieve| sieve[0]).collect(),
+            Passing::LogNormal { .. } => {
+                (1..200).map(|k| smallest * (largest / smallest).powf(f64::from(k) / 200.0)).collect()
+            }
+        };
+        let inner = inner.into_iter().filter(|size| smallest < *size && *size < largest);
+        let sizes = [smallest].into_iter().chain(inner).chain([largest]);
+        let points: Vec<[f64; 2]> = sizes.map(|size| [size, self.passing.share(size)]).collect();
+        Curve::new(&points)
     }
 
     /// Share of the mass that is modelled: the rest is cut off.
@@ -215,6 +232,14 @@ mod tests {
             let size = stone.d(percent);
             prop_assert!(stone.smallest() <= size && size <= stone.largest());
             prop_assert!((stone.modelled_below(size) - 0.01 * percent).abs() < 1e-7);
+        }
+
+        #[test]
+        fn the_curve_of_samples_is_that_of_the_grading(stone in curves(), percent in 0.0..100.0f64) {
+            let curve = stone.curve().unwrap();
+            prop_assert!((curve.modelled() - stone.modelled_share()).abs() < 1e-9);
+            let size = stone.d(percent);
+            prop_assert!((curve.below(size) - stone.modelled_below(size)).abs() < 1e-3);
         }
 
         #[test]

@@ -1,7 +1,10 @@
 //! What lies under the sleepers: layers of granular material and of soil.
 
 use super::{Given, Grading, Varying};
+use crate::solvers::granular::grains::{self, Angular, ClumpShape, Rule};
+use crate::solvers::granular::shape::Mesh;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// A layer of a section; the first of several lies under the sleepers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -61,11 +64,48 @@ pub enum Shape {
         ratio: Given,
         /// Overlap of spheres that smooths the surface, rad.
         distance: Given,
-        /// Shapes that grains are copies of.
-        templates: u32,
-        /// Surface that the spheres fill: a file below the scene's folder.
-        from: Option<String>,
+        surfaces: Surfaces,
     },
+}
+
+/// Surfaces that the spheres of clumps fill: grains are copies of them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Surfaces {
+    /// Angular ones, made from the scene's seed.
+    Angular {
+        templates: u32,
+        /// Shortest / intermediate and intermediate / longest side of the smallest box.
+        flatness: Given,
+        elongation: Given,
+        /// Radius of edges / radius of the largest inscribed ball.
+        roundness: Given,
+    },
+    /// Scans, and surfaces of the library.
+    Meshes(Vec<Surface>),
+}
+
+/// A closed surface of a size that means nothing: its grains have those of their grading.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Surface {
+    /// Of its file, or in the library.
+    pub name: String,
+    pub mesh: Arc<Mesh>,
+}
+
+impl Shape {
+    /// The clumps that grains are copies of; `None` for spheres.
+    pub fn clumps(&self) -> Option<ClumpShape> {
+        let Shape::Clumps { pebbles, ratio, distance, surfaces } = self else { return None };
+        let surfaces = match surfaces {
+            Surfaces::Angular { templates, flatness, elongation, roundness } => grains::Surfaces::Angular {
+                indices: Angular { flatness: **flatness, elongation: **elongation, roundness: **roundness },
+                count: *templates as usize,
+            },
+            Surfaces::Meshes(surfaces) => grains::Surfaces::Meshes(surfaces.iter().map(|s| s.mesh.clone()).collect()),
+        };
+        let rule = Rule { pebbles: pebbles.map(|n| n as usize), ratio: **ratio, distance: **distance };
+        Some(ClumpShape { surfaces, rule })
+    }
 }
 
 /// The normal force of two grains that touch.

@@ -23,7 +23,7 @@ pub use given::{Given, Origin};
 pub use grading::{Grading, Passing};
 pub use law::{SettlementLaw, law_argument};
 pub use library::{Evidence, LibraryEntry};
-pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soil, Strength};
+pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soil, Strength, Surface, Surfaces};
 pub use profile::{Cubic, Curve, Piece, Profile, Varying};
 pub use sequence::{Order, Sequence, Share};
 pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spread, Study, Values};

@@ -127,6 +127,21 @@ pub(super) const GRANULAR: Kind = Kind {
     planned: &[],
 };
 
+/// Surfaces of grains: files, and those of the library, which `examples/grain_shapes.rs` makes.
+const SURFACES: &[Word] = &[
+    Word {
+        name: "file",
+        doc: "a closed surface (STL, in any unit) below the main file's folder, such as a scanned stone",
+        arguments: &[required("name", Form::Text, "such as \"stone.stl\"")],
+        planned: false,
+    },
+    word("blocky", "of the library, generated: flatness 0.85, elongation 0.85, roundness 0.1"),
+    word("flat", "of the library, generated: flatness 0.5, elongation 0.85, roundness 0.1"),
+    word("elongated", "of the library, generated: flatness 0.85, elongation 0.5, roundness 0.1"),
+    word("bladed", "of the library, generated: flatness 0.55, elongation 0.55, roundness 0.1"),
+    word("worn", "of the library, generated: flatness 0.75, elongation 0.75, roundness 0.5"),
+];
+
 const CLUMPS: Word = Word {
     name: "clumps",
     doc: "overlapping spheres that move as one",
@@ -144,16 +159,34 @@ const CLUMPS: Word = Word {
             "smallest sphere / largest sphere of a clump, as in bubble-pack",
         ),
         default("distance", number("deg", 0.0, 180.0), "110 deg", "how smooth the surface is, as in bubble-pack"),
-        default("templates", Form::Integer { min: 1, max: 1000 }, "5", "shapes that grains are copies of"),
+        default(
+            "templates",
+            Form::Integer { min: 1, max: 1000 },
+            "5",
+            "shapes that grains are copies of: angular ones, made by chance from the scene's seed",
+        ),
+        default(
+            "flatness",
+            number("", 0.3, 1.0),
+            "0.7",
+            "shortest / intermediate side of the smallest box round an angular shape; of crushed ballast mostly 0.6 .. 0.8 (common knowledge, unchecked)",
+        ),
+        default(
+            "elongation",
+            number("", 0.3, 1.0),
+            "0.7",
+            "intermediate / longest side of that box; of crushed ballast mostly 0.6 .. 0.8 (common knowledge, unchecked)",
+        ),
+        default(
+            "roundness",
+            number("", 0.0, 0.6),
+            "0.15",
+            "radius of edges and corners / radius of the largest ball inside (Wadell 1932); fresh ballast 0.1 .. 0.2, worn ballast more (common knowledge, unchecked)",
+        ),
         optional(
             "from",
-            Form::Words(&[Word {
-                name: "file",
-                doc: "a scanned grain below the main file's folder",
-                arguments: &[required("name", Form::Text, "such as \"stone.stl\"")],
-                planned: false,
-            }]),
-            "a surface (STL) to fill with spheres",
+            Form::List(&Form::Words(SURFACES)),
+            "surfaces to fill with spheres in place of angular ones: one template each",
         ),
     ],
     planned: false,

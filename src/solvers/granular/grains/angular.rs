@@ -1,9 +1,10 @@
 //! Angular grains where there is no scan: an ellipsoid cut by planes at random, its edges rounded.
 //!
-//! Planes with normals spread over the sphere cut a ball at random depths; the body between them is stretched to the ellipsoid, and
-//! everything within a radius of it is the grain. Roundness is that radius over the radius of the largest inscribed ball (Wadell 1932, all
-//! corners alike): 0 is a body with sharp edges, 1 would be a ball. The body is stretched again until flatness and elongation of the
-//! grain, as measured by its smallest box, are those that are asked for.
+//! Planes with normals spread over the sphere cut a ball at random depths; the body between them is stretched to the
+//! ellipsoid, and everything within a radius of it is the grain. Roundness is that radius over the radius of the
+//! largest inscribed ball (Wadell 1932, all corners alike): 0 is a body with sharp edges, 1 would be a ball. The body
+//! is stretched again until flatness and elongation of the grain, as measured by its smallest box, are those that are
+//! asked for.
 
 use super::super::shape::{Mesh, MeshKind};
 use super::Random;

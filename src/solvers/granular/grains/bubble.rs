@@ -1,13 +1,14 @@
 //! Bubble-pack: a few of the largest balls that fit into a surface, so that their union looks like it.
 //!
-//! Taghavi (2011) keeps of the maximal inscribed balls of a surface, largest first, those of a radius of at least ρ times the largest whose
-//! distance to all that are kept leaves the union no smoother than asked for. His balls are circumspheres of Delaunay tetrahedra;
-//! ours touch the surface at points spread over it and are shrunk until nothing else of the surface is in them (Ma, Bae and
-//! Choi 2012, The Visual Computer 28). Both sets are samples of the medial axis. The largest is brought to its place by ascent on the
-//! distance to the surface.
+//! Taghavi (2011) keeps of the maximal inscribed balls of a surface, largest first, those of a radius of at least ρ
+//! times the largest whose distance to all that are kept leaves the union no smoother than asked for. His balls are
+//! circumspheres of Delaunay tetrahedra; ours touch the surface at points spread over it and are shrunk until nothing
+//! else of the surface is in them (Ma, Bae and Choi 2012, The Visual Computer 28). Both sets are samples of the medial
+//! axis. The largest is brought to its place by ascent on the distance to the surface.
 //!
-//! Smoothness is the angle φ at which two balls meet: with θ the angle between their radii at the common circle, φ = 180° - θ and
-//! `d² = r₁² + r₂² + 2 r₁ r₂ cos φ`. Balls that touch have 0°, equal ones at φ = 110° are 1.147 r apart. A larger φ lets them stand closer.
+//! Smoothness is the angle φ at which two balls meet: with θ the angle between their radii at the common circle, φ =
+//! 180° - θ and `d² = r₁² + r₂² + 2 r₁ r₂ cos φ`. Balls that touch have 0°, equal ones at φ = 110° are 1.147 r apart. A
+//! larger φ lets them stand closer.
 
 use super::super::clump::Pebble;
 use super::super::shape::Mesh;
@@ -51,8 +52,9 @@ pub struct Bubbles {
 }
 
 impl Bubbles {
-    /// Fills a closed surface. More pebbles than the most are cut off, smallest first. Where the rule gives fewer than the fewest, its ratio
-    /// and angle are relaxed together until there are enough; a surface that is all but a ball has fewer all the same.
+    /// Fills a closed surface. More pebbles than the most are cut off, smallest first. Where the rule gives fewer than
+    /// the fewest, its ratio and angle are relaxed together until there are enough; a surface that is all but a ball
+    /// has fewer all the same.
     pub fn fill(surface: &Mesh, rule: &Rule) -> Self {
         let balls = maximal_balls(surface);
         let [fewest, most] = rule.pebbles;
@@ -108,8 +110,10 @@ fn smoothness(a: &Pebble, b: &Pebble) -> f64 {
 
 /// Maximal inscribed balls of a surface, largest first.
 fn maximal_balls(surface: &Mesh) -> Vec<Pebble> {
+    // no ball inside is wider than the surface
     let [low, high] = surface.bounds();
-    let grow = |point: &super::likeness::Point| shrunk(surface, &point.at, &-point.normal, (high - low).norm());
+    let widest = 0.5 * (high - low).min();
+    let grow = |point: &super::likeness::Point| shrunk(surface, &point.at, &-point.normal, widest);
     let mut balls: Vec<Pebble> = on_facets(surface, POINTS).iter().filter_map(grow).collect();
     let order = |a: &Pebble, b: &Pebble| b.radius.total_cmp(&a.radius);
     balls.sort_by(order);
@@ -119,8 +123,8 @@ fn maximal_balls(surface: &Mesh) -> Vec<Pebble> {
     balls
 }
 
-/// The largest ball that touches the surface from inside at a point: while something of the surface is in it, it is made to touch
-/// that. A ball that touches q as well has the radius |q - p|²/2n·(q - p).
+/// The largest ball that touches the surface from inside at a point: while something of the surface is in it, it is
+/// made to touch that. A ball that touches q as well has the radius |q - p|²/2n·(q - p).
 fn shrunk(surface: &Mesh, point: &Vector3<f64>, inward: &Vector3<f64>, start: f64) -> Option<Pebble> {
     let mut radius = start;
     loop {
@@ -139,8 +143,8 @@ fn shrunk(surface: &Mesh, point: &Vector3<f64>, inward: &Vector3<f64>, start: f6
     }
 }
 
-/// A ball moved to where the nearest surface is as far as it can be: steps along the axes and the diagonals, halved where none
-/// goes up.
+/// A ball moved to where the nearest surface is as far as it can be: steps along the axes and the diagonals, halved
+/// where none goes up.
 fn ascended(surface: &Mesh, ball: &Pebble) -> Pebble {
     let mut best = *ball;
     let mut step = 0.25 * ball.radius;

@@ -1,8 +1,8 @@
 //! What the form of a grain is called: its lengths, and the indices made of them.
 //!
-//! L, I and S are the sides of the smallest box round the grain (Blott and Pye 2008, Sedimentology 55(1)). Flatness is S/I and elongation
-//! I/L (Zingg 1935), both 1 for a cube and a ball and smaller for plates and needles. Sphericity is the surface of the ball of the same volume
-//! over the grain's own (Wadell 1932).
+//! L, I and S are the sides of the smallest box round the grain (Blott and Pye 2008, Sedimentology 55(1)). Flatness is
+//! S/I and elongation I/L (Zingg 1935), both 1 for a cube and a ball and smaller for plates and needles. Sphericity is
+//! the surface of the ball of the same volume over the grain's own (Wadell 1932).
 
 use super::super::clump::Template;
 use super::super::shape::Mesh;
@@ -23,6 +23,8 @@ const TRIES: usize = 9;
 pub struct Form {
     /// Shortest, intermediate and longest side of the smallest box, m.
     pub sides: [f64; 3],
+    /// Their directions, unit.
+    pub axes: [Vector3<f64>; 3],
     /// m³.
     pub volume: f64,
     /// Of the surface, m².
@@ -33,7 +35,8 @@ impl Form {
     /// Of a closed surface.
     pub fn of_surface(surface: &Mesh) -> Self {
         let vertices = surface.vertices();
-        Self { sides: Box::round(|n| extent(vertices, n)).sides, volume: surface.volume(), area: surface.area() }
+        let Box { sides, axes } = Box::round(|n| extent(vertices, n));
+        Self { sides, axes, volume: surface.volume(), area: surface.area() }
     }
 
     /// Of a clump; its surface is counted by points, to 1e-3 of it.
@@ -41,11 +44,8 @@ impl Form {
         let pebbles = &clump.pebbles;
         let reach = |n: &Vector3<f64>| pebbles.iter().map(|p| p.centre.dot(n) + p.radius).fold(f64::MIN, f64::max);
         let points = super::likeness::outside(pebbles, 4000);
-        Self {
-            sides: Box::round(|n| reach(n) + reach(&-n)).sides,
-            volume: clump.volume,
-            area: points.iter().map(|point| point.area).sum(),
-        }
+        let Box { sides, axes } = Box::round(|n| reach(n) + reach(&-n));
+        Self { sides, axes, volume: clump.volume, area: points.iter().map(|point| point.area).sum() }
     }
 
     /// S/I.
@@ -83,8 +83,8 @@ pub struct Box {
 }
 
 impl Box {
-    /// Of a body that is known by its extent (m) along every unit vector: the best of many frames, turned until no small turn
-    /// makes the volume less. The same for the same body.
+    /// Of a body that is known by its extent (m) along every unit vector: the best of many frames, turned until no
+    /// small turn makes the volume less. The same for the same body.
     pub fn round(extent: impl Fn(&Vector3<f64>) -> f64) -> Self {
         let volume = |frame: &UnitQuaternion<f64>| axes(frame).iter().map(&extent).product::<f64>();
         let mut random = Random::new(0, 0);
@@ -120,8 +120,8 @@ fn axes(frame: &UnitQuaternion<f64>) -> [Vector3<f64>; 3] {
     [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| frame * axis)
 }
 
-/// Volume (m³), centroid (m) and second moments `∫ x xᵀ dV` about the centroid (m⁵) of what a closed surface encloses: sums of
-/// tetrahedra with a tip at the first corner.
+/// Volume (m³), centroid (m) and second moments `∫ x xᵀ dV` about the centroid (m⁵) of what a closed surface encloses:
+/// sums of tetrahedra with a tip at the first corner.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Solid {
     pub volume: f64,

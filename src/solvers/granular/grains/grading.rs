@@ -1,18 +1,19 @@
 //! Sizes of grains from a sieve curve: how many of each size a wanted solid volume holds.
 //!
-//! A curve says how much of the mass is finer than a size; grains are drawn by number. With u the share of the mass, d(u) the
-//! size and v(d) = π d³/6 the volume of a grain, a unit of solid volume holds
+//! A curve says how much of the mass is finer than a size; grains are drawn by number. With u the share of the mass,
+//! d(u) the size and v(d) = π d³/6 the volume of a grain, a unit of solid volume holds
 //!
 //! ```text
 //! n(u) = ∫₀ᵘ du' / v(d(u'))
 //! ```
 //!
-//! grains finer than d(u). A volume V has N = V n(1) of them, and the k-th is drawn from the middle half of the k-th of N equal
-//! strata of number. So each size has as many grains as it can have whole ones: the curve that is reached differs from the one
-//! that is asked for by about half of the largest grain's share of the mass, which is the least that whole grains can do. Sizes
-//! drawn without strata differ by the root of the grains.
+//! grains finer than d(u). A volume V has N = V n(1) of them, and the k-th is drawn from the middle half of the k-th of
+//! N equal strata of number. So each size has as many grains as it can have whole ones: the curve that is reached
+//! differs from the one that is asked for by about half of the largest grain's share of the mass, which is the least
+//! that whole grains can do. Sizes drawn without strata differ by the root of the grains.
 //!
-//! Every class follows its own closed form: between two sieves u is straight over ln d, so that n is an exponential of ln d.
+//! Every class follows its own closed form: between two sieves u is straight over ln d, so that n is an exponential of
+//! ln d.
 
 use super::Random;
 use serde::{Deserialize, Serialize};
@@ -22,8 +23,8 @@ use std::fmt;
 /// More grains than this make no bed that anybody runs.
 const MOST_GRAINS: f64 = 2e7;
 
-/// Share of the mass that is modelled, by size: from 0 at the finest grain to 1 at the coarsest, straight over the logarithm of the
-/// size in between. Two points of one size are a jump: many grains of that size.
+/// Share of the mass that is modelled, by size: from 0 at the finest grain to 1 at the coarsest, straight over the
+/// logarithm of the size in between. Two points of one size are a jump: many grains of that size.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
     /// Size, m, and share of the modelled mass that is finer.
@@ -72,8 +73,8 @@ pub struct Class {
 }
 
 impl Curve {
-    /// A curve of points (size in m, share of the mass that passes): sizes and shares ascend, and may stand still. What lies
-    /// below the first and above the last point is not modelled.
+    /// A curve of points (size in m, share of the mass that passes): sizes and shares ascend, and may stand still. What
+    /// lies below the first and above the last point is not modelled.
     pub fn new(points: &[[f64; 2]]) -> Result<Self, GradingError> {
         for (point, [size, share]) in points.iter().enumerate() {
             if !(*size > 0.0 && size.is_finite()) {

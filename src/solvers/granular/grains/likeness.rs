@@ -16,8 +16,8 @@ const ON_SURFACE: usize = 3000;
 pub struct ShapeError {
     /// Volume that is in one of the two only, over the volume of the surface: half of it is missing, half too much.
     pub volume: f64,
-    /// Distance of the surfaces, averaged over both, over the diameter of the ball of equal volume. Inside a clump a point is as
-    /// far from the surface as it lies below its deepest pebble's, which is a lower bound.
+    /// Distance of the surfaces, averaged over both, over the diameter of the ball of equal volume. Inside a clump a
+    /// point is as far from the surface as it lies below its deepest pebble's, which is a lower bound.
     pub mean_distance: f64,
     /// The largest one (after Hausdorff).
     pub largest_distance: f64,

@@ -1,7 +1,8 @@
 //! Grains before they are packed: their sizes, their shapes, and clumps of pebbles in place of the shapes.
 //!
-//! [`Curve::sample`] gives the sizes of the grains of a solid volume, [`ClumpShape::templates`] the clumps that they are copies of, and
-//! [`grains`] puts the two together. A clump of a template goes into a bed as the template scaled by the grain's size.
+//! [`Curve::sample`] gives the sizes of the grains of a solid volume, [`ClumpShape::templates`] the clumps that they
+//! are copies of, and [`grains`] puts the two together. A clump of a template goes into a bed as the template scaled by
+//! the grain's size.
 //!
 //! ```
 //! use trackbed::solvers::granular::grains::*;
@@ -23,6 +24,7 @@ mod grading;
 mod likeness;
 mod polyhedron;
 mod random;
+pub mod stl;
 mod templates;
 
 pub use angular::{Angular, AngularError};

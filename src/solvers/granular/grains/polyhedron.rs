@@ -14,8 +14,8 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// The plane of the points that a stretched body has where this one has its own: x becomes `stretch` x. The stretch is given as
-    /// the transpose of its inverse, which is what normals follow.
+    /// The plane of the points that a stretched body has where this one has its own: x becomes `stretch` x. The stretch
+    /// is given as the transpose of its inverse, which is what normals follow.
     pub fn stretched(&self, inverse_transposed: &Matrix3<f64>) -> Self {
         let normal = inverse_transposed * self.normal;
         let length = normal.norm();
@@ -31,7 +31,8 @@ pub struct Corner {
     pub planes: [usize; 3],
 }
 
-/// Corners of the body between the planes: every three of them meet somewhere, and where no other one is in the way there is a corner.
+/// Corners of the body between the planes: every three of them meet somewhere, and where no other one is in the way
+/// there is a corner.
 pub fn corners(planes: &[Plane]) -> Vec<Corner> {
     let mut found = Vec::new();
     for a in 0..planes.len() {
@@ -83,8 +84,8 @@ pub fn inscribed_radius(planes: &[Plane]) -> f64 {
     largest
 }
 
-/// The surface of all points within `radius` of the body: flat faces, parts of cylinders along its edges and of balls round
-/// its corners, each arc in so many `segments`. Vertices and triangles, outward.
+/// The surface of all points within `radius` of the body: flat faces, parts of cylinders along its edges and of balls
+/// round its corners, each arc in so many `segments`. Vertices and triangles, outward.
 pub fn rounded(
     planes: &[Plane],
     corners: &[Corner],

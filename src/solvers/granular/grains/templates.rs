@@ -5,6 +5,7 @@ use super::super::shape::Mesh;
 use super::{Angular, AngularError, Bubbles, Random, Rule, Sample};
 use std::f64::consts::PI;
 use std::fmt;
+use std::sync::Arc;
 
 /// A grain of a bed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,19 +33,19 @@ pub struct ClumpShape {
     pub rule: Rule,
 }
 
-/// Closed surfaces of any size: templates have the volume of the ball of diameter 1.
+/// Closed surfaces.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Surfaces {
     /// So many angular grains of equal indices.
     Angular { indices: Angular, count: usize },
-    /// Scans.
-    Meshes(Vec<Mesh>),
+    /// Scans, of any size.
+    Meshes(Vec<Arc<Mesh>>),
 }
 
 /// A template beside the surface that it was made for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fitted {
-    pub surface: Mesh,
+    pub surface: Arc<Mesh>,
     pub bubbles: Bubbles,
     /// Of the volume of the ball of diameter 1.
     pub template: Template,
@@ -65,7 +66,8 @@ pub enum TemplatesError {
 }
 
 impl Default for ClumpShape {
-    /// Clumps of two or three pebbles (Ahmadi et al. 2026, 2.1) in five angular grains.
+    /// Clumps of two or three pebbles (Ahmadi et al. 2026, 2.1) in five angular grains. With these indices the paper's
+    /// rule itself gives two or three in four surfaces of five, and one in the fifth.
     fn default() -> Self {
         let indices = Angular { flatness: 0.7, elongation: 0.7, roundness: 0.15 };
         let rule = Rule { pebbles: [2, 3], ratio: 0.8, distance: 110.0 * PI / 180.0 };
@@ -83,7 +85,7 @@ impl ClumpShape {
     pub fn fitted(&self, seed: u64) -> Result<Vec<Fitted>, TemplatesError> {
         let surfaces = match &self.surfaces {
             Surfaces::Angular { indices, count } => {
-                let surface = |number| indices.surface(seed, number as u64);
+                let surface = |number| indices.surface(seed, number as u64).map(Arc::new);
                 (0..*count).map(surface).collect::<Result<Vec<_>, _>>().map_err(TemplatesError::Surface)?
             }
             Surfaces::Meshes(meshes) => meshes.clone(),
@@ -92,7 +94,7 @@ impl ClumpShape {
         surfaces.into_iter().enumerate().map(fitted).collect()
     }
 
-    fn fit(&self, number: usize, surface: Mesh) -> Result<Fitted, TemplatesError> {
+    fn fit(&self, number: usize, surface: Arc<Mesh>) -> Result<Fitted, TemplatesError> {
         let bubbles = Bubbles::fill(&surface, &self.rule);
         let (found, fewest) = (bubbles.pebbles.len(), self.rule.pebbles[0].max(1));
         if found < fewest {

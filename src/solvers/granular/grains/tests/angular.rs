@@ -65,7 +65,7 @@ fn indices_that_no_grain_has_are_refused() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(12))]
     #[test]
     fn a_grain_has_the_indices_that_are_asked_for(
         flatness in 0.3..1.0f64, elongation in 0.3..1.0f64, roundness in 0.0..0.6f64, seed in 0u64..10_000,

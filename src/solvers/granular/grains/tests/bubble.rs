@@ -66,7 +66,7 @@ fn a_ball_is_one_pebble_whatever_is_asked_for() {
     let bubbles = Bubbles::fill(&ball, &PAPER);
     assert_eq!(bubbles.pebbles.len(), 1);
     assert!((bubbles.pebbles[0].radius / 0.03 - 1.0).abs() < 6e-3);
-    let shape = ClumpShape { surfaces: Surfaces::Meshes(vec![ball]), rule: Rule { pebbles: [2, 3], ..PAPER } };
+    let shape = ClumpShape { surfaces: Surfaces::Meshes(vec![ball.into()]), rule: Rule { pebbles: [2, 3], ..PAPER } };
     assert!(matches!(shape.templates(1), Err(TemplatesError::TooFew { surface: 0, fewest: 2, .. })));
 }
 

@@ -5,3 +5,4 @@ mod bubble;
 mod form;
 mod grading;
 mod likeness;
+mod stl;
