@@ -163,6 +163,12 @@ impl Checker<'_> {
             Some(_) => return None,
             None => return Some(traffic.map(|t| *t.total).or(cycles).into_iter().collect()),
         };
+        // of another unit are all or none: it stands behind the list
+        let cycles_of_axles = |slot: &Slot| matches!(slot.value, Val::Number(n) if n.dimension == Dimension::CYCLES);
+        if let Some(first) = slots.iter().find(|slot| traffic.is_some() && cycles_of_axles(slot)) {
+            self.not_counted(Dimension::CYCLES, "axles of its trains", first.span);
+            return None;
+        }
         let counts: Vec<Option<u64>> = match (traffic, cycles) {
             (Some(_), _) => slots.iter().map(|slot| self.between_trains(slot)).collect(),
             (None, Some(cycles)) => slots.iter().map(|slot| self.recorded_cycles(slot, cycles)).collect(),

@@ -139,7 +139,11 @@ fn check(scene: Scene<'_>, base: &Compiled, study: &Study, levels: &[Level], ove
             let remarks = compiled.diagnostics.iter().filter(new).map(placed).collect();
             Checked::Legal { seconds: graph.estimate.seconds, seed: scenario.solve.seed, remarks }
         }
-        _ if errors.is_empty() => Checked::Illegal(compiled.diagnostics.iter().map(placed).collect()),
+        _ if errors.is_empty() => {
+            // a hole of the scene itself is told there
+            let told = |d: &&Diagnostic| base.diagnostics.iter().any(|b| (b.code, &b.message) == (d.code, &d.message));
+            Checked::Illegal(compiled.diagnostics.iter().filter(|d| !told(d)).map(placed).collect())
+        }
         _ => Checked::Illegal(errors),
     }
 }
