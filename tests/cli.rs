@@ -350,6 +350,27 @@ fn a_value_set_on_the_command_line_counts_as_written() {
 }
 
 #[test]
+fn a_seed_on_the_command_line_is_that_of_the_scene() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = SMALL.replace("50 MN/m per seat", "random(50 MN/m per seat, cov = 10 %)");
+    // whatever its `solve` is called
+    let scene = write(dir.path(), "small.track", &text.replace("solve {", "solve coarse {"));
+    let scene = scene.to_str().unwrap();
+    let run = |name: &str, more: &[&str]| {
+        let out = dir.path().join(name);
+        let output = trackbed(&[&["run", scene, "--out", out.to_str().unwrap()], more].concat());
+        assert_eq!(code(&output), 0, "{}", said(&output));
+        (summary(&out)["provenance"]["seed"].clone(), fs::read(out.join("sleepers.csv")).unwrap())
+    };
+    let (seed, table) = run("seed", &["--seed", "7"]);
+    assert_eq!(seed, 7);
+    assert!((seed, table.clone()) == run("set", &["--set", "solve.seed=7"]), "it is the same line");
+    assert!(table != run("own", &[]).1);
+    assert!(said(&trackbed(&["run", "--help"])).contains("--seed <N>"));
+    assert!(said(&trackbed(&["study", "--help"])).contains("--seed <N>"));
+}
+
+#[test]
 fn the_report_can_be_made_again() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("run");

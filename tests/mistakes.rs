@@ -116,7 +116,7 @@ const PLANTED: &[Planted] = &[
     plant("a tier that is only checked", "substructure     = law", "substructure     = full", Code::E0604),
     needs("pl", plant("a narrow bed", "rail_ends   = clamped", "bed_width   = 2 m per track", Code::E0420)),
     plant("a profile without basis", "support = { stiffness = 50 MN/m per seat,", "support = { stiffness = ramp(50 .. 80 MN/m),", Code::E0304),
-    breaks("pb", plant("a profile of later versions", "  spacing = bay", "  spacing = [-42 m: 0.6 m, 0 m: 0.5 m]", Code::E0411)),
+    breaks("b", needs("p", plant("a gap in the spacing", "  spacing = bay", "  spacing = [-20 m: 0.6 m, 24 m: 0.6 m]", Code::E0506))),
     // what varies along the track
     breaks("l", plant("a profile where none can be", "length = 2.4 m }", "length = ramp(2.4 .. 2.6 m) }", Code::E0406)),
     plant("a misspelt profile", "settlement = ramp(0 .. 2 mm, over = -6 .. 0 m)", "settlement = rmap(0 .. 2 mm)", Code::E0408),

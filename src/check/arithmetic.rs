@@ -195,7 +195,10 @@ impl Checker<'_> {
     /// What was probably meant by a sum of a value and a number without a unit.
     fn instead_of_sum(&self, left: &Value, op: BinaryOp, right: &Value, bare: [bool; 2]) -> Option<String> {
         let [a, b] = [left.span, right.span].map(|span| self.loader.sources.text(span));
-        let between = self.loader.sources.text(Span { start: left.span.end, end: right.span.start, ..left.span });
+        // behind a `let` the two may stand anywhere
+        let follows = left.span.file == right.span.file && left.span.end <= right.span.start;
+        let between = Span { start: left.span.end, end: right.span.start, ..left.span };
+        let between = if follows { self.loader.sources.text(between) } else { return None };
         let several = matches!(&left.kind, ValueKind::Binary(_, BinaryOp::Add | BinaryOp::Subtract, _));
         match (bare, op) {
             // `kg m-3`

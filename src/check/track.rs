@@ -65,6 +65,7 @@ impl Checker<'_> {
         self.spread(&mut plans, &sides, &forms, &stretches)?;
         let places = self.lay_out(&plans, &sides)?;
         self.seat_places = Some(places.clone());
+        sound &= self.prove_spacing(&forms, &stretches, &places).is_some();
         let irregularity = self.irregularity(record, &places);
         let bed = self.bed(record, &built);
         let stood = self.stand(&stretches, &places);
@@ -97,6 +98,7 @@ impl Checker<'_> {
         if !sound {
             return None;
         }
+        self.sleepers_apart(&seats, &forms, &places)?;
         let auxiliary_rails = self.auxiliary_spans(&forms, &stood, &places, beside)?;
         let rail_ends = match record.word("rail_ends") {
             Some("pinned") => RailEnds::Pinned,

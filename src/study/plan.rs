@@ -193,8 +193,8 @@ fn without_seed(scene: Scene<'_>, plan: &Plan) -> Option<Diagnostic> {
     let mistake = compiled.diagnostics.iter().find(|d| d.is_error())?;
     let name = &plan.study.name;
     let message = format!("study `{name}` cannot be repeated with another seed: {}", mistake.message);
-    let help = "declare a `solve` without a name, `solve { seed = 1 }`";
-    Some(Diagnostic::new(Code::E0705, message).at(plan.study.span, "has `repeats`").help(help))
+    let help = mistake.help.clone();
+    Some(Diagnostic::new(Code::E0705, message).at(plan.study.span, "has `repeats`").maybe_help(help))
 }
 
 /// Finds places of a point's sources in those of the scene.
