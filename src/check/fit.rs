@@ -472,6 +472,13 @@ fn per_inside(form: &Form, value: &Value) -> Option<Value> {
             argument.value = Value { kind: of, span: argument.value.span };
         }
     }
+    if !any && known.arguments.iter().any(|a| a.name == "per") {
+        let of = crate::syntax::tree::Path { names: vec![basis.clone()], span: basis.span };
+        let name = Some(Name { text: "per".to_string(), span: basis.span });
+        let value = Value { kind: ValueKind::Path(of), span: basis.span };
+        arguments.push(crate::syntax::tree::Argument { name, value });
+        any = true;
+    }
     any.then(|| Value { kind: ValueKind::Call { word: word.clone(), arguments }, span: value.span })
 }
 

@@ -18,6 +18,20 @@ impl Checker<'_> {
         let force = record.get("force")?;
         let of = match &force.value {
             Val::Number(n) => n.basis,
+            Val::Word { word, arguments } if word.name == "file" => {
+                let forces = self.force_history(arguments, force.span);
+                let Some(Val::Text(of)) = arguments.get("per").map(|slot| &slot.value) else {
+                    if arguments.get("per").is_none() && forces.is_some() {
+                        let message = "the forces of a file are `per` what?";
+                        let help =
+                            "write `per rail` or `per track`, or on sleepers `per seat` or `per sleeper`, behind it";
+                        self.report(Diagnostic::new(Code::E0304, message).at(force.span, "").help(help));
+                    }
+                    return None;
+                };
+                forces?;
+                Some(of.as_str())
+            }
             Val::Word { arguments, .. } => match arguments.get("range").map(|slot| &slot.value) {
                 Some(Val::Range(smallest, _)) => smallest.basis,
                 _ => return None,
@@ -152,7 +166,9 @@ impl Checker<'_> {
             volume,
             span: record.get("volume").and_then(|slot| slot.origin.span()),
         });
-        let kept = (!along.is_empty()).then_some(Kept { quantities: along, seats, after, every, near: None });
+        let states = record.word("states") == Some("vtk");
+        let kept = Kept { quantities: along, seats, after, every, near: None, states };
+        let kept = Some(kept).filter(|kept| states || !kept.quantities.is_empty());
         Some((kept, volumes))
     }
 

@@ -10,6 +10,7 @@ mod combine;
 mod complete;
 mod expectation;
 mod fit;
+mod force;
 mod geometry;
 mod grading;
 mod ground;

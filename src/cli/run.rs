@@ -115,6 +115,7 @@ fn prepare(arguments: &Arguments) -> Result<(), String> {
     std::fs::create_dir_all(out).map_err(|e| format!("cannot make the directory `{shown}`: {e}"))?;
     let holds = |name: &str| out.join(name).exists();
     if arguments.force {
+        results::remove_states(out).map_err(|e| e.to_string())?;
         for name in ["summary.json", "checkpoint.json", "histories.parquet", "laws.csv"] {
             if holds(name) {
                 std::fs::remove_file(out.join(name)).map_err(|e| format!("cannot replace `{shown}/{name}`: {e}"))?;
