@@ -100,7 +100,8 @@ fn sleepers_vtk(scenario: &Scenario, rows: &[&SleeperRow]) -> io::Result<Vec<u8>
     file.connected("Polys", corners, sides.len(), 4)?;
     file.open("CellData Scalars=\"settlement\"")?;
     file.signed("sleeper", &sides, |(_, number)| *number)?;
-    let columns: [(&str, fn(&SleeperRow) -> f64); 6] = [
+    type Column = fn(&SleeperRow) -> f64;
+    let columns: [(&str, Column); 6] = [
         ("settlement", |row| row.settlement_m),
         ("void", |row| row.void_m),
         ("gravity_contact_force", |row| row.gravity_contact_force_N),

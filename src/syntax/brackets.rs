@@ -32,7 +32,7 @@ impl<'p> Builder<'p> {
         if !reported {
             let (path, first) = self.text(before.0, before.1).split_once('=').unwrap_or_default();
             let items = self.items_of_line(start);
-            let list = format!("{} = {}", path.trim(), listed(first.trim(), &items));
+            let list = format!("{} = {}", path.trim(), listed(first.trim(), items));
             let last = start + items.trim_end().len();
             let mistake = Diagnostic::new(Code::E0101, "several values stand in brackets")
                 .at(self.span(start, last), "where a field is expected");

@@ -114,6 +114,9 @@ fn habit_of_field(part: &str) -> Option<String> {
     if let Some(field) = part.strip_prefix("- ") {
         return Some(format!("write `{}`, without the dash", field.trim_start()));
     }
+    if part.starts_with("let ") || part.starts_with("use ") {
+        return None;
+    }
     let (name, value) = part.split_once('=').filter(|(_, value)| !value.starts_with('='))?;
     let name = name.trim();
     if let Some((path, first)) = name.split_once('(').filter(|(path, _)| !path.is_empty()) {

@@ -86,19 +86,10 @@ fn first_of_next_line(tokens: &[Token], from: usize) -> Option<usize> {
 
 /// The closing bracket at the start of a line that ends the fields from `first` on, before another item begins.
 fn closer(text: &str, tokens: &[Token], first: usize) -> Option<usize> {
-    for k in first..tokens.len() {
-        let starts_line = tokens[k].start == 0 || text.as_bytes()[tokens[k].start - 1] == b'\n';
-        if !starts_line || tokens[k].kind == Kind::LineBreak {
-            continue;
-        }
-        if matches!(tokens[k].kind, Kind::Close(_)) {
-            return Some(k);
-        }
-        if tokens[k].kind == Kind::Word {
-            return None;
-        }
-    }
-    None
+    let starts_line = |t: &Token| t.start == 0 || text.as_bytes()[t.start - 1] == b'\n';
+    let ends = |t: &Token| starts_line(t) && matches!(t.kind, Kind::Close(_) | Kind::Word);
+    let found = first + tokens[first..].iter().position(ends)?;
+    matches!(tokens[found].kind, Kind::Close(_)).then_some(found)
 }
 
 /// A list by dashes, one item a line, behind the sign at `i`.

@@ -322,7 +322,7 @@ impl<'p> Builder<'p> {
                     let reported = values.last().is_some_and(|value| value.kind == ValueKind::Error);
                     // `[open 42 m, stiff 24 m]`
                     let alike = read && at.as_str().starts_with(|c: char| c.is_ascii_digit());
-                    if !reported && !(alike && told.colon) {
+                    if !(reported || alike && told.colon) {
                         self.explain(Rule::exact_entry, start, at.start(), at.end());
                     }
                     told.colon |= alike;
