@@ -5,16 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-fn trackbed(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_trackbed")).args(arguments).env("NO_COLOR", "1").output().unwrap()
+mod common {
+    pub mod program;
 }
+use common::program::{said, trackbed};
 
 fn code(output: &Output) -> i32 {
     output.status.code().unwrap_or(-1)
-}
-
-fn said(output: &Output) -> String {
-    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
 fn write(dir: &Path, name: &str, text: &str) -> PathBuf {
@@ -350,6 +347,27 @@ fn a_value_set_on_the_command_line_counts_as_written() {
     let output = trackbed(&["check", "scenarios/transition.track", "--set", "open.pad.stiffness=40 kN"]);
     assert_eq!(code(&output), 1);
     assert!(said(&output).contains("E0302"), "{}", said(&output));
+}
+
+#[test]
+fn a_seed_on_the_command_line_is_that_of_the_scene() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = SMALL.replace("50 MN/m per seat", "random(50 MN/m per seat, cov = 10 %)");
+    // whatever its `solve` is called
+    let scene = write(dir.path(), "small.track", &text.replace("solve {", "solve coarse {"));
+    let scene = scene.to_str().unwrap();
+    let run = |name: &str, more: &[&str]| {
+        let out = dir.path().join(name);
+        let output = trackbed(&[&["run", scene, "--out", out.to_str().unwrap()], more].concat());
+        assert_eq!(code(&output), 0, "{}", said(&output));
+        (summary(&out)["provenance"]["seed"].clone(), fs::read(out.join("sleepers.csv")).unwrap())
+    };
+    let (seed, table) = run("seed", &["--seed", "7"]);
+    assert_eq!(seed, 7);
+    assert!((seed, table.clone()) == run("set", &["--set", "solve.seed=7"]), "it is the same line");
+    assert!(table != run("own", &[]).1);
+    assert!(said(&trackbed(&["run", "--help"])).contains("--seed <N>"));
+    assert!(said(&trackbed(&["study", "--help"])).contains("--seed <N>"));
 }
 
 #[test]

@@ -103,14 +103,7 @@ fn outcome(text: &str) -> Result<(), Code> {
         .map_err(|error| trackbed::results::diagnose(&error, &scenario, &graph).code)?;
     let (tables, histories) = (&recorder.tables, recorder.all_histories());
     let scalars = trackbed::results::summarise(&scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
-    let view = trackbed::results::Tables {
-        sleepers: &tables.sleepers,
-        blocks: &tables.blocks,
-        rail: &tables.rail,
-        histories: &histories,
-        scalars: &scalars,
-        track: &scenario.track,
-    };
+    let view = tables.view(&histories, &scalars, &scenario.track);
     if trackbed::results::BlockRow::overshoot(&tables.blocks).is_some() {
         return Err(Code::E0807);
     }

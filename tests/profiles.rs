@@ -594,6 +594,16 @@ let more = [-12 .. -6 m: ramp(0 .. 10 MN/m), -6 .. 0 m: 5 MN/m]";
     assert!((far - 80.0).abs() < 1e-9 && (115.0..=120.0).contains(&near), "{far} {near}");
     let [far, _, near] = stiffness(pieces, "k + more");
     assert!((40.0..42.0).contains(&far) && (62.0..=65.0).contains(&near), "{far} {near}");
+    // products piece by piece, where one of the two is a number
+    let factors = "let k = [-12 .. -6 m: 40 MN/m, -6 .. 0 m: ramp(40 .. 60 MN/m)]
+let share = [-12 .. -6 m: ramp(1 .. 2), -6 .. 0 m: 1.5]";
+    let [far, _, near] = stiffness(factors, "k * share");
+    let [alone_far, _, alone_near] = stiffness(alone, "k");
+    assert!((1.0..1.2).contains(&(far / alone_far)) && (near / alone_near - 1.5).abs() < 1e-9, "{far} {near}");
+    let halves =
+        "let k = [-12 .. -6 m: 40 MN/m, -6 .. 0 m: ramp(40 .. 60 MN/m)]\nlet part = [-12 .. -6 m: 4, -6 .. 0 m: 2]";
+    let [far, _, near] = stiffness(halves, "k / part");
+    assert!((far - 10.0).abs() < 1e-9 && (near - alone_near / 2.0).abs() < 1e-9, "{far} {near}");
     // a random profile is the same field, scaled
     let field = "let k = random(40 MN/m, sd = 2 MN/m, correlation = 3 m)";
     let (once, twice) = (stiffness(field, "k"), stiffness(field, "2 * k"));
@@ -606,6 +616,18 @@ fn profiles_that_do_not_combine_are_refused() {
         |lets: &str, value: &str| with(&scene(&format!("settlement = {value}"), "", lets), Files::default());
     let refused = [
         ("let a = ramp(0 .. 1 mm)", "a * ramp(1 .. 2)", "multiplied or divided"),
+        ("let a = [-12 m: 0 mm, 0 m: 1 mm]", "a * [-12 m: 1, 0 m: 2]", "between places both vary"),
+        (
+            "let a = [-12 .. -6 m: ramp(0 .. 1 mm), -6 .. 0 m: 1 mm]",
+            "a * [-12 .. -6 m: ramp(1 .. 2), -6 .. 0 m: 1]",
+            "both vary",
+        ),
+        (
+            "let a = [-12 .. -6 m: 1 mm, -6 .. 0 m: 1 mm]",
+            "a / [-12 .. -6 m: ramp(1 .. 2), -6 .. 0 m: 1]",
+            "divided by a profile",
+        ),
+        ("let a = [-12 .. -6 m: 1 mm, -6 .. 0 m: 1 mm]", "a * [-12 .. -5 m: 2, -5 .. 0 m: 1]", "other places"),
         ("let a = ramp(1 .. 2 mm)", "1 mm / a", "divided by a profile"),
         ("let a = ramp(0 .. 1 mm)", "a + smooth(0 .. 1 mm)", "different forms"),
         ("let a = ramp(0 .. 1 mm, over = -6 .. 0 m)", "a + ramp(0 .. 1 mm)", "other spans"),

@@ -4,7 +4,7 @@
 use std::path::Path;
 use trackbed::check::Modules;
 use trackbed::diag::{Code, render};
-use trackbed::results::{self, RunRecorder, Tables};
+use trackbed::results::{self, RunRecorder};
 use trackbed::{Compiled, compile, graph};
 
 /// Measured settlement: half a millimetre everywhere before the slab.
@@ -72,14 +72,7 @@ fn a_run_answers_every_reduction_and_function() {
     graph::execute(&plan, &mut recorder, None).unwrap();
     let (tables, histories) = (&recorder.tables, recorder.all_histories());
     let scalars = results::summarise(&scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
-    let view = Tables {
-        sleepers: &tables.sleepers,
-        blocks: &tables.blocks,
-        rail: &tables.rail,
-        histories: &histories,
-        scalars: &scalars,
-        track: &scenario.track,
-    };
+    let view = tables.view(&histories, &scalars, &scenario.track);
     for verdict in results::verdicts(&scenario, view) {
         assert!(verdict.met, "{}: {:?} {:?}", verdict.text, verdict.values, verdict.problem);
     }

@@ -5,104 +5,10 @@ use trackbed::check::{Modules, NoModules};
 use trackbed::diag::Code;
 use trackbed::{Compiled, compile};
 
-/// A scene without a mistake and without a warning.
-const SCENE: &str = r#"// an embankment meets a slab
-use std
-
-let pad_stiffness = 40 MN/m
-let bay = 0.6 m
-
-scenario {
-  title = "Embankment to slab"
-  allow = [stiffness_jump: "this is what the scene is about"]
-  deny  = [critical_speed]
+mod common {
+    pub mod scene;
 }
-
-trackform open {
-  rail    = rails.UIC60 { density = 7800 kg/m^3, bending_stiffness = 6.4 MN m^2 }
-  pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }
-  sleeper = sleepers.concrete { mass = 150 kg per seat, length = 2.4 m }
-  spacing = bay
-  support = { stiffness = 50 MN/m per seat, damping = 50 kN s/m per seat }
-  usp     = usps.stiff { damping_time = 0.1 ms }
-  settlement = ramp(0 .. 2 mm, over = -6 .. 0 m), layers = [stone: 350 mm, fill: 1 m]
-}
-
-trackform stiff : open {
-  sleeper = none
-  support = none
-  slab    = slabs.half_width_1600
-  usp     = none
-  settlement = 0 mm
-}
-
-track line {
-  sections    = [open: 42 m, stiff: 24 m]
-  transitions = [edge: soft_to_stiff]
-  rail_ends   = clamped
-}
-
-vehicle wagon {
-  axle_load = 20 t
-  car_body  = { radius_of_gyration = 3.91 m }
-  bogie     = { mass = 800 kg per bogie, pitch_inertia = 730 kg m^2 per bogie, spacing = 6.77 m }
-  wheelset  = { mass = 1341 kg per wheelset, spacing = 1.78 m }
-  primary   = { stiffness = 30 MN/m per wheelset, damping = 70 kN s/m per wheelset }
-  secondary = { stiffness = 3.75 MN/m per bogie, damping = 10 kN s/m per bogie }
-}
-
-train ore {
-  vehicles  = wagon
-  speed     = 70 km/h
-  direction = forward
-}
-
-law mild : laws.varandas_2014 {
-  form.gamma = 8 mm
-}
-
-traffic {
-  trains = ore
-  total  = 500 axles
-}
-
-solve {
-  substructure     = law
-  law              = mild
-  update_every     = geometric(4 axles, 0.2)
-  elements_per_bay = 4
-  time_step        = 1e-4 s
-  finish           = 15 m
-}
-
-record forces {
-  at         = [-20, -5, -1, +1] sleepers
-  after      = [0, 100, 500] axles
-  quantities = [rail_seat_load, contact_force]
-}
-
-record bed {
-  over       = -20 .. -1 sleepers
-  quantities = settlement
-}
-
-expect {
-  that = [
-    max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat
-    -12 m < place_of_max(settlement) < 0 m
-  ]
-}
-
-granular stone : ballasts.granite_31_63 {
-  grading  = { passing = [22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 %], cut_below = 25 mm }
-  friction = 0.7
-}
-
-soil fill {
-  youngs_modulus = 90 MPa, poisson_ratio = 0.3
-  density        = 2000 kg/m^3
-}
-"#;
+use common::scene::SCENE;
 
 /// What stands in the scene, what is typed in its place, the code, and the way out.
 #[rustfmt::skip]
@@ -167,7 +73,7 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("mass = 150 kg per seat", "mass = 0.15 t per wheel", Code::E0304, "write `0.15 t per sleeper`, if that is what it is"),
     ("sections    = [open: 42 m, stiff: 24 m]", "sections    = (open: 42 m, stiff: 24 m)", Code::E0101, "lists stand in `[ ]`"),
     ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [open: 42, stiff: 24]", Code::E0301, "write `[open: 42, stiff: 24] m`"),
-    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [open: 42 m; stiff: 24 m]", Code::E0105, "write `open: 42 m`"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [open: 42 m; stiff: 24 m]", Code::E0105, "write `[open: 42 m, stiff: 24 m]`"),
     ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [open: -42 m, stiff: 24 m]", Code::E0405, "write `42 m`, without the sign"),
     ("sections    = [open: 42 m, stiff: 24 m]", "section     = [open: 42 m, stiff: 24 m]", Code::E0402, "did you mean `sections`?"),
     ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [wagon: 42 m, stiff: 24 m]", Code::E0406, "name one, such as `open` or `stiff`, or write `{ field = value }`"),
@@ -209,6 +115,261 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("primary   = { stiffness = 30 MN/m per wheelset", "primary   = { stiffness = 30 MN/m per axle", Code::E0304, "did you mean `30 MN/m per wheelset`?"),
     ("car_body  = { radius_of_gyration = 3.91 m }", "carbody   = { radius_of_gyration = 3.91 m }", Code::E0402, "did you mean `car_body`?"),
     ("allow = [stiffness_jump: \"this is what the scene is about\"]", "allow = stiffness_jump", Code::E0406, "write `[key: value]`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = ( stiffness = pad_stiffness, damping = 5 kN s/m )", Code::E0105, "write `{ stiffness = pad_stiffness, damping = 5 kN s/m }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = (stiffness = 40 MN/m)", Code::E0105, "write `{ stiffness = 40 MN/m }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = [stiffness = 40 MN/m]", Code::E0406, "name one, such as `pads.ahmadi_2026`, `pads.soft` or `pads.medium`, or write `{ field = value }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = stiffness = 40 MN/m", Code::E0101, "write `pad.stiffness = 40 MN/m`, or `pad = { stiffness = 40 MN/m }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = stiffness 40 MN/m", Code::E0101, "arguments stand in parentheses, `stiffness(...)`, fields in braces, `{ name = value }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = pads.medium(stiffness = 40 MN/m)", Code::E0101, "fields stand in braces: `pads.medium { name = value }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = pads.medium + { damping = 5 kN s/m }", Code::E0406, "name one, such as `pads.ahmadi_2026`, `pads.soft` or `pads.medium`, or write `{ field = value }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { pads.medium, damping = 5 kN s/m }", Code::E0101, "a field is `name = value`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = {{ stiffness = 40 MN/m }}", Code::E0101, "write `{ stiffness = 40 MN/m }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = [{ stiffness = 40 MN/m }]", Code::E0406, "name one, such as `pads.ahmadi_2026`, `pads.soft` or `pads.medium`, or write `{ field = value }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "\"pad\"   = { stiffness = 40 MN/m }", Code::E0101, "names stand without quotes, and fields are given with `=`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { \"stiffness\": 40 MN/m }", Code::E0101, "write `{ stiffness = 40 MN/m }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = null", Code::E0201, "expected `none`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad:", Code::E0101, "write a value behind it, or take the line out"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad.stiffness: 40 MN/m", Code::E0105, "write `pad.stiffness = 40 MN/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 [MN/m] }", Code::E0101, "a unit stands without brackets: `40 MN/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN/m -- static\n }", Code::E0105, "write `// static`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN/m } % comment of Matlab", Code::E0105, "write `// comment of Matlab`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN/m } /* the pad */", Code::E0105, "write `// the pad`, with nothing behind it on its line"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN/m } ' the pad", Code::E0105, "write `// the pad`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN/m } # the pad", Code::E0105, "write `// the pad`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN/m } ! the pad", Code::E0105, "write `// the pad`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "% the pad\n  pad = { stiffness = 40 MN/m }", Code::E0105, "write `// the pad`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "-- the pad\n  pad = { stiffness = 40 MN/m }", Code::E0105, "write `// the pad`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "-- the pad is soft\n  pad = { stiffness = 40 MN/m }", Code::E0105, "write `// the pad is soft`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = \"40\" MN/m }", Code::E0101, "numbers stand without quotes: write `40 MN/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = \"40 MN/m\" }", Code::E0406, "write `40 MN/m`, without quotes"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = ~40 MN/m }", Code::E0101, "write the number alone"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = approx 40 MN/m }", Code::E0101, "arguments stand in parentheses, `approx(...)`, fields in braces, `{ name = value }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN/m ± 5 MN/m }", Code::E0101, "a value has no tolerance: `random(mean, sd = ...)` scatters along the track, a study varies"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 +- 5 MN/m }", Code::E0305, "give `40` its unit too"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40.000,0 kN/m }", Code::E0105, "write `40000.0 kN/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40,000 kN/m }", Code::E0105, "write `40.000 kN/m`, or `40_000 kN/m` where the comma parts thousands"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40'000 kN/m }", Code::E0101, "digits are grouped by `_`: `40_000 kN/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 000 kN/m }", Code::E0101, "digits are grouped by `_`: `40_000 kN/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 4*10^7 N/m }", Code::E0305, "powers of ten stand in the number: `40e6 N/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 4 x 10^7 N/m }", Code::E0101, "powers of ten stand in the number: `4e7 N/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 4·10^7 N/m }", Code::E0101, "powers of ten stand in the number: `4e7 N/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 4.e7 N/m }", Code::E0105, "write `4.0e7 N/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN/m; damping = 5 kN s/m }", Code::E0105, "write `stiffness = 40 MN/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN/m damping = 5 kN s/m }", Code::E0101, "write `, damping`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN / m }", Code::E0201, "is `m` a unit? it stands without blanks around `/` and `*`: `km/h`, `kN s/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN per m }", Code::E0302, "expected  mass x time^-2   [a stiffness]\nfound     mass x time^-2 x length   [a force]"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN m-1 }", Code::E0305, "a negative power is written `40 MN m^-1`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN·m⁻¹ }", Code::E0101, "a negative power is written `m^-1`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 meganewton/m }", Code::E0303, "did you mean `MN/m`?"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN/metre }", Code::E0303, "did you mean `MN/m`?"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40MN/m, damping = 5kNs/m }", Code::E0303, "did you mean `kN s/m`?"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN/m, damping = 5000 Ns/m }", Code::E0303, "did you mean `N s/m`?"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = $pad_stiffness }", Code::E0101, "a name stands alone, without a sign before it"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = @pad_stiffness }", Code::E0101, "a name stands alone, without a sign before it"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = ${pad_stiffness} }", Code::E0101, "a name stands alone, without a sign before it"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = {pad_stiffness} }", Code::E0101, "write `pad_stiffness`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = (40) MN/m }", Code::E0101, "a unit stands behind its number: write `40 MN/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 2 pad_stiffness }", Code::E0101, "a product has its sign: `2 * pad_stiffness`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = pad_stiffness**2 }", Code::E0101, "powers are written `m^3`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness == 40 MN/m }", Code::E0101, "`=` gives a value, `<=` and `>=` compare"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness -> 40 MN/m }", Code::E0105, "write `stiffness = 40 MN/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     <- { stiffness = 40 MN/m }", Code::E0101, "a field is given with `=`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     =", Code::E0101, "write a value behind it, or take the line out"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     += { stiffness = 40 MN/m }", Code::E0101, "a field is `name = value`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "set pad = { stiffness = 40 MN/m }", Code::E0101, "a name has no blanks: write `set_pad = { stiffness = 40 MN/m }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = pads[\"medium\"]", Code::E0101, "a list is a value of its own: arguments stand in `( )`, the names of a module behind a dot"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = pads::medium", Code::E0101, "names are joined by dots: `pads.medium`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = pads.medium { stiffness: 40 MN/m }", Code::E0105, "write `stiffness = 40 MN/m`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = pads.medium with { stiffness = 40 MN/m }", Code::E0101, "what is extended stands before the braces: `base { field = value }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     : pads.medium", Code::E0105, "write `pad = pads.medium`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     : pads.medium { stiffness = 40 MN/m }", Code::E0105, "write `pad = pads.medium { stiffness = 40 MN/m }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "- pad   = pads.medium", Code::E0101, "write `pad   = pads.medium`, without the dash"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = pads.medium; // the pad", Code::E0105, "write `pad     = pads.medium`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = „medium“", Code::E0406, "name one, such as `pads.ahmadi_2026`, `pads.soft` or `pads.medium`, or write `{ field = value }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = “pads.medium”", Code::E0406, "name one, such as `pads.ahmadi_2026`, `pads.soft` or `pads.medium`, or write `{ field = value }`"),
+    ("trackform open {", "trackform open (", Code::E0105, "write `trackform open {`"),
+    ("trackform open {", "trackform open :", Code::E0105, "write `trackform open {`"),
+    ("trackform open {", "trackform open [", Code::E0105, "write `trackform open {`"),
+    ("trackform open {", "trackform open = {", Code::E0105, "write `trackform open {`, without `=`"),
+    ("trackform open {", "trackform \"open\" {", Code::E0101, "a declaration is `kind name : base { field = value }`"),
+    ("trackform open {", "trackform: open {", Code::E0201, "write `trackform open {`, without the colon"),
+    ("trackform open {", "trackform open: {", Code::E0101, "name what is extended, or remove the `:`"),
+    ("trackform open {", "open = trackform {", Code::E0105, "write `trackform open {`"),
+    ("trackform open {", "def trackform open {", Code::E0105, "write `trackform open {`"),
+    ("trackform open {", "Trackform open {", Code::E0401, "did you mean `trackform`?"),
+    ("trackform open {", "trackforms open {", Code::E0401, "did you mean `trackform`?"),
+    ("trackform open {", "trackform open-line {", Code::E0101, "a declaration is `kind name : base { field = value }`"),
+    ("trackform stiff : open {", "track stiff : open {", Code::E0205, "write `trackform stiff : open`"),
+    ("trackform stiff : open {", "trackform stiff < open {", Code::E0101, "a declaration is `kind name : base { field = value }`"),
+    ("trackform stiff : open {", "trackform stiff(open) {", Code::E0101, "a declaration is `kind name : base { field = value }`"),
+    ("trackform stiff : open {", "trackform stiff from open {", Code::E0101, "a declaration is `kind name : base { field = value }`"),
+    ("trackform stiff : open {", "trackform stiff : trackform open {", Code::E0105, "write `trackform stiff : open {`"),
+    ("trackform stiff : open {", "trackform stiff : opne {", Code::E0201, "did you mean `open`?"),
+    ("trackform stiff : open {", "trackform stiff :: open {", Code::E0105, "write `trackform stiff : open {`"),
+    ("trackform stiff : open {", "trackform stiff -> open {", Code::E0105, "write `trackform stiff : open {`"),
+    ("track line {", "track line :", Code::E0105, "write `track line {`"),
+    ("track line {", "track line", Code::E0105, "write `track line {`"),
+    ("track line {", "track line(", Code::E0105, "write `track line {`"),
+    ("use std", "use std;", Code::E0105, "write `use std`"),
+    ("use std", "use \"std\"", Code::E0101, "write `use module` or `use module as name`"),
+    ("use std", "use <std>", Code::E0101, "write `use module` or `use module as name`"),
+    ("use std", "use std::pads", Code::E0101, "names are joined by dots: `pads.medium`"),
+    ("use std", "using std", Code::E0101, "write `use std`"),
+    ("use std", "include std", Code::E0101, "write `use std`"),
+    ("use std", "use std as s", Code::E0204, "write `use std`, and `rails.UIC60` for what is in its module `rails`"),
+    ("at         = [-20, -5, -1, +1] sleepers", "at         = -20, -5 sleepers", Code::E0101, "write `at = [-20, -5] sleepers`"),
+    ("at         = [-20, -5, -1, +1] sleepers", "at         = -20, -5, -1, +1 sleepers", Code::E0101, "write `at = [-20, -5, -1, +1] sleepers`"),
+    ("at         = [-20, -5, -1, +1] sleepers", "at         = -20 -5 -1 +1 sleepers", Code::E0305, "several values stand in brackets, behind commas"),
+    ("at         = [-20, -5, -1, +1] sleepers", "at         = (-20, -5, -1, +1) sleepers", Code::E0101, "lists stand in `[ ]`"),
+    ("at         = [-20, -5, -1, +1] sleepers", "at         = {-20, -5, -1, +1} sleepers", Code::E0101, "write `[-20, -5, -1, +1]`"),
+    ("at         = [-20, -5, -1, +1] sleepers", "at         = [-20; -5; -1; +1] sleepers", Code::E0105, "write `[-20, -5, -1, +1]`"),
+    ("at         = [-20, -5, -1, +1] sleepers", "at         = [-20:-1] sleepers", Code::E0406, "several places are `[-20, -5] sleepers`, a span is `-20 .. -1 sleepers`"),
+    ("at         = [-20, -5, -1, +1] sleepers", "at         = -20:5:-1 sleepers", Code::E0101, "a span is written `-20 .. -1 sleepers`, several values stand in brackets"),
+    ("at         = [-20, -5, -1, +1] sleepers", "at         = [-20, 0, +1] sleepers", Code::E0501, "the track has sleepers -69 .. -1 and +1 .. +40"),
+    ("at         = [-20, -5, -1, +1] sleepers", "at         = sleepers [-20, -5, -1, +1]", Code::E0101, "a list is a value of its own: arguments stand in `( )`, the names of a module behind a dot"),
+    ("at         = [-20, -5, -1, +1] sleepers", "at         = [-20, -5, -1, +1] Schwellen", Code::E0303, "did you mean `sleepers`?"),
+    ("after      = [0, 100, 500] axles", "after      = 0, 100, 500 axles", Code::E0101, "write `after = [0, 100, 500] axles`"),
+    ("after      = [0, 100, 500] axles", "after      = [0, 100, 500] axels", Code::E0303, "did you mean `axles`?"),
+    ("after      = [0, 100, 500] axles", "after      = [0, 100, 500] wheelsets", Code::E0303, "did you mean `axles`?"),
+    ("after      = [0, 100, 500] axles", "after      = [0, 100, 500] cycles", Code::E0302, "counts are given in `axles` or as the mass carried, `MGT`, where trains run; in `cycles` where a load comes back"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) =< 80 kN per seat", Code::E0105, "write `max(contact_force) <= 80 kN per seat`"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) ≤ 80 kN per seat", Code::E0105, "write `max(contact_force) <= 80 kN per seat`"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) <80kN per seat and max(contact_force) > 10 kN per seat", Code::E0101, "each comparison stands alone, on its line or behind a comma; `a < x < b` is one too"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) < 80 kN per seat && max(contact_force) > 10 kN per seat", Code::E0101, "each comparison stands alone, on its line or behind a comma; `a < x < b` is one too"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) < 80 kN per seat & max(contact_force) > 10 kN per seat", Code::E0101, "each comparison stands alone, on its line or behind a comma; `a < x < b` is one too"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) < 80 kN per seat or max(contact_force) > 10 kN per seat", Code::E0101, "there is no `or`: write the comparisons that all have to hold"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) < 80 kN per seat || max(contact_force) > 10 kN per seat", Code::E0101, "there is no `or`: write the comparisons that all have to hold"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "not max(contact_force) > 80 kN per seat", Code::E0101, "there is no `not`: turn the comparison round"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "!(max(contact_force) > 80 kN per seat)", Code::E0101, "there is no `not`: turn the comparison round"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) = 80 kN per seat", Code::E0406, "comparisons are `<`, `<=`, `>` and `>=`"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) == 80 kN per seat", Code::E0101, "`=` gives a value, `<=` and `>=` compare"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) != 80 kN per seat", Code::E0101, "comparisons are `<`, `<=`, `>` and `>=`"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) <> 80 kN per seat", Code::E0101, "comparisons are `<`, `<=`, `>` and `>=`"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) << 80 kN per seat", Code::E0101, "comparisons are `<`, `<=`, `>` and `>=`"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max contact_force < 80 kN per seat", Code::E0101, "arguments stand in parentheses: `max(...)`"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max[contact_force] < 80 kN per seat", Code::E0101, "a list is a value of its own: arguments stand in `( )`, the names of a module behind a dot"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "if max(contact_force) > 80 kN per seat", Code::E0101, "a comparison stands alone, without `if`"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force; over = -20 .. -1 sleepers) < 80 kN per seat", Code::E0105, "write `(contact_force, over = -20 .. -1 sleepers)`"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force, over: -20 .. -1 sleepers) < 80 kN per seat", Code::E0105, "write `over = -20 .. -1 sleepers`"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "\"max(contact_force) < 80 kN per seat\"", Code::E0406, "write `max(contact_force) < 80 kN per seat`, without quotes"),
+    ("max(contact_force, over = -20 .. -1 sleepers) < 80 kN per seat", "max(contact_force) < 80 kN per seat.", Code::E0101, "nothing ends with a point: take it away"),
+    ("over       = -20 .. -1 sleepers", "over       = -20 - 45 mm", Code::E0406, "write `-20 .. 45 mm`"),
+    ("over       = -20 .. -1 sleepers", "over       = -20 sleepers - -1 sleepers", Code::E0406, "write `-20 sleepers .. -1 sleepers`"),
+    ("over       = -20 .. -1 sleepers", "over       = [-20 .. -1] sleepers", Code::E0406, "from one end to the other: `-20 .. -1 sleepers`, `-6 .. 0 m`"),
+    ("over       = -20 .. -1 sleepers", "over       = (-20 .. -1) sleepers", Code::E0101, "a unit stands behind its number: write `-20 .. -1 sleepers`"),
+    ("over       = -20 .. -1 sleepers", "over       = (-20, -1) sleepers", Code::E0101, "lists stand in `[ ]`"),
+    ("over       = -20 .. -1 sleepers", "over       = -20:-1 sleepers", Code::E0101, "a span is written `-20 .. -1 sleepers`, several values stand in brackets"),
+    ("over       = -20 .. -1 sleepers", "over       = -20 … -1 sleepers", Code::E0105, "write `over       = -20 .. -1 sleepers`"),
+    ("over       = -20 .. -1 sleepers", "over       = -20 – -1 sleepers", Code::E0105, "write `over       = -20 .. -1 sleepers`"),
+    ("over       = -20 .. -1 sleepers", "over       = -20 through -1 sleepers", Code::E0406, "from one end to the other: `-20 .. -1 sleepers`, `-6 .. 0 m`"),
+    ("over       = -20 .. -1 sleepers", "over       = -20 until -1 sleepers", Code::E0406, "from one end to the other: `-20 .. -1 sleepers`, `-6 .. 0 m`"),
+    ("over       = -20 .. -1 sleepers", "over       = -20 and -1 sleepers", Code::E0406, "from one end to the other: `-20 .. -1 sleepers`, `-6 .. 0 m`"),
+    ("over       = -20 .. -1 sleepers", "over       = -1 .. -20 sleepers", Code::E0505, "write the smaller end first: `-20 sleepers .. -1`"),
+    ("speed     = 70 km/h", "speed     = 70 kph", Code::E0303, "did you mean `km/h`?"),
+    ("speed     = 70 km/h", "speed     = 70 Km/h", Code::E0303, "did you mean `km/h`?"),
+    ("speed     = 70 km/h", "speed     = 70 km/h.", Code::E0101, "nothing ends with a point: take it away"),
+    ("speed     = 70 km/h", "speed     = 70 km/h;", Code::E0105, "write `speed     = 70 km/h`"),
+    ("speed     = 70 km/h", "speed     = 70 kmph", Code::E0303, "did you mean `km/h`?"),
+    ("speed     = 70 km/h", "speed     = 70 km per h", Code::E0302, "expected  length x time^-1   [a speed]\nfound     length   [a length]"),
+    ("speed     = 70 km/h", "speed     = 70 km/hour", Code::E0303, "did you mean `km/h`?"),
+    ("speed     = 70 km/h", "speed     = 19.4 m/sec", Code::E0303, "did you mean `m/s`?"),
+    ("speed     = 70 km/h", "speed     = 19.4 m s-1", Code::E0305, "a negative power is written `19.4 m s^-1`"),
+    ("speed     = 70 km/h", "speed     = 19,4 m/s", Code::E0105, "write `19.4 m/s`"),
+    ("speed     = 70 km/h", "speed     = 70", Code::E0301, "write `70 km/h`, if that is the unit you meant"),
+    ("speed     = 70 km/h", "speed     = 70 kms/h", Code::E0303, "did you mean `km s/h`?"),
+    ("speed     = 70 km/h", "Speed     = 70 km/h", Code::E0402, "did you mean `speed`?"),
+    ("speed     = 70 km/h", "speed 70 km/h", Code::E0101, "write `speed = 70 km/h`"),
+    ("speed     = 70 km/h", "speed: 70 km/h", Code::E0105, "write `speed = 70 km/h`"),
+    ("speed     = 70 km/h", "speed     = 60-80 km/h", Code::E0305, "a range is written `60 .. 80 km/h`"),
+    ("speed     = 70 km/h", "speed     = max 70 km/h", Code::E0101, "arguments stand in parentheses, `max(...)`, fields in braces, `{ name = value }`"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = {open: 42 m, stiff: 24 m}", Code::E0406, "write `[key: value]`"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = {open = 42 m, stiff = 24 m}", Code::E0406, "write `[key: value]`"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [open = 42 m, stiff = 24 m]", Code::E0105, "write `open: 42 m`"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [open: 42 m stiff: 24 m]", Code::E0101, "pairs are parted by commas"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [open 42 m, stiff 24 m]", Code::E0101, "write `open: 42 m`"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [(open, 42 m), (stiff, 24 m)]", Code::E0105, "write `[open: 42 m, stiff: 24 m]`"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [[open, 42 m], [stiff, 24 m]]", Code::E0406, "write `[key: value]`"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [[\"open\", 42 m], [\"stiff\", 24 m]]", Code::E0406, "write `[key: value]`"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = open: 42 m, stiff: 24 m", Code::E0101, "pairs stand in brackets: write `[open: 42 m, stiff: 24 m]`"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [open: 42m; stiff: 24m]", Code::E0105, "write `[open: 42m, stiff: 24m]`"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [{open: 42 m}, {stiff: 24 m}]", Code::E0406, "write `[key: value]`"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [open -> 42 m, stiff -> 24 m]", Code::E0105, "write `open: 42 m`"),
+    ("sleeper = none\n", "sleeper = None\n", Code::E0201, "did you mean `none`?"),
+    ("sleeper = none\n", "sleeper = null\n", Code::E0201, "expected `none`"),
+    ("sleeper = none\n", "sleeper = no\n", Code::E0201, "expected `none`"),
+    ("sleeper = none\n", "sleeper = false\n", Code::E0201, "expected `none`"),
+    ("sleeper = none\n", "sleeper = NaN\n", Code::E0201, "expected `none`"),
+    ("friction = 0.7", "friction = .7", Code::E0105, "write `0.7`"),
+    ("friction = 0.7", "friction = 0,7", Code::E0105, "write `0.7`"),
+    ("friction = 0.7", "friction = \"0.7\"", Code::E0406, "write `0.7`, without quotes"),
+    ("friction = 0.7", "friction = 0.7 [-]", Code::E0101, "a unit stands without brackets: `40 MN/m`"),
+    ("friction = 0.7", "friction = tan(35 deg)", Code::E0408, "functions of numbers are `sqrt`, `abs`, `min` and `max`"),
+    ("friction = 0.7", "friction = tan 35", Code::E0101, "arguments stand in parentheses, `tan(...)`, fields in braces, `{ name = value }`"),
+    ("friction = 0.7", "friction = 35 deg", Code::E0302, "expected  no dimension\nfound     angle   [an angle]"),
+    ("friction = 0.7", "friction = 35°", Code::E0303, "degrees are written `deg`: `35 deg`"),
+    ("friction = 0.7", "friction = μ", Code::E0101, "names are made of ASCII letters, digits and `_`"),
+    ("grading  = { passing = [22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 %], cut_below = 25 mm }", "grading  = { passing = { 22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 % }, cut_below = 25 mm }", Code::E0101, "write `[22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 %]`"),
+    ("grading  = { passing = [22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 %], cut_below = 25 mm }", "grading  = { passing = [(22.4 mm, 0 %), (40 mm, 60 %), (63 mm, 100 %)], cut_below = 25 mm }", Code::E0105, "write `[22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 %]`"),
+    ("grading  = { passing = [22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 %], cut_below = 25 mm }", "grading  = 31.5/63", Code::E0406, "name one, such as `gradings.ballast_32_80`, `gradings.subballast_0_150` or `gradings.ballast_16_64`, or write `{ field = value }`"),
+    ("density        = 2000 kg/m^3", "density        = 2000 kg/m3", Code::E0303, "did you mean `kg/m^3`?"),
+    ("density        = 2000 kg/m^3", "density        = 2000 kg/m**3", Code::E0101, "powers are written `m^3`"),
+    ("density        = 2000 kg/m^3", "density        = 2000 kg/cbm", Code::E0303, "did you mean `kg/m^3`?"),
+    ("density        = 2000 kg/m^3", "density        = 2000 kg m-3", Code::E0305, "a negative power is written `2000 kg m^-3`"),
+    ("density        = 2000 kg/m^3", "density        = 2000 kg.m^-3", Code::E0101, "the factors of a unit are parted by a blank: `kN s/m`"),
+    ("density        = 2000 kg/m^3", "density        = 2.0 g/cm3", Code::E0303, "did you mean `g/cm^3`?"),
+    ("density        = 2000 kg/m^3", "density        = 20 kN/m^3", Code::E0302, "expected  mass x length^-3   [a density]\nfound     mass x length^-2 x time^-2   [a bedding modulus]"),
+    ("density        = 2000 kg/m^3", "density        = 2.000,0 kg/m^3", Code::E0105, "write `2000.0 kg/m^3`"),
+    ("density        = 2000 kg/m^3", "density        = 2,000.0 kg/m^3", Code::E0105, "write `2000.0 kg/m^3`"),
+    ("density        = 2000 kg/m^3", "density        = 2000 kg/m³ # dry", Code::E0105, "write `// dry`"),
+    ("density        = 2000 kg/m^3", "ρ              = 2000 kg/m³", Code::E0101, "names are made of ASCII letters, digits and `_`"),
+    ("density        = 2000 kg/m^3", "density        = 2000 kg / m^3", Code::E0201, "is `m` a unit? it stands without blanks around `/` and `*`: `km/h`, `kN s/m`"),
+    ("youngs_modulus = 90 MPa,", "youngs_modulus = 90 N/mm2,", Code::E0303, "did you mean `N/mm^2`?"),
+    ("youngs_modulus = 90 MPa,", "youngs_modulus = 90 MN/m2,", Code::E0303, "did you mean `MN/m^2`?"),
+    ("youngs_modulus = 90 MPa,", "youngs_modulus = 90 mpa,", Code::E0303, "did you mean `MPa`?"),
+    ("youngs_modulus = 90 MPa,", "youngs_modulus = 90 Mpa,", Code::E0303, "did you mean `MPa`?"),
+    ("youngs_modulus = 90 MPa,", "young's_modulus = 90 MPa,", Code::E0101, "a name has no quotes: write `youngs_modulus = 90 MPa`"),
+    ("youngs_modulus = 90 MPa,", "young's modulus = 90 MPa,", Code::E0101, "a name has no quotes: write `youngs_modulus = 90 MPa`"),
+    ("youngs_modulus = 90 MPa,", "Youngs_Modulus = 90 MPa,", Code::E0402, "did you mean `youngs_modulus`?"),
+    ("youngs_modulus = 90 MPa,", "youngsModulus = 90 MPa,", Code::E0402, "did you mean `youngs_modulus`?"),
+    ("youngs_modulus = 90 MPa,", "youngs-modulus = 90 MPa,", Code::E0101, "a name has no dashes: write `youngs_modulus = 90 MPa`"),
+    ("youngs_modulus = 90 MPa,", "youngs_modulus = 90e6,", Code::E0301, "write `90e6 MPa`, if that is the unit you meant"),
+    ("youngs_modulus = 90 MPa,", "youngs_modulus = 90 bar,", Code::E0303, "write kPa (1 bar = 100 kPa)"),
+    ("youngs_modulus = 90 MPa,", "youngs_modulus = 13 ksi,", Code::E0303, "write MPa (1 ksi = 6.895 MPa)"),
+    ("total  = 500 axles", "total  = 500 Achsen", Code::E0303, "did you mean `axles`?"),
+    ("total  = 500 axles", "total  = 1,000 axles", Code::E0105, "write `1.000 axles`, or `1_000 axles` where the comma parts thousands"),
+    ("total  = 500 axles", "total  = 1.000.000 axles", Code::E0101, "a number has one point"),
+    ("total  = 500 axles", "total  = 10 mgt", Code::E0303, "did you mean `MGT`?"),
+    ("total  = 500 axles", "total  = 10 GT", Code::E0303, "did you mean `MGT`?"),
+    ("deny  = [critical_speed]", "deny  = [critical_speed: \"x\"]", Code::E0406, "write `critical_speed` alone"),
+    ("title = \"Embankment to slab\"", "title = Embankment to slab", Code::E0406, "write `\"Embankment to slab\"`"),
+    ("title = \"Embankment to slab\"", "title = 'Embankment to slab'", Code::E0105, "write `\"Embankment to slab\"`"),
+    ("title = \"Embankment to slab\"", "title = “Embankment to slab”", Code::E0105, "write `\"Embankment to slab\"`"),
+    ("title = \"Embankment to slab\"", "title = \"Embankment to slab", Code::E0106, "write `\"Embankment to slab\"`"),
+    ("title = \"Embankment to slab\"", "title : \"Embankment to slab\"", Code::E0105, "write `title = \"Embankment to slab\"`"),
+    ("update_every     = geometric(4 axles, 0.2)", "update_every     = geometric 4 axles, 0.2", Code::E0101, "arguments stand in parentheses, `geometric(...)`, fields in braces, `{ name = value }`"),
+    ("update_every     = geometric(4 axles, 0.2)", "update_every     = geometric[4 axles, 0.2]", Code::E0101, "a list is a value of its own: arguments stand in `( )`, the names of a module behind a dot"),
+    ("update_every     = geometric(4 axles, 0.2)", "update_every     = geometric{4 axles, 0.2}", Code::E0101, "write `geometric(4 axles, 0.2)`"),
+    ("update_every     = geometric(4 axles, 0.2)", "update_every     = geometric(first: 4 axles, ratio: 0.2)", Code::E0105, "write `first = 4 axles`"),
+    ("update_every     = geometric(4 axles, 0.2)", "update_every     = geometric()", Code::E0403, "write `geometric(first = ..., ratio = ...)`"),
+    ("update_every     = geometric(4 axles, 0.2)", "update_every     = geometric(4, 0.2)", Code::E0301, "write `4 axles`, if that is the unit you meant"),
+    ("update_every     = geometric(4 axles, 0.2)", "update_every     = geometric(4 axles; 0.2)", Code::E0105, "write `(4 axles, 0.2)`"),
+    ("elements_per_bay = 4", "elements per bay = 4", Code::E0101, "a name has no blanks: write `elements_per_bay = 4`"),
+    ("elements_per_bay = 4", "elements-per-bay = 4", Code::E0101, "a name has no dashes: write `elements_per_bay = 4`"),
+    ("finish           = 15 m", "finish           = 15 m.", Code::E0101, "nothing ends with a point: take it away"),
+    ("finish           = 15 m", "finish           = end", Code::E0201, "expected `auto`"),
+    ("quantities = settlement", "quantities = settlement and void", Code::E0101, "several values stand in brackets: `[a, b]`"),
+    ("quantities = settlement", "quantities = settlement, void", Code::E0101, "write `quantities = [settlement, void]`"),
+    ("quantities = settlement", "quantities = (settlement, void)", Code::E0101, "lists stand in `[ ]`"),
+    ("quantities = [rail_seat_load, contact_force]", "quantities = [rail_seat_load contact_force]", Code::E0101, "write `rail_seat_load, contact_force` for several, `rail_seat_load_contact_force` for one: a name has no blanks"),
+    ("quantities = [rail_seat_load, contact_force]", "quantities = [rail_seat_load; contact_force]", Code::E0105, "write `[rail_seat_load, contact_force]`"),
+    ("quantities = [rail_seat_load, contact_force]", "quantities = {rail_seat_load, contact_force}", Code::E0101, "write `[rail_seat_load, contact_force]`"),
+    ("quantities = [rail_seat_load, contact_force]", "quantities = rail_seat_load, contact_force", Code::E0101, "write `quantities = [rail_seat_load, contact_force]`"),
+    ("ramp(0 .. 2 mm, over = -6 .. 0 m)", "ramp(0, 2 mm, over = -6 .. 0 m)", Code::E0402, "after its value it takes `over = ...`"),
+    ("ramp(0 .. 2 mm, over = -6 .. 0 m)", "ramp(0 mm, 2 mm)", Code::E0402, "after its value it takes `over = ...`"),
+    ("ramp(0 .. 2 mm, over = -6 .. 0 m)", "ramp(0 to 2 mm, over = -6 .. 0 m)", Code::E0105, "write `0 .. 2 mm`"),
+    ("ramp(0 .. 2 mm, over = -6 .. 0 m)", "ramp(from = 0 mm, to = 2 mm)", Code::E0402, "after its value it takes `over = ...`"),
+    ("ramp(0 .. 2 mm, over = -6 .. 0 m)", "ramp 0 .. 2 mm", Code::E0101, "arguments stand in parentheses, `ramp(...)`, fields in braces, `{ name = value }`"),
+    ("ramp(0 .. 2 mm, over = -6 .. 0 m)", "ramp(0 .. 2 mm, over = (-6, 0) m)", Code::E0101, "lists stand in `[ ]`"),
 ];
 
 fn told(compiled: &Compiled) -> String {

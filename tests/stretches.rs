@@ -278,7 +278,12 @@ fn what_cannot_be_is_refused() {
         ),
         ("stretch a { from = north, over = -5 .. -1 sleepers, usp = usps.soft }", "a", Code::E0504, "`north`"),
         ("stretch a { over = -5 .. -1 sleepers, rail = rails.S49 }", "a", Code::E0411, "`rail`"),
-        ("stretch a { over = -5 .. -1 sleepers, spacing = [-5 m: 0.5 m, 0 m: 0.6 m] }", "a", Code::E0411, "`spacing`"),
+        (
+            "stretch a { over = -5 .. -1 sleepers, spacing = [-2 m: 0.5 m, 0 m: 0.6 m] }",
+            "a",
+            Code::E0506,
+            "the spacing of stretch `a`",
+        ),
         ("stretch a { over = -5 .. -1 sleepers, usp = usps.soft }", "a, b", Code::E0201, "nothing is called `b`"),
         ("stretch a { over = -5 .. -1 sleepers, usp = usps.soft }", "", Code::E0412, "nothing uses `a`"),
         ("stretch a { over = -5 .. -1 sleepers, usp = usps.soft }", "open", Code::E0406, "expected a stretch"),

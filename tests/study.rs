@@ -2,7 +2,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+
+mod common {
+    pub mod program;
+}
+use common::program::{said, trackbed};
 
 /// 21 m of track under one wagon.
 const SMALL: &str = r#"
@@ -21,14 +25,6 @@ train ore { vehicles = vehicles.ore_wagon_20t, speed = 200 km/h }
 traffic { trains = ore, total = 40 axles }
 solve { update_every = 8 axles, elements_per_bay = 2, time_step = 2e-4 s }
 "#;
-
-fn trackbed(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_trackbed")).args(arguments).env("NO_COLOR", "1").output().unwrap()
-}
-
-fn said(output: &Output) -> String {
-    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
-}
 
 fn scene(dir: &Path, text: &str) -> PathBuf {
     let path = dir.join("small.track");

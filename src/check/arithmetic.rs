@@ -63,9 +63,14 @@ impl Checker<'_> {
                 None
             }
             other => {
+                let unquoted = match other {
+                    ValueKind::Text(text) => Some(format!("write `{text}`, without quotes")),
+                    _ => None,
+                };
                 self.report(
                     Diagnostic::new(Code::E0406, format!("expected a number, found {}", shape(other)))
-                        .at(span, "not a number"),
+                        .at(span, "not a number")
+                        .maybe_help(unquoted),
                 );
                 None
             }
@@ -148,10 +153,12 @@ impl Checker<'_> {
                 let bases_differ = matches!((&a.basis, &b.basis), (Some(x), Some(y)) if x.0 != y.0);
                 if a.dimension != b.dimension || bases_differ {
                     let same = if a.dimension == b.dimension { "basis" } else { "dimension" };
+                    let help = self.instead_of_sum(left, op, right, [a.bare, b.bare]);
                     self.report(
                         Diagnostic::new(Code::E0305, format!("`{}` needs two values of the same {same}", op.symbol()))
                             .at(left.span, a.describe())
-                            .at(right.span, b.describe()),
+                            .at(right.span, b.describe())
+                            .maybe_help(help),
                     );
                     return None;
                 }
@@ -183,6 +190,27 @@ impl Checker<'_> {
             }
         };
         self.finite(result, span)
+    }
+
+    /// What was probably meant by a sum of a value and a number without a unit.
+    fn instead_of_sum(&self, left: &Value, op: BinaryOp, right: &Value, bare: [bool; 2]) -> Option<String> {
+        let [a, b] = [left.span, right.span].map(|span| self.loader.sources.text(span));
+        // behind a `let` the two may stand anywhere
+        let follows = left.span.file == right.span.file && left.span.end <= right.span.start;
+        let between = Span { start: left.span.end, end: right.span.start, ..left.span };
+        let between = if follows { self.loader.sources.text(between) } else { return None };
+        let several = matches!(&left.kind, ValueKind::Binary(_, BinaryOp::Add | BinaryOp::Subtract, _));
+        match (bare, op) {
+            // `kg m-3`
+            ([false, true], BinaryOp::Subtract) if between == "-" && a.ends_with(|c: char| c.is_alphabetic()) => {
+                Some(format!("a negative power is written `{a}^-{b}`"))
+            }
+            ([true, false], _) if several => Some("several values stand in brackets, behind commas".to_owned()),
+            ([true, false], BinaryOp::Subtract) => Some(format!("a range is written `{a} .. {b}`")),
+            ([true, false], _) => Some(format!("give `{a}` its unit too")),
+            ([false, true], _) => Some(format!("give `{b}` its unit too")),
+            _ => None,
+        }
     }
 
     fn finite(&mut self, raw: Raw, span: Span) -> Option<Raw> {
@@ -276,16 +304,23 @@ fn unit_mistake(unit: &UnitText, error: &UnitError) -> Diagnostic {
                     if ours.contains('(') { format!("write {ours}") } else { format!("did you mean `{whole}`?") }
                 })
             });
+            let such = "units are such as `mm`, `kN`, `MN/m`, `kN s/m`, `kg/m^3`, `km/h`, `axles`";
             Diagnostic::new(Code::E0303, format!("unknown unit `{symbol}`"))
                 .at(unit.span, "not a unit")
-                .maybe_help(help)
+                .help(help.unwrap_or_else(|| such.to_owned()))
         }
         UnitError::Exponent => {
             Diagnostic::new(Code::E0103, format!("the exponents of `{}` go beyond -9 .. 9", unit.text))
                 .at(unit.span, "too large")
         }
         UnitError::Form => {
-            Diagnostic::new(Code::E0303, format!("`{}` is not a unit", unit.text)).at(unit.span, "not a unit")
+            let help = match unit.text.contains('°') {
+                true => "degrees are written `deg`: `35 deg`",
+                false => "units are such as `mm`, `kN`, `MN/m`, `kN s/m`, `kg/m^3`, `km/h`, `axles`",
+            };
+            Diagnostic::new(Code::E0303, format!("`{}` is not a unit", unit.text))
+                .at(unit.span, "not a unit")
+                .help(help)
         }
     }
 }

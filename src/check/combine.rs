@@ -96,10 +96,7 @@ impl Checker<'_> {
                 let (a, b) = (a?, b?);
                 match op {
                     BinaryOp::Add | BinaryOp::Subtract => self.added(a, op, b, span),
-                    _ => {
-                        self.not_combined(span, "two profiles are multiplied or divided", [a.span, b.span]);
-                        None
-                    }
+                    _ => self.multiplied(a, op, b, span),
                 }
             }
             (true, false) => {
@@ -205,6 +202,29 @@ impl Checker<'_> {
         Some(Value { kind, span })
     }
 
+    /// The product or quotient of two lists of the same spans, exact since one of the two is constant in each piece.
+    fn multiplied(&mut self, a: Value, op: BinaryOp, b: Value, span: Span) -> Option<Value> {
+        let spans = [a.span, b.span];
+        let (ValueKind::List { entries, unit }, ValueKind::List { entries: others, unit: other }) = (a.kind, b.kind)
+        else {
+            self.not_combined(span, "both vary where they are multiplied or divided", spans);
+            return None;
+        };
+        let by_spans = |e: &Entry| matches!(e.key.as_ref().map(|k| &k.kind), Some(ValueKind::Range(..)));
+        let same = |(a, b): (&Entry, &Entry)| matches!((&a.key, &b.key), (Some(a), Some(b)) if self.same_text(a, b));
+        if entries.len() != others.len() || !entries.iter().zip(&others).all(same) {
+            self.not_combined(span, "the two have other places", spans);
+            return None;
+        }
+        if !entries.iter().any(by_spans) {
+            self.not_combined(span, "between places both vary where they are multiplied or divided", spans);
+            return None;
+        }
+        let entries = self.sum_of_entries((entries, unit), (others, other), op, span)?;
+        Some(Value { kind: ValueKind::List { entries, unit: None }, span })
+    }
+
+    /// Two lists entry by entry, added or multiplied.
     fn sum_of_entries(
         &mut self,
         (entries, unit): (Vec<Entry>, Option<UnitText>),
@@ -216,7 +236,14 @@ impl Checker<'_> {
         for (a, b) in entries.into_iter().zip(others) {
             let (left, right) = (with_unit(&a.value, unit.as_ref()), with_unit(&b.value, other.as_ref()));
             let value = match (is_profile(&left), is_profile(&right)) {
-                (true, true) => self.added(left, op, right, span)?,
+                (true, true) if matches!(op, BinaryOp::Add | BinaryOp::Subtract) => {
+                    self.added(left, op, right, span)?
+                }
+                (true, true) => self.multiplied(left, op, right, span)?,
+                (false, true) if op == BinaryOp::Divide => {
+                    self.not_combined(span, "a number is divided by a profile", [left.span, right.span]);
+                    return None;
+                }
                 (true, false) => self.each(left, &|of| binary(of, op, right.clone(), span))?,
                 (false, true) => self.each(right, &|of| binary(left.clone(), op, of, span))?,
                 (false, false) => binary(left, op, right, span),
@@ -239,7 +266,8 @@ impl Checker<'_> {
             mistake = mistake.at(part, "this one");
         }
         self.report(mistake.help(
-            "numbers multiply, divide and add to a profile; profiles add where both are `ramp`, both `smooth`, or lists of the same places",
+            "numbers multiply, divide and add to a profile; profiles add where both are `ramp`, both `smooth`, or lists of the same places, \
+             and multiply as lists of the same spans where one of the two is a number in each",
         ));
     }
 }

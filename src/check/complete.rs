@@ -37,6 +37,7 @@ impl Checker<'_> {
             Val::Record(inner) => *inner = Rc::new(self.complete(inner)),
             Val::Word { word, arguments } => {
                 arguments.values_mut().for_each(|argument| self.complete_slot(argument));
+                let mut missing = Vec::new();
                 for argument in word.arguments {
                     if arguments.contains_key(argument.name) {
                         continue;
@@ -46,12 +47,17 @@ impl Checker<'_> {
                             let slot = self.default_slot(argument, text);
                             arguments.insert(argument.name, slot);
                         }
-                        Need::Required => self.report(
-                            Diagnostic::new(Code::E0403, format!("`{}` needs `{}`", word.name, argument.name))
-                                .at(slot.span, format!("without `{}`", argument.name)),
-                        ),
+                        Need::Required => missing.push(argument.name),
                         Need::Optional | Need::Alternative => {}
                     }
+                }
+                if !missing.is_empty() {
+                    let (what, names) = (missing.join("` and `"), missing.join(" = ..., "));
+                    self.report(
+                        Diagnostic::new(Code::E0403, format!("`{}` needs `{what}`", word.name))
+                            .at(slot.span, format!("without `{what}`"))
+                            .help(format!("write `{}({names} = ...)`", word.name)),
+                    );
                 }
             }
             Val::List(slots) => slots.iter_mut().for_each(|s| self.complete_slot(s)),

@@ -225,6 +225,8 @@ impl Checker<'_> {
 
     pub(super) fn wrong_form(&mut self, form: &Form, found: &str, span: Span) {
         let instead = self.instead(form, found, span);
+        // what was said of the signs inside leads to another text of the same wrong form
+        self.superseded.push(span);
         self.report(
             Diagnostic::new(Code::E0406, format!("expected {}, found {found}", form.describe()))
                 .at(span, found.to_string())
@@ -242,14 +244,19 @@ impl Checker<'_> {
     /// What to write where something of another form stands.
     fn instead(&self, form: &Form, found: &str, span: Span) -> Option<String> {
         let text = self.loader.sources.text(span);
-        if let Some(inner) = text.strip_prefix('"').and_then(|t| t.strip_suffix('"')).filter(|t| !t.is_empty()) {
+        if let Some(inner) =
+            text.strip_prefix('"').and_then(|t| t.strip_suffix('"')).filter(|t| !t.is_empty() && !t.contains('"'))
+        {
             return Some(format!("write `{inner}`, without quotes"));
         }
         if matches!(form, Form::Text) && !text.contains(['\n', '"', '\\']) {
             return Some(format!("write `\"{text}\"`"));
         }
         if let Form::Span = form {
-            return span_of(text).map(|span| format!("write `{span}`"));
+            let written = span_of(text).map(|span| format!("write `{span}`"));
+            return Some(
+                written.unwrap_or_else(|| "from one end to the other: `-20 .. -1 sleepers`, `-6 .. 0 m`".into()),
+            );
         }
         if found == "a range" && matches!(form, Form::Number(m) if m.varies == Varies::Yes) {
             return Some(format!("write `ramp({text})`, if it goes from one to the other along the track"));
@@ -359,9 +366,16 @@ impl Checker<'_> {
         let before = self.diagnostics.len();
         for entry in entries {
             if let Some(key) = &entry.key {
+                self.superseded.push(key.span.to(entry.value.span));
+                let help = match item {
+                    Form::Comparison => "comparisons are `<`, `<=`, `>` and `>=`".to_owned(),
+                    Form::Place => "several places are `[-20, -5] sleepers`, a span is `-20 .. -1 sleepers`".to_owned(),
+                    _ => format!("write `{}` alone", self.loader.sources.text(key.span)),
+                };
                 self.report(
                     Diagnostic::new(Code::E0406, "expected a value, found a pair")
-                        .at(key.span, "a key where none belongs"),
+                        .at(key.span, "a key where none belongs")
+                        .help(help),
                 );
                 continue;
             }
@@ -392,8 +406,9 @@ impl Checker<'_> {
                     // what could not be read behind it may have been the other half
                     let rest =
                         |s: &Span| s.file == entry.value.span.file && s.start.abs_diff(entry.value.span.end) <= 1;
-                    let torn = self.unreadable.iter().any(rest);
+                    let torn = self.unreadable.iter().any(rest) || entry.value.kind == ValueKind::Error;
                     if !torn && !lone {
+                        self.superseded.push(value.span);
                         self.report(
                             Diagnostic::new(Code::E0406, format!("expected {}", form.describe()))
                                 .at(entry.value.span, "a pair is needed here")
@@ -456,6 +471,13 @@ fn per_inside(form: &Form, value: &Value) -> Option<Value> {
             let of = ValueKind::Per(Box::new(argument.value.clone()), basis.clone());
             argument.value = Value { kind: of, span: argument.value.span };
         }
+    }
+    if !any && known.arguments.iter().any(|a| a.name == "per") {
+        let of = crate::syntax::tree::Path { names: vec![basis.clone()], span: basis.span };
+        let name = Some(Name { text: "per".to_string(), span: basis.span });
+        let value = Value { kind: ValueKind::Path(of), span: basis.span };
+        arguments.push(crate::syntax::tree::Argument { name, value });
+        any = true;
     }
     any.then(|| Value { kind: ValueKind::Call { word: word.clone(), arguments }, span: value.span })
 }

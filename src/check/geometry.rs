@@ -54,7 +54,7 @@ enum Edge {
 }
 
 pub(super) const MOST_SEATS: usize = 1_000_000;
-const CLOSEST: f64 = 0.3; // m: the least spacing of the language
+pub(super) const CLOSEST: f64 = 0.3; // m: the least spacing of the language
 const TINY: f64 = 1e-6; // m: two places closer than this are one
 
 impl Checker<'_> {

@@ -19,6 +19,20 @@ impl Checker<'_> {
         let force = record.get("force")?;
         let of = match &force.value {
             Val::Number(n) => n.basis,
+            Val::Word { word, arguments } if word.name == "file" => {
+                let forces = self.force_history(arguments, force.span);
+                let Some(Val::Text(of)) = arguments.get("per").map(|slot| &slot.value) else {
+                    if arguments.get("per").is_none() && forces.is_some() {
+                        let message = "the forces of a file are `per` what?";
+                        let help =
+                            "write `per rail` or `per track`, or on sleepers `per seat` or `per sleeper`, behind it";
+                        self.report(Diagnostic::new(Code::E0304, message).at(force.span, "").help(help));
+                    }
+                    return None;
+                };
+                forces?;
+                Some(of.as_str())
+            }
             Val::Word { arguments, .. } => match arguments.get("range").map(|slot| &slot.value) {
                 Some(Val::Range(smallest, _)) => smallest.basis,
                 _ => return None,
@@ -150,7 +164,9 @@ impl Checker<'_> {
             volume,
             span: record.get("volume").and_then(|slot| slot.origin.span()),
         });
-        let kept = (!along.is_empty()).then_some(Kept { quantities: along, seats, after, every, near: None });
+        let states = record.word("states") == Some("vtk");
+        let kept = Kept { quantities: along, seats, after, every, near: None, states };
+        let kept = Some(kept).filter(|kept| states || !kept.quantities.is_empty());
         Some((kept, volumes))
     }
 
@@ -161,6 +177,12 @@ impl Checker<'_> {
             Some(_) => return None,
             None => return Some(traffic.map(|t| *t.total).or(cycles).into_iter().collect()),
         };
+        // of another unit are all or none: it stands behind the list
+        let cycles_of_axles = |slot: &Slot| matches!(slot.value, Val::Number(n) if n.dimension == Dimension::CYCLES);
+        if let Some(first) = slots.iter().find(|slot| traffic.is_some() && cycles_of_axles(slot)) {
+            self.not_counted(Dimension::CYCLES, "axles of its trains", first.span);
+            return None;
+        }
         let counts: Vec<Option<u64>> = match (traffic, cycles) {
             (Some(_), _) => slots.iter().map(|slot| self.between_trains(slot)).collect(),
             (None, Some(cycles)) => slots.iter().map(|slot| self.recorded_cycles(slot, cycles)).collect(),

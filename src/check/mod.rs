@@ -10,6 +10,7 @@ mod combine;
 mod complete;
 mod expectation;
 mod fit;
+mod force;
 mod geometry;
 mod grading;
 mod ground;
@@ -19,6 +20,7 @@ mod layers;
 mod library;
 mod loading;
 mod material;
+mod meant;
 mod measure;
 mod measured;
 mod modules;
@@ -121,6 +123,7 @@ fn with_checker<T>(
         reported: HashSet::new(),
         missing: Vec::new(),
         unreadable,
+        superseded: Vec::new(),
         depth: 0,
         operands: 0,
         supports: ground::Supports::default(),
@@ -134,6 +137,12 @@ fn with_checker<T>(
     let answer = ask(&mut checker, main);
     checker.diagnostics.truncate(known);
     let mut diagnostics = checker.diagnostics;
+    let within = |d: &Diagnostic, outer: &Span| {
+        d.labels
+            .first()
+            .is_some_and(|l| l.span.file == outer.file && l.span.start >= outer.start && l.span.start < outer.end)
+    };
+    diagnostics.retain(|d| d.code != Code::E0105 || !checker.superseded.iter().any(|span| within(d, span)));
     diag::sort(&mut diagnostics);
     let sound = !diagnostics.iter().any(|d| d.is_error() || d.code == Code::E0410);
     (Checked { sources: checker.loader.sources, diagnostics, scenario, studies, sound }, answer)
@@ -172,6 +181,8 @@ struct Checker<'a> {
     missing: Vec<Missing>,
     /// Where the text could not be read.
     unreadable: Vec<Span>,
+    /// Values of another form: what was said of foreign signs in them is not worth following.
+    superseded: Vec<Span>,
     /// Values inside values at this moment, against [`DEEPEST`].
     depth: usize,
     /// Operands of the comparison that is being read.

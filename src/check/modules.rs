@@ -1,7 +1,7 @@
 //! Brings in modules: reads every file that a scene uses and makes the names of each known.
 
-use super::library;
 use super::overrides::{self, Override};
+use super::{library, meant};
 use crate::diag::{Code, Diagnostic, FileId, Sources, Span, nearest::nearest};
 use crate::schema::{self, Role};
 use crate::syntax::tree::{Declaration, Item, Tree, Use};
@@ -202,6 +202,9 @@ impl<'a> Loader<'a> {
         if !edits.is_empty() {
             overrides::apply(self, Arc::make_mut(&mut tree), edits);
         }
+        if !library {
+            self.diagnostics.extend(meant::headers(&mut tree));
+        }
         let mut brought = BroughtIn::default();
         for item in &tree.items {
             if let Item::Use(used) = item {
@@ -252,14 +255,21 @@ impl<'a> Loader<'a> {
             let found = names.get(1).filter(|_| names.len() == 2).and_then(|module| self.library(module));
             if found.is_none() {
                 let near = names.get(1).and_then(|n| nearest(n, library::MODULES.iter().map(|(m, _)| *m)));
-                self.diagnostics.push(
-                    Diagnostic::new(
-                        Code::E0204,
+                let (message, help) = match &used.alias {
+                    Some(alias) if names.len() == 1 => (
+                        format!("the standard library brings its modules, it cannot be called `{}`", alias.text),
+                        Some("write `use std`, and `rails.UIC60` for what is in its module `rails`".to_string()),
+                    ),
+                    _ => (
                         format!("the standard library has no module `{}`", names[1..].join(".")),
-                    )
-                    .at(used.path.span, "not found")
-                    .maybe_help(near.map(|n| format!("did you mean `use std.{n}`?"))),
-                );
+                        near.map(|n| format!("did you mean `use std.{n}`?")),
+                    ),
+                };
+                self.diagnostics
+                    .push(Diagnostic::new(Code::E0204, message).at(used.path.span, "not found").maybe_help(help));
+                if names.len() == 1 {
+                    brought.broken.extend(library::MODULES.iter().map(|(module, _)| module.to_string()));
+                }
             }
             found
         } else {

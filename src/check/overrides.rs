@@ -2,9 +2,9 @@
 
 use super::modules::Loader;
 use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
-use crate::schema;
+use crate::schema::{self, Role};
 use crate::syntax::parse;
-use crate::syntax::tree::{Argument, Field, Item, Name, Path, Tree, Value, ValueKind};
+use crate::syntax::tree::{Argument, Declaration, Field, Item, Name, Path, Tree, Value, ValueKind};
 
 /// One override: a path and the text of a value.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -71,12 +71,41 @@ fn edit(tree: &mut Tree, names: &[Name], value: &Value, span: Span) -> Result<()
             Item::Use(_) => {}
         }
     }
+    if let Some(fields) = scene_kind(tree, &names[0]).filter(|_| names.len() > 1) {
+        set(fields, &names[1..], value, span);
+        return Ok(());
+    }
     let near = nearest(first, known.iter().map(String::as_str)).map(|n| format!("did you mean `{n}`?"));
     Err(Diagnostic::new(Code::E0201, format!("the file declares nothing called `{first}` that could be set"))
         .at(span, "unknown name")
         .maybe_help(
             near.or_else(|| Some("write `--set declaration.field=value`, or `--set name=value` for a `let`".into())),
         ))
+}
+
+/// The fields of the declaration of a kind of which a scene has one, whatever it is called; one is added where there is none.
+fn scene_kind<'t>(tree: &'t mut Tree, kind: &Name) -> Option<&'t mut Vec<Field>> {
+    let role = schema::kind(&kind.text)?.role;
+    if role != (Role::Scene { once: true }) || !matches!(kind.text.as_str(), "solve" | "scenario") {
+        return None;
+    }
+    let own = |item: &Item| matches!(item, Item::Declaration(d) if d.kind.text == kind.text);
+    let at = tree.items.iter().position(own).unwrap_or_else(|| {
+        let (name, base, fields, docs) = (None, None, Vec::new(), Vec::new());
+        tree.items.push(Item::Declaration(Declaration {
+            kind: kind.clone(),
+            name,
+            base,
+            fields,
+            docs,
+            span: kind.span,
+        }));
+        tree.items.len() - 1
+    });
+    match &mut tree.items[at] {
+        Item::Declaration(d) => Some(&mut d.fields),
+        _ => None,
+    }
 }
 
 /// Replaces what stands at a path of a block, or adds a line for it.

@@ -278,7 +278,9 @@ impl Checker<'_> {
 
     fn reach(&mut self, value: &Value, scope: ScopeId) -> Option<Reach> {
         let ValueKind::Range(from, to) = &value.kind else {
-            self.wrong_form(&Form::Span, shape(&value.kind), value.span);
+            if value.kind != ValueKind::Error {
+                self.wrong_form(&Form::Span, shape(&value.kind), value.span);
+            }
             return None;
         };
         let Val::Range(from, to) = self.span(from, to, scope)? else { return None };

@@ -26,7 +26,7 @@ pub(super) struct Scatter {
 
 impl Random {
     /// The value of one rail for a normal number z.
-    fn value(&self, z: f64) -> f64 {
+    pub(super) fn value(&self, z: f64) -> f64 {
         let mean = self.mean.value;
         let value = if self.log_normal {
             let variance = (self.deviation / mean).powi(2).ln_1p();

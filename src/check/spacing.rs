@@ -1,13 +1,18 @@
 //! Spacing that varies in a stretch or over a section: bays laid out from the transition outwards, each as long as the spacing at the sleeper that
 //! it follows. The bay between a boundary and sleeper -1 is that of sleeper -1.
+//!
+//! Places are where the bays before them lead, so that a profile is read before the track is laid out: leniently here, with its end
+//! values beyond its places. Once the seats lie, it is laid along them as any other, and what it does not say is told.
 
 use super::Checker;
-use super::geometry::{MOST_SEATS, Plan};
-use super::profile::{Shape, ShapeKind};
+use super::geometry::{CLOSEST, MOST_SEATS, Places, Plan};
+use super::profile::{Reach, Shape, ShapeKind};
+use super::random_field::RandomField;
+use super::seats::Cover;
 use super::value::{Number, Record, Val};
 use crate::diag::{Code, Diagnostic, Span};
-use crate::scenario::{Given, Side};
-use crate::units::Dimension;
+use crate::scenario::{Given, Seat, Side};
+use crate::units::{Dimension, number};
 use std::rc::Rc;
 
 const TINY: f64 = 1e-6; // m
@@ -16,9 +21,29 @@ const TINY: f64 = 1e-6; // m
 struct Graded {
     /// Its ends: m, or numbers of sleepers.
     over: [Number; 2],
-    /// At its first and last end; a cubic with level ends between them if smooth.
-    ends: [f64; 2],
-    smooth: bool,
+    shape: Rc<Shape>,
+    /// A ramp without places of its own runs from the last end of `over` to its first.
+    turned: bool,
+    ground: Ground,
+}
+
+/// How places become chainages, as far as something is read at these.
+#[derive(Clone, Copy)]
+struct Ground {
+    /// Whether places grow with chainage.
+    grows: bool,
+    /// Chainage of place 0, m.
+    origin: f64,
+    /// The seed of what is random.
+    seed: u64,
+}
+
+/// Where a value is asked for: counted from the transition in sleepers and in m, and in chainage, m.
+#[derive(Clone, Copy)]
+struct At {
+    sleeper: f64,
+    metres: f64,
+    chainage: f64,
 }
 
 /// On which side of a boundary bays are laid out.
@@ -29,15 +54,12 @@ enum Bank {
 }
 
 impl Checker<'_> {
-    /// The spacing of a section, m; where it varies the mean of both ends.
+    /// The spacing of a section, m; where it varies the mean of the values that it names.
     pub(super) fn usual_spacing(&mut self, form: &Record) -> Option<Given> {
         let slot = form.get("spacing")?;
         match &slot.value {
             Val::Number(n) => Some(Given { value: n.value, origin: slot.origin }),
-            Val::Profile(_) => {
-                let (ends, ..) = self.graded(form)??;
-                Some(Given { value: 0.5 * (ends[0] + ends[1]), origin: slot.origin })
-            }
+            Val::Profile(shape) => Some(Given { value: shape.middle(), origin: slot.origin }),
             _ => None,
         }
     }
@@ -53,20 +75,23 @@ impl Checker<'_> {
         let mut graded: Vec<(usize, Graded)> = Vec::new();
         for stretch in stretches {
             let Some(Val::Range(a, b)) = stretch.get("over").map(|slot| &slot.value) else { continue };
-            let Some((ends, smooth, span)) = self.graded(stretch)? else { continue };
+            let Some(shape) = graded_by(stretch) else { continue };
             if sides.is_empty() && a.dimension == Dimension::LENGTH {
-                self.only_graded(span, "counted in sleepers, on a track of one section");
+                self.only_graded(shape.span, "counted in sleepers, on a track of one section");
                 return None;
             }
+            self.readable(&shape, sides, false)?;
             for transition in from_of(stretch, sides) {
-                graded.push((transition, Graded { over: [*a, *b], ends, smooth }));
+                let ground = self.ground_of(sides, plans);
+                graded.push((transition, Graded { over: [*a, *b], shape: shape.clone(), turned: false, ground }));
             }
         }
         for (section, (plan, form)) in plans.iter().zip(forms).enumerate() {
-            if let Some(Val::Profile(_)) = form.get("spacing").map(|slot| &slot.value) {
-                let (ends, smooth, span) = self.graded(form)??;
-                let Some(own) = whole_section(section, plan, sides, ends, smooth) else {
-                    self.only_graded(span, "one value in a section in metres between two transitions");
+            if let Some(Val::Profile(shape)) = form.get("spacing").map(|slot| &slot.value) {
+                self.readable(shape, sides, true)?;
+                let ground = self.ground_of(sides, plans);
+                let Some(own) = whole_section(section, plan, sides, shape, ground) else {
+                    self.only_graded(shape.span, "one value in a section in metres between two transitions");
                     return None;
                 };
                 graded.push(own);
@@ -107,26 +132,91 @@ impl Checker<'_> {
         Some(())
     }
 
-    /// The spacing that a stretch sets, with its place; the outer `None` where it is not understood.
-    #[allow(clippy::type_complexity)]
-    fn graded(&mut self, stretch: &Record) -> Option<Option<([f64; 2], bool, Span)>> {
-        let Some(slot) = stretch.get("spacing") else { return Some(None) };
-        match &slot.value {
-            Val::Number(n) => Some(Some(([n.value; 2], false, slot.span))),
-            Val::Profile(shape) => match &**shape {
-                Shape { kind: ShapeKind::Ramp { from, to, smooth, over: None }, span, .. } => {
-                    Some(Some(([from.value, to.value], *smooth, *span)))
-                }
-                other => {
-                    self.only_graded(
-                        other.span,
-                        "constant, `ramp(a .. b)` or `smooth(a .. b)` over its stretch or section",
-                    );
-                    None
-                }
-            },
-            _ => None,
+    /// Refuses what is read at chainages where nobody knows them yet.
+    fn readable(&mut self, shape: &Shape, sides: &[(String, Side)], of_section: bool) -> Option<()> {
+        let by_chainage = shape.asks(&|kind| matches!(kind, ShapeKind::Random(_) | ShapeKind::Table { .. }));
+        let by_places = shape.asks(&|kind| {
+            matches!(kind, ShapeKind::Points(_) | ShapeKind::Spans(_) | ShapeKind::Ramp { over: Some(_), .. })
+        });
+        if sides.len() > 1 && (by_chainage || by_places && of_section) {
+            let how = "by places counted from the transition of a stretch, on a track of several";
+            self.only_graded(shape.span, how);
+            return None;
         }
+        Some(())
+    }
+
+    fn ground_of(&self, sides: &[(String, Side)], plans: &[Plan]) -> Ground {
+        let grows = sides.first().is_none_or(|(_, side)| *side == Side::SoftToStiff);
+        // without a transition sleeper +1 stands in the middle of its bay
+        let origin = if sides.is_empty() { plans.first().map_or(0.0, |plan| plan.spacing / 2.0) } else { 0.0 };
+        Ground { grows, origin, seed: self.seed }
+    }
+
+    /// Lays the profiles of spacing along the seats that they made: each has to say all of its own.
+    pub(super) fn prove_spacing(
+        &mut self,
+        forms: &[Rc<Record>],
+        stretches: &[Rc<Record>],
+        places: &Places,
+    ) -> Option<()> {
+        let mut sound = true;
+        for (section, form) in forms.iter().enumerate() {
+            let Some(slot) = form.get("spacing") else { continue };
+            let Val::Profile(shape) = &slot.value else { continue };
+            let (start, end) = places.sections[section];
+            let what = format!("the spacing of trackform `{}`", form.name);
+            let cover = Cover { what, start, end, seats: Some(places.seats_of(section)), smooth: false };
+            sound &= self.profile(shape, slot.origin, places, &cover).is_some();
+        }
+        for stretch in stretches {
+            let Some((slot, over)) = stretch.get("spacing").zip(stretch.get("over")) else { continue };
+            let (Val::Profile(shape), Val::Range(a, b)) = (&slot.value, &over.value) else { continue };
+            let sides: Vec<_> = places.transitions.iter().map(|t| (t.name.clone(), t.side)).collect();
+            for transition in from_of(stretch, &sides) {
+                let ends = [*a, *b].map(|place| self.counted(places, place, transition, over.span));
+                // a span off the track is told where the stretch stands
+                let [Some(from), Some(to)] = ends else { return Some(()) };
+                let (start, end) = (from.min(to), from.max(to));
+                let first = places.seats.partition_point(|seat| seat.0 < start - TINY);
+                let last = places.seats.partition_point(|seat| seat.0 <= end + TINY);
+                let mut shape = (**shape).clone();
+                shape.settle(transition, [from, to]);
+                let what = format!("the spacing of stretch `{}`", stretch.name);
+                let cover = Cover { what, start, end, seats: Some(first..last), smooth: false };
+                sound &= self.profile(&shape, slot.origin, places, &cover).is_some();
+            }
+        }
+        sound.then_some(())
+    }
+
+    /// Refuses sleepers that lie in each other, once a section.
+    pub(super) fn sleepers_apart(&mut self, seats: &[Seat], forms: &[Rc<Record>], places: &Places) -> Option<()> {
+        let mut told = None;
+        for (pair, at) in seats.windows(2).zip(places.seats.windows(2)) {
+            let (Some(left), Some(right)) = (pair[0].sleeper, pair[1].sleeper) else { continue };
+            let (apart, wide) = (pair[1].x - pair[0].x, 0.5 * (left.base_width + right.base_width));
+            let section = at[0].1;
+            if apart > wide - TINY || told == Some(section) {
+                continue;
+            }
+            told = Some(section);
+            let message = format!(
+                "sleepers {:+} and {:+} lie in each other: {} m apart, where each is {} m wide",
+                at[0].3,
+                at[1].3,
+                number((1e3 * apart).round() / 1e3),
+                number((1e3 * wide).round() / 1e3)
+            );
+            let form = &forms[section];
+            let span = form.get("spacing").map_or(form.span, |slot| slot.span);
+            self.report(
+                Diagnostic::new(Code::E0407, message)
+                    .at(span, "spacing of this section")
+                    .help("lay them further apart, or give them a smaller `base_width`; stretches change both"),
+            );
+        }
+        told.is_none().then_some(())
     }
 
     fn only_graded(&mut self, span: Span, how: &str) {
@@ -150,14 +240,26 @@ fn from_of(stretch: &Record, sides: &[(String, Side)]) -> Vec<usize> {
     }
 }
 
+/// The spacing that a stretch sets.
+fn graded_by(stretch: &Record) -> Option<Rc<Shape>> {
+    let slot = stretch.get("spacing")?;
+    match &slot.value {
+        Val::Number(n) => {
+            Some(Rc::new(Shape { kind: ShapeKind::Constant(*n), span: slot.span, from: None, runs: None }))
+        }
+        Val::Profile(shape) => Some(shape.clone()),
+        _ => None,
+    }
+}
+
 /// The spacing of a whole section as if a stretch set it, counted from the transition at its left, or else at its right; `None` for a
 /// section in metres between two transitions, where the bays would have to meet.
 fn whole_section(
     section: usize,
     plan: &Plan,
     sides: &[(String, Side)],
-    [left, right]: [f64; 2],
-    smooth: bool,
+    shape: &Rc<Shape>,
+    ground: Ground,
 ) -> Option<(usize, Graded)> {
     let by_sleepers = plan.length.dimension == Dimension::SLEEPERS;
     let before = section.checked_sub(1).filter(|t| *t < sides.len());
@@ -172,9 +274,8 @@ fn whole_section(
     let reach = plan.length.value;
     let first = if by_sleepers { 1.0 } else { 0.0 };
     let over = if soft { [end(-reach), end(-first)] } else { [end(first), end(reach)] };
-    // places count as x grows, unless the softer side lies right
-    let ends = if side == Side::SoftToStiff { [left, right] } else { [right, left] };
-    Some((transition, Graded { over, ends, smooth }))
+    // a ramp runs as x grows, places run against it where the softer side lies right
+    Some((transition, Graded { over, shape: shape.clone(), turned: side != Side::SoftToStiff, ground }))
 }
 
 /// Bays outwards from a boundary, as far as any is changed: first the one between the boundary and the nearest seat, where that lies
@@ -235,11 +336,104 @@ impl Graded {
         if !beyond || place < a - TINY || place > b + TINY {
             return None;
         }
-        // there is no sleeper 0
-        let step = |n: f64| if self.by_sleepers() && n > 0.0 { n - 1.0 } else { n };
-        let width = step(b) - step(a);
-        let share = if width > 0.0 { (step(place) - step(a)) / width } else { 0.0 };
-        let share = if self.smooth { share * share * (3.0 - 2.0 * share) } else { share };
-        Some(self.ends[0] + share * (self.ends[1] - self.ends[0]))
+        let sign = if bank == Bank::Soft { -1.0 } else { 1.0 };
+        let Ground { grows, origin, seed } = self.ground;
+        let metres = sign * distance + origin;
+        let chainage = if grows { metres } else { -metres };
+        let at = At { sleeper: sign * sleeper as f64, metres, chainage };
+        let over = if self.turned { [self.over[1], self.over[0]] } else { self.over };
+        // what lies beyond the range of spacings is told once the seats lie
+        Some(self.shape.read(at, over, seed).clamp(CLOSEST, 2.0))
+    }
+}
+
+impl At {
+    /// The place as a key of this dimension counts it.
+    fn of(self, key: Number) -> f64 {
+        if key.dimension == Dimension::SLEEPERS { step(self.sleeper, key) } else { self.metres }
+    }
+}
+
+/// A place on a line without the gap that there is no sleeper 0.
+fn step(place: f64, key: Number) -> f64 {
+    if key.dimension == Dimension::SLEEPERS && place > 0.0 { place - 1.0 } else { place }
+}
+
+impl Shape {
+    /// Whether a part of it is of some kind.
+    fn asks(&self, of: &dyn Fn(&ShapeKind) -> bool) -> bool {
+        let inside = match &self.kind {
+            ShapeKind::Spans(spans) => spans.iter().any(|(_, inner)| inner.asks(of)),
+            _ => false,
+        };
+        inside || of(&self.kind)
+    }
+
+    /// The mean of the values that it names.
+    fn middle(&self) -> f64 {
+        let mean = |values: &mut dyn ExactSizeIterator<Item = f64>| {
+            let count = values.len().max(1) as f64;
+            values.sum::<f64>() / count
+        };
+        match &self.kind {
+            ShapeKind::Constant(n) => n.value,
+            ShapeKind::Ramp { from, to, .. } => 0.5 * (from.value + to.value),
+            ShapeKind::Points(points) => mean(&mut points.iter().map(|(.., n)| n.value)),
+            ShapeKind::Spans(spans) => mean(&mut spans.iter().map(|(_, inner)| inner.middle())),
+            ShapeKind::Random(random) => random.mean.value,
+            ShapeKind::Table { rows, .. } => mean(&mut rows.iter().map(|(_, n)| n.value)),
+        }
+    }
+
+    /// Its value at a place, its end values beyond its own places; a ramp without a span of its own runs over `over`.
+    fn read(&self, at: At, over: [Number; 2], seed: u64) -> f64 {
+        match &self.kind {
+            ShapeKind::Constant(n) => n.value,
+            ShapeKind::Ramp { from, to, smooth, over: own } => {
+                let [a, b] = own.map_or(over, |reach| [reach.from, reach.to]);
+                let [first, last] = [step(a.value, a), step(b.value, b)];
+                let share = if first == last { 0.0 } else { ((at.of(a) - first) / (last - first)).clamp(0.0, 1.0) };
+                let share = if *smooth { share * share * (3.0 - 2.0 * share) } else { share };
+                from.value + share * (to.value - from.value)
+            }
+            ShapeKind::Points(points) => {
+                let row = |i: usize| points.get(i).map(|(key, _, n)| [step(key.value, *key), n.value]);
+                points.first().map_or(0.0, |(key, ..)| between(points.len(), &row, at.of(*key)))
+            }
+            ShapeKind::Spans(spans) => {
+                // where two meet, the right one counts
+                let reach = |(reach, _): &&(Reach, Shape)| {
+                    let [a, b] = [reach.from, reach.to].map(|end| step(end.value, end));
+                    let place = at.of(reach.from);
+                    (a.min(b) - place).max(place - a.max(b)).max(0.0)
+                };
+                let least = spans.iter().map(|span| reach(&span)).fold(f64::INFINITY, f64::min);
+                let found = spans.iter().rev().find(|span| reach(span) <= least + TINY);
+                found.map_or(0.0, |(reach, inner)| inner.read(at, [reach.from, reach.to], seed))
+            }
+            ShapeKind::Random(random) => {
+                let field = RandomField::new(random.seed.unwrap_or(seed), &random.path, random.correlation);
+                random.value(field.value(at.chainage))
+            }
+            ShapeKind::Table { rows, .. } => {
+                between(rows.len(), &|i| rows.get(i).map(|(x, n)| [*x, n.value]), at.chainage)
+            }
+        }
+    }
+}
+
+/// The value of a broken line through so many points `[place, value]` that run one way, level beyond them.
+fn between(count: usize, point: &dyn Fn(usize) -> Option<[f64; 2]>, place: f64) -> f64 {
+    let falls = matches!((point(0), point(count.saturating_sub(1))), (Some(a), Some(b)) if a[0] > b[0]);
+    let row = |i: usize| point(if falls { count.checked_sub(i + 1)? } else { i });
+    let (mut below, mut above) = (0, count);
+    while below < above {
+        let middle = below.midpoint(above);
+        if row(middle).is_some_and(|[x, _]| x <= place) { below = middle + 1 } else { above = middle }
+    }
+    match (below.checked_sub(1).and_then(row), row(below)) {
+        (Some([a, from]), Some([b, to])) => from + (to - from) * (place - a) / (b - a),
+        (Some([_, value]), None) | (None, Some([_, value])) => value,
+        (None, None) => 0.0,
     }
 }

@@ -6,7 +6,7 @@ use super::ground::Under;
 use super::seats::{Along, Cover};
 use super::stretch::described;
 use super::trackform::Built;
-use super::value::{Record, Val};
+use super::value::{Record, Slot, Val};
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{AuxiliaryRailSpan, Curve, Given, Layer, Origin, Piece, Profile, RailEnds, Section, Side, Track};
 use crate::units::number;
@@ -35,7 +35,8 @@ impl Checker<'_> {
     pub(super) fn track(&mut self, record: &Record) -> Option<Track> {
         let Val::Pairs(pairs) = &record.get("sections")?.value else { return None };
         // how many there are is not known where one could not be read
-        let read = pairs.iter().all(|(key, _)| !matches!(key.value, Val::Error));
+        let known = |slot: &Slot| !matches!(slot.value, Val::Error);
+        let read = pairs.iter().all(|(key, length)| known(key) && known(length));
         let sides = if read { self.sides(record, pairs.len()) } else { None };
         let (stretches, mut sound) = self.listed(record);
         let mut forms: Vec<Rc<Record>> = Vec::new();
@@ -64,6 +65,7 @@ impl Checker<'_> {
         self.spread(&mut plans, &sides, &forms, &stretches)?;
         let places = self.lay_out(&plans, &sides)?;
         self.seat_places = Some(places.clone());
+        sound &= self.prove_spacing(&forms, &stretches, &places).is_some();
         let irregularity = self.irregularity(record, &places);
         let bed = self.bed(record, &built);
         let stood = self.stand(&stretches, &places);
@@ -96,6 +98,7 @@ impl Checker<'_> {
         if !sound {
             return None;
         }
+        self.sleepers_apart(&seats, &forms, &places)?;
         let auxiliary_rails = self.auxiliary_spans(&forms, &stood, &places, beside)?;
         let rail_ends = match record.word("rail_ends") {
             Some("pinned") => RailEnds::Pinned,

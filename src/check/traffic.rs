@@ -172,7 +172,8 @@ impl Checker<'_> {
     /// A count of something that this scene does not count.
     pub(super) fn not_counted(&mut self, dimension: Dimension, counts: &str, span: Span) {
         let message = format!("this scene counts the {counts}, found {}", dimension.describe());
-        self.report(Diagnostic::new(Code::E0302, message).at(span, "not counted here"));
+        let help = "counts are given in `axles` or as the mass carried, `MGT`, where trains run; in `cycles` where a load comes back";
+        self.report(Diagnostic::new(Code::E0302, message).at(span, "not counted here").help(help));
     }
 
     /// The axle count at which something of a run happens: between two trains, and not after the last.

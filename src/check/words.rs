@@ -6,7 +6,7 @@ use super::value::{Slot, Val};
 use crate::diag::{Code, Diagnostic, nearest::nearest, or_list};
 use crate::scenario::response::Response;
 use crate::schema::Word;
-use crate::syntax::tree::{Argument, Name};
+use crate::syntax::tree::{Argument, Name, ValueKind};
 use std::collections::BTreeMap;
 
 impl Checker<'_> {
@@ -74,7 +74,8 @@ impl Checker<'_> {
             return None;
         }
         let mut slots = BTreeMap::new();
-        let mut unknown = false;
+        // what could not be read may have run on into the next argument
+        let mut unknown = arguments.iter().any(|argument| argument.value.kind == ValueKind::Error);
         for (i, argument) in arguments.iter().enumerate() {
             let field = match &argument.name {
                 Some(name) => word.arguments.iter().find(|a| a.name == name.text),

@@ -1,6 +1,6 @@
 //! `trackbed run`: runs a scene into a directory, with checkpoints, a report and the verdict on its expectations.
 
-use super::scene::{SceneArguments, failed, not_yet, show};
+use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
 use super::{Outcome, progress, report, terminal};
 use crate::diag::{Code, Diagnostic, render};
 use crate::graph;
@@ -16,6 +16,8 @@ use std::time::Instant;
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    #[command(flatten)]
+    seed: SeedArgument,
     /// The directory for results; made where it does not exist.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -32,7 +34,9 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
     let started = Instant::now();
-    let Some(compiled) = arguments.scene.compile().map(Compiled::to_run) else { return Outcome::Usage };
+    let Some(compiled) = arguments.scene.with_seed(&arguments.seed).compile().map(Compiled::to_run) else {
+        return Outcome::Usage;
+    };
     show(&compiled);
     if failed(&compiled) {
         return Outcome::Failed;
@@ -111,6 +115,7 @@ fn prepare(arguments: &Arguments) -> Result<(), String> {
     std::fs::create_dir_all(out).map_err(|e| format!("cannot make the directory `{shown}`: {e}"))?;
     let holds = |name: &str| out.join(name).exists();
     if arguments.force {
+        results::remove_states(out).map_err(|e| e.to_string())?;
         for name in ["summary.json", "checkpoint.json", "histories.parquet", "laws.csv"] {
             if holds(name) {
                 std::fs::remove_file(out.join(name)).map_err(|e| format!("cannot replace `{shown}/{name}`: {e}"))?;

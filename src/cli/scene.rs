@@ -16,7 +16,21 @@ pub(super) struct SceneArguments {
     pub set: Vec<Override>,
 }
 
+/// What a run is drawn from.
+#[derive(clap::Args)]
+pub(super) struct SeedArgument {
+    /// The seed of all that is random, as `--set solve.seed=N`.
+    #[arg(long, value_name = "N")]
+    seed: Option<u32>,
+}
+
 impl SceneArguments {
+    /// The same with another seed.
+    pub fn with_seed(&self, argument: &SeedArgument) -> SceneArguments {
+        let seed = argument.seed.map(|n| Override { path: "solve.seed".into(), value: n.to_string() });
+        SceneArguments { file: self.file.clone(), set: self.set.iter().cloned().chain(seed).collect() }
+    }
+
     /// Where its modules and data lie.
     fn folder(&self) -> Folder {
         Folder(self.file.parent().unwrap_or(Path::new("")).to_path_buf())

@@ -1,6 +1,6 @@
 //! `trackbed study`: runs the points of a study, several at once, and says which design is best.
 
-use super::scene::{SceneArguments, failed, not_yet, show};
+use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
 use super::study_folder::{StudyFolder, Taken};
 use super::{Outcome, progress, terminal};
 use crate::check::{Folder, Remembered};
@@ -22,6 +22,8 @@ use std::time::Instant;
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    #[command(flatten)]
+    seed: SeedArgument,
     /// Which study of the file; needed where there are several.
     name: Option<String>,
     /// The directory for results; made where it does not exist.
@@ -54,7 +56,8 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         terminal::error("this version runs studies on this machine only; leave out `--executor slurm`");
         return Outcome::Usage;
     }
-    let Some(compiled) = arguments.scene.compile().map(Compiled::to_run) else { return Outcome::Usage };
+    let scene = arguments.scene.with_seed(&arguments.seed);
+    let Some(compiled) = scene.compile().map(Compiled::to_run) else { return Outcome::Usage };
     show(&compiled);
     if failed(&compiled) {
         return Outcome::Failed;
@@ -71,7 +74,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     };
     let threads = arguments.jobs.map_or(0, usize::from);
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(|| in_pool(arguments, &compiled, study)),
+        Ok(pool) => pool.install(|| in_pool(arguments, &scene, &compiled, study)),
         Err(error) => {
             terminal::error(&format!("cannot start {threads} threads: {error}"));
             Outcome::Failed
@@ -109,8 +112,8 @@ fn with_scene<T>(arguments: &SceneArguments, compiled: &Compiled, f: impl FnOnce
     f(Scene { name: &name, text, modules: &Remembered::new(&folder), set: &arguments.set })
 }
 
-fn in_pool(arguments: &Arguments, compiled: &Compiled, study: &Study) -> Outcome {
-    with_scene(&arguments.scene, compiled, |scene| {
+fn in_pool(arguments: &Arguments, edited: &SceneArguments, compiled: &Compiled, study: &Study) -> Outcome {
+    with_scene(edited, compiled, |scene| {
         let plan = study::plan(scene, compiled, study);
         say(&plan.diagnostics, compiled);
         if has_errors(&plan.diagnostics) {

@@ -40,6 +40,7 @@ pub(super) fn records(pass: &mut Pass, scenario: &Scenario) -> Vec<Record> {
         after: vec![0, *traffic.total],
         every: None,
         near: Some(NEAR),
+        states: false,
     }]
 }
 

@@ -38,6 +38,7 @@ pub fn write(run: &Run, directory: &Path) -> Result<(), ResultsError> {
     ];
     let skipped = |name: &str| empty.contains(&(name, true));
     let written = files.iter().filter(|(name, _)| !skipped(name));
+    super::states::write(run, directory)?;
     written.into_iter().try_for_each(|(name, bytes)| atomic::write(&directory.join(name), bytes))
 }
 

@@ -1,6 +1,6 @@
 //! Everything that a finished run says, from its recorder.
 
-use super::{Provenance, Run, RunRecorder, Summary, Tables, law_rows, summarise, summarise_laws, verdicts};
+use super::{Provenance, Run, RunRecorder, Summary, law_rows, summarise, summarise_laws, verdicts};
 use crate::diag::Sources;
 use crate::graph::Graph;
 use crate::scenario::Scenario;
@@ -20,14 +20,7 @@ impl Run {
         let laws = law_rows(scenario, &tables.laws);
         let mut scalars = summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
         scalars.extend(summarise_laws(scenario, &laws));
-        let view = Tables {
-            sleepers: &tables.sleepers,
-            blocks: &tables.blocks,
-            rail: &tables.rail,
-            histories: &histories,
-            scalars: &scalars,
-            track: &scenario.track,
-        };
+        let view = tables.view(&histories, &scalars, &scenario.track);
         let expectations = verdicts(scenario, view);
         // the name alone: equal scenes give equal files wherever they lie
         let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_string();

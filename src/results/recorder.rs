@@ -3,13 +3,14 @@
 
 use super::histories::HISTORIES;
 use super::{
-    BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, SleeperRow, TampingRow, TrainRow, atomic,
-    checkpoint, histories,
+    BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Scalar, SleeperRow, Tables, TampingRow,
+    TrainRow, atomic, checkpoint, histories,
 };
 use crate::graph::{self, Block, Measured, PassageOutcome, Recorder, Runner, Unloaded};
 use crate::scenario::response::Response;
 use crate::scenario::{Loading, Scenario, Track, Traffic};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 /// Where a run keeps what it needs to be resumed.
@@ -37,6 +38,19 @@ pub struct RunTables {
     pub max_rail_displacement: Option<f64>,
     /// Largest tension in the rail's foot of the last recorded passage, Pa.
     pub max_foot_stress: Option<f64>,
+}
+
+impl RunTables {
+    /// What expressions are about: these tables with the histories and scalars of their run.
+    pub fn view<'a>(
+        &'a self,
+        histories: &'a [HistoryRow],
+        scalars: &'a BTreeMap<String, Scalar>,
+        track: &'a Track,
+    ) -> Tables<'a> {
+        let RunTables { sleepers, blocks, rail, .. } = self;
+        Tables { sleepers, blocks, rail, histories, scalars, track }
+    }
 }
 
 /// What a checkpoint holds.

@@ -46,59 +46,78 @@ pub fn contacts_vtk(links: &[Link], out: impl Write) -> io::Result<()> {
 }
 
 /// A file that is being written.
-struct File<W: Write> {
-    out: W,
+pub(super) struct File<W: Write> {
+    pub out: W,
 }
 
 impl<W: Write> File<W> {
     /// Opens the one piece that the file has: lines, or points alone.
     fn begin(&mut self, points: usize, lines: usize) -> io::Result<()> {
-        let verts = if lines == 0 { points } else { 0 };
+        self.begin_piece([points, if lines == 0 { points } else { 0 }, lines, 0])
+    }
+
+    /// Opens the one piece that the file has: so many points, and cells that are points, lines and polygons.
+    pub fn begin_piece(&mut self, [points, verts, lines, polys]: [usize; 4]) -> io::Result<()> {
         writeln!(
             self.out,
             concat!(
                 "<?xml version=\"1.0\"?>\n",
                 "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n",
                 "<PolyData>\n",
-                "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">"
+                "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\">"
             ),
-            points, verts, lines
+            points, verts, lines, polys
         )
     }
 
-    fn end(&mut self) -> io::Result<()> {
+    pub fn end(&mut self) -> io::Result<()> {
         writeln!(self.out, "</Piece>\n</PolyData>\n</VTKFile>")
     }
 
-    fn open(&mut self, tag: &str) -> io::Result<()> {
+    pub fn open(&mut self, tag: &str) -> io::Result<()> {
         writeln!(self.out, "<{tag}>")
     }
 
-    fn close(&mut self, tag: &str) -> io::Result<()> {
+    pub fn close(&mut self, tag: &str) -> io::Result<()> {
         writeln!(self.out, "</{tag}>")
     }
 
-    fn points(&mut self, places: impl Iterator<Item = [f64; 3]>) -> io::Result<()> {
+    pub fn points(&mut self, places: impl Iterator<Item = [f64; 3]>) -> io::Result<()> {
         self.open("Points")?;
         self.array("Float64", "Points", 3, places.flatten().flat_map(f64::to_le_bytes).collect())?;
         self.close("Points")
     }
 
     /// `count` cells, each of the next `each` points.
-    fn cells(&mut self, tag: &str, count: usize, each: usize) -> io::Result<()> {
+    pub fn cells(&mut self, tag: &str, count: usize, each: usize) -> io::Result<()> {
+        self.connected(tag, 0..count * each, count, each)
+    }
+
+    /// `count` cells, each of `each` of these points in turn.
+    pub fn connected(
+        &mut self,
+        tag: &str,
+        mut points: impl Iterator<Item = usize>,
+        count: usize,
+        each: usize,
+    ) -> io::Result<()> {
         let bytes = |numbers: &mut dyn Iterator<Item = usize>| numbers.flat_map(|n| (n as u64).to_le_bytes()).collect();
         self.open(tag)?;
-        self.array("Int64", "connectivity", 1, bytes(&mut (0..count * each)))?;
+        self.array("Int64", "connectivity", 1, bytes(&mut points))?;
         self.array("Int64", "offsets", 1, bytes(&mut (1..=count).map(|n| n * each)))?;
         self.close(tag)
     }
 
-    fn scalars<T>(&mut self, name: &str, rows: &[T], of: impl Fn(&T) -> f64) -> io::Result<()> {
+    pub fn scalars<T>(&mut self, name: &str, rows: &[T], of: impl Fn(&T) -> f64) -> io::Result<()> {
         self.array("Float32", name, 1, rows.iter().flat_map(|row| (of(row) as f32).to_le_bytes()).collect())
     }
 
-    fn vectors<T>(&mut self, name: &str, rows: &[T], of: impl Fn(&T) -> [f64; 3]) -> io::Result<()> {
+    pub fn vectors<T>(&mut self, name: &str, rows: &[T], of: impl Fn(&T) -> [f64; 3]) -> io::Result<()> {
         self.array("Float32", name, 3, rows.iter().flat_map(of).flat_map(|c| (c as f32).to_le_bytes()).collect())
+    }
+
+    pub fn signed<T>(&mut self, name: &str, rows: &[T], of: impl Fn(&T) -> i32) -> io::Result<()> {
+        self.array("Int32", name, 1, rows.iter().flat_map(|row| of(row).to_le_bytes()).collect())
     }
 
     fn integers<T>(&mut self, name: &str, rows: &[T], of: impl Fn(&T) -> u32) -> io::Result<()> {
@@ -137,7 +156,7 @@ fn base64(bytes: &[u8], out: &mut impl Write) -> io::Result<()> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::results::{grains, links, places};
     use crate::solvers::granular::{
@@ -171,7 +190,7 @@ mod tests {
     }
 
     /// Numbers of an array, by the type that the file says.
-    fn numbers(document: &roxmltree::Document, name: &str) -> Vec<f64> {
+    pub fn numbers(document: &roxmltree::Document, name: &str) -> Vec<f64> {
         let array =
             document.descendants().find(|n| n.attribute("Name") == Some(name)).unwrap_or_else(|| panic!("{name}"));
         let code = |c: u8| ALPHABET.iter().position(|a| *a == c).unwrap_or(0) as u32;
@@ -188,6 +207,7 @@ mod tests {
         match array.attribute("type").unwrap() {
             "Float64" => bytes.chunks(8).map(|b| f64::from_le_bytes(b.try_into().unwrap())).collect(),
             "Float32" => bytes.chunks(4).map(|b| f64::from(f32::from_le_bytes(b.try_into().unwrap()))).collect(),
+            "Int32" => bytes.chunks(4).map(|b| f64::from(i32::from_le_bytes(b.try_into().unwrap()))).collect(),
             "UInt32" => bytes.chunks(4).map(|b| f64::from(u32::from_le_bytes(b.try_into().unwrap()))).collect(),
             "Int64" => bytes.chunks(8).map(|b| i64::from_le_bytes(b.try_into().unwrap()) as f64).collect(),
             other => panic!("{other}"),

@@ -197,4 +197,6 @@ pub struct Record {
     pub every: Option<Given>,
     /// Kept only while a wheel is nearer to the seat than this, m; `None` keeps the whole passage.
     pub near: Option<f64>,
+    /// Whether the state of rail and sleepers is kept whole at those counts.
+    pub states: bool,
 }

@@ -1,7 +1,7 @@
 //! The table of kinds and fields. Ranges are in the unit of their field; `per` names the basis of the range first.
 
-use super::materials;
 use super::{Alternative, Basis, Field, Form, Kind, Measure, Need, Role, Varies, Word};
+use super::{materials, results, traffic};
 
 const fn field(name: &'static str, form: Form, need: Need, doc: &'static str) -> Field {
     Field { name, form, need, doc }
@@ -52,10 +52,6 @@ const fn side(name: &'static str, doc: &'static str) -> Word {
     )];
     Word { name, doc, arguments: SEATS, planned: false }
 }
-const fn sampled(name: &'static str, doc: &'static str) -> Word {
-    const POINTS: &[Field] = &[required("points", Form::Integer { min: 1, max: 100_000 }, "how many")];
-    Word { name, doc, arguments: POINTS, planned: false }
-}
 pub(super) const fn either(ways: &'static [&'static [&'static str]]) -> Alternative {
     Alternative { ways, default: None }
 }
@@ -86,12 +82,6 @@ pub static RANDOM: Word = Word {
 const SLEEPER_OR_SEAT: Basis = Basis { names: &[("sleeper", 0.5), ("seat", 1.0)], assumed: Some("sleeper") };
 const SEAT_OR_SLEEPER: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: None };
 const RAIL_OR_TRACK: Basis = Basis { names: &[("rail", 1.0), ("track", 0.5)], assumed: None };
-const FORCE: Basis = Basis { names: &[("rail", 1.0), ("track", 0.5), ("seat", 1.0), ("sleeper", 0.5)], assumed: None };
-const VEHICLE_OR_RAIL: Basis = Basis { names: &[("vehicle", 0.5), ("rail", 1.0)], assumed: Some("vehicle") };
-const BOGIE_OR_RAIL: Basis = Basis { names: &[("bogie", 0.5), ("rail", 1.0)], assumed: None };
-const WHEELSET_OR_WHEEL: Basis = Basis { names: &[("wheelset", 0.5), ("wheel", 1.0)], assumed: None };
-const PRIMARY: Basis =
-    Basis { names: &[("wheel", 1.0), ("wheelset", 0.5), ("bogie", 0.25), ("rail", 1.0)], assumed: None };
 pub(super) const SEAT: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: Some("seat") };
 
 pub(super) const NONE: &[Word] = &[word("none", "absent")];
@@ -108,9 +98,8 @@ const SUPPORT: Form = Form::OneOf(&[
     Form::Object("support"),
     Form::Words(&[word("rigid", "a seat that does not move"), word("none", "absent")]),
 ]);
-const AXLES_OR_MASS: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 1e-6, 1e4)]);
-const AXLE_COUNT: Form = number("axles", 0.0, 1e9);
-const AXLES_MASS_OR_CYCLES: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 0.0, 1e4), number("cycles", 0.0, 1e9)]);
+pub(super) const AXLES_OR_MASS: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 1e-6, 1e4)]);
+pub(super) const AXLE_COUNT: Form = number("axles", 0.0, 1e9);
 const TRACK_OR_RAIL: Basis = Basis { names: &[("track", 0.5), ("rail", 1.0)], assumed: Some("track") };
 const LAYERS: Form = Form::Pairs {
     key: &Form::OneOf(&[Form::Object("granular"), Form::Object("soil")]),
@@ -119,45 +108,6 @@ const LAYERS: Form = Form::Pairs {
         Form::Words(&[word("rest", "what is left of the depth; in stretches only")]),
     ]),
     implied: None,
-};
-
-const VOLUMES: &[Word] = &[
-    Word {
-        name: "box",
-        doc: "a box about the depth, under the middle of the sleeper",
-        arguments: &[
-            default("along", number("m", 0.01, 10.0), "0.2 m", ""),
-            default(
-                "across",
-                Form::OneOf(&[number("m", 0.01, 20.0), Form::Words(&[word("bed", "the whole width of the bed")])]),
-                "bed",
-                "",
-            ),
-            default("height", number("m", 0.01, 10.0), "0.2 m", ""),
-        ],
-        planned: false,
-    },
-    Word {
-        name: "sphere",
-        doc: "a sphere about the depth",
-        arguments: &[required("radius", number("m", 0.005, 5.0), "")],
-        planned: false,
-    },
-];
-
-const CYCLIC: Word = Word {
-    name: "cyclic",
-    doc: "goes from the smaller to the greater force and back",
-    arguments: &[
-        required(
-            "range",
-            Form::Interval(Measure { basis: Some(&FORCE), ..measure("kN", 0.0, 10_000.0) }),
-            "smallest and greatest force",
-        ),
-        required("frequency", number("Hz", 1e-3, 1000.0), ""),
-        default("wave", Form::Words(&[word("sine", "")]), "sine", ""),
-    ],
-    planned: false,
 };
 
 /// Every kind, in the order of `trackbed docs`.
@@ -475,181 +425,15 @@ pub const KINDS: &[Kind] = &[
         alternatives: &[],
         planned: &[],
     },
-    Kind {
-        name: "vehicle",
-        doc: "A vehicle on two bogies of two axles each: a multibody system of 10 degrees of freedom and four wheel-rail contacts.",
-        role: Role::Part,
-        fields: &[
-            way(
-                "axle_load",
-                Form::OneOf(&[number("t", 1.0, 40.0), number("kN", 9.81, 392.4)]),
-                "of each axle; the car body's mass follows and scales an inherited `pitch_inertia`",
-            ),
-            required("car_body", Form::Object("car_body"), ""),
-            required("bogie", Form::Object("bogie"), "each of the two"),
-            required("wheelset", Form::Object("wheelset"), "each of the four"),
-            required("primary", Form::Object("primary_suspension"), "between wheelset and bogie"),
-            required("secondary", Form::Object("secondary_suspension"), "between bogie and car body"),
-            default(
-                "contact",
-                Form::Words(&[Word {
-                    name: "hertz",
-                    doc: "force = constant x indentation^1.5, no tension",
-                    arguments: &[default(
-                        "constant",
-                        number("GN/m^1.5", 50.0, 200.0),
-                        "100 GN/m^1.5",
-                        "the default is that of railFE; Zhai's formulas give 86 (cone) and 115 (worn tread) for wheels of 0.46 m",
-                    )],
-                    planned: false,
-                }]),
-                "hertz(100 GN/m^1.5)",
-                "wheel on rail",
-            ),
-            optional("length", number("m", 5.0, 40.0), "over couplers; needed in trains of several vehicles"),
-        ],
-        alternatives: &[either(&[&["axle_load"], &["car_body.mass"]])],
-        planned: &[],
-    },
-    Kind {
-        name: "car_body",
-        doc: "The car body of a vehicle.",
-        role: Role::Nested,
-        fields: &[
-            way("mass", per("t", 1.0, 200.0, &VEHICLE_OR_RAIL), ""),
-            way("pitch_inertia", per("kg m^2", 1e4, 1e8, &VEHICLE_OR_RAIL), "about the transverse axis"),
-            way("radius_of_gyration", number("m", 1.0, 12.0), "pitch inertia = mass x radius^2"),
-        ],
-        alternatives: &[either(&[&["pitch_inertia"], &["radius_of_gyration"]])],
-        planned: &[],
-    },
-    Kind {
-        name: "bogie",
-        doc: "One bogie frame.",
-        role: Role::Nested,
-        fields: &[
-            required("mass", per("kg", 100.0, 20_000.0, &BOGIE_OR_RAIL), ""),
-            required("pitch_inertia", per("kg m^2", 50.0, 50_000.0, &BOGIE_OR_RAIL), "about the transverse axis"),
-            required("spacing", number("m", 2.0, 25.0), "of the bogie centres"),
-        ],
-        alternatives: &[],
-        planned: &[],
-    },
-    Kind {
-        name: "wheelset",
-        doc: "One wheelset.",
-        role: Role::Nested,
-        fields: &[
-            required("mass", per("kg", 300.0, 5000.0, &WHEELSET_OR_WHEEL), ""),
-            optional(
-                "rolling_inertia",
-                per("kg m^2", 1.0, 1000.0, &WHEELSET_OR_WHEEL),
-                "kept; vertical dynamics has no use for it",
-            ),
-            required("spacing", number("m", 1.0, 4.0), "of the axles of a bogie"),
-            default("radius", number("m", 0.2, 0.7), "0.46 m", ""),
-        ],
-        alternatives: &[],
-        planned: &[],
-    },
-    Kind {
-        name: "primary_suspension",
-        doc: "Springs and dampers between wheelset and bogie.",
-        role: Role::Nested,
-        fields: &[
-            required("stiffness", per("MN/m", 0.1, 100.0, &PRIMARY), ""),
-            required("damping", per("kN s/m", 0.0, 1000.0, &PRIMARY), ""),
-        ],
-        alternatives: &[],
-        planned: &[],
-    },
-    Kind {
-        name: "secondary_suspension",
-        doc: "Springs and dampers between bogie and car body.",
-        role: Role::Nested,
-        fields: &[
-            required("stiffness", per("MN/m", 0.1, 100.0, &BOGIE_OR_RAIL), ""),
-            required("damping", per("kN s/m", 0.0, 1000.0, &BOGIE_OR_RAIL), ""),
-        ],
-        alternatives: &[],
-        planned: &[],
-    },
-    Kind {
-        name: "train",
-        doc: "Vehicles that run together.",
-        role: Role::Part,
-        fields: &[
-            required(
-                "vehicles",
-                Form::Pairs {
-                    key: &Form::Object("vehicle"),
-                    value: &Form::Integer { min: 1, max: 100 },
-                    implied: Some("1"),
-                },
-                "in order, the leading one first",
-            ),
-            required("speed", along(number("km/h", 1.0, 600.0)), "by the place of the leading wheel where it varies"),
-            default(
-                "direction",
-                Form::Words(&[
-                    word("forward", "as x grows"),
-                    word("backward", "the other way"),
-                    word("both", "every second train the other way"),
-                ]),
-                "forward",
-                "",
-            ),
-        ],
-        alternatives: &[],
-        planned: &[],
-    },
-    Kind {
-        name: "traffic",
-        doc: "The trains of the whole run.",
-        role: Role::Scene { once: true },
-        fields: &[
-            required(
-                "trains",
-                Form::Pairs { key: &Form::Object("train"), value: &number("%", 0.0, 100.0), implied: Some("100 %") },
-                "with their shares of `total`, in its unit",
-            ),
-            required("total", AXLES_OR_MASS, "axles, or the mass that they carry"),
-            default(
-                "order",
-                Form::Words(&[
-                    word("interleaved", "every kind of train all along the run"),
-                    word("in_turn", "all trains of the first kind, then all of the second"),
-                ]),
-                "interleaved",
-                "in which trains of several kinds run",
-            ),
-        ],
-        alternatives: &[],
-        planned: &[],
-    },
-    Kind {
-        name: "load",
-        doc: "A test load on a track at rest.",
-        role: Role::Scene { once: false },
-        fields: &[
-            required("on", Form::Words(&[word("rail", ""), word("sleepers", "")]), "what it stands on"),
-            required("at", Form::List(&Form::Place), "one force at each place"),
-            optional(
-                "from",
-                Form::List(&Form::Name),
-                "the transitions from which `at` counts, mirrored at each; needed where there are several",
-            ),
-            required(
-                "force",
-                Form::OneOf(&[per("kN", 0.0, 10_000.0, &FORCE), Form::Words(&[CYCLIC])]),
-                "constant or cyclic, positive down",
-            ),
-            default("total", number("cycles", 1.0, 1e9), "1 cycle", "times that a cyclic force comes back"),
-            default("speed", number("m/s", 0.0, 200.0), "0 m/s", "with which it moves along the rail"),
-        ],
-        alternatives: &[],
-        planned: &[],
-    },
+    traffic::VEHICLE,
+    traffic::CAR_BODY,
+    traffic::BOGIE,
+    traffic::WHEELSET,
+    traffic::PRIMARY_SUSPENSION,
+    traffic::SECONDARY_SUSPENSION,
+    traffic::TRAIN,
+    traffic::TRAFFIC,
+    traffic::LOAD,
     Kind {
         name: "law",
         doc: "The settlement of a support under the peaks of its contact force.",
@@ -919,89 +703,9 @@ pub const KINDS: &[Kind] = &[
         alternatives: &[],
         planned: &[],
     },
-    Kind {
-        name: "record",
-        doc: "Histories to keep. Tables along the track are always written.",
-        role: Role::Scene { once: false },
-        fields: &[
-            required("quantities", Form::List(&Form::Response), "what to keep"),
-            optional("at", Form::List(&Form::Place), "at these seats"),
-            optional("over", Form::Span, "at all seats of a span"),
-            optional(
-                "from",
-                Form::List(&Form::Name),
-                "the transitions from which places count, mirrored at each; needed where there are several",
-            ),
-            optional(
-                "after",
-                Form::List(&AXLES_MASS_OR_CYCLES),
-                "of a passage at these axle counts, or of a cyclic load at these cycles; the last where absent",
-            ),
-            optional("every", number("s", 1e-7, 1.0), "sampling interval"),
-            optional(
-                "depth",
-                number("m", 0.0, 100.0),
-                "of volumes, below the sleepers; half the top layer where absent",
-            ),
-            default(
-                "volume",
-                Form::Words(VOLUMES),
-                "box(0.2 m, bed, 0.2 m)",
-                "over which the responses of ballast are averaged",
-            ),
-        ],
-        alternatives: &[],
-        planned: &["states"],
-    },
-    Kind {
-        name: "expect",
-        doc: "What the run must show; a miss is named and sets the exit code.",
-        role: Role::Scene { once: false },
-        fields: &[required("that", Form::List(&Form::Comparison), "comparisons of responses")],
-        alternatives: &[],
-        planned: &[],
-    },
-    Kind {
-        name: "study",
-        doc: "Runs of the scene with some of its lines edited, one a point: `trackbed study`.",
-        role: Role::Scene { once: false },
-        fields: &[
-            required(
-                "vary",
-                Form::Axes,
-                "`[values]`, `a .. b`, `steps(a .. b, by = c)` or `count = n`, `uniform(a .. b)`, `normal(mean, sd)`, \
-                 `log_normal(median, cov)`",
-            ),
-            default(
-                "sampling",
-                Form::Words(&[
-                    word("grid", "every combination; lists and steps only"),
-                    sampled("latin_hypercube", "one point in each stratum of every value"),
-                    sampled("sobol", "low discrepancy; best for powers of two"),
-                ]),
-                "grid",
-                "how points are chosen",
-            ),
-            optional("set", Form::Settings, "lines edited alike in every point"),
-            default(
-                "repeats",
-                Form::Integer { min: 1, max: 1000 },
-                "1",
-                "runs of each point, each with a further seed",
-            ),
-            optional("budget", number("h", 1e-4, 1e5), "of computing on one core; a study above it is refused"),
-            optional("minimise", Form::List(&Form::Expression), "several objectives give a Pareto front"),
-            optional("maximise", Form::List(&Form::Expression), ""),
-            optional("report", Form::List(&Form::Expression), "shown beside the objectives"),
-            optional(
-                "subject_to",
-                Form::List(&Form::Comparison),
-                "what a design must hold; points that break one without a response are left out",
-            ),
-        ],
-        alternatives: &[],
-        planned: &[],
-    },
+    results::RECORD,
+    results::EXPECT,
+    results::STUDY,
 ];
 
 /// Fields that every kind has.

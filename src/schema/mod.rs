@@ -6,6 +6,8 @@ mod docs;
 mod kinds;
 mod laws;
 mod materials;
+mod results;
+mod traffic;
 
 pub use docs::{index, page, section};
 pub use kinds::{COMMON, KINDS, RANDOM};

@@ -3,7 +3,7 @@
 use super::plan::{PlannedPoint, Scene};
 use crate::diag::Diagnostic;
 use crate::graph;
-use crate::results::{self, RunRecorder, Tables, Verdict};
+use crate::results::{self, RunRecorder, Verdict};
 use crate::scenario::Study;
 use crate::scenario::response::Expectation;
 use crate::syntax::tree::Comparison;
@@ -70,14 +70,7 @@ fn run(scene: Scene<'_>, study: &Study, point: &PlannedPoint, repeat: u32) -> Re
     graph::execute(graph, &mut recorder, None).map_err(|error| failed(&results::diagnose(&error, scenario, graph)))?;
     let (tables, histories) = (&recorder.tables, recorder.all_histories());
     let scalars = results::summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
-    let view = Tables {
-        sleepers: &tables.sleepers,
-        blocks: &tables.blocks,
-        rail: &tables.rail,
-        histories: &histories,
-        scalars: &scalars,
-        track: &scenario.track,
-    };
+    let view = tables.view(&histories, &scalars, &scenario.track);
     let measure = |m: &crate::scenario::Measured| {
         results::evaluate(&m.expression, view).map_err(|why| fail(&format!("`{}`: {why}", m.text)))
     };

@@ -139,7 +139,11 @@ fn check(scene: Scene<'_>, base: &Compiled, study: &Study, levels: &[Level], ove
             let remarks = compiled.diagnostics.iter().filter(new).map(placed).collect();
             Checked::Legal { seconds: graph.estimate.seconds, seed: scenario.solve.seed, remarks }
         }
-        _ if errors.is_empty() => Checked::Illegal(compiled.diagnostics.iter().map(placed).collect()),
+        _ if errors.is_empty() => {
+            // a hole of the scene itself is told there
+            let told = |d: &&Diagnostic| base.diagnostics.iter().any(|b| (b.code, &b.message) == (d.code, &d.message));
+            Checked::Illegal(compiled.diagnostics.iter().filter(|d| !told(d)).map(placed).collect())
+        }
         _ => Checked::Illegal(errors),
     }
 }
@@ -189,8 +193,8 @@ fn without_seed(scene: Scene<'_>, plan: &Plan) -> Option<Diagnostic> {
     let mistake = compiled.diagnostics.iter().find(|d| d.is_error())?;
     let name = &plan.study.name;
     let message = format!("study `{name}` cannot be repeated with another seed: {}", mistake.message);
-    let help = "declare a `solve` without a name, `solve { seed = 1 }`";
-    Some(Diagnostic::new(Code::E0705, message).at(plan.study.span, "has `repeats`").help(help))
+    let help = mistake.help.clone();
+    Some(Diagnostic::new(Code::E0705, message).at(plan.study.span, "has `repeats`").maybe_help(help))
 }
 
 /// Finds places of a point's sources in those of the scene.

@@ -100,11 +100,11 @@ fn starts_item(text: &str, tokens: &[Token], i: usize) -> Option<Certainty> {
 }
 
 /// Whether the tokens from here on are `path =`, in whatever spelling.
-fn starts_field(text: &str, tokens: &[Token], mut i: usize) -> bool {
+pub(super) fn starts_field(text: &str, tokens: &[Token], mut i: usize) -> bool {
     while tokens.get(i).is_some_and(|t| t.kind == Kind::Word) {
         match tokens.get(i + 1).map_or("", |t| t.of(text)) {
             "." => i += 2,
-            sign => return matches!(sign, "=" | ":=" | "=>"),
+            sign => return matches!(sign, "=" | ":=" | "=>" | "->"),
         }
     }
     false

@@ -59,7 +59,7 @@ impl<'p> Builder<'p> {
             match pair.as_rule() {
                 Rule::use_item => items.extend(self.use_item(pair).map(Item::Use)),
                 Rule::let_item => items.extend(self.let_item(pair).map(Item::Let)),
-                Rule::wrong_let => items.extend(self.wrong_let(pair).map(Item::Let)),
+                Rule::wrong_let => items.extend(self.wrong_let(pair).map(|binding| self.as_declared(binding))),
                 Rule::declaration => items.extend(self.declaration(pair).map(Item::Declaration)),
                 Rule::wrong_declaration => items.extend(self.wrong_declaration(pair).map(Item::Declaration)),
                 Rule::bad_item => {
@@ -115,7 +115,11 @@ impl<'p> Builder<'p> {
         let value = self.given(&mut parts)?.0;
         if self.diagnostics.len() == known {
             let text = first_line(self.text(start, end));
-            let (message, help) = if path.names.len() == 1 {
+            let (message, help) = if let ValueKind::Object { base: Some(kind), .. } = &value.kind
+                && let ([name], [kind]) = (path.names.as_slice(), kind.names.as_slice())
+            {
+                ("`=` in the header of a declaration", format!("write `{} {} {{`", kind.text, name.text))
+            } else if path.names.len() == 1 {
                 ("a value outside of a declaration needs `let`", format!("write `let {text}`"))
             } else {
                 (
@@ -128,6 +132,54 @@ impl<'p> Builder<'p> {
         let span = path.span.to(value.span);
         let name = path.names.into_iter().next()?;
         Some(Let { name, value, docs, span })
+    }
+
+    /// `name = kind { ... }` is the declaration that it was meant for.
+    fn as_declared(&self, binding: Let) -> Item {
+        match binding.value.kind {
+            ValueKind::Object { base: Some(Path { mut names, .. }), fields } if names.len() == 1 => {
+                let (kind, name) = (names.remove(0), Some(binding.name));
+                Item::Declaration(Declaration {
+                    kind,
+                    name,
+                    base: None,
+                    fields,
+                    docs: binding.docs,
+                    span: binding.span,
+                })
+            }
+            _ => Item::Let(binding),
+        }
+    }
+
+    /// `def kind name {`, and `kind name : kind base {`: a word of another language, or one said twice, is passed over.
+    fn word_too_many(&mut self, names: &mut Vec<Name>, base: &mut Option<Path>, junk: &Pair<'p, Rule>) -> bool {
+        const OPENERS: [&str; 8] = ["def", "class", "new", "define", "declare", "create", "object", "type"];
+        let (start, text) = (junk.as_span().start(), junk.as_str().trim_end());
+        if !text.starts_with(|c: char| c.is_ascii_alphabetic())
+            || text.contains(|c: char| !c.is_ascii_alphanumeric() && c != '_')
+        {
+            return false;
+        }
+        let word = Name { text: text.to_owned(), span: self.span(start, start + text.len()) };
+        let (extra, help) = match (names.as_slice(), &base) {
+            ([first, kind], None) if OPENERS.contains(&first.text.as_str()) => {
+                let help = format!("write `{} {text} {{`", kind.text);
+                let extra = names.remove(0);
+                names.push(word);
+                (extra, help)
+            }
+            ([kind, name], Some(said)) if said.names.len() == 1 && said.names[0].text == kind.text => {
+                let help = format!("write `{} {} : {text} {{`", kind.text, name.text);
+                let said = said.names[0].clone();
+                *base = Some(Path { span: word.span, names: vec![word] });
+                (said, help)
+            }
+            _ => return false,
+        };
+        let message = format!("`{}` does not belong into the header of a declaration", extra.text);
+        self.report(Diagnostic::new(Code::E0105, message).at(extra.span, "").help(help));
+        true
     }
 
     fn declaration(&mut self, pair: Pair<'p, Rule>) -> Option<Declaration> {
@@ -147,6 +199,7 @@ impl<'p> Builder<'p> {
                     continue;
                 }
                 Rule::block => fields = self.block(part),
+                Rule::header_junk if self.word_too_many(&mut names, &mut base, &part) => {}
                 Rule::header_junk | Rule::junk => {
                     self.explain(Rule::exact_item, start, part_start, part_end);
                     continue;
@@ -198,7 +251,15 @@ impl<'p> Builder<'p> {
 
     pub fn block(&mut self, pair: Pair<'p, Rule>) -> Vec<Field> {
         let mut fields: Vec<Field> = Vec::new();
+        let mut previous = None;
         for part in pair.into_inner() {
+            let place = (part.as_span().start(), part.as_span().end());
+            let before = previous.replace(place);
+            if let Some(field) = fields.last_mut()
+                && before.is_some_and(|before| self.goes_on(before, &part, field))
+            {
+                continue;
+            }
             match part.as_rule() {
                 Rule::field | Rule::wrong_colon => self.field(part, &mut fields),
                 Rule::wrong_block => fields.extend(self.wrong_block(part)),
@@ -314,7 +375,9 @@ impl<'p> Builder<'p> {
                 if !self.prepared.is_poisoned(at, end) {
                     let found = self.found(at);
                     let message = format!("expected a value after `{sign}`, found {found}");
-                    self.report(Diagnostic::new(Code::E0101, message).at(self.span(at.saturating_sub(1), at), ""));
+                    let help = "write a value behind it, or take the line out";
+                    let mistake = Diagnostic::new(Code::E0101, message).at(self.span(at.saturating_sub(1), at), "");
+                    self.report(mistake.help(help));
                 }
                 Some((Value { kind: ValueKind::Error, span: self.span(at, at) }, false))
             }
@@ -327,7 +390,10 @@ impl<'p> Builder<'p> {
                 match parts.next() {
                     Some(junk) => {
                         let (junk_start, junk_end) = (junk.as_span().start(), junk.as_span().end());
-                        self.explain(Rule::exact_value, start, junk_start, junk_end);
+                        // a value that is reported takes what hangs on it along
+                        if value.kind != ValueKind::Error {
+                            self.explain(Rule::exact_value, start, junk_start, junk_end);
+                        }
                         let span = value.span.to(self.span(junk_start, junk_end));
                         Some((Value { kind: ValueKind::Error, span }, false))
                     }

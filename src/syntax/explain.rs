@@ -53,7 +53,9 @@ impl<'p> Builder<'p> {
         let mistake = match self.swallowed(junk) {
             Some(next) => {
                 let message = format!("expected a comma or a line break before `{}`", next.text());
-                Diagnostic::new(Code::E0101, message).at(next.span, "a new field starts here")
+                let mistake = Diagnostic::new(Code::E0101, message).at(next.span, "a new field starts here");
+                self.report(mistake.help(format!("write `, {}`", next.text())));
+                return Explained::Other(path);
             }
             None => {
                 let what = self.found(found.start);
@@ -85,6 +87,9 @@ impl<'p> Builder<'p> {
         let text: &'p str = &self.prepared.text;
         let part = first_line(&text[start..end]);
         let word = found.map_or("", |t| t.of(text));
+        if let Some(help) = self.habit(exact, start, part, found) {
+            return Some(help);
+        }
         let opens = |sign: &str| matches!(sign, "+" | "*" | "/" | "^" | ".." | "<" | ">" | "<=" | ">=" | "per");
         if !word.is_ascii() && matches!(found?.kind, Kind::Word) {
             return Some("names are made of ASCII letters, digits and `_`".to_owned());
@@ -108,6 +113,11 @@ impl<'p> Builder<'p> {
             Rule::exact_entry => {
                 let key = leading(part);
                 let rest = part[key.len()..].trim_start();
+                if !key.is_empty() && part.chars().all(|c| c.is_ascii_alphabetic() || "_ ".contains(c)) {
+                    let words: Vec<&str> = part.split_whitespace().collect();
+                    let (name, items) = (words.join("_"), words.join(", "));
+                    return Some(format!("write `{items}` for several, `{name}` for one: a name has no blanks"));
+                }
                 let value = rest.starts_with(|c: char| c.is_alphanumeric());
                 (!key.is_empty() && value && !rest.starts_with("per ")).then(|| format!("write `{key}: {rest}`"))
             }
@@ -124,7 +134,8 @@ impl<'p> Builder<'p> {
                     return Some(format!("a name has no blanks: write `{path}_{second} {after}`"));
                 }
                 let value = rest.starts_with(|c: char| c.is_alphanumeric() || "\"([-?".contains(c));
-                (!path.is_empty() && value).then(|| format!("write `{path} = {rest}`"))
+                let written = (!path.is_empty() && value).then(|| format!("write `{path} = {rest}`"));
+                Some(written.unwrap_or_else(|| "a field is `name = value`".to_owned()))
             }
             Rule::exact_item if first_word(part) == "let" => {
                 let name = part["let".len()..].trim_start();
@@ -146,6 +157,7 @@ impl<'p> Builder<'p> {
                 Some("a declaration is `kind name : base { field = value }`".to_owned())
             }
             Rule::exact_item if start == junk => Some("a declaration is `kind name { field = value }`".to_owned()),
+            Rule::exact_item => Some("a declaration is `kind name : base { field = value }`".to_owned()),
             _ => None,
         }
     }
@@ -182,7 +194,12 @@ impl<'p> Builder<'p> {
     pub fn decimal_comma(&self, at: usize) -> Option<usize> {
         let text = &self.prepared.text;
         let whole = text[..at].strip_suffix(',')?;
-        let start = whole.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_').len();
+        let bare = whole.trim_end_matches(|c: char| c.is_ascii_digit() || "_.".contains(c)).len();
+        // `40.000,5`: points between thousands
+        let start = match whole[bare..].split('.').skip(1).all(|thousand| thousand.len() == 3) {
+            true => bare,
+            false => whole.trim_end_matches(|c: char| c.is_ascii_digit() || c == '_').len(),
+        };
         let before = whole[..start].chars().next_back();
         let alone = start < whole.len() && !before.is_some_and(|c| c == '.' || c.is_alphanumeric());
         (alone && text[at..].starts_with(|c: char| c.is_ascii_digit())).then_some(start)
@@ -191,9 +208,19 @@ impl<'p> Builder<'p> {
     pub fn report_decimal_comma(&mut self, at: usize, end: usize) {
         let Some(start) = self.decimal_comma(at) else { return };
         let (whole, decimals) = (&self.prepared.text[start..at - 1], first_line(self.text(at, end)));
+        let digits = decimals.find(|c: char| !c.is_ascii_digit()).unwrap_or(decimals.len());
+        let help = if whole.contains('.') {
+            format!("write `{}.{decimals}`", whole.replace('.', ""))
+        } else if decimals[digits..].starts_with('.') {
+            format!("write `{whole}{decimals}`")
+        } else if digits == 3 {
+            format!("write `{whole}.{decimals}`, or `{whole}_{decimals}` where the comma parts thousands")
+        } else {
+            format!("write `{whole}.{decimals}`")
+        };
         let mistake = Diagnostic::new(Code::E0105, "a decimal comma")
-            .at(self.span(start, at + first_line(self.text(at, end)).len()), "a comma parts items")
-            .help(format!("write `{whole}.{decimals}`"));
+            .at(self.span(start, at + decimals.len()), "a comma parts items")
+            .help(help);
         self.report(mistake);
     }
 

@@ -8,25 +8,34 @@ use super::token::{Kind, Token};
 use crate::diag::{Code, Diagnostic};
 
 /// Signs that look like ours.
-const LOOK_ALIKES: [(&str, &str); 7] =
-    [("−", "-"), ("≤", "<="), ("≥", ">="), ("×", "*"), ("÷", "/"), ("…", ".."), ("∙", "*")];
+const LOOK_ALIKES: [(&str, &str); 9] =
+    [("−", "-"), ("–", "-"), ("—", "-"), ("≤", "<="), ("≥", ">="), ("×", "*"), ("÷", "/"), ("…", ".."), ("∙", "*")];
 
 /// Reports and replaces the foreign signs of a text. Where its brackets are not balanced, only those opened on the same
 /// line tell what a sign stands in.
 pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
     let mut brackets = Vec::new();
+    // a habit shows all along a line, and is told once
+    let mut told: Vec<&str> = Vec::new();
     for (i, token) in tokens.iter().enumerate() {
         let text = token.of(draft.original);
         match token.kind {
-            Kind::LineBreak if !balanced => brackets.clear(),
+            Kind::LineBreak => {
+                told.clear();
+                if !balanced {
+                    brackets.clear();
+                }
+            }
             Kind::Open(c) => brackets.push(c),
             Kind::Close(_) => {
                 brackets.pop();
             }
-            Kind::HashComment => {
+            Kind::ForeignComment => {
                 draft.overwrite(token, "");
-                let help = format!("write `// {}`", text.trim_start_matches('#').trim());
-                report(draft, token, "`#` does not begin a comment", help);
+                let words = text.trim_start_matches(['#', '-', '%', '!', '\'']);
+                let sign = if text.starts_with("--") { "--" } else { &text[..1] };
+                let help = format!("write `// {}`", words.trim());
+                report(draft, token, format!("`{sign}` does not begin a comment"), help);
             }
             Kind::BlockComment => block_comment(draft, token),
             Kind::OddText => odd_text(draft, token),
@@ -39,18 +48,34 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
                 draft.report(mistake);
             }
             Kind::Sign => match text {
+                "->" | "::" if in_header(draft.original, tokens, i) => {
+                    draft.overwrite(token, ":");
+                    let help = format!("write `{}`", rewritten(draft.original, tokens, i, " : "));
+                    report(draft, token, format!("`{text}` is not a sign of this language"), help);
+                }
+                "–" | "—" if between_ends(draft.original, tokens, i) => {
+                    draft.overwrite(token, "..");
+                    let help = format!("write `{}`", rewritten(draft.original, tokens, i, " .. "));
+                    report(draft, token, "a dash between the ends of a range", help);
+                }
+                ";" | "=>" | ":=" | "=<" | "->" if told.contains(&text) => {
+                    draft.overwrite(token, replacement(text, brackets.last()));
+                }
                 ";" => {
                     draft.overwrite(token, ",");
-                    let repeated = i > 0 && tokens[i - 1].of(draft.original) == ";";
-                    if !repeated {
-                        let (first, _) = item_around(draft.original, tokens, i);
-                        let item = draft.written(tokens[first].start, token.start);
-                        let help = if item.is_empty() { "remove it".to_owned() } else { format!("write `{item}`") };
-                        report(draft, token, "`;` does not end an item: a line break or a comma does", help);
-                    }
+                    told.push(text);
+                    let (first, _) = item_around(draft.original, tokens, i);
+                    let item = draft.written(tokens[first].start, token.start);
+                    let help = match bracket_around(draft.original, tokens, i) {
+                        Some(whole) => format!("write `{}`", whole.replace(';', ",")),
+                        None if item.is_empty() => "remove it".to_owned(),
+                        None => format!("write `{item}`"),
+                    };
+                    report(draft, token, "`;` does not end an item: a line break or a comma does", help);
                 }
                 "=>" if brackets.last() == Some(&'[') => {
                     draft.overwrite(token, ":");
+                    told.push(text);
                     let help = format!(
                         "write `{}` for a pair, `{}` for a comparison",
                         rewritten(draft.original, tokens, i, ": "),
@@ -58,9 +83,12 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
                     );
                     report(draft, token, "`=>` is not a sign of this language", help);
                 }
-                "=>" | ":=" => {
-                    draft.overwrite(token, "=");
-                    let help = format!("write `{}`", rewritten(draft.original, tokens, i, " = "));
+                "=>" | ":=" | "=<" | "->" => {
+                    let right = replacement(text, brackets.last());
+                    draft.overwrite(token, right);
+                    told.push(text);
+                    let joint = if right == ":" { ": ".to_owned() } else { format!(" {right} ") };
+                    let help = format!("write `{}`", rewritten(draft.original, tokens, i, &joint));
                     report(draft, token, format!("`{text}` is not a sign of this language"), help);
                 }
                 _ => look_alike(draft, tokens, i),
@@ -68,6 +96,62 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
             _ => {}
         }
     }
+}
+
+/// Whether a sign stands behind a name in a line that begins at column 0.
+fn in_header(text: &str, tokens: &[Token], i: usize) -> bool {
+    let line = text[..tokens[i].start].rfind('\n').map_or(0, |n| n + 1);
+    let header = &text[line..tokens[i].start];
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_ ".contains(c);
+    header.starts_with(|c: char| c.is_ascii_alphabetic())
+        && header.chars().all(plain)
+        && !header.starts_with("let ")
+        && !header.starts_with("use ")
+}
+
+/// Whether a sign stands between two numbers, the first perhaps with its unit.
+fn between_ends(text: &str, tokens: &[Token], i: usize) -> bool {
+    let number = |token: Option<&Token>| token.is_some_and(|t| t.kind == Kind::Number);
+    let signed = tokens.get(i + 1).is_some_and(|t| matches!(t.of(text), "-" | "+" | "−")) && number(tokens.get(i + 2));
+    let behind = i > 0 && matches!(tokens[i - 1].kind, Kind::Number | Kind::Word);
+    behind && (number(tokens.get(i + 1)) || signed)
+}
+
+/// What stands for a foreign sign, inside this bracket.
+fn replacement(sign: &str, bracket: Option<&char>) -> &'static str {
+    match sign {
+        ";" => ",",
+        "=<" => "<=",
+        "=>" | "->" if bracket == Some(&'[') => ":",
+        _ => "=",
+    }
+}
+
+/// The brackets around a token and what is in them, with the unit behind, where they begin and end on its line.
+fn bracket_around<'t>(text: &'t str, tokens: &[Token], i: usize) -> Option<&'t str> {
+    let mut depth = 0;
+    let mut first = i;
+    loop {
+        first = first.checked_sub(1)?;
+        match tokens[first].kind {
+            Kind::LineBreak => return None,
+            Kind::Close(_) => depth += 1,
+            Kind::Open('[' | '(') if depth == 0 => break,
+            Kind::Open(_) if depth == 0 => return None,
+            Kind::Open(_) => depth -= 1,
+            _ => {}
+        }
+    }
+    for token in &tokens[i..] {
+        match token.kind {
+            Kind::LineBreak => return None,
+            Kind::Open(_) => depth += 1,
+            Kind::Close(_) if depth == 0 => return Some(&text[tokens[first].start..token.end]),
+            Kind::Close(_) => depth -= 1,
+            _ => {}
+        }
+    }
+    None
 }
 
 fn report(draft: &mut Draft, token: &Token, message: impl Into<String>, help: String) {

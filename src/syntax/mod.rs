@@ -1,15 +1,18 @@
 //! From text to a tree, and from text to tidy text.
 //!
-//! [`parse`] reads a file whole and reports all its mistakes at once: `token` cuts it, `foreign` and `balance` repair
+//! [`parse`] reads a file whole and reports all its mistakes at once: `token` cuts it, `header`, `foreign` and `balance` repair
 //! it so that `grammar/track.pest` can read it to the end, `build` makes the tree, and `explain` finds words for what
 //! could not be read. [`format()`] lays the tokens out anew.
 
 mod balance;
+mod brackets;
 mod build;
 mod decode;
 mod explain;
 mod foreign;
 mod format;
+mod habits;
+mod header;
 mod layout;
 mod parse;
 mod prepare;

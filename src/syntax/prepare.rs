@@ -5,7 +5,7 @@
 use std::collections::BTreeSet;
 
 use super::token::{Token, tokens};
-use super::{balance, foreign, limits};
+use super::{balance, foreign, header, limits};
 use crate::diag::{Code, Diagnostic, FileId, Span};
 
 /// A text on its way: what has been written over it and put into it so far.
@@ -13,7 +13,7 @@ pub(super) struct Draft<'a> {
     pub file: FileId,
     pub original: &'a str,
     bytes: Vec<u8>,
-    /// Closing brackets to put in, each before the byte at its offset.
+    /// Brackets to put in, each before the byte at its offset.
     pub insertions: Vec<(usize, char)>,
     /// Where a value stands that is already reported.
     pub poisoned: BTreeSet<usize>,
@@ -104,7 +104,7 @@ pub(super) fn prepare(file: FileId, original: &str) -> (Option<Prepared<'_>>, Ve
             .help("move part of it to a module, or tables to a `file(\"...\")`");
         return (None, vec![mistake]);
     }
-    let tokens = tokens(original);
+    let mut tokens = tokens(original);
     let mut draft = Draft {
         file,
         original,
@@ -113,6 +113,7 @@ pub(super) fn prepare(file: FileId, original: &str) -> (Option<Prepared<'_>>, Ve
         poisoned: BTreeSet::new(),
         diagnostics: Vec::new(),
     };
+    header::mend(&mut draft, &mut tokens);
     let balanced = balance::is_balanced(original, &tokens);
     foreign::replace(&mut draft, &tokens, balanced);
     if let Err(beyond) = balance::balance(&mut draft, &tokens, balanced) {

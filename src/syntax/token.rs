@@ -17,10 +17,10 @@ pub(super) enum Kind {
     Word,
     Open(char),
     Close(char),
-    /// One sign, or one of `..  <=  >=  =>  :=  ==`.
+    /// One sign, or one of `..  <=  >=` and of the pairs of signs that other languages have.
     Sign,
-    /// `# to the line's end`, of other languages.
-    HashComment,
+    /// `#`, `--`, `%`, `!` or `'` to the line's end, of other languages.
+    ForeignComment,
     /// `/* ... */`, of other languages.
     BlockComment,
     /// `'...'` or text in typographic quotes, of other languages and word processors.
@@ -40,11 +40,12 @@ impl Token {
     }
 
     pub fn is_comment(&self) -> bool {
-        matches!(self.kind, Kind::Comment | Kind::HashComment | Kind::BlockComment)
+        matches!(self.kind, Kind::Comment | Kind::ForeignComment | Kind::BlockComment)
     }
 }
 
-const PAIRS_OF_SIGNS: [&str; 6] = ["..", "<=", ">=", "=>", ":=", "=="];
+const PAIRS_OF_SIGNS: [&str; 15] =
+    ["..", "<=", ">=", "=>", ":=", "==", "=<", "->", "<-", "!=", "<>", "::", "&&", "||", "**"];
 
 /// All tokens of a text, in order.
 pub(super) fn tokens(text: &str) -> Vec<Token> {
@@ -57,13 +58,38 @@ pub(super) fn tokens(text: &str) -> Vec<Token> {
         if token.kind == (Kind::Text { closed: false }) {
             end = token.start + unclosed_length(token.of(text), &out[line..]);
         }
-        out.push(Token { end, ..token });
+        if is_foreign_comment(text, &token, out.last()) {
+            end = token.start + line_length(&text[token.start..]);
+            out.push(Token { kind: Kind::ForeignComment, end, ..token });
+        } else {
+            out.push(Token { end, ..token });
+        }
         at = end;
         if token.kind == Kind::LineBreak {
             line = out.len();
         }
     }
     out
+}
+
+/// Whether words begin with a sign that begins a comment elsewhere, where no value has that sign.
+fn is_foreign_comment(text: &str, token: &Token, before: Option<&Token>) -> bool {
+    let rest = &text[token.start..];
+    let words = |skip: usize| rest[skip..].trim_start_matches([' ', '\t']).starts_with(char::is_alphabetic);
+    let first = before.is_none_or(|t| t.kind == Kind::LineBreak);
+    let apart = |t: &Token| t.end < token.start && !matches!(t.kind, Kind::Open(_) | Kind::Sign);
+    let behind = before.is_some_and(apart);
+    if token.kind != Kind::Sign {
+        return false;
+    }
+    match rest.as_bytes() {
+        [b'-', b'-', ..] if first => words(2),
+        [b'-', b'-', b' ', ..] => behind && words(2),
+        [b'%', ..] => words(1) && (first || behind && before.is_some_and(|t| t.kind == Kind::Close('}'))),
+        [b'!', next, ..] => *next != b'=' && words(1) && (first || behind),
+        [b'\'', ..] => words(1) && behind,
+        _ => false,
+    }
 }
 
 /// The first token at or after an offset.
@@ -81,7 +107,7 @@ pub(super) fn next(text: &str, from: usize) -> Option<Token> {
         '\'' | '“' | '”' | '„' | '‘' | '’' => {
             odd_text(rest, c).map_or((Kind::Sign, c.len_utf8()), |n| (Kind::OddText, n))
         }
-        '#' => (Kind::HashComment, line_length(rest)),
+        '#' => (Kind::ForeignComment, line_length(rest)),
         '/' if rest.starts_with("//") => (Kind::Comment, line_length(rest)),
         '/' if rest.starts_with("/*") => (Kind::BlockComment, block_comment_length(rest)),
         '(' | '[' | '{' => (Kind::Open(c), 1),

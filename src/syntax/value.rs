@@ -8,6 +8,15 @@ use super::parse::Rule;
 use super::tree::{Argument, BinaryOp, Comparison, Entry, UnitText, Value, ValueKind};
 use crate::diag::{Code, Diagnostic, Span};
 
+/// What has been said of a list or of arguments.
+#[derive(Default)]
+pub(super) struct Told {
+    /// `=` where `:` belongs.
+    pub equals: bool,
+    /// `:` where `=` belongs, or no sign where `:` does.
+    pub colon: bool,
+}
+
 impl<'p> Builder<'p> {
     pub fn value(&mut self, pair: Pair<'p, Rule>) -> Value {
         // Most values use one level of precedence of seven.
@@ -35,6 +44,7 @@ impl<'p> Builder<'p> {
             }
             Rule::list => self.list(pair),
             Rule::call => self.call(pair),
+            Rule::object if self.holds_items(&pair) => Value { kind: ValueKind::Error, span },
             Rule::object => {
                 let (mut base, mut fields) = (None, Vec::new());
                 for part in pair.into_inner() {
@@ -256,11 +266,14 @@ impl<'p> Builder<'p> {
         let start = pair.as_span().start();
         let mut span = self.span(start, start);
         let (mut entries, mut unit) = (Vec::<Entry>::new(), None);
+        // a habit shows all along a list, and is told once
+        let mut told = Told::default();
+        let in_groups = self.pairs_in_groups(&pair);
         for part in pair.into_inner() {
             match part.as_rule() {
                 Rule::entry => {
                     let (at, end) = (part.as_span().start(), part.as_span().end());
-                    let entry = self.entry(part);
+                    let entry = if in_groups { self.group_as_pair(part) } else { self.entry(part, &mut told) };
                     // `[soil: 0,3 m]`: a pair, then a bare number that hangs on its comma.
                     if let Some(previous) = entries.last_mut()
                         && previous.key.is_some()
@@ -287,7 +300,7 @@ impl<'p> Builder<'p> {
         Value { kind: ValueKind::List { entries, unit }, span }
     }
 
-    fn entry(&mut self, pair: Pair<'p, Rule>) -> Entry {
+    pub fn entry(&mut self, pair: Pair<'p, Rule>, told: &mut Told) -> Entry {
         let start = pair.as_span().start();
         let parts = pair.into_inner();
         let (mut values, mut sign, mut bad) = (Vec::new(), None, None);
@@ -305,7 +318,14 @@ impl<'p> Builder<'p> {
                 }
                 Rule::junk | Rule::bad_entry => {
                     let at = part.as_span();
-                    self.explain(Rule::exact_entry, start, at.start(), at.end());
+                    let read = values.last().is_some_and(|value| matches!(value.kind, ValueKind::Path(_)));
+                    let reported = values.last().is_some_and(|value| value.kind == ValueKind::Error);
+                    // `[open 42 m, stiff 24 m]`
+                    let alike = read && at.as_str().starts_with(|c: char| c.is_ascii_digit());
+                    if !(reported || alike && told.colon) {
+                        self.explain(Rule::exact_entry, start, at.start(), at.end());
+                    }
+                    told.colon |= alike;
                     bad = Some(self.span(at.start(), at.end()));
                 }
                 _ => {
@@ -316,6 +336,7 @@ impl<'p> Builder<'p> {
         }
         if let (Some(sign), [key, value], None) = (&sign, texts.as_slice(), bad)
             && sign.as_rule() == Rule::equals
+            && !std::mem::replace(&mut told.equals, true)
         {
             let mistake = Diagnostic::new(Code::E0105, "a pair in a list has `:`, not `=`").at(self.span_of(sign), "");
             self.report(mistake.help(format!("write `{key}: {value}`")));
@@ -339,11 +360,12 @@ impl<'p> Builder<'p> {
         let mut parts = pair.into_inner();
         let Some(word) = parts.next() else { return Value { kind: ValueKind::Error, span } };
         let word = self.name(word);
-        let arguments = parts.map(|p| self.argument(p)).collect();
+        let mut told = Told::default();
+        let arguments = parts.map(|p| self.argument(p, &mut told)).collect();
         Value { kind: ValueKind::Call { word, arguments }, span }
     }
 
-    fn argument(&mut self, pair: Pair<'p, Rule>) -> Argument {
+    fn argument(&mut self, pair: Pair<'p, Rule>, told: &mut Told) -> Argument {
         let start = pair.as_span().start();
         let mut parts = pair.into_inner();
         let named = parts.peek().is_some_and(|p| p.as_rule() == Rule::name);
@@ -360,6 +382,7 @@ impl<'p> Builder<'p> {
         if let (Some(name), Some(sign)) = (&name, sign)
             && sign.as_rule() == Rule::colon
             && sound
+            && !std::mem::replace(&mut told.colon, true)
         {
             let mistake = Diagnostic::new(Code::E0105, "an argument is given with `=`").at(self.span_of(&sign), "");
             self.report(mistake.help(format!("write `{} = {text}`", name.text)));
@@ -372,7 +395,11 @@ impl<'p> Builder<'p> {
         let span = self.span_of(&pair);
         let (start, end) = (pair.as_span().start(), pair.as_span().end());
         let second = pair.clone().into_inner().nth(1).map(|p| p.as_span().start());
-        let mut entries: Vec<Entry> = pair.into_inner().map(|p| self.entry(p)).collect();
+        if let Some(fields) = self.group_of_fields(&pair) {
+            return fields;
+        }
+        let mut told = Told::default();
+        let mut entries: Vec<Entry> = pair.into_inner().map(|p| self.entry(p, &mut told)).collect();
         if entries.len() == 1 && entries[0].key.is_none() {
             return Value { span, ..entries.remove(0).value };
         }
@@ -391,7 +418,11 @@ impl<'p> Builder<'p> {
             n => format!("{n}"),
         };
         let mistake = Diagnostic::new(Code::E0101, format!("expected one value in parentheses, found {found}"));
-        self.report(mistake.at(span, "").maybe_help((entries.len() > 1).then(|| "lists stand in `[ ]`".to_owned())));
+        let help = match entries.len() {
+            0 => "write a value between them, or take them out",
+            _ => "lists stand in `[ ]`",
+        };
+        self.report(mistake.at(span, "").help(help));
         Value { kind: ValueKind::Error, span }
     }
 }

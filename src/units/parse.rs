@@ -58,7 +58,7 @@ const PLAIN: [(&str, f64, Dimension); 16] = [
 ];
 
 /// Spellings that people use elsewhere, and ours.
-const FOREIGN: [(&str, &str); 38] = [
+const FOREIGN: &[(&str, &str)] = &[
     ("tonne", "t"),
     ("tonnes", "t"),
     ("ton", "t"),
@@ -78,6 +78,7 @@ const FOREIGN: [(&str, &str); 38] = [
     ("millimeters", "mm"),
     ("kilonewtons", "kN"),
     ("mt", "MGT"),
+    ("mgt", "MGT"),
     ("trains", "axles"),
     ("day", "d"),
     ("days", "d"),
@@ -97,6 +98,36 @@ const FOREIGN: [(&str, &str); 38] = [
     ("lb", "kg (1 lb = 0.4536 kg)"),
     ("mph", "km/h (1 mph = 1.609 km/h)"),
     ("kip", "kN (1 kip = 4.448 kN)"),
+    ("ksi", "MPa (1 ksi = 6.895 MPa)"),
+    ("psi", "kPa (1 psi = 6.895 kPa)"),
+    ("bar", "kPa (1 bar = 100 kPa)"),
+    ("kgf", "N (1 kgf = 9.81 N)"),
+    ("kmph", "km/h"),
+    ("cbm", "m^3"),
+    ("qm", "m^2"),
+    ("newton", "N"),
+    ("newtons", "N"),
+    ("kilonewton", "kN"),
+    ("meganewton", "MN"),
+    ("meganewtons", "MN"),
+    ("kilometre", "km"),
+    ("kilometres", "km"),
+    ("kilometers", "km"),
+    ("centimetres", "cm"),
+    ("millimetre", "mm"),
+    ("kilograms", "kg"),
+    ("kilogram", "kg"),
+    ("pascal", "Pa"),
+    ("megapascal", "MPa"),
+    ("gt", "MGT"),
+    ("axels", "axles"),
+    ("axel", "axles"),
+    ("achsen", "axles"),
+    ("wheelsets", "axles"),
+    ("schwellen", "sleepers"),
+    ("ties", "sleepers"),
+    ("loadings", "cycles"),
+    ("million", "e6 in the number, as in `1e6 axles` (for a million)"),
 ];
 
 /// Reads a unit. The empty text is the unit of a plain number.

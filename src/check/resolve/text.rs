@@ -48,7 +48,11 @@ impl Resolver<'_, '_> {
 
     /// A word with all its arguments, defaults too, each by its name.
     fn word(&mut self, word: &'static Word, arguments: &BTreeMap<&'static str, Slot>) -> String {
-        let given: Vec<String> = word.arguments.iter().filter_map(|a| self.argument(a, arguments)).collect();
+        let inside = word.arguments.iter().filter(|a| a.name != "per");
+        let given: Vec<String> = inside.filter_map(|a| self.argument(a, arguments)).collect();
+        if let Some(Val::Text(of)) = arguments.get("per").map(|slot| &slot.value) {
+            return format!("{}({}) per {of}", word.name, given.join(", "));
+        }
         if given.is_empty() { word.name.to_string() } else { format!("{}({})", word.name, given.join(", ")) }
     }
 

@@ -1,0 +1,74 @@
+//! Forces of a test load from a data file: times that ascend, each with a force in the range of constant ones.
+
+use super::Checker;
+use super::value::{Slot, Val};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::units::{Dimension, number};
+use std::collections::BTreeMap;
+
+/// The largest force of a load, N.
+const LARGEST: f64 = 1e7;
+
+impl Checker<'_> {
+    /// Reads `file("force.csv")`; `None` where a diagnostic has been given.
+    pub(super) fn force_history(&mut self, arguments: &BTreeMap<&'static str, Slot>, whole: Span) -> Option<()> {
+        let slot = arguments.get("name")?;
+        let Val::Text(name) = &slot.value else { return None };
+        let table = self.table(name, slot.span)?;
+        let of = |dimension: Dimension| {
+            move |i: &usize, columns: &[super::table::Column]| columns[*i].unit.dimension == dimension
+        };
+        let (is_time, is_force) = (of(Dimension::TIME), of(Dimension::FORCE));
+        let all = 0..table.columns.len();
+        let time = all.clone().find(|i| is_time(i, &table.columns));
+        let forces: Vec<usize> = all.filter(|i| is_force(i, &table.columns)).collect();
+        let wanted = match arguments.get("column").map(|slot| &slot.value) {
+            Some(Val::Text(column)) => table.column(column).filter(|i| forces.contains(i)),
+            _ => forces.first().copied().filter(|_| forces.len() == 1),
+        };
+        let (Some(time), Some(force)) = (time, wanted) else {
+            let what = match (time, forces.as_slice()) {
+                (None, _) => "no column of times, such as `time_s`",
+                (_, []) => "no column of forces, such as `force_kN`",
+                _ if arguments.contains_key("column") => "no such column of forces",
+                _ => "several columns of forces: name one with `column = name`",
+            };
+            let mistake = Diagnostic::new(Code::E0509, format!("`{name}` has {what}"));
+            let listed = table.columns.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
+            let help = "a file of forces has the columns `time_s,force_kN`";
+            self.report(mistake.at(table.header, format!("has {listed}")).at(whole, "read here").help(help));
+            return None;
+        };
+        let mut last: Option<super::table::Cell> = None;
+        let mut rows = 0;
+        for cells in table.rows() {
+            let (at, value) = (cells[time], cells[force]);
+            if let Some(before) = last.filter(|before| before.value >= at.value) {
+                self.report(
+                    Diagnostic::new(Code::E0510, "the times of a data file ascend from row to row")
+                        .at(at.span, "not after the row before")
+                        .at(before.span, "the row before")
+                        .at(whole, "read here"),
+                );
+                return None;
+            }
+            if !(0.0..=LARGEST).contains(&value.value) {
+                let message = format!("expected 0 .. 10000 kN, found {} kN", number(value.value / 1e3));
+                let mistake = Diagnostic::new(Code::E0405, message).at(value.span, "out of range");
+                self.report(
+                    mistake.at(whole, "read here").help("forces are positive down; a load does not lift the track"),
+                );
+                return None;
+            }
+            last = Some(at);
+            rows += 1;
+        }
+        if rows < 2 {
+            let message = format!("expected two rows of numbers or more, found {rows}");
+            let mistake = Diagnostic::new(Code::E0510, message).at(table.header, "too few rows below");
+            self.report(mistake.at(whole, "read here"));
+            return None;
+        }
+        Some(())
+    }
+}

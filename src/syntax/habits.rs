@@ -1,0 +1,132 @@
+//! What to write instead of a spelling that other languages and spreadsheets have, where it shows at one sign or word.
+
+use super::build::Builder;
+use super::parse::Rule;
+use super::token::{Kind, Token};
+
+impl Builder<'_> {
+    /// The way out for a part that begins at `start` and cannot be read from `found` on.
+    pub fn habit(&self, exact: Rule, start: usize, part: &str, found: Option<Token>) -> Option<String> {
+        let text = &self.prepared.text;
+        let found = found?;
+        let word = found.of(text);
+        let (before, after) = (text[start..found.start.max(start)].trim(), &text[found.end..]);
+        let rest = part.get(found.start.saturating_sub(start)..).unwrap_or_default();
+        let digit = |c: char| c.is_ascii_digit();
+        let fixed = match word {
+            "and" | "&&" | "&" | "or" if !part.contains(['<', '>', '=']) => {
+                "several values stand in brackets: `[a, b]`"
+            }
+            "and" | "&&" | "&" => "each comparison stands alone, on its line or behind a comma; `a < x < b` is one too",
+            "or" | "||" => "there is no `or`: write the comparisons that all have to hold",
+            "not" | "!" if before.is_empty() => "there is no `not`: turn the comparison round",
+            "!=" | "<>" | "<<" => "comparisons are `<`, `<=`, `>` and `>=`",
+            "±" => "a value has no tolerance: `random(mean, sd = ...)` scatters along the track, a study varies",
+            "~" | "≈" => "write the number alone",
+            "⁻" => "a negative power is written `m^-1`",
+            "$" | "@" => "a name stands alone, without a sign before it",
+            "+=" | "<-" | "->" => "a field is given with `=`",
+            "::" => "names are joined by dots: `pads.medium`",
+            "**" => "powers are written `m^3`",
+            "*" if before.ends_with('*') => "powers are written `m^3`",
+            "<" | ">" if before.ends_with('<') => "comparisons are `<`, `<=`, `>` and `>=`",
+            "with" => "what is extended stands before the braces: `base { field = value }`",
+            "[" if before.ends_with(digit) => "a unit stands without brackets: `40 MN/m`",
+            "[" => "a list is a value of its own: arguments stand in `( )`, the names of a module behind a dot",
+            "." if before.ends_with(digit) && after.starts_with(digit) => "a number has one point",
+            "." if !after.starts_with(char::is_alphanumeric) => "nothing ends with a point: take it away",
+            "{" if exact == Rule::exact_field && found.start == start => "one pair of braces is enough",
+            _ => "",
+        };
+        if !fixed.is_empty() {
+            return Some(fixed.to_owned());
+        }
+        let value = exact == Rule::exact_value || exact == Rule::exact_argument;
+        let name = !before.is_empty() && before.chars().all(|c| c.is_ascii_alphanumeric() || "_.".contains(c));
+        let named = name && before.starts_with(|c: char| c.is_ascii_alphabetic());
+        if exact == Rule::exact_entry && part.contains(['<', '>']) && named {
+            return Some(match before {
+                "not" => "there is no `not`: turn the comparison round".to_owned(),
+                "if" | "when" | "assert" | "that" => format!("a comparison stands alone, without `{before}`"),
+                _ => format!("arguments stand in parentheses: `{before}(...)`"),
+            });
+        }
+        match word {
+            "=" if value && named => Some(match self.path_before(start) {
+                Some(path) => format!("write `{path}.{before} {rest}`, or `{path} = {{ {before} {rest} }}`"),
+                None => format!("write `{before} {rest}` alone"),
+            }),
+            ":" if exact == Rule::exact_entry && before.contains(':') => Some("pairs are parted by commas".to_owned()),
+            ":" if value && !before.is_empty() => {
+                let line = self.items_of_line(start);
+                Some(match before.trim_start_matches(['-', '+']).chars().all(|c| c.is_ascii_digit()) {
+                    true => "a span is written `-20 .. -1 sleepers`, several values stand in brackets".to_owned(),
+                    false => format!("pairs stand in brackets: write `[{line}]`"),
+                })
+            }
+            "'" if before.ends_with(digit) => Some(format!("digits are grouped by `_`: `{before}_{}`", &rest[1..])),
+            "·" | "x" if before.ends_with(digit) => Some("powers of ten stand in the number: `4e7 N/m`".to_owned()),
+            _ if exact == Rule::exact_field => habit_of_field(part),
+            _ if !value => None,
+            _ if before.starts_with('"') && before.ends_with('"') && before[1..].starts_with(digit) => {
+                Some(format!("numbers stand without quotes: write `{} {rest}`", &before[1..before.len() - 1]))
+            }
+            _ if before.starts_with('(') && before.ends_with(')') => {
+                let inner = before[1..before.len() - 1].trim();
+                Some(format!("a unit stands behind its number: write `{inner} {rest}`"))
+            }
+            _ if found.kind == Kind::Number && before.ends_with(" x") => {
+                Some("powers of ten stand in the number: `4e7 N/m`".to_owned())
+            }
+            _ if found.kind == Kind::Number
+                && before.chars().all(|c| c.is_ascii_digit() || c == '_')
+                && !before.is_empty() =>
+            {
+                Some(format!("digits are grouped by `_`: `{before}_{rest}`"))
+            }
+            _ if found.kind == Kind::Number && named => {
+                Some(format!("arguments stand in parentheses, `{before}(...)`, fields in braces, `{{ name = value }}`"))
+            }
+            _ if found.kind == Kind::Word
+                && before.chars().all(|c| c.is_ascii_digit() || c == '.')
+                && !before.is_empty() =>
+            {
+                Some(format!("a product has its sign: `{before} * {rest}`"))
+            }
+            _ if word == "(" && named => Some(format!("fields stand in braces: `{before} {{ name = value }}`")),
+            _ => None,
+        }
+    }
+
+    /// The path of the field whose value starts here.
+    fn path_before(&self, start: usize) -> Option<&str> {
+        let before = self.prepared.text[..start].trim_end().strip_suffix('=')?.trim_end();
+        let at = before.trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.').len();
+        Some(&before[at..]).filter(|path| !path.is_empty())
+    }
+}
+
+/// What to write instead of a field whose name or sign is not one.
+fn habit_of_field(part: &str) -> Option<String> {
+    if part.starts_with('"') {
+        return Some("names stand without quotes, and fields are given with `=`".to_owned());
+    }
+    if let Some(field) = part.strip_prefix("- ") {
+        return Some(format!("write `{}`, without the dash", field.trim_start()));
+    }
+    if part.starts_with("let ") || part.starts_with("use ") {
+        return None;
+    }
+    let (name, value) = part.split_once('=').filter(|(_, value)| !value.starts_with('='))?;
+    let name = name.trim();
+    if let Some((path, first)) = name.split_once('(').filter(|(path, _)| !path.is_empty()) {
+        let fields = format!("{first}={value}");
+        return Some(format!("write `{path} = {{ {} }}`", fields.trim_end().trim_end_matches(')')));
+    }
+    let (sign, what) =
+        [('\'', "quotes"), ('-', "dashes"), (' ', "blanks")].into_iter().find(|(c, _)| name.contains(*c))?;
+    let letters = name.chars().all(|c| c.is_ascii_alphanumeric() || "_' -".contains(c));
+    let words = if sign == '\'' { name.replace('\'', "") } else { name.to_owned() };
+    let joined = words.split([' ', '-']).collect::<Vec<_>>().join("_");
+    letters.then(|| format!("a name has no {what}: write `{joined} = {}`", value.trim()))
+}
