@@ -4,6 +4,7 @@ use std::path::Path;
 use trackbed::check::{DataError, Modules, resolve};
 use trackbed::compile;
 use trackbed::diag::Code;
+use trackbed::scenario::{Force, Loading};
 
 /// A file of forces beside the scene.
 struct File(&'static str);
@@ -43,6 +44,9 @@ fn mistakes(force: &str, file: &'static str) -> Vec<(Code, String)> {
 fn a_file_of_forces_is_read_and_waits_for_grains() {
     assert_eq!(mistakes("file(\"force.csv\") per rail", RISE), []);
     assert_eq!(mistakes("file(\"force.csv\", column = b) per track", "a_kN,time_ms,b_N\n1,0,100\n2,1,200\n"), []);
+    let scenario = compile("scene.track", &scene("file(\"force.csv\") per track"), &File(RISE), &[]).scenario.unwrap();
+    let Some(Loading::Rig(loads)) = &scenario.loading else { panic!("{:?}", scenario.loading) };
+    assert_eq!(loads[0].force, Force::History(vec![[0.0, 2.5e3], [0.1, 30e3], [0.2, 2.5e3]]), "of one rail");
     let text = resolve("scene.track", &scene("file(\"force.csv\") per rail"), &File(RISE), &[]).unwrap();
     assert!(text.contains("file(name = \"force.csv\") per rail"), "{text}");
 }

@@ -10,8 +10,12 @@ use std::collections::BTreeMap;
 const LARGEST: f64 = 1e7;
 
 impl Checker<'_> {
-    /// Reads `file("force.csv")`; `None` where a diagnostic has been given.
-    pub(super) fn force_history(&mut self, arguments: &BTreeMap<&'static str, Slot>, whole: Span) -> Option<()> {
+    /// Reads `file("force.csv")`: times, s, and forces, N, as they stand there; `None` where a diagnostic has been given.
+    pub(super) fn force_history(
+        &mut self,
+        arguments: &BTreeMap<&'static str, Slot>,
+        whole: Span,
+    ) -> Option<Vec<[f64; 2]>> {
         let slot = arguments.get("name")?;
         let Val::Text(name) = &slot.value else { return None };
         let table = self.table(name, slot.span)?;
@@ -40,7 +44,7 @@ impl Checker<'_> {
             return None;
         };
         let mut last: Option<super::table::Cell> = None;
-        let mut rows = 0;
+        let mut history: Vec<[f64; 2]> = Vec::new();
         for cells in table.rows() {
             let (at, value) = (cells[time], cells[force]);
             if let Some(before) = last.filter(|before| before.value >= at.value) {
@@ -61,14 +65,14 @@ impl Checker<'_> {
                 return None;
             }
             last = Some(at);
-            rows += 1;
+            history.push([at.value, value.value]);
         }
-        if rows < 2 {
-            let message = format!("expected two rows of numbers or more, found {rows}");
+        if history.len() < 2 {
+            let message = format!("expected two rows of numbers or more, found {}", history.len());
             let mistake = Diagnostic::new(Code::E0510, message).at(table.header, "too few rows below");
             self.report(mistake.at(whole, "read here"));
             return None;
         }
-        Some(())
+        Some(history)
     }
 }

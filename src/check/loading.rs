@@ -17,6 +17,7 @@ impl Checker<'_> {
     pub(super) fn loads(&mut self, record: &Record, places: &Option<Places>) -> Option<Vec<RigLoad>> {
         let on = if record.word("on")? == "rail" { Target::Rail } else { Target::Sleepers };
         let force = record.get("force")?;
+        let mut history = None;
         let of = match &force.value {
             Val::Number(n) => n.basis,
             Val::Word { word, arguments } if word.name == "file" => {
@@ -30,7 +31,7 @@ impl Checker<'_> {
                     }
                     return None;
                 };
-                forces?;
+                history = Some(forces?);
                 Some(of.as_str())
             }
             Val::Word { arguments, .. } => match arguments.get("range").map(|slot| &slot.value) {
@@ -48,11 +49,19 @@ impl Checker<'_> {
         }
         let places = places.as_ref()?;
         let chainages = self.chainages_at(record, "at", places)?;
-        let (force, speed) = (acting(record)?, given(record, "speed")?);
+        let force = match history {
+            // half of what acts on the track or on a whole sleeper is over one rail
+            Some(history) => {
+                let share = if ["track", "sleeper"].contains(&of) { 0.5 } else { 1.0 };
+                Force::History(history.into_iter().map(|[time, force]| [time, share * force]).collect())
+            }
+            None => acting(record)?,
+        };
+        let speed = given(record, "speed")?;
         let cycles = record.number("total")?.value as u64;
         let load = |x: f64| {
             let x = if on == Target::Sleepers { places.seats[places.nearest_seat(x)?].0 } else { x };
-            Some(RigLoad { name: record.name.clone(), on, x, force, speed, cycles })
+            Some(RigLoad { name: record.name.clone(), on, x, force: force.clone(), speed, cycles })
         };
         chainages.into_iter().map(|(x, _)| load(x)).collect()
     }

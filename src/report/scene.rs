@@ -259,6 +259,10 @@ fn on(target: Target) -> &'static str {
 pub(super) fn force(load: &RigLoad) -> String {
     let kilonewtons = |force: f64| plain(force / 1e3, 4);
     let mut text = match &load.force {
+        Force::History(history) => {
+            let most = history.iter().map(|[_, force]| *force).fold(0.0, f64::max);
+            format!("up to {} kN {}, as in its file", kilonewtons(most), on(load.on))
+        }
         Force::Constant(force) => format!("{} kN {}", kilonewtons(**force), on(load.on)),
         Force::Cyclic { range: [least, most], frequency, .. } => {
             let (least, most, frequency) = (kilonewtons(**least), kilonewtons(**most), plain(**frequency, 3));

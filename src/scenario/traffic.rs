@@ -173,7 +173,7 @@ pub struct RigLoad {
 }
 
 /// N over one rail, positive down.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Force {
     Constant(Given),
     /// From the smaller to the greater force and back.
@@ -183,6 +183,8 @@ pub enum Force {
         frequency: Given,
         wave: Wave,
     },
+    /// Time, s, and force, straight in between; held beyond the ends.
+    History(Vec<[f64; 2]>),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
