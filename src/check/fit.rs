@@ -330,6 +330,9 @@ impl Checker<'_> {
                     }
                     return self.hold(chosen, raw).map(Val::Number);
                 }
+                if let Some(whole) = forms.iter().find(|f| matches!(f, Form::Integer { .. })) {
+                    return self.fit_form(whole, value, scope);
+                }
             }
             Shape::Other => {
                 let fits = |f: &&Form| match &value.kind {

@@ -266,6 +266,7 @@ impl Form {
             }
             Form::List(item) => format!("a list of {}", item.describe()),
             Form::Pairs { key, value, .. } => format!("a list of pairs, {}: {}", key.describe(), value.describe()),
+            Form::Interval(m) if m.unit.is_empty() => "`from .. to`".into(),
             Form::Interval(m) => format!("`from .. to` in `{}`", m.unit),
             Form::Place => "a place in `m` or `sleepers`".into(),
             Form::Span => "a span such as `-20 .. -1 sleepers`".into(),

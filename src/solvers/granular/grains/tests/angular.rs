@@ -1,3 +1,5 @@
+//! Angular surfaces: rounded polyhedra against closed forms, and indices that are those asked for.
+
 use super::super::super::shape::{Mesh, MeshKind};
 use super::super::angular::TOLERANCE;
 use super::super::polyhedron::{Plane, corners, inscribed_radius, rounded};

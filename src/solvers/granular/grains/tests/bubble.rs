@@ -1,3 +1,5 @@
+//! Pebbles in surfaces: inside them, by the rule, as many as asked for.
+
 use super::super::super::clump::Pebble;
 use super::super::super::shape::Mesh;
 use super::super::*;

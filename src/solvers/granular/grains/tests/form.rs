@@ -1,3 +1,5 @@
+//! Boxes, moments and indices of bodies with closed forms.
+
 use super::super::super::clump::{Pebble, Template};
 use super::super::super::shape::{Mesh, MeshKind};
 use super::super::form::{Box, Solid, extent};

@@ -1,3 +1,5 @@
+//! Samples against their curves, of every kind of curve.
+
 use super::super::*;
 use proptest::prelude::*;
 use std::f64::consts::PI;

@@ -1,3 +1,5 @@
+//! Errors of shape against closed forms, and falling with pebbles.
+
 use super::super::super::clump::Template;
 use super::super::super::shape::Mesh;
 use super::super::*;

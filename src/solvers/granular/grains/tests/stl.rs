@@ -1,3 +1,5 @@
+//! Surfaces through files and back, and files that are none.
+
 use super::super::super::shape::{FaultKind, Mesh};
 use super::super::stl::{StlError, read, write};
 use super::super::*;
