@@ -1,9 +1,8 @@
 //! The beds of grains that a scene has, as recipes of the packer: one for each section with other layers.
 
 use crate::diag::{Code, Diagnostic};
-use crate::scenario::{BedEnds, Contact, Grading, Granular, Layer, Passing, Scenario, Shape};
+use crate::scenario::{BedEnds, Contact, Granular, Layer, Scenario, Shape};
 use crate::solvers::granular::clump::Template;
-use crate::solvers::granular::grains::Curve;
 use crate::solvers::granular::packing::{Layer as Filling, Packing, Recipe, Rest};
 use crate::solvers::granular::{DashpotMode, Surface};
 
@@ -19,10 +18,6 @@ pub struct BedPlan {
 
 /// A cell is this many times as long as the largest grain, at least: then no grain meets itself.
 const CELL: f64 = 3.2;
-/// Points of a curve that has no corners.
-const POINTS: usize = 24;
-/// Of a log-normal grading, the share at either end that has no grains.
-const TAIL: f64 = 0.005;
 /// Half the width of a bed without sleepers and without a stated width, m.
 const HALF_WIDTH: f64 = 1.2;
 
@@ -108,7 +103,7 @@ fn filling(layer: &Layer, granular: &Granular, x: f64, seed: u64) -> Result<Fill
     let wrong = |error: &dyn std::fmt::Display| refused(&format!("grains of `{}`: {error}", layer.name));
     Ok(Filling {
         name: layer.name.clone(),
-        curve: curve(&granular.grading).map_err(|error| wrong(&error))?,
+        curve: granular.grading.curve().map_err(|error| wrong(&error))?,
         templates: templates(&granular.shape, seed).map_err(|error| wrong(&error))?,
         density: *granular.density,
         surface,
@@ -122,30 +117,6 @@ fn filling(layer: &Layer, granular: &Granular, x: f64, seed: u64) -> Result<Fill
             viscous_damping: *granular.packing.viscous_damping,
         },
     })
-}
-
-/// What of a grading is modelled, from corner to corner.
-fn curve(grading: &Grading) -> Result<Curve, impl std::fmt::Display + use<>> {
-    let (low, high) = match grading.passing {
-        Passing::Sieves(_) => (grading.d(0.0), grading.d(100.0)),
-        Passing::LogNormal { .. } => (grading.d(100.0 * TAIL), grading.d(100.0 * (1.0 - TAIL))),
-    };
-    let mut sizes: Vec<f64> = match &grading.passing {
-        Passing::Sieves(sieves) => sieves.iter().map(|sieve| sieve[0]).filter(|s| *s > low && *s < high).collect(),
-        Passing::LogNormal { .. } => (1..POINTS).map(|k| low * (high / low).powf(k as f64 / POINTS as f64)).collect(),
-    };
-    sizes.insert(0, low);
-    sizes.push(high);
-    let last = sizes.len() - 1;
-    let share = |(k, size): (usize, f64)| match k {
-        0 => [size, 0.0],
-        _ if k == last => [size, 1.0],
-        _ => [size, grading.modelled_below(size)],
-    };
-    if low >= high {
-        return Curve::single(high);
-    }
-    Curve::new(&sizes.into_iter().enumerate().map(share).collect::<Vec<_>>())
 }
 
 /// Shapes of unit size that the grains are copies of.

@@ -74,6 +74,9 @@ impl Passing {
     }
 }
 
+/// Share of the mass at each end of a log-normal curve that has no grains.
+const TAIL: f64 = 1e-3;
+
 impl Grading {
     /// Size of the smallest modelled grain, m.
     pub fn smallest(&self) -> f64 {
@@ -86,9 +89,14 @@ impl Grading {
     }
 
     /// The curve of what is modelled, for sampling; a log-normal one by so many points that none of its mass is out of
-    /// place by more than a part in ten thousand.
+    /// place by more than a part in ten thousand, and without the [`TAIL`] at an end that nothing cuts off.
     pub fn curve(&self) -> Result<Curve, GradingError> {
-        let (smallest, largest) = (self.smallest(), self.largest());
+        let (smallest, largest) = match self.passing {
+            Passing::Sieves(_) => (self.smallest(), self.largest()),
+            Passing::LogNormal { .. } => {
+                (self.smallest().max(self.passing.size(TAIL)), self.largest().min(self.passing.size(1.0 - TAIL)))
+            }
+        };
         let inner: Vec<f64> = match &self.passing {
             Passing::Sieves(sieves) => sieves.iter().map(|sieve| sieve[0]).collect(),
             Passing::LogNormal { .. } => {
