@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Coarse spheres under one short sleeper: a bed that is packed in a moment.
+/// Coarse spheres under one sleeper: a bed that is packed in a moment.
 const SCENE: &str = r#"
 use std
 grading coarse { passing = [45 mm: 0 %, 60 mm: 100 %] }
@@ -14,7 +14,7 @@ granular stone {
   packing = { lifts = 1, pressure = 200 kPa }
 }
 trackform bed {
-  sleeper = sleepers.B70 { length = 1.2 m, base_area = none }, spacing = 0.6 m, layers = [stone: 150 mm]
+  sleeper = sleepers.B70, spacing = 0.6 m, layers = [stone: 150 mm]
 }
 track box { sections = [bed: 1 sleeper] }
 load actuator { on = sleepers, at = 1 sleeper, force = cyclic(5 .. 60 kN, 5 Hz) per sleeper }

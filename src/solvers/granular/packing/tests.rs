@@ -1,3 +1,5 @@
+//! Beds that are packed, and what refuses to be one.
+
 use super::super::law::DashpotMode;
 use super::*;
 
