@@ -72,14 +72,9 @@ fn what_cannot_be_packed_is_refused_before_anything_runs() {
     let dir = tempfile::tempdir().unwrap();
     let scene = dir.path().join("box.track");
     fs::write(&scene, SCENE).unwrap();
-    for (wrong, why) in [
-        ("stone.contact=hertz(50 GPa, 0.2)", "meet after Hertz"),
-        ("coarse.passing=[45 mm: 0 %, 160 mm: 100 %]", "thinner than its largest grain"),
-    ] {
-        let output = pack(&scene, &["--set", wrong, "--fresh"], "2");
-        let said = said(&output);
-        assert!(!output.status.success() && said.contains("E0610") && said.contains(why), "{wrong}\n{said}");
-    }
+    let output = pack(&scene, &["--set", "stone.contact=hertz(50 GPa, 0.2)", "--fresh"], "2");
+    assert!(!output.status.success() && said(&output).contains("E0610"), "{}", said(&output));
+    assert!(said(&output).contains("meet after Hertz"), "{}", said(&output));
     let output = pack(&scene, &["--section", "bde", "--fresh"], "2");
     assert!(said(&output).contains("no bed of its own") && said(&output).contains("`bed`"), "{}", said(&output));
     let output = pack(Path::new("scenarios/transition.track"), &["--fresh"], "2");

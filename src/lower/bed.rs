@@ -51,12 +51,12 @@ fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic
     let largest = layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
     let spacing = *section.spacing;
     let bays = (CELL * largest / spacing).ceil().max(1.0);
-    notes.push(format!("the cell is {bays} x {spacing} m long: {CELL} times its largest grain at least"));
+    notes.push(format!("The cell is {bays} x {spacing} m long, at least {CELL} times as long as its largest grain."));
     if section.layers.len() > grains.len() {
-        notes.push("soil below the grains is a rigid floor while they are packed".to_owned());
+        notes.push("Soil below the grains is a rigid floor while they are packed.".to_owned());
     }
     if grains.iter().any(|(_, granular)| granular.local_damping.value != top.local_damping.value) {
-        notes.push(format!("a bed has one local damping: {} of its top layer", *top.local_damping));
+        notes.push(format!("A bed has one local damping: {} of its top layer.", *top.local_damping));
     }
     let recipe = Recipe {
         plan: [bays * spacing, width(scenario, number)],
@@ -69,7 +69,7 @@ fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic
     };
     recipe.check().map_err(|error| refused(&error.to_string()))?;
     if scenario.track.bed.ends == BedEnds::Walls {
-        notes.push("the cell is periodic along the track; walls close the ends of the whole bed".to_owned());
+        notes.push("The cell is periodic along the track; walls close the ends of the whole bed.".to_owned());
     }
     Ok(Some(BedPlan { section: section.name.clone(), recipe, notes }))
 }

@@ -84,7 +84,7 @@ impl BedPage<'_> {
         }
         *html += TABLE_END;
         for note in &self.summary.notes {
-            let _ = writeln!(html, "<p class=\"caption\">{}.</p>", escape(note));
+            let _ = writeln!(html, "<p class=\"caption\">{}</p>", escape(note));
         }
         *html += "</section>";
     }

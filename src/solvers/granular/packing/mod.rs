@@ -145,6 +145,9 @@ pub fn pack<R: Real>(recipe: &Recipe, tell: impl FnMut(&Progress)) -> Result<Pac
     }
     packed.bodies.push(press.bed.len() as u32);
     press.finish(recipe)?;
+    // the topmost layer gave way a little until the whole bed was at rest
+    packed.levels.pop();
+    packed.levels.push(press.level());
     let Contents { bodies, samples, levels } = packed;
     let densities = recipe.layers.iter().map(|layer| layer.density).collect();
     Ok(Packed { bed: press.bed, plan: recipe.plan, densities, bodies, samples, levels, stages: press.stages })
