@@ -10,6 +10,7 @@ use super::place::{Room, set_loose};
 use super::rest::unbalance;
 use super::{PackingError, Progress, Recipe, Stage, State, chance, put};
 use nalgebra::Vector3;
+use std::f64::consts::PI;
 
 /// Steps between looks at forces and at the time step.
 const LOOK: u64 = 400;
@@ -154,14 +155,15 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         self.bed.run(LOOK).map_err(|failure| PackingError::Failure { stage: stage.to_owned(), failure })
     }
 
-    /// sqrt(m / k) of the lightest body, s.
+    /// sqrt(m / k) of the lightest grain of any layer, s.
     fn lightest_step(&self) -> f64 {
-        let stiffest = self.recipe.layers.iter().map(|layer| {
-            let surface = layer.surface;
-            0.5 * surface.normal_stiffness.max(surface.shear_stiffness)
-        });
-        let lightest = self.bed.bodies.iter().map(|body| body.mass).fold(f64::INFINITY, f64::min);
-        (lightest / stiffest.fold(0.0, f64::max)).sqrt()
+        let of = |layer: &super::Layer| {
+            let mass = layer.density * PI / 6.0 * layer.curve.ends()[0].powi(3);
+            // two bodies in series make a contact
+            let stiffness = 0.5 * layer.surface.normal_stiffness.max(layer.surface.shear_stiffness);
+            (mass / stiffness).sqrt()
+        };
+        self.recipe.layers.iter().map(of).fold(f64::INFINITY, f64::min)
     }
 
     /// Runs until forces are in balance and the plate presses as it should.
