@@ -6,7 +6,6 @@ use crate::diag::{Code, Diagnostic, FileId, Sources, Span, nearest::nearest};
 use crate::schema::{self, Role};
 use crate::syntax::tree::{Declaration, Item, Tree, Use};
 use crate::syntax::{decode, parse};
-use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -25,11 +24,6 @@ pub trait Modules {
     /// The tree of a text that is this file of the sources.
     fn parsed(&self, file: FileId, text: &str) -> Parsed {
         Parsed::of(file, text)
-    }
-
-    /// The trees of several files, side by side.
-    fn parsed_all(&self, files: &[(FileId, &str)]) -> Vec<Parsed> {
-        files.par_iter().map(|(file, text)| Parsed::of(*file, text)).collect()
     }
 }
 
@@ -123,10 +117,6 @@ impl Modules for Remembered<'_> {
             parsed
         })
     }
-
-    fn parsed_all(&self, files: &[(FileId, &str)]) -> Vec<Parsed> {
-        files.par_iter().map(|(file, text)| self.parsed(*file, text)).collect()
-    }
 }
 
 /// No modules but the standard library, for scenes that stand in memory.
@@ -183,8 +173,6 @@ pub(super) struct Loader<'a> {
     known: BTreeMap<String, Option<ScopeId>>,
     /// Files being read, each used by the one before it.
     reading: Vec<String>,
-    /// Texts of the library parsed before their turn, by the number that they are thought to get.
-    ahead: BTreeMap<FileId, (&'static str, Parsed)>,
 }
 
 impl<'a> Loader<'a> {
@@ -196,7 +184,6 @@ impl<'a> Loader<'a> {
             modules,
             known: BTreeMap::new(),
             reading: Vec::new(),
-            ahead: BTreeMap::new(),
         }
     }
 
@@ -210,11 +197,7 @@ impl<'a> Loader<'a> {
         self.reading.push(key.clone());
         let file = self.sources.add(name, text, library);
         let text = self.sources.get(file).text.clone();
-        let ahead = self.ahead.remove(&file).filter(|(ahead, _)| *ahead == &*text);
-        let Parsed { mut tree, mistakes } = match ahead {
-            Some((_, parsed)) => parsed,
-            None => self.modules.parsed(file, &text),
-        };
+        let Parsed { mut tree, mistakes } = self.modules.parsed(file, &text);
         self.diagnostics.extend(mistakes.iter().cloned());
         if !edits.is_empty() {
             overrides::apply(self, Arc::make_mut(&mut tree), edits);
@@ -240,26 +223,12 @@ impl<'a> Loader<'a> {
     /// A scope in which every module of the standard library is known, for defaults.
     pub fn standard_scope(&mut self) -> ScopeId {
         let file = self.sources.add("defaults", "", true);
-        self.look_ahead();
         let modules =
             library::MODULES.iter().filter_map(|(name, _)| Some((name.to_string(), self.library(name)?))).collect();
         let tree = Arc::new(Tree { file, items: Vec::new() });
         let (names, broken) = (BTreeMap::new(), BTreeSet::new());
         self.scopes.push(Scope { tree, library: true, names, modules, broken });
         self.scopes.len() - 1
-    }
-
-    /// Parses the whole library where none of it is known yet: its files are half of what a check takes.
-    fn look_ahead(&mut self) {
-        let unknown = |module: &str| !self.known.contains_key(&format!("std/{module}.track"));
-        if !library::MODULES.iter().all(|(module, _)| unknown(module)) {
-            return;
-        }
-        let first = self.sources.iter().count() as u32;
-        let texts = library::MODULES.iter().enumerate().map(|(k, (_, text))| (FileId(first + k as u32), *text));
-        let files: Vec<(FileId, &'static str)> = texts.collect();
-        let parsed = self.modules.parsed_all(&files);
-        self.ahead = files.into_iter().zip(parsed).map(|((file, text), parsed)| (file, (text, parsed))).collect();
     }
 
     fn library(&mut self, module: &str) -> Option<ScopeId> {
@@ -274,7 +243,6 @@ impl<'a> Loader<'a> {
     fn bring_in(&mut self, used: &Use, brought: &mut BroughtIn) {
         let names: Vec<&str> = used.path.names.iter().map(|n| n.text.as_str()).collect();
         if names == ["std"] && used.alias.is_none() {
-            self.look_ahead();
             for (module, _) in library::MODULES {
                 if let Some(scope) = self.library(module) {
                     brought.modules.entry(module.to_string()).or_insert(scope);

@@ -34,6 +34,14 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
     let started = Instant::now();
+    // before anything is done side by side: the pool is made once
+    if let Some(threads) = arguments.threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
+        if let Err(error) = pool {
+            terminal::error(&format!("cannot start {threads} threads: {error}"));
+            return Outcome::Failed;
+        }
+    }
     let Some(compiled) = arguments.scene.with_seed(&arguments.seed).compile().map(Compiled::to_run) else {
         return Outcome::Usage;
     };
@@ -50,13 +58,6 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             &compiled,
             Diagnostic::new(Code::E0802, message).help("give another `--out`, or `--resume` or `--force`"),
         );
-    }
-    if let Some(threads) = arguments.threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
-        if let Err(error) = pool {
-            terminal::error(&format!("cannot start {threads} threads: {error}"));
-            return Outcome::Failed;
-        }
     }
     let bar = progress::bar();
     let store = Store { directory: arguments.out.clone(), scene_sha256: hash.clone() };
