@@ -40,6 +40,13 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Ok(plan) => plan,
         Err(mistakes) => return stop(&compiled, &mistakes),
     };
+    // a folder that cannot be is told before minutes of packing
+    if let Some(out) = &arguments.out
+        && let Err(error) = std::fs::create_dir_all(out)
+    {
+        terminal::error(&format!("cannot make the directory `{}`: {error}", out.display()));
+        return Outcome::Failed;
+    }
     let cache = cache(arguments);
     let known = cache.as_deref().and_then(|cache| results::kept_bed(cache, &plan.recipe));
     let kept = known.is_some();
@@ -107,7 +114,6 @@ fn stop(compiled: &Compiled, mistakes: &[Diagnostic]) -> Outcome {
 /// The page, its pictures, numbers for programs and files for ParaView.
 fn write(out: &Path, summary: &BedSummary, packed: &mut Packed<f32>) -> Result<(), String> {
     let failure = |error: &dyn std::fmt::Display| format!("cannot write the bed: {error}");
-    std::fs::create_dir_all(out).map_err(|error| failure(&error))?;
     let snapshot = packed.bed.snapshot().map_err(|error| failure(&error))?;
     let (grains, links) = (results::grains(&packed.bed, &snapshot, None), results::links(&packed.bed, &snapshot));
     let page = BedPage {
