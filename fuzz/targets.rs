@@ -32,7 +32,7 @@ pub fn format(text: &str) {
 const MEMORY: u32 = 1000;
 
 thread_local! {
-    static KNOWN: RefCell<(u32, Remembered<'static>)> = RefCell::new((0, Remembered::new(&NoModules)));
+    static KNOWN: RefCell<(u32, Remembered<NoModules>)> = RefCell::new((0, Remembered::new(NoModules)));
 }
 
 /// Checking and planning end, twice with the same diagnostics, whose spans stand in their files.
@@ -40,13 +40,13 @@ pub fn check(text: &str) {
     KNOWN.with_borrow_mut(|(runs, known)| {
         *runs += 1;
         if *runs % MEMORY == 0 {
-            *known = Remembered::new(&NoModules);
+            *known = Remembered::new(NoModules);
         }
         check_with(text, known);
     });
 }
 
-fn check_with(text: &str, known: &Remembered) {
+fn check_with(text: &str, known: &Remembered<NoModules>) {
     let compiled = compile("fuzz.track", text, known, &[]);
     compiled.diagnostics.iter().for_each(|d| inside(d, &compiled.sources));
     if compiled.graph.is_some() {

@@ -4,7 +4,6 @@ use super::Checker;
 use super::value::{Record, Slot, Val};
 use crate::diag::{Code, Diagnostic, Span, or_list};
 use crate::schema::{Alternative, Field, Form, Need};
-use crate::syntax::parse;
 use crate::syntax::tree::{Item, Value};
 use std::rc::Rc;
 
@@ -119,9 +118,9 @@ impl Checker<'_> {
         }
         let source = format!("let default = {text}");
         let file = self.loader.sources.add("default", source.as_str(), true);
-        let (tree, _) = parse(file, &source);
-        let value = match tree.items.into_iter().next() {
-            Some(Item::Let(binding)) => binding.value,
+        let tree = self.loader.modules.parsed(file, &source).tree;
+        let value = match tree.items.first() {
+            Some(Item::Let(binding)) => binding.value.clone(),
             _ => Value { kind: crate::syntax::tree::ValueKind::Error, span: Span::new(file, 0, 0) },
         };
         let value = Rc::new(value);

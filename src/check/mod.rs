@@ -62,6 +62,7 @@ use crate::schema::{self, Role};
 use crate::solvers::granular::shape::Mesh;
 use crate::syntax::tree::{Item, Value};
 use geometry::Places;
+use library::Part;
 use modules::{Loader, Scope, ScopeId};
 use names::ItemId;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -91,15 +92,38 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
 }
 
 /// Checks a text, and asks something of what was found out about it.
+///
+/// Of the library only what the user's texts name is read. Where anything is amiss the whole of it is: what was meant may
+/// stand there.
 fn with_checker<T>(
     name: &str,
     text: &str,
     modules: &dyn Modules,
     overrides: &[Override],
-    ask: impl FnOnce(&mut Checker<'_>, ScopeId) -> T,
+    ask: impl Fn(&mut Checker<'_>, ScopeId) -> T,
 ) -> (Checked, T) {
-    let mut loader = Loader::new(modules);
-    let main = loader.load(name, text.to_string(), false, overrides);
+    let texts = modules::texts(text, modules);
+    let edits = overrides.iter().map(|edit| edit.value.as_str());
+    let part = Part::named_in(texts.iter().map(|text| text.as_ref()).chain(edits));
+    if let Part::Named(_) = part {
+        let found = with_library(part, name, text, modules, overrides, &ask);
+        if found.0.sound {
+            return found;
+        }
+    }
+    with_library(Part::Whole, name, text, modules, overrides, &ask)
+}
+
+fn with_library<T>(
+    library: Part,
+    name: &str,
+    text: &str,
+    modules: &dyn Modules,
+    overrides: &[Override],
+    ask: &impl Fn(&mut Checker<'_>, ScopeId) -> T,
+) -> (Checked, T) {
+    let mut loader = Loader::new(modules, library);
+    let main = loader.load(name, text.to_string(), overrides);
     let standard = loader.standard_scope();
     let scopes = std::mem::take(&mut loader.scopes);
     let diagnostics = std::mem::take(&mut loader.diagnostics);

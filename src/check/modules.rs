@@ -6,6 +6,7 @@ use crate::diag::{Code, Diagnostic, FileId, Sources, Span, nearest::nearest};
 use crate::schema::{self, Role};
 use crate::syntax::tree::{Declaration, Item, Tree, Use};
 use crate::syntax::{decode, parse};
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -87,18 +88,18 @@ impl Modules for Folder {
 }
 
 /// Modules of a scene that is compiled again and again, as the points of a study are: no text is parsed twice.
-pub struct Remembered<'a> {
-    modules: &'a (dyn Modules + Sync),
+pub struct Remembered<M> {
+    modules: M,
     trees: Mutex<HashMap<(FileId, String), Parsed>>,
 }
 
-impl<'a> Remembered<'a> {
-    pub fn new(modules: &'a (dyn Modules + Sync)) -> Self {
+impl<M: Modules> Remembered<M> {
+    pub fn new(modules: M) -> Self {
         Remembered { modules, trees: Mutex::default() }
     }
 }
 
-impl Modules for Remembered<'_> {
+impl<M: Modules> Modules for Remembered<M> {
     fn read(&self, relative: &Path) -> Option<Vec<u8>> {
         self.modules.read(relative)
     }
@@ -137,6 +138,21 @@ fn missing_file(name: &str) -> Option<String> {
     module.then(|| format!("it is a module of the standard library: write `use std` or `use std.{name}`"))
 }
 
+/// A text and those of the user's modules that it seems to use, by the look of its lines.
+pub(super) fn texts<'t>(main: &'t str, modules: &dyn Modules) -> Vec<Cow<'t, str>> {
+    let mut texts = vec![Cow::Borrowed(main)];
+    let (mut known, mut next) = (BTreeSet::new(), 0);
+    while let Some(text) = texts.get(next) {
+        let uses = text.lines().filter_map(|line| line.trim().strip_prefix("use ")?.split([' ', '\t', '/']).next());
+        let files = uses.map(|path| format!("{}.track", path.replace('.', "/")));
+        let new: Vec<String> = files.filter(|file| known.insert(file.clone())).collect();
+        let read = |file: &String| Some(Cow::Owned(String::from_utf8(modules.read(Path::new(file))?).ok()?));
+        texts.extend(new.iter().filter_map(read));
+        next += 1;
+    }
+    texts
+}
+
 /// Index of a scope: one file.
 pub(super) type ScopeId = usize;
 
@@ -169,6 +185,7 @@ pub(super) struct Loader<'a> {
     pub scopes: Vec<Scope>,
     pub diagnostics: Vec<Diagnostic>,
     pub modules: &'a dyn Modules,
+    library: library::Part,
     /// Scopes by file; `None` while a file is being read.
     known: BTreeMap<String, Option<ScopeId>>,
     /// Files being read, each used by the one before it.
@@ -176,28 +193,33 @@ pub(super) struct Loader<'a> {
 }
 
 impl<'a> Loader<'a> {
-    pub fn new(modules: &'a dyn Modules) -> Self {
+    pub fn new(modules: &'a dyn Modules, library: library::Part) -> Self {
         Loader {
             sources: Sources::default(),
             scopes: Vec::new(),
             diagnostics: Vec::new(),
             modules,
+            library,
             known: BTreeMap::new(),
             reading: Vec::new(),
         }
     }
 
     /// Reads a text, with some lines edited, and all that it uses.
-    pub fn load(&mut self, name: &str, text: String, library: bool, edits: &[Override]) -> ScopeId {
+    pub fn load(&mut self, name: &str, text: String, edits: &[Override]) -> ScopeId {
+        let file = self.sources.add(name, text, false);
+        let parsed = self.modules.parsed(file, &self.sources.get(file).text);
+        self.scope(name, parsed, false, edits)
+    }
+
+    fn scope(&mut self, name: &str, parsed: Parsed, library: bool, edits: &[Override]) -> ScopeId {
         // modules know the main file by its name below its own folder
         let key =
             if self.scopes.is_empty() && self.reading.is_empty() { name.rsplit(['/', '\\']).next() } else { None };
         let key = key.unwrap_or(name).to_string();
         self.known.insert(key.clone(), None);
         self.reading.push(key.clone());
-        let file = self.sources.add(name, text, library);
-        let text = self.sources.get(file).text.clone();
-        let Parsed { mut tree, mistakes } = self.modules.parsed(file, &text);
+        let Parsed { mut tree, mistakes } = parsed;
         self.diagnostics.extend(mistakes.iter().cloned());
         if !edits.is_empty() {
             overrides::apply(self, Arc::make_mut(&mut tree), edits);
@@ -236,8 +258,10 @@ impl<'a> Loader<'a> {
         if let Some(known) = self.known.get(&name) {
             return *known;
         }
-        let text = library::MODULES.iter().find(|(n, _)| *n == module)?.1;
-        Some(self.load(&name, text.to_string(), true, &[]))
+        let (module, text) = *library::MODULES.iter().find(|(n, _)| *n == module)?;
+        let file = self.sources.add(name.as_str(), text, true);
+        let parsed = self.modules.parsed(file, &self.library.of(module, text));
+        Some(self.scope(&name, parsed, true, &[]))
     }
 
     fn bring_in(&mut self, used: &Use, brought: &mut BroughtIn) {
@@ -335,7 +359,7 @@ impl<'a> Loader<'a> {
             return None;
         };
         match decode(&relative, &bytes) {
-            Ok(text) => Some(self.load(&relative, text, false, &[])),
+            Ok(text) => Some(self.load(&relative, text, &[])),
             Err(mistake) => {
                 self.diagnostics.push(mistake.at(span, "used here"));
                 None

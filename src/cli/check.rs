@@ -14,10 +14,11 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
-    let Some(mut compiled) = arguments.scene.compile() else { return Outcome::Usage };
+    let modules = arguments.scene.remembered();
+    let Some(mut compiled) = arguments.scene.compile_with(&modules) else { return Outcome::Usage };
     if !failed(&compiled) {
         // every point of a study is a scene too
-        let found = study::diagnostics(&arguments.scene, &compiled);
+        let found = study::diagnostics(&arguments.scene, &modules, &compiled);
         compiled.diagnostics.extend(found);
     }
     match arguments.format {

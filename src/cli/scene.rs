@@ -1,7 +1,7 @@
 //! Reads and compiles the scene that a command works on, and shows what is wrong with it.
 
 use super::{Outcome, terminal};
-use crate::check::{self, Folder, Override};
+use crate::check::{self, Folder, Modules, Override, Remembered};
 use crate::diag::{self, Sources, render};
 use crate::{Compiled, compile, syntax};
 use std::path::{Path, PathBuf};
@@ -36,6 +36,11 @@ impl SceneArguments {
         Folder(self.file.parent().unwrap_or(Path::new("")).to_path_buf())
     }
 
+    /// The same, for a scene that is compiled more than once.
+    pub fn remembered(&self) -> Remembered<Folder> {
+        Remembered::new(self.folder())
+    }
+
     /// The scene as one file; `None` where there is none.
     pub fn resolve(&self) -> Option<String> {
         let name = self.file.display().to_string();
@@ -45,6 +50,11 @@ impl SceneArguments {
 
     /// Reads and compiles the file; `None` where it cannot be read, which has been said.
     pub fn compile(&self) -> Option<Compiled> {
+        self.compile_with(&self.folder())
+    }
+
+    /// The same with modules that are asked again later.
+    pub fn compile_with(&self, modules: &dyn Modules) -> Option<Compiled> {
         let name = self.file.display().to_string();
         let bytes = match std::fs::read(&self.file) {
             Ok(bytes) => bytes,
@@ -53,9 +63,8 @@ impl SceneArguments {
                 return None;
             }
         };
-        let folder = self.folder();
         Some(match syntax::decode(&name, &bytes) {
-            Ok(text) => compile(&name, &text, &folder, &self.set),
+            Ok(text) => compile(&name, &text, modules, &self.set),
             Err(mistake) => Compiled {
                 sources: Sources::default(),
                 diagnostics: vec![mistake],

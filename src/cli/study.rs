@@ -57,7 +57,8 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         return Outcome::Usage;
     }
     let scene = arguments.scene.with_seed(&arguments.seed);
-    let Some(compiled) = scene.compile().map(Compiled::to_run) else { return Outcome::Usage };
+    let modules = scene.remembered();
+    let Some(compiled) = scene.compile_with(&modules).map(Compiled::to_run) else { return Outcome::Usage };
     show(&compiled);
     if failed(&compiled) {
         return Outcome::Failed;
@@ -74,7 +75,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     };
     let threads = arguments.jobs.map_or(0, usize::from);
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(|| in_pool(arguments, &scene, &compiled, study)),
+        Ok(pool) => pool.install(|| in_pool(arguments, &scene, &modules, &compiled, study)),
         Err(error) => {
             terminal::error(&format!("cannot start {threads} threads: {error}"));
             Outcome::Failed
@@ -100,20 +101,34 @@ fn chosen<'a>(compiled: &'a Compiled, name: Option<&str>) -> Result<&'a Study, S
 }
 
 /// Diagnostics of every study of a scene, for `check`.
-pub(super) fn diagnostics(arguments: &SceneArguments, compiled: &Compiled) -> Vec<Diagnostic> {
-    let plan = |study: &Study| with_scene(arguments, compiled, |scene| study::plan(scene, compiled, study).diagnostics);
-    compiled.studies.iter().flat_map(plan).collect()
+pub(super) fn diagnostics(arguments: &SceneArguments, modules: &Asked, compiled: &Compiled) -> Vec<Diagnostic> {
+    with_scene(arguments, modules, compiled, |scene| {
+        compiled.studies.iter().flat_map(|study| study::plan(scene, compiled, study).diagnostics).collect()
+    })
 }
 
-fn with_scene<T>(arguments: &SceneArguments, compiled: &Compiled, f: impl FnOnce(Scene<'_>) -> T) -> T {
+/// Modules of a scene whose points are compiled side by side.
+type Asked = Remembered<Folder>;
+
+fn with_scene<T>(
+    arguments: &SceneArguments,
+    modules: &Asked,
+    compiled: &Compiled,
+    f: impl FnOnce(Scene<'_>) -> T,
+) -> T {
     let name = arguments.file.display().to_string();
-    let folder = Folder(arguments.file.parent().unwrap_or(Path::new("")).to_path_buf());
     let text = compiled.sources.iter().next().map_or("", |(_, source)| source.text.as_str());
-    f(Scene { name: &name, text, modules: &Remembered::new(&folder), set: &arguments.set })
+    f(Scene { name: &name, text, modules, set: &arguments.set })
 }
 
-fn in_pool(arguments: &Arguments, edited: &SceneArguments, compiled: &Compiled, study: &Study) -> Outcome {
-    with_scene(edited, compiled, |scene| {
+fn in_pool(
+    arguments: &Arguments,
+    edited: &SceneArguments,
+    modules: &Asked,
+    compiled: &Compiled,
+    study: &Study,
+) -> Outcome {
+    with_scene(edited, modules, compiled, |scene| {
         let plan = study::plan(scene, compiled, study);
         say(&plan.diagnostics, compiled);
         if has_errors(&plan.diagnostics) {
