@@ -12,6 +12,7 @@ mod explain;
 mod fmt;
 mod new;
 mod pack;
+mod pack_track;
 mod plan;
 mod progress;
 mod report;

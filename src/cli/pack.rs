@@ -1,5 +1,6 @@
 //! `trackbed pack`: builds the bed of a scene, shows it and keeps it.
 
+use super::pack_track::{self, TrackArguments};
 use super::scene::{SceneArguments, failed, show};
 use super::{Format, Outcome, progress, terminal};
 use crate::Compiled;
@@ -28,6 +29,8 @@ pub(super) struct Arguments {
     /// Build it anew, and keep nothing
     #[arg(long, conflicts_with = "cache")]
     fresh: bool,
+    #[command(flatten)]
+    track: TrackArguments,
     #[arg(long, value_enum, default_value = "human")]
     format: Format,
 }
@@ -48,17 +51,10 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         return Outcome::Failed;
     }
     let cache = cache(arguments);
-    let known = cache.as_deref().and_then(|cache| results::kept_bed(cache, &plan.recipe));
-    let kept = known.is_some();
-    let mut packed = match known.map_or_else(|| build(&plan), Ok) {
-        Ok(packed) => packed,
+    let (mut packed, kept) = match kept_or_built(&plan, cache.as_deref()) {
+        Ok(found) => found,
         Err(mistake) => return stop(&compiled, &[mistake]),
     };
-    if let Some(cache) = cache.filter(|_| !kept)
-        && let Err(error) = results::keep_bed(&cache, &plan.recipe, &packed)
-    {
-        terminal::error(&format!("the bed is not kept: {error}"));
-    }
     let summary = results::bed_summary(&scenario.title, &plan, &packed);
     if let Some(out) = &arguments.out
         && let Err(message) = write(out, &summary, &mut packed)
@@ -66,7 +62,38 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         terminal::error(&message);
         return Outcome::Failed;
     }
-    tell(arguments, &summary, kept)
+    let told = tell(arguments, &summary, kept);
+    let further =
+        arguments.track.further(&plan).iter().map(|plan| Ok(kept_or_built(plan, cache.as_deref())?.0)).collect();
+    let cells = match further {
+        Ok::<Vec<_>, Diagnostic>(further) => [vec![packed], further].concat(),
+        Err(mistake) => return stop(&compiled, &[mistake]),
+    };
+    match arguments.track.lay(&cells, &plan) {
+        None => told,
+        Some(Err(mistake)) => stop(&compiled, &[mistake]),
+        Some(Ok(mut laid)) => match pack_track::tell(&mut laid, arguments.out.as_deref(), arguments.format) {
+            Ok(()) => told,
+            Err(message) => {
+                terminal::error(&message);
+                Outcome::Failed
+            }
+        },
+    }
+}
+
+/// The bed of a plan, and whether it had been kept; one that is built is kept from now on.
+fn kept_or_built(plan: &BedPlan, cache: Option<&Path>) -> Result<(Packed<f32>, bool), Diagnostic> {
+    if let Some(known) = cache.and_then(|cache| results::kept_bed(cache, &plan.recipe)) {
+        return Ok((known, true));
+    }
+    let packed = build(plan)?;
+    if let Some(cache) = cache
+        && let Err(error) = results::keep_bed(cache, &plan.recipe, &packed)
+    {
+        terminal::error(&format!("the bed is not kept: {error}"));
+    }
+    Ok((packed, false))
 }
 
 /// The bed that is meant.

@@ -86,7 +86,7 @@ fn bed_layer(recipe: &Recipe, packed: &Packed<f32>, number: usize) -> BedLayer {
     let asked = &recipe.layers[number];
     let [low, high] = packed.between(number);
     let inset = 0.25 * (high - low);
-    // the last stage is the finished bed, two before it that under the plate without friction
+    // the last stage is the finished bed, two before it the last lift under the plate without friction
     let state = |back: usize| packed.stages.len().checked_sub(back).map(|k| packed.stages[k].state.layers[number]);
     let finished = state(1).unwrap_or_default();
     BedLayer {

@@ -88,7 +88,8 @@ pub enum FrictionLimit {
 
 /// Springs of two bodies one behind the other: the stiffness of their contact (PFC's inheritance).
 pub fn in_series(first: f64, second: f64) -> f64 {
-    first * second / (first + second)
+    // one that gives way freely leaves nothing
+    if first == 0.0 || second == 0.0 { 0.0 } else { first * second / (first + second) }
 }
 
 impl HertzMindlin {

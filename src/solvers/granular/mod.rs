@@ -43,6 +43,7 @@ pub mod grains;
 mod gravity;
 mod inspect;
 mod integrate;
+mod join;
 mod lanes;
 mod law;
 pub mod measure;

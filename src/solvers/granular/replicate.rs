@@ -97,7 +97,7 @@ impl<R: Real> Bed<R> {
     }
 
     /// Histories, and by how many cells the lower of the two is shifted.
-    fn carried_with_images(&self) -> Vec<(Carried<R>, super::domain::Image)> {
+    pub(super) fn carried_with_images(&self) -> Vec<(Carried<R>, super::domain::Image)> {
         let contacts = &self.contacts;
         (0..contacts.len())
             .filter(|&place| (contacts.first[place] as usize) < self.owner.len())

@@ -101,6 +101,13 @@ impl<R: Real> Bed<R> {
         })
     }
 
+    /// [`CriticalStep::bound`] alone \[s\], which costs little.
+    pub fn bound_time_step(&mut self, gap: f64) -> Result<f64, Failure> {
+        let links = self.links(gap)?;
+        let roots = self.roots();
+        Ok(local::bound(&links, &roots, &Around::new(&links, roots.len())).0)
+    }
+
     fn seat(&self, body: u32, around: &Around) -> Seat {
         let state = self.body_state(BodyId(body));
         let contacts = around.of(body as usize).len();

@@ -6,16 +6,19 @@
 
 mod describe;
 mod error;
+mod pace;
 mod place;
 mod press;
 mod rest;
 mod store;
 #[cfg(test)]
 mod tests;
+mod track;
 
 pub use describe::{LayerState, Stage, State};
 pub use error::PackingError;
 pub use store::Stored;
+pub use track::{Order, TrackAccount, TrackBed, lay};
 
 use super::bed::{Bed, Placed};
 use super::clump::Template;
@@ -137,17 +140,17 @@ pub fn pack<R: Real>(recipe: &Recipe, tell: impl FnMut(&Progress)) -> Result<Pac
     recipe.check()?;
     let mut press = Press::<R, _>::new(recipe, tell);
     let mut packed = Contents::default();
+    let mut top = 0.0;
     for (number, layer) in recipe.layers.iter().enumerate() {
         packed.bodies.push(press.bed.len() as u32);
-        let sample = fill(&mut press, recipe, number, layer)?;
+        // what a layer lacks the next one makes up for
+        top += layer.thickness;
+        let sample = fill(&mut press, recipe, number, layer, top)?;
         packed.samples.push(sample);
         packed.levels.push(press.level());
     }
     packed.bodies.push(press.bed.len() as u32);
     press.finish(recipe)?;
-    // the topmost layer gave way a little until the whole bed was at rest
-    packed.levels.pop();
-    packed.levels.push(press.level());
     let Contents { bodies, samples, levels } = packed;
     let densities = recipe.layers.iter().map(|layer| layer.density).collect();
     Ok(Packed { bed: press.bed, plan: recipe.plan, densities, bodies, samples, levels, stages: press.stages })
@@ -160,13 +163,14 @@ struct Contents {
     levels: Vec<f64>,
 }
 
-/// Packs a layer lift by lift. All but the last have their share of what the layer is thought to hold; the last has what the
+/// Packs a layer lift by lift up to a level. All but the last have their share of what the layer is thought to hold; the last has what the
 /// thickness lacks, at the porosity that those before have reached.
 fn fill<R: Real, T: FnMut(&Progress)>(
     press: &mut Press<'_, R, T>,
     recipe: &Recipe,
     number: usize,
     layer: &Layer,
+    top: f64,
 ) -> Result<Sample, PackingError> {
     let area = recipe.plan[0] * recipe.plan[1];
     let base = press.level();
@@ -176,7 +180,7 @@ fn fill<R: Real, T: FnMut(&Progress)>(
         let left = f64::from(layer.lifts - lift);
         let reached = press.level() - base;
         let solid = if taken > 0.0 { taken / (area * reached) } else { SOLID };
-        let volume = area * ((layer.thickness - reached) * solid / left).max(0.0);
+        let volume = area * ((top - base - reached) * solid / left).max(0.0);
         let sample = layer.curve.sample(volume, recipe.seed.wrapping_add((number as u64) << 32 | u64::from(lift)))?;
         taken += sample.volume;
         let copies = grains(&sample, layer.templates.len(), recipe.seed ^ (u64::from(lift) << 8));
@@ -198,7 +202,9 @@ impl Recipe {
     fn packing_laws(&self) -> Laws {
         self.between(|layer| {
             let Packing { friction, viscous_damping, .. } = layer.packing;
-            let surface = Surface { friction, damping: [viscous_damping; 2], ..layer.surface };
+            // without friction nothing holds against sliding, and steps may be longer
+            let shear_stiffness = if friction > 0.0 { layer.surface.shear_stiffness } else { 0.0 };
+            let surface = Surface { friction, shear_stiffness, damping: [viscous_damping; 2], ..layer.surface };
             (surface, friction.min(layer.wall_friction))
         })
     }
@@ -216,6 +222,17 @@ impl Recipe {
             laws.set(number as u16, self.wall_surface(), law);
         }
         laws
+    }
+
+    /// Of contacts between grains of each layer, N/m: two bodies in series.
+    fn stiffness(&self) -> Vec<f64> {
+        self.layers.iter().map(|layer| 0.5 * layer.surface.normal_stiffness).collect()
+    }
+
+    /// The least sqrt(m / k) of a mean grain of any layer, s.
+    fn mean_step(&self) -> f64 {
+        let of = |(layer, k): (&Layer, f64)| (layer.density * layer.curve.mean_volume() / k).sqrt();
+        self.layers.iter().zip(self.stiffness()).map(of).fold(f64::INFINITY, f64::min)
     }
 
     fn wall_surface(&self) -> u16 {

@@ -6,14 +6,14 @@ use super::super::lanes::Real;
 use super::super::motion::{Motion, Pose};
 use super::super::shape::Shape;
 use super::super::walls::WallId;
+use super::pace::{Pace, SAFE};
 use super::place::{Room, set_loose};
 use super::rest::unbalance;
 use super::{PackingError, Progress, Recipe, Stage, State, chance, put};
 use nalgebra::Vector3;
-use std::f64::consts::PI;
 
 /// Steps between looks at forces and at the time step.
-const LOOK: u64 = 400;
+const LOOK: u64 = 200;
 /// Looks in a row that must find rest.
 const CALM: usize = 3;
 /// At which loose grains fall and the plate comes down to them, m/s.
@@ -26,9 +26,12 @@ const LIFT: f64 = 0.05;
 const BEARS: f64 = 0.05;
 /// Gain of the servo: bodies have mass, and follow later than springs.
 const GAIN: f64 = 0.2;
-/// Share of the stable step of bodies that touch, and of what the lightest body could bear in a dense bed.
-const SAFE: f64 = 0.8;
-const PRIOR: f64 = 0.25;
+/// Share of its pressure at which the plate has gone.
+const GONE: f64 = 0.01;
+
+/// Stages after those of the lifts.
+pub(super) const RESTORED: &str = "friction restored";
+pub(super) const LIFTED: &str = "plate lifted";
 
 /// A bed under a plate.
 pub(super) struct Press<'a, R: Real, T> {
@@ -39,6 +42,8 @@ pub(super) struct Press<'a, R: Real, T> {
     area: f64,
     /// Level of the plate when it last pressed, m.
     level: f64,
+    /// While grains are packed; `None` when they have their own inertia again.
+    pace: Option<Pace>,
     /// Stages in all.
     count: usize,
     tell: T,
@@ -66,7 +71,8 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
             recipe,
             area: length * width,
             level: 0.0,
-            count: lifts as usize + 3,
+            pace: Some(Pace::of(recipe)),
+            count: lifts as usize + 2,
             tell,
         };
         press.away();
@@ -96,25 +102,33 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         Ok(())
     }
 
-    /// The whole bed comes to rest under the plate, friction comes back, and the plate goes. The other way round a bed without
-    /// friction and load would flow for seconds, and lose what the plate has gained.
+    /// Friction comes back under the plate, and the plate goes. The other way round a bed without friction and load would flow
+    /// for seconds, and lose what the plate has gained.
     pub fn finish(&mut self, recipe: &Recipe) -> Result<(), PackingError> {
         let pressure = recipe.layers.last().map(|layer| layer.pressure);
         let unbalance = recipe.rest.bed;
-        self.until_rest("pressed", Goal { pressure, unbalance }, self.level)?;
+        self.pace = None;
+        self.bed.unscale_masses();
         self.bed.set_laws(recipe.laws());
         self.bed.set_damping(recipe.local_damping);
-        self.until_rest("friction restored", Goal { pressure, unbalance }, self.level)?;
+        self.until_rest(RESTORED, Goal { pressure, unbalance }, self.level)?;
         self.level = self.height();
+        self.lift()?;
+        self.until_rest(LIFTED, Goal { pressure: None, unbalance }, self.level)
+    }
+
+    /// The plate goes up until it all but presses no more.
+    fn lift(&mut self) -> Result<(), PackingError> {
+        let (pressure, level) = (self.pressure(), self.level);
         let up = Motion::Velocity { linear: Vector3::new(0.0, 0.0, LIFT), angular: Vector3::zeros() };
         self.bed.set_motion(self.plate, up);
         // the springs under it give way long before it is a grain's size away
-        let clear = self.level + recipe.layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
-        while self.bed.wall(self.plate).felt().contacts > 0 && self.height() < clear {
-            self.advance("plate lifted")?;
+        let clear = level + self.recipe.layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
+        while self.pressure() > GONE * pressure && self.height() < clear {
+            self.advance(LIFTED)?;
         }
         self.away();
-        self.until_rest("plate lifted", Goal { pressure: None, unbalance }, self.level)
+        Ok(())
     }
 
     /// Highest point of any grain, m.
@@ -147,23 +161,17 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         self.bed.set_motion(self.plate, Motion::Servo { axis, force: pressure * self.area, speed_limit, gain: GAIN });
     }
 
-    /// Some steps, each as long as the contacts of now allow.
+    /// Some steps, each as long as it may be.
     fn advance(&mut self, stage: &str) -> Result<(), PackingError> {
-        let lightest = self.lightest_step();
-        let touching = SAFE * self.bed.body_time_step();
-        self.bed.set_time_step(touching.min(PRIOR * lightest));
-        self.bed.run(LOOK).map_err(|failure| PackingError::Failure { stage: stage.to_owned(), failure })
-    }
-
-    /// sqrt(m / k) of the lightest grain of any layer, s.
-    fn lightest_step(&self) -> f64 {
-        let of = |layer: &super::Layer| {
-            let mass = layer.density * PI / 6.0 * layer.curve.ends()[0].powi(3);
-            // two bodies in series make a contact
-            let stiffness = 0.5 * layer.surface.normal_stiffness.max(layer.surface.shear_stiffness);
-            (mass / stiffness).sqrt()
-        };
-        self.recipe.layers.iter().map(of).fold(f64::INFINITY, f64::min)
+        let failed = |failure| PackingError::Failure { stage: stage.to_owned(), failure };
+        match &self.pace {
+            Some(pace) => pace.hold(&mut self.bed).map_err(failed)?,
+            None => {
+                let step = self.bed.bound_time_step(0.0).map_err(failed)?;
+                self.bed.set_time_step(SAFE * step.min(self.recipe.mean_step()));
+            }
+        }
+        self.bed.run(LOOK).map_err(failed)
     }
 
     /// Runs until forces are in balance and the plate presses as it should.

@@ -59,7 +59,7 @@ fn a_small_bed_is_dense_level_and_at_rest() {
             .map(|stage| stage.state.layers[0].without_rattlers)
             .unwrap()
     };
-    let [pressed, restored, lifted] = ["pressed", "friction restored", "plate lifted"].map(z);
+    let [pressed, restored, lifted] = ["ballast, lift 2 of 2", "friction restored", "plate lifted"].map(z);
     assert!((5.3..6.5).contains(&pressed), "{pressed}");
     assert!((restored / pressed - 1.0).abs() < 0.05, "{pressed} and {restored}");
     assert!((3.5..pressed).contains(&lifted), "{pressed} and {lifted}");
@@ -133,5 +133,65 @@ fn loose_grains_touch_nothing() {
                 assert!(distance >= radius + reach - 1e-12, "{k} and {other}: {distance}");
             }
         }
+    }
+}
+
+#[test]
+fn cells_side_by_side_keep_their_forces() {
+    let mut packed = packed(&small());
+    let mut bays = packed.bed.replicate(3).unwrap();
+    let mut open = Bed::side_by_side(std::slice::from_mut(&mut packed.bed), &[0, 0, 0], |_, _| true).unwrap();
+    assert_eq!(open.len(), bays.len());
+    let forces = |bed: &mut Bed<f32>| {
+        let mut all: Vec<_> = bed.snapshot().unwrap().contacts;
+        all.sort_by_key(|contact| (contact.first, contact.second));
+        all
+    };
+    let (closed, open) = (forces(&mut bays), forces(&mut open));
+    // what is missing are contacts between the first and the last bay
+    let inside: Vec<_> =
+        closed.iter().filter(|c| open.iter().any(|o| (o.first, o.second) == (c.first, c.second))).collect();
+    assert_eq!(inside.len(), open.len());
+    assert!(open.len() < closed.len() && open.len() > closed.len() * 9 / 10, "{} of {}", open.len(), closed.len());
+    for (a, b) in inside.iter().zip(&open) {
+        assert_eq!((a.force, a.overlap), (b.force, b.overlap));
+    }
+}
+
+#[test]
+fn unlike_cells_come_to_rest_between_walls() {
+    let recipe = Recipe { rest: Rest { bed: 5e-3, ..Rest::default() }, ..small() };
+    let cells = [packed(&recipe), packed(&Recipe { seed: 2, ..recipe.clone() })];
+    let order = Order(vec![0, 1]);
+    let laid = lay(&cells, &order, &recipe, |_| ()).unwrap_or_else(|error| panic!("{error}"));
+    let account = &laid.account;
+    assert!(account.unbalance <= recipe.rest.bed && account.bodies == laid.bed.len());
+    assert!(account.removed_at_ends > 0 && account.removed_at_seams > 0 && account.removed_mass < 0.25, "{account:?}");
+    let mut bed = laid.bed;
+    let outside = |x: f64, r: f64| x < r - 1e-4 || x > 0.6 - r + 1e-4;
+    assert!(!bed.pebbles().any(|pebble| outside(pebble.place[0], pebble.radius)));
+    let deepest = bed.snapshot().unwrap().contacts.iter().map(|c| c.overlap).fold(0.0, f64::max);
+    assert!(deepest < 1e-4, "{deepest}");
+    // the same bits with one thread
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let again = pool.install(|| lay(&cells, &order, &recipe, |_| ())).unwrap();
+    assert!(again.bed.states().eq(bed.states()));
+}
+
+#[test]
+fn copies_of_a_cell_need_no_room_between_them() {
+    let recipe = Recipe { rest: Rest { bed: 5e-3, ..Rest::default() }, ..small() };
+    let laid = lay(&[packed(&recipe)], &Order::of_one(2), &recipe, |_| ()).unwrap_or_else(|error| panic!("{error}"));
+    assert!(laid.account.removed_at_seams == 0 && laid.account.removed_at_ends > 0, "{:?}", laid.account);
+}
+
+#[test]
+fn every_cell_has_its_turn() {
+    let Order(order) = Order::mixed(3, 40, 5);
+    assert_eq!(order.len(), 40);
+    for turn in order.chunks(3).filter(|turn| turn.len() == 3) {
+        let mut turn = turn.to_vec();
+        turn.sort();
+        assert_eq!(turn, [0, 1, 2]);
     }
 }

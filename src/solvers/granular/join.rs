@@ -1,0 +1,121 @@
+//! Cells side by side along an open x: copies of one, or of several that were packed from other seeds (methods 1.7).
+
+use super::bed::Bed;
+use super::body::{BodyId, SPHERE};
+use super::build::Carried;
+use super::lanes::Real;
+use super::walls::Kept;
+use super::watch::Failure;
+
+/// Where the bodies of one bay begin, and which of them are there.
+struct Bay {
+    cell: usize,
+    /// New number of each body of the cell; `None` for one that is left out.
+    numbers: Vec<Option<u32>>,
+}
+
+impl<R: Real> Bed<R> {
+    /// Beds of one period of the same length along x, side by side: bay `b` holds cell `order[b]`. The ends are open, and no
+    /// longer meet.
+    ///
+    /// Contacts go on with their histories inside a bay, and into the next one where that is the same cell; where it is
+    /// another, bodies may overlap. Bodies that `kept` (bay, body of the cell) denies are left out. Walls, laws, gravity and
+    /// damping are those of the first cell.
+    ///
+    /// # Panics
+    /// If a cell is not one period along x, their lengths differ, a wall ends, or `order` is empty or names no cell.
+    pub fn side_by_side(
+        cells: &mut [Bed<R>],
+        order: &[usize],
+        kept: impl Fn(usize, BodyId) -> bool,
+    ) -> Result<Bed<R>, Failure> {
+        let length = cells[order[0]].period_of_cell();
+        assert!(cells.iter().all(|cell| cell.period_of_cell() == length), "cells of one length");
+        assert!(cells[0].walls.iter().all(|wall| wall.shape.bounds().is_none()), "walls without ends");
+        cells.iter_mut().try_for_each(|cell| cell.refresh())?;
+        let mut bed = cells[order[0]].clone();
+        bed.domain = bed.domain.bays(length);
+        bed.records.clear();
+        bed.bodies.clear();
+        bed.owner.clear();
+        bed.index.clear();
+        bed.clumps.clear();
+        bed.arms.clear();
+        let mut bays = Vec::with_capacity(order.len());
+        for (bay, &cell) in order.iter().enumerate() {
+            let numbers = bed.take_over(cells, cell, bay, |body| kept(bay, body));
+            bays.push(Bay { cell, numbers });
+        }
+        let (carried, touches) = histories(cells, &bays);
+        bed.build.outdated = true;
+        bed.rebuild_with(carried, touches)?;
+        Ok(bed)
+    }
+
+    fn period_of_cell(&self) -> f64 {
+        self.domain.period(0).filter(|_| self.domain.cells(0) == Some(1)).expect("one period along x")
+    }
+
+    /// Copies the bodies of a cell into a bay, and gives their new numbers.
+    fn take_over(
+        &mut self,
+        cells: &[Bed<R>],
+        number: usize,
+        bay: usize,
+        kept: impl Fn(BodyId) -> bool,
+    ) -> Vec<Option<u32>> {
+        let cell = &cells[number];
+        // bodies of one cell are equal in all its bays, and unlike those of any other cell
+        let before: usize = cells[..number].iter().map(Bed::len).sum();
+        let copied = |place: &u32| {
+            let (mut body, pebbles) = (cell.bodies[*place as usize], self.owner.len() as u32);
+            if !kept(BodyId(body.id)) {
+                return None;
+            }
+            let id = self.bodies.len() as u32;
+            let own = body.first as usize..body.first as usize + usize::from(body.pebbles);
+            if body.clump != SPHERE {
+                let mut clump = cell.clumps[body.clump as usize];
+                let arms = clump.arms as usize..clump.arms as usize + usize::from(body.pebbles);
+                clump.arms = self.arms.len() as u32;
+                self.arms.extend_from_slice(&cell.arms[arms]);
+                body.clump = self.clumps.len() as u32;
+                self.clumps.push(clump);
+            }
+            body.cell[0] = bay as i32;
+            (body.id, body.rank, body.first) = (id, before as u32 + body.rank, pebbles);
+            self.records.extend_from_slice(&cell.records[own.clone()]);
+            self.owner.resize(self.owner.len() + own.len(), id);
+            self.index.push(id);
+            self.bodies.push(body);
+            Some(id)
+        };
+        cell.index.iter().map(copied).collect()
+    }
+}
+
+/// Histories of contacts that go on.
+fn histories<R: Real>(cells: &[Bed<R>], bays: &[Bay]) -> (Vec<Carried<R>>, Vec<Kept<R>>) {
+    let (mut carried, mut touches) = (Vec::new(), Vec::new());
+    for (number, cell) in cells.iter().enumerate() {
+        let (between, walls) = (cell.carried_with_images(), cell.kept());
+        for (here, bay) in bays.iter().enumerate().filter(|(_, bay)| bay.cell == number) {
+            for (near, image) in &between {
+                // the lower stands in this bay, and its neighbour as many steps away as the image says
+                let there = here as i64 - i64::from(super::domain::steps_of(*image)[0]);
+                let other = usize::try_from(there).ok().and_then(|there| bays.get(there));
+                let Some(other) = other.filter(|other| other.cell == number) else { continue };
+                let both = (bay.numbers[near.low.0 as usize], other.numbers[near.high.0 as usize]);
+                let (Some(a), Some(b)) = both else { continue };
+                let (low, high) = ((a, near.low.1), (b, near.high.1));
+                let swap = |v: [R; 3]| if low < high { v } else { v.map(|c| -c) };
+                let (shear, damping) = (swap(near.shear), swap(near.damping));
+                carried.push(Carried { low: low.min(high), high: low.max(high), shear, damping });
+            }
+            let moved = |touch: &Kept<R>| Some(Kept { body: bay.numbers[touch.body as usize]?, ..*touch });
+            touches.extend(walls.iter().filter_map(moved));
+        }
+    }
+    touches.sort_by_key(|touch| (touch.wall, touch.body, touch.pebble));
+    (carried, touches)
+}
