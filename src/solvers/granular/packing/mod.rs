@@ -218,7 +218,8 @@ impl Recipe {
         laws
     }
 
-    fn wall_surface(&self) -> u16 {
+    /// The surface of walls, floor and plate.
+    pub fn wall_surface(&self) -> u16 {
         self.layers.len() as u16
     }
 
