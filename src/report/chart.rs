@@ -430,4 +430,20 @@ mod tests {
         assert!(!text.contains("NaN") && !text.contains("inf"));
         assert_eq!(text.matches(r#"<path class="line"#).count(), 2);
     }
+
+    #[test]
+    fn a_logarithmic_upright_axis_ends_on_powers_of_ten() {
+        let mut chart = Chart::new(Axis::new("a", ("", 1.0)), Axis { logarithmic: true, ..Axis::new("b", ("", 1.0)) });
+        chart.series.push(Series::new("", "s0", Mark::Line, vec![(0.0, 0.9), (1.0, 0.002)]));
+        let frame = Frame { x: 0.0, y: 0.0, width: 300.0, height: 200.0 };
+        let plane = chart.plane(frame);
+        assert_eq!(plane.y, (1e-3, 1.0));
+        let down = |value: f64| plane.at((0.0, value)).1;
+        assert!((down(1e-3) - 200.0).abs() < 1e-9 && down(1.0).abs() < 1e-9);
+        assert!((down(0.1) - 200.0 / 3.0).abs() < 1e-9, "{}", down(0.1));
+        let mut svg = Svg::default();
+        chart.draw(&mut svg, "id", frame);
+        let text = svg.finish(300.0, 200.0, "d");
+        assert!(text.contains(">0.01<") && text.contains(">1<") && !text.contains("NaN"), "{text}");
+    }
 }

@@ -33,7 +33,9 @@ pub fn write(html: &mut String, readings: &BedReadings) {
 
 fn plate_table(html: &mut String, plate: &PlateTest) {
     let what = match plate.sides_m {
-        Some([length, width]) => format!("of {} m x {} m", plain(length, 3), plain(width, 3)),
+        Some([length, width]) => {
+            format!("of {} m x {} m, what a sleeper covers of this cell,", plain(length, 3), plain(width, 3))
+        }
         None => "over the whole cell".to_owned(),
     };
     let caption = format!(

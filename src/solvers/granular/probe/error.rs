@@ -53,8 +53,8 @@ impl fmt::Display for ProbeError {
             ),
             ProbeError::Restless { pressure, target, unbalance, limit, time } => write!(
                 f,
-                "the plate comes not to rest in {time:.1} s: it presses with {:.1} kPa and should with {:.1} kPa, and forces are out \
-                 of balance by {unbalance:.1e} of those that act, where {limit:.1e} is allowed",
+                "the plate is not at rest after {time:.1} s of a step: it presses with {:.1} kPa on the way to {:.1} kPa, and forces are out of \
+                 balance by {unbalance:.1e} of those that act, where {limit:.1e} is allowed",
                 pressure / 1e3,
                 target / 1e3
             ),

@@ -286,6 +286,7 @@ impl<'a, R: Real> Test<'a, R> {
                 return Err(ProbeError::Sunk { pressure, settlement, target: self.plate.pressure });
             }
             if self.bed.time() - start > longest {
+                let target = self.plate.pressure;
                 return Err(ProbeError::Restless { pressure, target, unbalance: out, limit, time: longest });
             }
         }

@@ -90,7 +90,10 @@ fn plates_that_are_none_are_refused() {
     assert!(matches!(error, ProbeError::Sunk { .. }), "{error}");
     let hasty = Plate { rest: Stillness { longest: 1e-3, ..Stillness::default() }, ..good };
     let error = refused(&hasty);
-    assert!(matches!(error, ProbeError::Restless { .. }) && error.to_string().contains("comes not to rest"), "{error}");
+    assert!(
+        matches!(error, ProbeError::Restless { .. }) && error.to_string().contains("is not at rest after"),
+        "{error}"
+    );
 }
 
 #[test]
