@@ -15,6 +15,8 @@ const PROFILE: f64 = 340.0;
 const CONTACTS: f64 = 320.0;
 const ROSE: f64 = 118.0;
 const CURVE: f64 = 300.0;
+/// Of porosity beside its curve.
+const MARGIN: f64 = 0.01;
 /// Force over its mean from which the tail is fitted.
 const FIT: f64 = 1.0;
 
@@ -86,8 +88,11 @@ fn profile(readings: &BedReadings) -> Option<Figure> {
     let over = |rows: &[ProfileRow], of: fn(&ProfileRow) -> f64| -> Vec<(f64, f64)> {
         rows.iter().map(|row| (of(row), 0.5 * (row.from_m + row.to_m))).collect()
     };
-    let mut porosity = Chart::new(Axis::new("Porosity", ("", 1.0)), height());
-    porosity.series.push(Series::new("", "s0", Mark::Dots, over(&readings.profile, |row| row.porosity)));
+    let porosities = readings.profile.iter().map(|row| row.porosity);
+    let (low, high) = porosities.fold((1.0_f64, 0.0_f64), |(low, high), p| (low.min(p), high.max(p)));
+    let range = Some((low - MARGIN, high + MARGIN));
+    let mut porosity = Chart::new(Axis { range, ..Axis::new("Porosity", ("", 1.0)) }, height());
+    porosity.series.push(Series::new("whole cell", "s0", Mark::Dots, over(&readings.profile, |row| row.porosity)));
     let stress = |title: &str, rows: &[ProfileRow]| {
         let pressures = rows.iter().flat_map(|row| [row.vertical_Pa, row.along_Pa, row.across_Pa]);
         let mut chart = Chart::new(from_zero(Axis::new(title, ("kPa", 1e3)), pressures), height());
@@ -112,7 +117,7 @@ fn profile(readings: &BedReadings) -> Option<Figure> {
 
 fn contact_table(html: &mut String, readings: &BedReadings) {
     let caption = "Contacts between grains, walls left out. Strong ones carry more than the mean normal force. The fabric's deviator is 0 where \
-                   contacts look everywhere alike, and 1 where they look one way. A tail of 1 is exponential; larger ones fall faster.";
+                   contacts look everywhere alike, and 1 where they look one way; its vertical part is a third where no direction leads. A tail of 1 is exponential; larger ones fall faster.";
     let head = [
         "contacts",
         "number",

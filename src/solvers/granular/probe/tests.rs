@@ -2,6 +2,7 @@
 
 use super::super::law::{DashpotMode, Laws, Surface};
 use super::super::measure::packed::{bed, recipe};
+use super::super::packing::Packed;
 use super::super::{Domain, Sphere};
 use super::*;
 
@@ -110,6 +111,9 @@ fn a_packed_bed_is_stiffer_the_second_time_and_stays_as_it_was() {
     assert!(0.0 < back && back < full, "{found:?}");
     assert_eq!(before, packed.bed.states().collect::<Vec<_>>());
     assert_eq!(found, test());
+    // a bed that was kept answers as the one that was built
+    let kept = Packed::<f32>::restore(packed.store()).unwrap();
+    assert_eq!(found, probe(&kept.bed, &pressed, |_, _, _| ()).unwrap());
 }
 
 #[test]
