@@ -15,8 +15,8 @@ const PROFILE: f64 = 340.0;
 const CONTACTS: f64 = 320.0;
 const ROSE: f64 = 118.0;
 const CURVE: f64 = 300.0;
-/// Of porosity beside its curve.
-const MARGIN: f64 = 0.01;
+/// On which the axis of porosity ends.
+const ROUND: f64 = 0.05;
 /// Force over its mean from which the tail is fitted.
 const FIT: f64 = 1.0;
 
@@ -90,7 +90,7 @@ fn profile(readings: &BedReadings) -> Option<Figure> {
     };
     let porosities = readings.profile.iter().map(|row| row.porosity);
     let (low, high) = porosities.fold((1.0_f64, 0.0_f64), |(low, high), p| (low.min(p), high.max(p)));
-    let range = Some((low - MARGIN, high + MARGIN));
+    let range = Some(((low / ROUND).floor() * ROUND, (high / ROUND).ceil() * ROUND));
     let mut porosity = Chart::new(Axis { range, ..Axis::new("Porosity", ("", 1.0)) }, height());
     porosity.series.push(Series::new("whole cell", "s0", Mark::Dots, over(&readings.profile, |row| row.porosity)));
     let stress = |title: &str, rows: &[ProfileRow]| {
