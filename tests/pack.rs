@@ -54,6 +54,7 @@ fn a_bed_is_packed_once_and_is_the_same_on_any_number_of_threads() {
     for stage in bed["stages"].as_array().unwrap() {
         assert!(stage["state"]["unbalance"].as_f64().unwrap() < 0.011, "{stage}");
     }
+    what_is_read_off_it_is_sound(&bed);
     for name in ["bed.html", "along.svg", "chains.svg", "bodies.vtp", "contacts.vtp"] {
         assert!(fs::metadata(dir.path().join("bed").join(name)).unwrap().len() > 1000, "{name}");
     }
@@ -65,6 +66,42 @@ fn a_bed_is_packed_once_and_is_the_same_on_any_number_of_threads() {
     }
     let kept = pack(&scene, &["--cache", &path("cache")], "2");
     assert!(said(&kept).contains("as it was kept"), "{}", said(&kept));
+    for words in ["of their friction used", "plate of 0.3 m x 1.3 m to 100 kPa:", "Ev2/Ev1"] {
+        assert!(said(&kept).contains(words), "{}", said(&kept));
+    }
+    let page = fs::read_to_string(path("bed/bed.html")).unwrap();
+    for id in ["plate", "profile", "contacts"] {
+        assert!(page.contains(&format!("<section id=\"{id}\">")), "{id}");
+    }
+    assert!(!page.contains("NaN"));
+}
+
+fn what_is_read_off_it_is_sound(bed: &Value) {
+    let readings = &bed["readings"];
+    let number = |value: &Value| value.as_f64().unwrap_or_else(|| panic!("{value}"));
+    // the floor carries the weight of the grains, less what hangs on the walls
+    let profile = readings["profile"].as_array().unwrap();
+    let porosity = number(&bed["layers"][0]["porosity"]);
+    let weight = 2700.0 * 9.81 * (1.0 - porosity) * number(&bed["layers"][0]["thickness_m"]);
+    let floor = number(&profile[0]["vertical_Pa"]);
+    assert!((0.75..1.0).contains(&(floor / weight)), "{floor} of {weight}");
+    // slabs of equal height are the layer
+    let mean = profile.iter().map(|row| number(&row["porosity"])).sum::<f64>() / profile.len() as f64;
+    assert!((mean - porosity).abs() < 1e-9, "{mean} and {porosity}");
+    let plate = &readings["plate"];
+    let [first, again] = [0, 1].map(|k| number(&plate["stiffness_N_per_m"][k]));
+    assert!(1e7 < first && first < again && again < 5e8, "{plate}");
+    let [ev1, ev2] = [0, 1].map(|k| number(&plate["moduli_Pa"][k]));
+    assert!((ev2 / ev1 / (again / first) - 1.0).abs() < 1e-12, "{plate}");
+    assert_eq!(number(&plate["sides_m"][0]), 0.3);
+    // right under the plate there is its pressure, less what the border of the slab cuts
+    let top = number(&plate["loaded"].as_array().unwrap().last().unwrap()["vertical_Pa"]);
+    assert!((0.85..1.05).contains(&(top / number(&plate["pressure_Pa"]))), "{top}");
+    let forces = &readings["forces"];
+    assert!((0.3..0.5).contains(&number(&forces["above"])), "{forces}");
+    assert!((0.0..1.0).contains(&number(&forces["mobilised"])), "{forces}");
+    let trace: f64 = (0..3).map(|k| number(&readings["directions"]["fabric"]["tensor"][k][k])).sum();
+    assert!((trace - 1.0).abs() < 1e-9, "{trace}");
 }
 
 #[test]

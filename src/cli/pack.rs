@@ -7,7 +7,7 @@ use crate::Compiled;
 use crate::diag::{Code, Diagnostic, render};
 use crate::lower::{self, BedPlan};
 use crate::report::{BedPage, Side};
-use crate::results::{self, BedSummary};
+use crate::results::{self, BedReadings, BedSummary};
 use crate::solvers::granular::packing::{Packed, pack};
 use crate::units::number;
 use std::path::{Path, PathBuf};
@@ -55,7 +55,14 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Ok(found) => found,
         Err(mistake) => return stop(&compiled, &[mistake]),
     };
-    let summary = results::bed_summary(&scenario.title, &plan, &packed);
+    let readings = match read(cache.as_deref(), &plan, &packed) {
+        Ok(readings) => readings,
+        Err(message) => {
+            terminal::error(&message);
+            return Outcome::Failed;
+        }
+    };
+    let summary = results::bed_summary(&scenario.title, &plan, &packed, readings);
     if let Some(out) = &arguments.out
         && let Err(message) = write(out, &summary, &mut packed)
     {
@@ -131,6 +138,22 @@ fn build(plan: &BedPlan) -> Result<Packed<f32>, Diagnostic> {
         Diagnostic::new(Code::E0810, error.to_string())
             .help("give the `packing` of the material more `local_damping`, or less `pressure`")
     })
+}
+
+/// What is read off the bed, from before where it was kept.
+fn read(cache: Option<&Path>, plan: &BedPlan, packed: &Packed<f32>) -> Result<BedReadings, String> {
+    if let Some(kept) = cache.and_then(|cache| results::kept_readings(cache, plan)) {
+        return Ok(kept);
+    }
+    let mut bar = progress::Patient::new("the plate");
+    let readings = results::read_bed(plan, packed, |done, all| bar.at(done as u64, all as u64))
+        .map_err(|failure| format!("cannot measure the bed: {failure}"))?;
+    if let Some(cache) = cache
+        && let Err(error) = results::keep_readings(cache, plan, &readings)
+    {
+        terminal::error(&format!("what was read off the bed is not kept: {error}"));
+    }
+    Ok(readings)
 }
 
 fn stop(compiled: &Compiled, mistakes: &[Diagnostic]) -> Outcome {
@@ -214,8 +237,36 @@ fn text(summary: &BedSummary, kept: bool) -> String {
             100.0 * layer.rattlers
         );
     }
+    out += &measured(&summary.readings);
     for note in &summary.notes {
         out += &format!("\n{note}");
     }
     out + "\n"
+}
+
+/// What its contacts and a plate say of it, in two lines.
+fn measured(readings: &BedReadings) -> String {
+    let (forces, fabric) = (&readings.forces, &readings.directions);
+    let percent = |share: Option<f64>| share.map_or("none".to_owned(), |share| format!("{:.1} %", 100.0 * share));
+    let mut out = format!(
+        "\ncontacts: {} of {:.0} N in the mean, {} of their friction used, {} slide; fabric deviator {:.3}, of strong contacts {:.3}\n",
+        forces.contacts,
+        forces.mean,
+        percent(forces.mobilised),
+        percent(forces.sliding),
+        fabric.deviator,
+        readings.strong_directions.deviator
+    );
+    if let Some(plate) = &readings.plate {
+        let sides = plate.sides_m.map_or("over the whole cell".to_owned(), |[length, width]| {
+            format!("of {} m x {} m", number(length), number(width))
+        });
+        let [first, again] = plate.stiffness_N_per_m.map(|k| k / 1e6);
+        out += &format!("plate {sides} to {:.0} kPa: {first:.1} MN/m, then {again:.1} MN/m", plate.pressure_Pa / 1e3);
+        if let Some([first, again]) = plate.moduli_Pa.map(|moduli| moduli.map(|modulus| modulus / 1e6)) {
+            out += &format!("; Ev1 {first:.0} MPa, Ev2 {again:.0} MPa, Ev2/Ev1 {:.1}", again / first);
+        }
+        out += "\n";
+    }
+    out
 }

@@ -4,6 +4,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::scenario::{BedEnds, Contact, Granular, Layer, Scenario, Shape};
 use crate::solvers::granular::clump::Template;
 use crate::solvers::granular::packing::{Layer as Filling, Packing, Recipe, Rest};
+use crate::solvers::granular::probe::{Outline, Plate, Stillness};
 use crate::solvers::granular::{DashpotMode, Surface};
 
 /// The bed of a section.
@@ -12,6 +13,8 @@ pub struct BedPlan {
     /// The name of the trackform.
     pub section: String,
     pub recipe: Recipe,
+    /// What its stiffness is felt with: the footprint of half a sleeper, of a whole one in a bed of both rails.
+    pub plate: Plate,
     /// What was decided, and why: for people.
     pub notes: Vec<String>,
 }
@@ -20,6 +23,8 @@ pub struct BedPlan {
 const CELL: f64 = 3.2;
 /// Half the width of a bed without sleepers and without a stated width, m.
 const HALF_WIDTH: f64 = 1.2;
+/// Under the plate, Pa: somewhat below half a wheel load of 98 kN (a 20 t axle) on the 0.39 m2 of half a sleeper.
+const PLATE_PRESSURE: f64 = 100e3;
 
 /// A bed for each section that has grains under its sleepers; none twice.
 pub fn beds(scenario: &Scenario) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
@@ -71,7 +76,32 @@ fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic
     if scenario.track.bed.ends == BedEnds::Walls {
         notes.push("The cell is periodic along the track; walls close the ends of the whole bed.".to_owned());
     }
-    Ok(Some(BedPlan { section: section.name.clone(), recipe, notes }))
+    let plate = plate(scenario, number, &recipe, &mut notes);
+    Ok(Some(BedPlan { section: section.name.clone(), recipe, plate, notes }))
+}
+
+/// The footprint of the sleeper on the cell, from the centre line outwards; where the cell is too small for it, or no sleeper is
+/// known, all of the cell.
+fn plate(scenario: &Scenario, section: usize, recipe: &Recipe, notes: &mut Vec<String>) -> Plate {
+    let track = &scenario.track;
+    let [length, width] = recipe.plan;
+    let largest = recipe.layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
+    let sleeper = track.seats[track.seats_of(section)].iter().find_map(|seat| seat.sleeper);
+    let share = if scenario.solve.grains.both_rails { 1.0 } else { 0.5 };
+    let rest = Stillness::default();
+    let plate =
+        |outline, centre| Plate { outline, centre, pressure: PLATE_PRESSURE, surface: recipe.wall_surface(), rest };
+    match sleeper.filter(|sleeper| sleeper.base_width + largest <= length) {
+        Some(sleeper) => {
+            let across = (share * sleeper.length).min(width);
+            let middle = if share < 1.0 { 0.5 * across } else { 0.5 * width };
+            plate(Outline::Rectangle { length: sleeper.base_width, width: across }, [0.5 * length, middle])
+        }
+        None => {
+            notes.push("Its stiffness is felt with a plate over all of the cell.".to_owned());
+            plate(Outline::Whole { area: length * width }, [0.5 * length, 0.5 * width])
+        }
+    }
 }
 
 /// Of the bed of one rail, or of both, m: from the centre line to the wall.

@@ -3,7 +3,7 @@
 //! Data come in SI and are shown in the axis's unit. What is not finite is a gap, never a mark. Long series are thinned
 //! to what the pixels can show, with every peak kept.
 
-use super::number::{nice_step, significant, tick_label, ticks};
+use super::number::{nice_step, plain, significant, tick_label, ticks};
 use super::svg::{Anchor, Frame, Svg, text_width};
 use super::thin::{straighten, thin};
 
@@ -19,7 +19,7 @@ pub struct Axis {
     /// In SI; the extent of the data where absent.
     pub range: Option<(f64, f64)>,
     pub from_zero: bool,
-    /// Powers of ten at equal distances; values are above zero.
+    /// Powers of ten at equal distances; values are above zero. Bars and second scales are not drawn so.
     pub logarithmic: bool,
 }
 
@@ -117,17 +117,17 @@ struct Plane {
     x: (f64, f64),
     y: (f64, f64),
     downwards: bool,
-    logarithmic: bool,
+    /// Of both axes.
+    logarithmic: [bool; 2],
 }
 
 impl Plane {
     fn at(&self, point: (f64, f64)) -> (f64, f64) {
-        let across = if self.logarithmic {
-            (point.0 / self.x.0).ln() / (self.x.1 / self.x.0).ln()
-        } else {
-            (point.0 - self.x.0) / (self.x.1 - self.x.0)
+        let share = |value: f64, (low, high): (f64, f64), logarithmic: bool| {
+            if logarithmic { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) }
         };
-        let up = (point.1 - self.y.0) / (self.y.1 - self.y.0);
+        let across = share(point.0, self.x, self.logarithmic[0]);
+        let up = share(point.1, self.y, self.logarithmic[1]);
         let down = if self.downwards { up } else { 1.0 - up };
         (self.frame.x + across * self.frame.width, self.frame.y + down * self.frame.height)
     }
@@ -203,7 +203,7 @@ impl Chart {
             let levels = self.levels.iter().map(|(level, _)| *level);
             self.round_range(extent(inside.chain(levels).chain(self.y.from_zero.then_some(0.0))), frame.height)
         });
-        let logarithmic = self.x.logarithmic;
+        let logarithmic = [self.x.logarithmic, self.y.logarithmic];
         Plane { frame, x: widened(x), y: widened(y), downwards: self.y.downwards, logarithmic }
     }
 
@@ -214,6 +214,9 @@ impl Chart {
 
     /// A range that ends on round values, with room for names at the top.
     fn round_range(&self, (low, high): (f64, f64), height: f64) -> (f64, f64) {
+        if self.y.logarithmic {
+            return (10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil()));
+        }
         let step = nice_step((high - low) / self.y.size / rows(height) as f64) * self.y.size;
         let room = if self.bands.iter().any(|band| !band.label.is_empty()) { 0.09 * (high - low) } else { 0.0 };
         let up = |value: f64| (value / step - 1e-6).ceil() * step;
@@ -236,12 +239,14 @@ impl Chart {
         let frame = plane.frame;
         let (right, bottom) = (frame.x + frame.width, frame.y + frame.height);
         let (low, high) = (plane.y.0 / self.y.size, plane.y.1 / self.y.size);
-        let marks = ticks(low, high, rows(frame.height) + 1);
+        let logarithmic = self.y.logarithmic;
+        let marks = if logarithmic { decades(low, high) } else { ticks(low, high, rows(frame.height) + 1) };
         let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
         for mark in marks {
             let y = plane.at((plane.x.0, mark * self.y.size)).1;
+            let label = if logarithmic { plain(mark, 1) } else { tick_label(mark, step) };
             svg.line("grid", (frame.x, y), (right, y));
-            svg.text("small muted", (frame.x - 7.0, y + 4.0), Anchor::End, &tick_label(mark, step));
+            svg.text("small muted", (frame.x - 7.0, y + 4.0), Anchor::End, &label);
         }
         let (low, high) = (plane.x.0 / self.x.size, plane.x.1 / self.x.size);
         let marks =
@@ -424,5 +429,21 @@ mod tests {
         let text = svg.finish(300.0, 200.0, "d");
         assert!(!text.contains("NaN") && !text.contains("inf"));
         assert_eq!(text.matches(r#"<path class="line"#).count(), 2);
+    }
+
+    #[test]
+    fn a_logarithmic_upright_axis_ends_on_powers_of_ten() {
+        let mut chart = Chart::new(Axis::new("a", ("", 1.0)), Axis { logarithmic: true, ..Axis::new("b", ("", 1.0)) });
+        chart.series.push(Series::new("", "s0", Mark::Line, vec![(0.0, 0.9), (1.0, 0.002)]));
+        let frame = Frame { x: 0.0, y: 0.0, width: 300.0, height: 200.0 };
+        let plane = chart.plane(frame);
+        assert_eq!(plane.y, (1e-3, 1.0));
+        let down = |value: f64| plane.at((0.0, value)).1;
+        assert!((down(1e-3) - 200.0).abs() < 1e-9 && down(1.0).abs() < 1e-9);
+        assert!((down(0.1) - 200.0 / 3.0).abs() < 1e-9, "{}", down(0.1));
+        let mut svg = Svg::default();
+        chart.draw(&mut svg, "id", frame);
+        let text = svg.finish(300.0, 200.0, "d");
+        assert!(text.contains(">0.01<") && text.contains(">1<") && !text.contains("NaN"), "{text}");
     }
 }

@@ -25,6 +25,7 @@ mod limits;
 mod moments;
 mod number;
 mod packed;
+mod packed_readings;
 mod page;
 mod panels;
 mod pebbles;

@@ -4,6 +4,7 @@ use super::Figure;
 use super::bed::{BedView, Colour, Side, bed_svg};
 use super::chart::{Axis, Chart, Mark, Series};
 use super::number::{plain, significant, whole};
+use super::packed_readings as readings;
 use super::page::{opening, picture};
 use super::scene::WIDTH;
 use super::svg::{Frame, Svg, escape};
@@ -41,6 +42,7 @@ impl BedPage<'_> {
         let mut html = opening(&summary.title, &subtitle);
         self.layers(&mut html);
         self.figures().iter().for_each(|figure| picture(&mut html, figure));
+        readings::write(&mut html, &summary.readings);
         self.stages(&mut html);
         html += "</main></body></html>\n";
         html
@@ -179,9 +181,9 @@ impl BedPage<'_> {
     }
 }
 
-const TABLE_END: &str = "</tbody></table></div>";
+pub(super) const TABLE_END: &str = "</tbody></table></div>";
 
-fn table_head(title: &str, caption: &str, names: &[&str]) -> String {
+pub(super) fn table_head(title: &str, caption: &str, names: &[&str]) -> String {
     let mut html = format!(
         "<section><h2>{title}</h2><p class=\"caption\">{caption}</p><div class=\"scroll\"><table class=\"wide\"><thead><tr>"
     );
@@ -191,7 +193,7 @@ fn table_head(title: &str, caption: &str, names: &[&str]) -> String {
     html + "</tr></thead><tbody>"
 }
 
-fn row(html: &mut String, name: &str, cells: &[String]) {
+pub(super) fn row(html: &mut String, name: &str, cells: &[String]) {
     let _ = write!(html, "<tr><td class=\"text\">{}</td>", escape(name));
     for cell in cells {
         let _ = write!(html, "<td>{}</td>", escape(cell));

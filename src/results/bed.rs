@@ -1,15 +1,19 @@
 //! Packed beds that were built before, by what made them: a folder with one folder for each recipe.
 
-use super::{ResultsError, checkpoint};
+use super::{BedReadings, ResultsError, checkpoint};
 use crate::lower::BedPlan;
-use crate::solvers::granular::packing::{Packed, Recipe, Stage, Stored};
+use crate::solvers::granular::packing::{METHOD, Packed, Recipe, Stage, Stored};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::Path;
 
 /// Names what a recipe makes: the same recipe gives the same bed, bit by bit, for one version of the program.
 pub fn bed_hash(recipe: &Recipe) -> String {
-    let text = serde_json::to_string(recipe).unwrap_or_default();
+    hash_of(recipe)
+}
+
+pub(super) fn hash_of(what: &impl Serialize) -> String {
+    let text = serde_json::to_string(what).unwrap_or_default();
     let digest = Sha256::digest(text.as_bytes());
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
@@ -41,6 +45,7 @@ pub struct BedSummary {
     /// From the floor upwards.
     pub layers: Vec<BedLayer>,
     pub stages: Vec<Stage>,
+    pub readings: BedReadings,
     pub notes: Vec<String>,
 }
 
@@ -65,8 +70,8 @@ pub struct BedLayer {
     pub rattlers: f64,
 }
 
-/// Sums up a bed of a plan.
-pub fn bed_summary(title: &str, plan: &BedPlan, packed: &Packed<f32>) -> BedSummary {
+/// Sums up a bed of a plan, with what was read off it.
+pub fn bed_summary(title: &str, plan: &BedPlan, packed: &Packed<f32>, readings: BedReadings) -> BedSummary {
     let recipe = &plan.recipe;
     let layers = (0..recipe.layers.len()).map(|number| bed_layer(recipe, packed, number)).collect();
     BedSummary {
@@ -78,7 +83,8 @@ pub fn bed_summary(title: &str, plan: &BedPlan, packed: &Packed<f32>) -> BedSumm
         pebbles: packed.bed.pebbles().count(),
         layers,
         stages: packed.stages.clone(),
-        notes: plan.notes.clone(),
+        notes: plan.notes.iter().chain(&readings.notes).cloned().collect(),
+        readings,
     }
 }
 

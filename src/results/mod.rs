@@ -5,6 +5,7 @@
 
 mod atomic;
 mod bed;
+mod bed_readings;
 pub mod checkpoint;
 mod error;
 mod evaluate;
@@ -27,6 +28,7 @@ pub(crate) mod example;
 
 pub use atomic::write as write_atomically;
 pub use bed::{BedLayer, BedSummary, bed_hash, bed_summary, keep_bed, kept_bed};
+pub use bed_readings::{BedReadings, Directions, PlateTest, ProfileRow, keep_readings, kept_readings, read_bed};
 pub use error::ResultsError;
 pub use evaluate::{
     Tables, contact_pressures, evaluate, holds, known, not_kept, subgrade_pressures, verdict, verdicts,

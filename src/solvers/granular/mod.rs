@@ -51,6 +51,7 @@ pub mod motion;
 mod order;
 pub mod packing;
 mod prefetch;
+pub mod probe;
 mod record;
 mod replicate;
 pub mod rotation;

@@ -1,15 +1,26 @@
-//! What a bed shows in a region: porosity, coordination, stress.
+//! What a bed shows: porosity, coordination, stress, fabric, forces, and how it moves.
 //!
-//! Functions of plain numbers: places (m) and radii (m) in, no state. In a periodic bed the caller gives the images that reach
-//! into the region.
+//! Most are functions of plain numbers: places (m) and radii (m) in, no state; in a periodic bed their caller gives the images
+//! that reach into the region. A [`Survey`] does that for a whole bed.
 
+mod balance;
 mod ball;
 mod clump;
 mod contacts;
+mod fabric;
+mod forces;
+mod line;
+#[cfg(test)]
+pub(super) mod packed;
+mod survey;
 #[cfg(test)]
 mod tests;
 
+pub use balance::{Balance, balance, unbalance};
 pub use contacts::{Contact, Coordination, coordination, neighbours, stress};
+pub use fabric::{Fabric, Rose};
+pub use forces::{ForceSpread, Push};
+pub use survey::{Reading, Survey};
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -72,6 +83,19 @@ impl Region {
             Shape::Block { lower, upper } => (0..3).all(|k| lower[k] <= point[k] && point[k] < upper[k]),
             Shape::Ball { centre, radius } => ball::distance(&centre, point) <= radius,
         }
+    }
+
+    /// Its lowest and highest corner, m.
+    pub fn bounds(&self) -> [[f64; 3]; 2] {
+        match self.0 {
+            Shape::Block { lower, upper } => [lower, upper],
+            Shape::Ball { centre, radius } => [centre.map(|c| c - radius), centre.map(|c| c + radius)],
+        }
+    }
+
+    /// Share of the straight line between two points (m) that lies inside, 0 .. 1.
+    pub fn share_of_line(&self, from: &[f64; 3], to: &[f64; 3]) -> f64 {
+        line::share(&self.0, from, to)
     }
 
     /// Volume of a sphere inside the region, m³, in closed form; the error is about 1e-14 of the sphere.

@@ -251,3 +251,93 @@ fn a_pressed_lattice_has_the_pressure_of_the_closed_form() {
     let found = stress(&region, pressed(&sites, &half, 5.0));
     assert!((found + Matrix3::identity() * (8.0 * 5.0 / 2.0_f64.sqrt())).norm() < 1e-13);
 }
+
+/// Directions spread evenly over the sphere, by the golden angle.
+fn even(count: u32) -> impl Iterator<Item = [f64; 3]> + Clone {
+    (0..count).map(move |k| {
+        let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(count);
+        let (angle, across) = (PI * (3.0 - 5.0_f64.sqrt()) * f64::from(k), (1.0 - z * z).sqrt());
+        [across * angle.cos(), across * angle.sin(), z]
+    })
+}
+
+#[test]
+fn even_directions_have_no_fabric_and_lattices_have_theirs() {
+    let found = Fabric::of(even(20_000));
+    assert!(found.deviator() < 1e-4 && found.contacts == 20_000, "{}", found.deviator());
+    let rose = Rose::of(even(20_000));
+    for density in rose.inclination.iter().chain(&rose.along).chain(&rose.across) {
+        assert!((density - 1.0).abs() < 0.02, "{rose:?}");
+    }
+    // simple cubic and face-centred lattices are isotropic to second order, a column is all in one direction
+    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    assert!(Fabric::of(axes).deviator() < 1e-15);
+    let h = 0.5_f64.sqrt();
+    let close = [[h, h, 0.0], [h, -h, 0.0], [h, 0.0, h], [h, 0.0, -h], [0.0, h, h], [0.0, h, -h]];
+    assert!(Fabric::of(close).deviator() < 1e-15);
+    let column = Fabric::of([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]);
+    assert!((column.deviator() - 1.0).abs() < 1e-15 && (column.anisotropy() - 7.5).abs() < 1e-14);
+    assert_eq!(Rose::of([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]).inclination[1..], [0.0; 8]);
+    assert_eq!((Fabric::of([]).contacts, Fabric::of([]).deviator()), (0, 0.0));
+}
+
+#[test]
+fn a_known_anisotropy_is_found_again() {
+    // density (1 + a (3 cos² θ - 1)/2)/(4π): the fabric's deviator is a/5
+    let amplitude = 0.6;
+    let weight = |z: f64| 1.0 + amplitude * 0.5 * (3.0 * z * z - 1.0);
+    // a direction as often as it weighs
+    let normals = even(4000).flat_map(|n| std::iter::repeat_n(n, (50.0 * weight(n[2])).round() as usize));
+    let found = Fabric::of(normals);
+    assert!((found.deviator() / (amplitude / 5.0) - 1.0).abs() < 5e-3, "{}", found.deviator());
+    assert!((found.anisotropy() / (1.5 * amplitude) - 1.0).abs() < 5e-3, "{}", found.anisotropy());
+}
+
+#[test]
+fn exponential_forces_are_known_as_such() {
+    // quantiles of an exponential of mean 7 N, half of its friction used by each
+    let count = 100_000;
+    let force = |k: i32| -7.0 * (1.0 - (f64::from(k) + 0.5) / f64::from(count)).ln();
+    let pushes = (0..count).map(|k| Push { normal: force(k), shear: 0.25 * force(k), friction: 0.5 });
+    let found = ForceSpread::of(pushes);
+    assert!((found.mean / 7.0 - 1.0).abs() < 1e-4, "{}", found.mean);
+    assert!((found.decay.unwrap() - 1.0).abs() < 1e-3, "{:?}", found.decay);
+    let e = 1.0_f64.exp();
+    assert!((found.above - 1.0 / e).abs() < 1e-4 && (found.carried - 2.0 / e).abs() < 1e-3, "{found:?}");
+    assert!((found.mobilised.unwrap() - 0.5).abs() < 1e-12 && found.sliding == Some(0.0));
+    for [force, density] in found.density.iter().filter(|[force, _]| *force < 5.0) {
+        // a bin holds the mean of exp(-f): sinh(w/2)/(w/2) times its middle
+        let mean = (-force).exp() * (0.125_f64.sinh() / 0.125);
+        assert!((density / mean - 1.0).abs() < 0.01, "{force}: {density} and {mean}");
+    }
+    let area: f64 = found.density.iter().map(|[_, density]| 0.25 * density).sum();
+    assert!((area - 1.0).abs() < 1e-12, "{area}");
+}
+
+#[test]
+fn contacts_at_their_friction_slide_and_equal_forces_have_no_tail() {
+    let at = |shear: f64, friction: f64| Push { normal: 2.0, shear, friction };
+    let found = ForceSpread::of([at(1.0, 0.5), at(0.5, 0.5), at(0.0, 0.5), at(0.0, 0.0)]);
+    assert_eq!((found.sliding, found.mobilised), (Some(1.0 / 3.0), Some(0.5)));
+    assert_eq!((found.decay, found.above, found.largest), (None, 0.0, 1.0));
+    let smooth = ForceSpread::of([at(0.0, 0.0)]);
+    assert_eq!((smooth.sliding, smooth.mobilised), (None, None));
+    assert_eq!(ForceSpread::of([]), ForceSpread::default());
+}
+
+proptest! {
+    #[test]
+    fn pieces_of_a_line_add_up(cuts in cuts(), from in place(), to in place()) {
+        let total: f64 = boxes(&cuts).iter().map(|b| b.share_of_line(&from, &to)).sum();
+        prop_assert!((total - 1.0).abs() < 1e-12, "{total}");
+    }
+}
+
+#[test]
+fn a_line_through_a_sphere_is_its_chord() {
+    let region = Region::sphere([1.0, 0.0, 0.0], 0.5).unwrap();
+    let chord = region.share_of_line(&[1.0, 0.3, -2.0], &[1.0, 0.3, 2.0]);
+    assert!((chord - 0.8 / 4.0).abs() < 1e-15, "{chord}");
+    assert_eq!(region.share_of_line(&[1.0, 0.6, -2.0], &[1.0, 0.6, 2.0]), 0.0);
+    assert!((region.share_of_line(&[1.0, 0.0, 0.0], &[2.0, 0.0, 0.0]) - 0.5).abs() < 1e-15);
+}

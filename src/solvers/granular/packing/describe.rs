@@ -3,8 +3,9 @@
 use super::super::bed::Bed;
 use super::super::body::BodyId;
 use super::super::lanes::Real;
-use super::super::measure::{Ball, Coordination, Region, neighbours};
+use super::super::measure::{Ball, Coordination, Region, Survey, neighbours};
 use super::super::snapshot::Snapshot;
+use super::super::watch::Failure;
 use super::Packed;
 use serde::{Deserialize, Serialize};
 
@@ -70,6 +71,12 @@ impl<R: Real> Packed<R> {
     /// Porosity between two levels, m: of the whole cell, walls included.
     pub fn porosity(&self, [low, high]: [f64; 2]) -> f64 {
         1.0 - self.solid([low, high]) / (self.area() * (high - low))
+    }
+
+    /// All that can be measured of it now. `bed` is its own, or a copy that something was done to.
+    pub fn survey(&self, bed: &mut Bed<R>) -> Result<Survey, Failure> {
+        let snapshot = bed.snapshot()?;
+        Ok(Survey::of(bed, &snapshot, &self.densities))
     }
 
     /// Of the plan, m2.

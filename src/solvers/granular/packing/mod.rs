@@ -125,6 +125,9 @@ pub struct Progress {
     pub steps: u64,
 }
 
+/// Counts the ways in which beds have been packed: another one makes another bed of the same recipe.
+pub const METHOD: u32 = 2;
+
 /// Solid share that a layer will have, before a lift of it has shown its own.
 const SOLID: f64 = 0.60;
 
@@ -235,7 +238,8 @@ impl Recipe {
         self.layers.iter().zip(self.stiffness()).map(of).fold(f64::INFINITY, f64::min)
     }
 
-    fn wall_surface(&self) -> u16 {
+    /// The surface of walls, floor and plate.
+    pub fn wall_surface(&self) -> u16 {
         self.layers.len() as u16
     }
 

@@ -1,0 +1,179 @@
+//! What is measured in a packed bed: over its height, in its contacts, and under a plate.
+
+use super::{ResultsError, bed, checkpoint};
+use crate::lower::BedPlan;
+use crate::solvers::granular::measure::{Fabric, ForceSpread, Reading, Region, Rose, Survey};
+use crate::solvers::granular::packing::{Layer, Packed};
+use crate::solvers::granular::probe::{FULL, Outline, Plate, Point, Stiffness, probe};
+use crate::solvers::granular::{Bed, Failure};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Height of a slab, of the largest grain of its layer; and how many a layer has at most.
+const SLAB: f64 = 0.5;
+const SLABS: f64 = 24.0;
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BedReadings {
+    /// Slabs from the floor upwards, over the whole plan; at rest, without a plate.
+    pub profile: Vec<ProfileRow>,
+    pub directions: Directions,
+    /// Of contacts with more than the mean normal force.
+    pub strong_directions: Directions,
+    pub forces: ForceSpread,
+    /// `None` where it failed, which a note then tells.
+    pub plate: Option<PlateTest>,
+    pub notes: Vec<String>,
+}
+
+/// What lies between two levels. Pressures are positive; on vertical planes along and across the track.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub struct ProfileRow {
+    pub from_m: f64,
+    pub to_m: f64,
+    pub porosity: f64,
+    pub coordination: f64,
+    pub vertical_Pa: f64,
+    pub along_Pa: f64,
+    pub across_Pa: f64,
+}
+
+/// Where the contacts between grains look.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Directions {
+    pub fabric: Fabric,
+    pub deviator: f64,
+    pub anisotropy: f64,
+    pub rose: Rose,
+}
+
+/// A plate that is pressed on the bed twice.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub struct PlateTest {
+    /// Along the track and across, m; `None` where it covers the whole cell.
+    pub sides_m: Option<[f64; 2]>,
+    pub area_m2: f64,
+    pub pressure_Pa: f64,
+    pub curve: Vec<Point>,
+    /// First and second loading.
+    pub stiffness_N_per_m: [f64; 2],
+    /// Of an equal half-space, Ev1 and Ev2; `None` for a plate over the whole cell.
+    pub moduli_Pa: Option<[f64; 2]>,
+    /// Under the plate at the first full pressure.
+    pub loaded: Vec<ProfileRow>,
+}
+
+/// Measures a bed. `tell` hears how many steps of the plate are done, of all.
+pub fn read_bed(plan: &BedPlan, packed: &Packed<f32>, tell: impl FnMut(usize, usize)) -> Result<BedReadings, Failure> {
+    let slabs = slabs(plan, packed);
+    let survey = packed.survey(&mut packed.bed.clone())?;
+    let forces = ForceSpread::of(survey.pushes());
+    let row = |slab: &[f64; 2]| Some(profile_row(slab, &survey.slab(*slab, packed.area())?));
+    let mut notes = Vec::new();
+    let plate = press(plan, packed, &slabs, tell).map_err(|why| notes.push(format!("No stiffness: {why}."))).ok();
+    Ok(BedReadings {
+        profile: slabs.iter().filter_map(row).collect(),
+        directions: Directions::of(&survey, 0.0),
+        strong_directions: Directions::of(&survey, forces.mean),
+        forces,
+        plate,
+        notes,
+    })
+}
+
+/// Readings of a bed that was kept; `None` where there are none that can be used.
+pub fn kept_readings(cache: &Path, plan: &BedPlan) -> Option<BedReadings> {
+    let hash = readings_hash(plan);
+    checkpoint::read(&cache.join(&hash), &hash).ok()?
+}
+
+/// Keeps the readings of a bed.
+pub fn keep_readings(cache: &Path, plan: &BedPlan, readings: &BedReadings) -> Result<(), ResultsError> {
+    let hash = readings_hash(plan);
+    checkpoint::write(&cache.join(&hash), &hash, readings)
+}
+
+/// Names what made the bed and what it is measured with.
+fn readings_hash(plan: &BedPlan) -> String {
+    bed::hash_of(&(&plan.recipe, &plan.plate))
+}
+
+/// Levels between which a bed is measured, layer by layer.
+fn slabs(plan: &BedPlan, packed: &Packed<f32>) -> Vec<[f64; 2]> {
+    let layer = |(number, layer): (usize, &Layer)| {
+        let [low, high] = packed.between(number);
+        let count = ((high - low) / (SLAB * layer.curve.ends()[1])).floor().clamp(1.0, SLABS) as usize;
+        let level = move |k: usize| low + (high - low) * k as f64 / count as f64;
+        (0..count).map(move |k| [level(k), level(k + 1)]).collect::<Vec<_>>()
+    };
+    plan.recipe.layers.iter().enumerate().flat_map(layer).collect()
+}
+
+fn profile_row([from, to]: &[f64; 2], reading: &Reading) -> ProfileRow {
+    let [along, across] = reading.horizontal();
+    ProfileRow {
+        from_m: *from,
+        to_m: *to,
+        porosity: reading.porosity,
+        coordination: reading.coordination,
+        vertical_Pa: reading.vertical(),
+        along_Pa: along,
+        across_Pa: across,
+    }
+}
+
+impl Directions {
+    /// Of the contacts with more than `least` N.
+    fn of(survey: &Survey, least: f64) -> Directions {
+        let fabric = Fabric::of(survey.normals(least));
+        let rose = Rose::of(survey.normals(least));
+        Directions { fabric, deviator: fabric.deviator(), anisotropy: fabric.anisotropy(), rose }
+    }
+}
+
+fn press(
+    plan: &BedPlan,
+    packed: &Packed<f32>,
+    slabs: &[[f64; 2]],
+    mut tell: impl FnMut(usize, usize),
+) -> Result<PlateTest, String> {
+    let plate = &plan.plate;
+    let mut loaded = Ok(Vec::new());
+    let stiffness = probe(&packed.bed, plate, |bed, done, all| {
+        tell(done, all);
+        if done == FULL {
+            loaded = under(plate, packed, bed, slabs);
+        }
+    });
+    let Stiffness { area, curve, first, again, moduli } = stiffness.map_err(|error| error.to_string())?;
+    Ok(PlateTest {
+        sides_m: (!matches!(plate.outline, Outline::Whole { .. })).then(|| plate.outline.sides()),
+        area_m2: area,
+        pressure_Pa: plate.pressure,
+        curve,
+        stiffness_N_per_m: [first, again],
+        moduli_Pa: moduli,
+        loaded: loaded.map_err(|failure| failure.to_string())?,
+    })
+}
+
+/// What lies under the plate, level by level.
+fn under(plate: &Plate, packed: &Packed<f32>, bed: &mut Bed, slabs: &[[f64; 2]]) -> Result<Vec<ProfileRow>, Failure> {
+    let survey = packed.survey(bed)?;
+    let [x, y] = plate.centre;
+    let row = |slab: &[f64; 2]| {
+        let [low, high] = *slab;
+        let reading = match plate.outline {
+            Outline::Whole { .. } => survey.slab(*slab, packed.area())?,
+            outline => {
+                let [length, width] = outline.sides();
+                let (a, b) = (0.5 * length, 0.5 * width);
+                survey.region(&Region::block([x - a, y - b, low], [x + a, y + b, high]).ok()?)
+            }
+        };
+        Some(profile_row(slab, &reading))
+    };
+    Ok(slabs.iter().filter_map(row).collect())
+}

@@ -1,0 +1,306 @@
+//! The stiffness of a bed under a rigid plate that is pressed on it, goes, and is pressed again.
+//!
+//! It is the plate load test of DIN 18134 on grains: pressure goes up and down in steps, each of which ends when forces are
+//! in balance. The bed that is asked is copied and does not change. The plate does not tilt.
+
+mod error;
+#[cfg(test)]
+mod tests;
+
+pub use error::ProbeError;
+
+use super::bed::Bed;
+use super::lanes::Real;
+use super::measure::unbalance;
+use super::motion::{Motion, Pose};
+use super::shape::{Mesh, Shape};
+use super::vector::Vec3;
+use super::walls::WallId;
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
+
+/// Sides of the polygon that stands for a circle; its area is that of the circle.
+const SIDES: u32 = 48;
+/// Half the height of a plate: grains beside it never come to its top, m.
+const HALF_HEIGHT: f64 = 0.5;
+
+/// The outline of a plate, in plan.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Outline {
+    /// Along x and y, m.
+    Rectangle { length: f64, width: f64 },
+    /// m.
+    Circle { radius: f64 },
+    /// All of the bed, of this plan in m2.
+    Whole { area: f64 },
+}
+
+/// What is pressed on a bed, and how.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Plate {
+    pub outline: Outline,
+    /// Of its middle in plan, m.
+    pub centre: [f64; 2],
+    /// Largest pressure, Pa.
+    pub pressure: f64,
+    /// What the plate is made of: a surface of the bed.
+    pub surface: u16,
+    pub rest: Stillness,
+}
+
+/// When a step of the pressure is at its end, and when a test has failed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Stillness {
+    /// Mean force out of balance over mean force that acts.
+    pub unbalance: f64,
+    /// Share of the largest pressure by which the pressure may miss its step.
+    pub pressure: f64,
+    /// Time that a step may take, s.
+    pub longest: f64,
+    /// Settlement at which the plate counts as sunk in, m.
+    pub deepest: f64,
+}
+
+impl Default for Stillness {
+    fn default() -> Self {
+        Stillness { unbalance: 2e-3, pressure: 0.01, longest: 1.5, deepest: 0.05 }
+    }
+}
+
+/// Of the largest pressure, at which the plate counts as seated: DIN 18134 seats it with 10 kPa.
+pub const SEAT: f64 = 0.05;
+/// Pressures of the test over the largest one: first loading, back, second loading, back.
+const STEPS: [f64; 12] = [SEAT, 0.25, 0.5, 0.75, 1.0, 0.5, SEAT, 0.25, 0.5, 0.75, 1.0, SEAT];
+/// Places of both full pressures among these steps, and of the seats before them.
+const FIRST: [usize; 2] = [0, 4];
+const AGAIN: [usize; 2] = [6, 10];
+/// How many steps are done when the first full pressure is at rest.
+pub const FULL: usize = FIRST[1] + 1;
+
+/// Of the copy: a test wants states of rest, not how fast they are reached.
+const LOCAL_DAMPING: f64 = 0.7;
+/// Of the plate, m/s; and the gain of its servo, as under the plate of the packing.
+const SPEED: f64 = 0.02;
+const GAIN: f64 = 0.2;
+/// Share of the stable step of bodies that touch.
+const SAFE: f64 = 0.8;
+/// Steps between looks, and looks in a row that must find rest.
+const LOOK: u64 = 200;
+const CALM: usize = 2;
+
+/// A step of the test as it ended.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    /// Pa.
+    #[serde(rename = "pressure_Pa")]
+    pub pressure: f64,
+    /// From where the plate was seated, m; downwards.
+    #[serde(rename = "settlement_m")]
+    pub settlement: f64,
+}
+
+/// What a plate load test gives.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Stiffness {
+    /// m2.
+    pub area: f64,
+    /// Step after step.
+    pub curve: Vec<Point>,
+    /// Force over settlement from the seat to the full pressure, first and second loading, N/m.
+    pub first: f64,
+    pub again: f64,
+    /// Deformation moduli of both loadings on a half-space, Ev1 and Ev2, Pa; `None` for a plate as large as the bed.
+    pub moduli: Option<[f64; 2]>,
+}
+
+impl Outline {
+    /// m2.
+    pub fn area(&self) -> f64 {
+        match self {
+            Outline::Rectangle { length, width } => length * width,
+            Outline::Circle { radius } => PI * radius * radius,
+            Outline::Whole { area } => *area,
+        }
+    }
+
+    /// Modulus, Pa, of a half-space that carries a rigid plate with `stiffness`, N/m; `None` for one without an edge.
+    ///
+    /// Of a circle it is `E = 1.5 r Δσ/Δs` (DIN 18134): Boussinesq's `(1 - ν²) F/(2 r s)` with `1 - ν² = 3/π`. A rectangle of
+    /// half sides a >= b has `F/s = E a/(1 - ν²) (0.73 + 1.54 (b/a)^0.75)` (Gazetas 1991, Foundation Engineering Handbook,
+    /// Table 15.1), with the same ν: 1.5 % less than exact for a square.
+    pub fn modulus(&self, stiffness: f64) -> Option<f64> {
+        const POISSON: f64 = 3.0 / PI;
+        match self {
+            Outline::Whole { .. } => None,
+            Outline::Circle { radius } => Some(POISSON * stiffness / (2.0 * radius)),
+            Outline::Rectangle { length, width } => {
+                let (a, b) = (0.5 * length.max(*width), 0.5 * length.min(*width));
+                Some(POISSON * stiffness / (a * (0.73 + 1.54 * (b / a).powf(0.75))))
+            }
+        }
+    }
+
+    /// Along x and y, m; 0 of the whole.
+    pub fn sides(&self) -> [f64; 2] {
+        match *self {
+            Outline::Rectangle { length, width } => [length, width],
+            Outline::Circle { radius } => [2.0 * radius; 2],
+            Outline::Whole { .. } => [0.0; 2],
+        }
+    }
+
+    /// The solid, and how far its lower face lies below its origin, m.
+    fn shape(&self) -> Result<(Shape, f64), ProbeError> {
+        match *self {
+            Outline::Whole { .. } => Ok((Shape::Plane { normal: Vector3::new(0.0, 0.0, -1.0) }, 0.0)),
+            Outline::Rectangle { length, width } => {
+                let half = Vector3::new(0.5 * length, 0.5 * width, HALF_HEIGHT);
+                Ok((Shape::block(half).map_err(|_| ProbeError::Plate)?, HALF_HEIGHT))
+            }
+            Outline::Circle { radius } => {
+                // the polygon has the area of the circle
+                let angle = 2.0 * PI / f64::from(SIDES);
+                let corner = radius * (angle / angle.sin()).sqrt();
+                let mesh = Mesh::cylinder(corner, 2.0 * HALF_HEIGHT, SIDES).map_err(|_| ProbeError::Plate)?;
+                Ok((Shape::Mesh(mesh), HALF_HEIGHT))
+            }
+        }
+    }
+
+    /// Whether a sphere that far from the middle is under the plate, in part.
+    fn covers(&self, [x, y]: [f64; 2], radius: f64) -> bool {
+        match self {
+            Outline::Whole { .. } => true,
+            Outline::Circle { radius: reach } => x.hypot(y) < reach + radius,
+            Outline::Rectangle { length, width } => x.abs() < 0.5 * length + radius && y.abs() < 0.5 * width + radius,
+        }
+    }
+}
+
+/// Presses a plate on a copy of the bed. `look` sees the copy at the end of each step, with the count of steps done, of all.
+pub fn probe<R: Real>(
+    bed: &Bed<R>,
+    plate: &Plate,
+    mut look: impl FnMut(&mut Bed<R>, usize, usize),
+) -> Result<Stiffness, ProbeError> {
+    plate.check(bed)?;
+    let mut test = Test::new(bed.clone(), plate)?;
+    let mut curve: Vec<Point> = Vec::new();
+    for (number, share) in STEPS.iter().enumerate() {
+        let seat = curve.first().map(|_| test.seat);
+        let point = test.until_rest(share * plate.pressure, seat)?;
+        if seat.is_none() {
+            test.seat = test.level();
+        }
+        curve.push(point);
+        look(&mut test.bed, number + 1, STEPS.len());
+    }
+    let area = plate.outline.area();
+    let secant = |[from, to]: [usize; 2]| {
+        let (from, to) = (curve[from], curve[to]);
+        area * (to.pressure - from.pressure) / (to.settlement - from.settlement)
+    };
+    let (first, again) = (secant(FIRST), secant(AGAIN));
+    if !(first > 0.0 && again > 0.0 && first.is_finite() && again.is_finite()) {
+        return Err(ProbeError::NoSettlement);
+    }
+    let moduli = plate.outline.modulus(first).zip(plate.outline.modulus(again)).map(|(first, again)| [first, again]);
+    Ok(Stiffness { area, curve, first, again, moduli })
+}
+
+impl Plate {
+    fn check<R: Real>(&self, bed: &Bed<R>) -> Result<(), ProbeError> {
+        let area = self.outline.area();
+        let fine = area.is_finite() && area > 0.0 && self.pressure.is_finite() && self.pressure > 0.0;
+        let known = usize::from(self.surface) < bed.laws().surfaces();
+        if !(fine && known && self.centre.iter().all(|c| c.is_finite())) {
+            return Err(ProbeError::Plate);
+        }
+        let (sides, periods) = (self.outline.sides(), [0, 1].map(|axis| bed.domain().period(axis)));
+        let largest = bed.pebbles().map(|pebble| pebble.radius).fold(0.0, f64::max);
+        for (side, period) in sides.into_iter().zip(periods) {
+            // else a grain would meet the plate and its image
+            if let Some(period) = period.filter(|period| side + 2.0 * largest > *period) {
+                return Err(ProbeError::WidePlate { side, period });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A bed under its plate.
+struct Test<'a, R: Real> {
+    bed: Bed<R>,
+    plate: &'a Plate,
+    wall: WallId,
+    /// From the origin of the plate down to its face, m.
+    depth: f64,
+    /// Level at which it was seated, m.
+    seat: f64,
+    /// Of the bed that was given, s.
+    longest_step: f64,
+}
+
+impl<'a, R: Real> Test<'a, R> {
+    fn new(mut bed: Bed<R>, plate: &'a Plate) -> Result<Self, ProbeError> {
+        let top = top_under(&bed, plate).ok_or(ProbeError::Nothing)?;
+        let (shape, depth) = plate.outline.shape()?;
+        let [x, y] = plate.centre;
+        let pose = Pose { position: Vector3::new(x, y, top + depth), ..Pose::default() };
+        let wall = bed.add_wall(shape, pose, plate.surface, Motion::Fixed);
+        bed.set_damping(LOCAL_DAMPING);
+        let longest_step = bed.time_step();
+        // a bed that was kept knows its contacts only when it has looked for them, and its first step goes by them
+        bed.snapshot().map_err(ProbeError::Failure)?;
+        Ok(Test { bed, plate, wall, depth, seat: top, longest_step })
+    }
+
+    /// Of the lower face, m.
+    fn level(&self) -> f64 {
+        self.bed.wall(self.wall).pose(self.bed.domain()).position.z - self.depth
+    }
+
+    fn pressure(&self) -> f64 {
+        self.bed.wall(self.wall).felt().force.z / self.plate.outline.area()
+    }
+
+    /// Presses with `target` (Pa) until forces are in balance.
+    fn until_rest(&mut self, target: f64, seat: Option<f64>) -> Result<Point, ProbeError> {
+        let Stillness { unbalance: limit, pressure: share, longest, deepest } = self.plate.rest;
+        let axis = Vector3::new(0.0, 0.0, 1.0);
+        let force = target * self.plate.outline.area();
+        self.bed.set_motion(self.wall, Motion::Servo { axis, force, speed_limit: SPEED, gain: GAIN });
+        let (start, from) = (self.bed.time(), seat.unwrap_or(self.seat));
+        let mut calm = 0;
+        loop {
+            self.bed.set_time_step((SAFE * self.bed.body_time_step()).min(self.longest_step));
+            self.bed.run(LOOK).map_err(ProbeError::Failure)?;
+            let snapshot = self.bed.snapshot().map_err(ProbeError::Failure)?;
+            let (pressure, settlement) = (self.pressure(), from - self.level());
+            let missed = (pressure - target).abs() / self.plate.pressure;
+            let out = unbalance(&self.bed, &snapshot);
+            calm = if out <= limit && missed <= share { calm + 1 } else { 0 };
+            if calm >= CALM {
+                return Ok(Point { pressure, settlement: if seat.is_some() { settlement } else { 0.0 } });
+            }
+            if settlement > deepest {
+                return Err(ProbeError::Sunk { pressure, settlement, target: self.plate.pressure });
+            }
+            if self.bed.time() - start > longest {
+                let target = self.plate.pressure;
+                return Err(ProbeError::Restless { pressure, target, unbalance: out, limit, time: longest });
+            }
+        }
+    }
+}
+
+/// Highest point of what is under the plate, m.
+fn top_under<R: Real>(bed: &Bed<R>, plate: &Plate) -> Option<f64> {
+    let away = |axis: usize, place: &Vec3| {
+        let way = place[axis] - plate.centre[axis];
+        bed.domain().period(axis).map_or(way, |period| way - period * (way / period).round())
+    };
+    let tops = bed.pebbles().filter(|p| plate.outline.covers([away(0, &p.place), away(1, &p.place)], p.radius));
+    tops.map(|pebble| pebble.place[2] + pebble.radius).reduce(f64::max)
+}
