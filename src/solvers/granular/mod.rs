@@ -52,6 +52,7 @@ pub mod packing;
 mod prefetch;
 mod record;
 mod replicate;
+pub mod rig;
 pub mod rotation;
 mod scaling;
 mod search;

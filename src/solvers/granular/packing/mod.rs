@@ -15,6 +15,7 @@ mod tests;
 
 pub use describe::{LayerState, Stage, State};
 pub use error::PackingError;
+pub(super) use rest::unbalance;
 pub use store::Stored;
 
 use super::bed::{Bed, Placed};

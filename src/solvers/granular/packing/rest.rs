@@ -7,7 +7,7 @@ use super::super::vector::{Vec3, add, norm, scale};
 
 /// Mean of what is out of balance on a body over the mean of the sum of what acts on it, contacts and weight: PFC's average
 /// ratio. 0 in perfect rest, about 1 in free fall.
-pub(super) fn unbalance<R: Real>(bed: &Bed<R>, snapshot: &Snapshot) -> f64 {
+pub(in super::super) fn unbalance<R: Real>(bed: &Bed<R>, snapshot: &Snapshot) -> f64 {
     let gravity = bed.gravity.at(bed.time);
     let mut net: Vec<Vec3> = Vec::with_capacity(bed.len());
     let mut acting: Vec<f64> = Vec::with_capacity(bed.len());
