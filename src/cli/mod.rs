@@ -16,6 +16,7 @@ mod plan;
 mod progress;
 mod report;
 mod resolve;
+mod rig;
 mod run;
 mod scene;
 mod stability;

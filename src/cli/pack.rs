@@ -47,18 +47,11 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         terminal::error(&format!("cannot make the directory `{}`: {error}", out.display()));
         return Outcome::Failed;
     }
-    let cache = cache(arguments);
-    let known = cache.as_deref().and_then(|cache| results::kept_bed(cache, &plan.recipe));
-    let kept = known.is_some();
-    let mut packed = match known.map_or_else(|| build(&plan), Ok) {
-        Ok(packed) => packed,
+    let cache = cache(arguments.fresh, arguments.cache.as_deref());
+    let (mut packed, kept) = match kept_or_built(cache.as_deref(), &plan) {
+        Ok(found) => found,
         Err(mistake) => return stop(&compiled, &[mistake]),
     };
-    if let Some(cache) = cache.filter(|_| !kept)
-        && let Err(error) = results::keep_bed(&cache, &plan.recipe, &packed)
-    {
-        terminal::error(&format!("the bed is not kept: {error}"));
-    }
     let summary = results::bed_summary(&scenario.title, &plan, &packed);
     if let Some(out) = &arguments.out
         && let Err(message) = write(out, &summary, &mut packed)
@@ -88,13 +81,27 @@ fn chosen(arguments: &Arguments, plans: Vec<BedPlan>) -> Result<BedPlan, Vec<Dia
 }
 
 /// Where beds are kept: where the user says, else where programs of this machine keep what they can build again.
-fn cache(arguments: &Arguments) -> Option<PathBuf> {
-    if arguments.fresh {
+pub(super) fn cache(fresh: bool, given: Option<&Path>) -> Option<PathBuf> {
+    if fresh {
         return None;
     }
     let home = || Some(PathBuf::from(std::env::var_os("HOME")?).join(".cache"));
     let usual = || Some(std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from).or_else(home)?.join("trackbed/beds"));
-    arguments.cache.clone().or_else(usual)
+    given.map(Path::to_path_buf).or_else(usual)
+}
+
+/// The bed of a plan and whether it was there already; a new one is kept.
+pub(super) fn kept_or_built(cache: Option<&Path>, plan: &BedPlan) -> Result<(Packed<f32>, bool), Diagnostic> {
+    if let Some(packed) = cache.and_then(|cache| results::kept_bed(cache, &plan.recipe)) {
+        return Ok((packed, true));
+    }
+    let packed = build(plan)?;
+    if let Some(cache) = cache
+        && let Err(error) = results::keep_bed(cache, &plan.recipe, &packed)
+    {
+        terminal::error(&format!("the bed is not kept: {error}"));
+    }
+    Ok((packed, false))
 }
 
 fn build(plan: &BedPlan) -> Result<Packed<f32>, Diagnostic> {
