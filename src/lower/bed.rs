@@ -88,8 +88,9 @@ pub(super) fn cell_length(largest: f64, spacing: f64) -> f64 {
 pub(super) fn width(scenario: &Scenario, section: usize) -> f64 {
     let track = &scenario.track;
     let sleeper = track.seats[track.seats_of(section)].iter().find_map(|seat| seat.sleeper);
-    let least = sleeper.map_or(HALF_WIDTH, |sleeper| 0.5 * sleeper.length);
-    let half = track.bed.half_width.map_or(least, |half| *half).max(least);
+    let least = sleeper.map(|sleeper| 0.5 * sleeper.length);
+    let stated = track.bed.half_width.map(|half| half.max(least.unwrap_or(0.0)));
+    let half = stated.or(least).unwrap_or(HALF_WIDTH);
     if scenario.solve.grains.both_rails { 2.0 * half } else { half }
 }
 
