@@ -177,7 +177,6 @@ fn what_no_rig_has_is_refused_by_the_check() {
         ("4 cycles }", second, "both act on sleeper +1"),
         ("sections = [bed: 1 sleeper]", "sections = [bed: 1 sleeper, other: 1 sleeper]", "stands on one bed"),
         ("spacing = 0.6 m", "spacing = 0.3 m", "a bed under them needs a gap"),
-        ("sleeper = sleepers.B70, ", "", "this track has none"),
     ] {
         let from_bed = "trackform other : bed { layers.stone = 200 mm }\ntrack box";
         let text = SCENE.replace(from, to);
