@@ -153,6 +153,12 @@ impl Scene {
         if compiled.diagnostics.iter().any(Diagnostic::is_error) {
             return Err(refused());
         }
+        if compiled.scenario.as_ref().is_some_and(lower::is_rig) {
+            let message = "a test rig packs its bed first, which takes minutes: `trackbed run` does so";
+            let help = "from a program: `lower::rig`, `packing::pack` and `rig::Trial`";
+            let mistake = Diagnostic::new(Code::E0611, message).help(help);
+            return Err(Stopped::refused(vec![mistake], &compiled.sources));
+        }
         let (Some(scenario), Some(graph)) = (&compiled.scenario, &compiled.graph) else { return Err(refused()) };
         let mut recorder = RunRecorder::new(scenario, None, progress);
         graph::execute(graph, &mut recorder, None)

@@ -8,7 +8,7 @@ use trackbed::study::{Scene, plan};
 use trackbed::{Compiled, compile};
 
 /// Codes that no text alone can show, and what shows them instead.
-const RUN_TIME: [(Code, &str); 11] = [
+const RUN_TIME: [(Code, &str); 13] = [
     (Code::E0610, "a bed of a scene: `tests/pack.rs`"),
     (Code::E0701, "a chart of a scene without trains: `tests/study.rs`"),
     (Code::E0702, "a chart after a count that is not known: `tests/study.rs`"),
@@ -20,6 +20,8 @@ const RUN_TIME: [(Code, &str); 11] = [
     (Code::E0808, "a study with a point that fails: `tests/studies.rs`"),
     (Code::E0809, "a study resumed after a change: `tests/studies.rs`"),
     (Code::E0810, "a bed that is packed: `a_bed_that_moves_on_is_refused` of the packer"),
+    (Code::E0811, "a rig on grains: `src/solvers/granular/rig`"),
+    (Code::E0812, "a rig whose bed gives way: `tests/rigs.rs`"),
 ];
 
 /// Pages whose failing example is no scene: the bytes of the file are the mistake.

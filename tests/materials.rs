@@ -103,18 +103,15 @@ fn with_a_law_the_papers_scene_runs_as_without_grains() {
 #[test]
 fn the_box_test_is_checked_whole() {
     let compiled = shipped("box_test.track", &[]);
-    assert_eq!(codes(&compiled), [Code::E0416, Code::E0604], "{}", told(&compiled));
-    assert!(compiled.graph.is_none());
-    let to_run = compiled.to_run();
-    let errors: Vec<Code> = to_run.diagnostics.iter().filter(|d| d.is_error()).map(|d| d.code).collect();
-    assert_eq!(errors, [Code::E0604]);
+    assert_eq!(codes(&compiled), [], "{}", told(&compiled));
+    assert!(compiled.graph.is_none(), "its grains are packed before there is anything to run");
     for (wrong, code) in [
         ("actuator.force=cyclic(5 .. 60 kN, 5 Hz)", Code::E0304),
         ("actuator.force=cyclic(5 .. 60 kN, 5 Hz) per rail", Code::E0304),
         ("actuator.force=cyclic(60 .. 5 kN, 5 Hz) per sleeper", Code::E0505),
         ("actuator.force=cyclic(5 .. 60 kN, 5 s) per sleeper", Code::E0302),
         ("actuator.force=cyclc(5 .. 60 kN, 5 Hz) per sleeper", Code::E0408),
-        ("actuator.total=9_000 cycles", Code::E0602),
+        ("actuator.total=40 cycles", Code::E0602),
         ("pressure.after=100 axles", Code::E0302),
         ("pressure.after=1.5 cycles", Code::E0405),
         ("box.bed_width=1 m per rail", Code::E0420),
@@ -134,16 +131,17 @@ fn a_rig_is_a_scene_without_rails() {
     let Some(Loading::Rig(loads)) = &scenario.loading else { panic!("{:?}", scenario.loading) };
     let Force::Cyclic { range, frequency, .. } = loads[0].force else { panic!("{:?}", loads[0].force) };
     // of one rail: half of what acts on the sleeper
-    assert_eq!((*range[0], *range[1], *frequency, loads[0].cycles), (2.5e3, 30e3, 5.0, 10_000));
+    assert_eq!((*range[0], *range[1], *frequency, loads[0].cycles), (2.5e3, 30e3, 20.0, 50));
     let (section, seat) = (&scenario.track.sections[0], &scenario.track.seats[0]);
     assert!(section.rail.is_none() && seat.pad.is_none() && seat.support().is_some(), "{seat:?}");
     let drawn = trackbed::report::drawing_svg(&scenario);
-    assert!(drawn.contains("actuator: 2.5 to 30 kN per seat, 5 Hz, 10\u{2009}000 times"), "{drawn}");
+    assert!(drawn.contains("actuator: 2.5 to 30 kN per seat, 20 Hz, 50 times"), "{drawn}");
     assert!(!drawn.contains("class=\"steel\""), "nothing is drawn that is not there");
     // grains alone know the support of a sleeper on layers without a modulus
     let text = std::fs::read_to_string("scenarios/box_test.track").unwrap();
     let grains = "granular stone { grading = gradings.ballast_16_64, density = 2700 kg/m^3, contact_stiffness = 13 MN/m per contact, friction = 0.7 }";
-    let text = text.replace("granular stone : ballasts.granite_31_63 { grading = gradings.ballast_16_64 }", grains);
+    let text = text
+        .replace("granular stone : ballasts.granite_31_63 { grading.cut_below = 40 mm, packing.lifts = 1 }", grains);
     let scenario = compile("box.track", &text, &NoModules, &[]).scenario.unwrap();
     let seat = &scenario.track.seats[0];
     assert!(seat.support().is_none() && seat.spring().is_none() && seat.is_ballasted(), "{seat:?}");
@@ -270,15 +268,14 @@ fn program(arguments: &[&str]) -> (Option<i32>, String) {
 fn check_warns_of_grains_and_run_and_plan_stop() {
     let out = tempfile::tempdir().unwrap();
     let out = out.path().join("run");
-    for scene in ["scenarios/transition_full.track", "scenarios/box_test.track"] {
-        let (status, said) = program(&["check", scene]);
-        assert!(status == Some(0) && said.contains("warning E0604"), "{scene}: {said}");
-        for arguments in [vec!["plan", scene], vec!["run", scene, "--out", out.to_str().unwrap()]] {
-            let (status, said) = program(&arguments);
-            assert!(status == Some(1) && said.contains("error E0604"), "{arguments:?}: {said}");
-        }
-        assert!(!out.exists(), "nothing is written for what cannot be run");
+    let scene = "scenarios/transition_full.track";
+    let (status, said) = program(&["check", scene]);
+    assert!(status == Some(0) && said.contains("warning E0604"), "{scene}: {said}");
+    for arguments in [vec!["plan", scene], vec!["run", scene, "--out", out.to_str().unwrap()]] {
+        let (status, said) = program(&arguments);
+        assert!(status == Some(1) && said.contains("error E0604"), "{arguments:?}: {said}");
     }
+    assert!(!out.exists(), "nothing is written for what cannot be run");
     let (status, said) = program(&["plan", "scenarios/transition_full.track", "--set", "solve.substructure=law"]);
     assert!(status == Some(0) && !said.contains("E0604"), "{said}");
 }

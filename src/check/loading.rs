@@ -15,7 +15,17 @@ use crate::units::Dimension;
 impl Checker<'_> {
     /// A load at each of its places.
     pub(super) fn loads(&mut self, record: &Record, places: &Option<Places>) -> Option<Vec<RigLoad>> {
-        let on = if record.word("on")? == "rail" { Target::Rail } else { Target::Sleepers };
+        let on = match record.word("on")? {
+            "rail" => Target::Rail,
+            "bed" => Target::Bed,
+            _ => Target::Sleepers,
+        };
+        if on == Target::Bed && !self.asked.rig {
+            let message = "a plate presses on a bed of grains, and nothing of this scene asks for one";
+            let help = "write `solve { substructure = full }`, with layers of grains and without trains";
+            self.report(Diagnostic::new(Code::E0611, message).at(record.get("on")?.span, "no bed").help(help));
+            return None;
+        }
         let force = record.get("force")?;
         let mut history = None;
         let of = match &force.value {
@@ -41,7 +51,7 @@ impl Checker<'_> {
             _ => return None,
         };
         let (of, on_what) = (of.unwrap_or_default(), record.word("on")?);
-        let allowed = if on == Target::Rail { ["rail", "track"] } else { ["seat", "sleeper"] };
+        let allowed = if on == Target::Sleepers { ["seat", "sleeper"] } else { ["rail", "track"] };
         if !allowed.contains(&of) {
             let message = format!("a load on the {on_what} is `per {}` or `per {}`", allowed[0], allowed[1]);
             self.report(Diagnostic::new(Code::E0304, message).at(force.span, format!("per {of}")));

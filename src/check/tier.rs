@@ -17,8 +17,10 @@ pub(super) struct Asked {
     pub support_method: Method,
     /// The lowest layer goes on without end.
     pub quiet_base: bool,
-    /// Only test loads on sleepers act: a rail is not needed.
+    /// Only test loads on sleepers, or on the bed itself, act: a rail is not needed.
     pub rig: bool,
+    /// A plate lies on the bed: sleepers are not needed either.
+    pub plate: bool,
     /// Trains run: what is counted is axles.
     pub traffic: bool,
 }
@@ -39,7 +41,7 @@ pub(super) fn tier(solve: &Record) -> Tier {
 impl Default for Asked {
     fn default() -> Self {
         let support_method = Method::StressCone;
-        Asked { layers_do: false, support_method, quiet_base: false, rig: false, traffic: false }
+        Asked { layers_do: false, support_method, quiet_base: false, rig: false, plate: false, traffic: false }
     }
 }
 
@@ -48,10 +50,13 @@ impl Asked {
         let tier = tier(solve);
         let by_layers = tier == Tier::Auto && forms(track).any(stands_on_grains);
         let layers_do = tier.has_grains() || by_layers;
-        let on_sleepers = !loads.is_empty() && loads.iter().all(|load| load.word("on") == Some("sleepers"));
+        let on = |load: &Record, words: &[&str]| load.word("on").is_some_and(|word| words.contains(&word));
+        let under_load = !loads.is_empty() && loads.iter().all(|load| on(load, &["sleepers", "bed"]));
+        let rig = layers_do && !traffic && under_load;
+        let plate = rig && loads.iter().all(|load| on(load, &["bed"]));
         let support_method = method(solve).unwrap_or(Method::StressCone);
         let quiet_base = track.word("base") == Some("quiet");
-        Asked { layers_do, support_method, quiet_base, rig: layers_do && !traffic && on_sleepers, traffic }
+        Asked { layers_do, support_method, quiet_base, rig, plate, traffic }
     }
 }
 
@@ -101,6 +106,10 @@ fn stands_on_grains(form: &Record) -> bool {
 impl Checker<'_> {
     /// Warns of what needs a tier of grains, once a scene.
     pub(super) fn waits_for_grains(&mut self, solve: &Record, track: &Record, loads: &[Record]) {
+        // what a rig runs is a bed under its sleepers
+        if self.asked.rig && forms(track).all(|form| form.get("rail").is_none()) {
+            return;
+        }
         let tier = tier(solve);
         let cyclic = loads.iter().find_map(changes);
         let without = forms(track).find(|form| stands_on_grains(form));

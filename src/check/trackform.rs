@@ -130,6 +130,9 @@ impl Checker<'_> {
             self.without_support(form, "support", "has a rigid support");
             return (Some(Base::Rigid), None);
         }
+        if self.asked.plate && form.get("sleeper").is_none() && !form.unknown("sleeper") {
+            return (Some(Base::Rigid), None);
+        }
         let sleeper = self.part(form, "sleeper", "or a slab, under the pads");
         let mass = sleeper.as_ref().and_then(|s| given(s, "mass"));
         let usp = match form.record("usp").cloned() {

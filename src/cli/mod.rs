@@ -17,6 +17,7 @@ mod plan;
 mod progress;
 mod report;
 mod resolve;
+mod rig;
 mod run;
 mod scene;
 mod stability;

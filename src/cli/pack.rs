@@ -50,8 +50,8 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         terminal::error(&format!("cannot make the directory `{}`: {error}", out.display()));
         return Outcome::Failed;
     }
-    let cache = cache(arguments);
-    let (mut packed, kept) = match kept_or_built(&plan, cache.as_deref()) {
+    let cache = cache(arguments.fresh, arguments.cache.as_deref());
+    let (mut packed, kept) = match kept_or_built(cache.as_deref(), &plan) {
         Ok(found) => found,
         Err(mistake) => return stop(&compiled, &[mistake]),
     };
@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             return Outcome::Failed;
         }
     };
-    let summary = results::bed_summary(&scenario.title, &plan, &packed, readings);
+    let summary = results::bed_summary(&scenario.title, &plan, &packed, Some(readings));
     if let Some(out) = &arguments.out
         && let Err(message) = write(out, &summary, &mut packed)
     {
@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     }
     let told = tell(arguments, &summary, kept);
     let further =
-        arguments.track.further(&plan).iter().map(|plan| Ok(kept_or_built(plan, cache.as_deref())?.0)).collect();
+        arguments.track.further(&plan).iter().map(|plan| Ok(kept_or_built(cache.as_deref(), plan)?.0)).collect();
     let cells = match further {
         Ok::<Vec<_>, Diagnostic>(further) => [vec![packed], further].concat(),
         Err(mistake) => return stop(&compiled, &[mistake]),
@@ -87,20 +87,6 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             }
         },
     }
-}
-
-/// The bed of a plan, and whether it had been kept; one that is built is kept from now on.
-fn kept_or_built(plan: &BedPlan, cache: Option<&Path>) -> Result<(Packed<f32>, bool), Diagnostic> {
-    if let Some(known) = cache.and_then(|cache| results::kept_bed(cache, &plan.recipe)) {
-        return Ok((known, true));
-    }
-    let packed = build(plan)?;
-    if let Some(cache) = cache
-        && let Err(error) = results::keep_bed(cache, &plan.recipe, &packed)
-    {
-        terminal::error(&format!("the bed is not kept: {error}"));
-    }
-    Ok((packed, false))
 }
 
 /// The bed that is meant.
@@ -122,13 +108,27 @@ fn chosen(arguments: &Arguments, plans: Vec<BedPlan>) -> Result<BedPlan, Vec<Dia
 }
 
 /// Where beds are kept: where the user says, else where programs of this machine keep what they can build again.
-fn cache(arguments: &Arguments) -> Option<PathBuf> {
-    if arguments.fresh {
+pub(super) fn cache(fresh: bool, given: Option<&Path>) -> Option<PathBuf> {
+    if fresh {
         return None;
     }
     let home = || Some(PathBuf::from(std::env::var_os("HOME")?).join(".cache"));
     let usual = || Some(std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from).or_else(home)?.join("trackbed/beds"));
-    arguments.cache.clone().or_else(usual)
+    given.map(Path::to_path_buf).or_else(usual)
+}
+
+/// The bed of a plan and whether it was there already; a new one is kept.
+pub(super) fn kept_or_built(cache: Option<&Path>, plan: &BedPlan) -> Result<(Packed<f32>, bool), Diagnostic> {
+    if let Some(packed) = cache.and_then(|cache| results::kept_bed(cache, &plan.recipe)) {
+        return Ok((packed, true));
+    }
+    let packed = build(plan)?;
+    if let Some(cache) = cache
+        && let Err(error) = results::keep_bed(cache, &plan.recipe, &packed)
+    {
+        terminal::error(&format!("the bed is not kept: {error}"));
+    }
+    Ok((packed, false))
 }
 
 fn build(plan: &BedPlan) -> Result<Packed<f32>, Diagnostic> {
@@ -237,7 +237,7 @@ fn text(summary: &BedSummary, kept: bool) -> String {
             100.0 * layer.rattlers
         );
     }
-    out += &measured(&summary.readings);
+    out += &summary.readings.as_ref().map_or(String::new(), measured);
     for note in &summary.notes {
         out += &format!("\n{note}");
     }

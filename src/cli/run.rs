@@ -1,10 +1,12 @@
 //! `trackbed run`: runs a scene into a directory, with checkpoints, a report and the verdict on its expectations.
 
 use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
-use super::{Outcome, progress, report, terminal};
+use super::{Outcome, pack, progress, report, rig, terminal};
 use crate::diag::{Code, Diagnostic, render};
 use crate::graph;
-use crate::results::{self, BlockRow, Run, RunRecorder, Store, checkpoint};
+use crate::lower;
+use crate::results::{self, BlockRow, Run, RunRecorder, Store, Verdict, checkpoint};
+use crate::scenario::Scenario;
 use crate::units::number;
 use crate::{Compiled, fingerprint};
 use std::collections::BTreeMap;
@@ -30,6 +32,9 @@ pub(super) struct Arguments {
     /// Replace the results of another run in that directory.
     #[arg(long)]
     force: bool,
+    /// Where the packed beds of test rigs are kept, by what made them
+    #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]
+    cache: Option<PathBuf>,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
@@ -48,6 +53,9 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     show(&compiled);
     if failed(&compiled) {
         return Outcome::Failed;
+    }
+    if let Some(scenario) = compiled.scenario.as_ref().filter(|scenario| lower::is_rig(scenario)) {
+        return run_rig(arguments, &compiled, scenario);
     }
     let (Some(scenario), Some(graph)) = (&compiled.scenario, &compiled.graph) else {
         return not_yet(&compiled);
@@ -87,7 +95,23 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Err(message) => return stop(&compiled, Diagnostic::new(Code::E0802, message)),
     }
     warn(&run, &compiled);
-    verdicts(&run, &compiled)
+    verdicts(&run.summary.expectations, scenario, &compiled)
+}
+
+/// The rig of a scene, in the directory that the arguments name.
+fn run_rig(arguments: &Arguments, compiled: &Compiled, scenario: &Scenario) -> Outcome {
+    // what cannot be packed is told before a directory is made
+    if let Err(mistakes) = lower::rig(scenario) {
+        terminal::note(&render::human(&mistakes, &compiled.sources, terminal::colour(), terminal::width()));
+        return Outcome::Failed;
+    }
+    if let Err(message) = prepare(arguments) {
+        let help = "give another `--out`, or `--resume` or `--force`";
+        return stop(compiled, Diagnostic::new(Code::E0802, message).help(help));
+    }
+    let cache = pack::cache(false, arguments.cache.as_deref());
+    let options = rig::Options { out: &arguments.out, cache, resume: arguments.resume };
+    rig::run_rig(compiled, scenario, &options)
 }
 
 /// Says where exchanges of forces and settlement overshot.
@@ -101,7 +125,7 @@ fn warn(run: &Run, compiled: &Compiled) {
     terminal::note(&render::human(&[diagnostic], &compiled.sources, terminal::colour(), terminal::width()));
 }
 
-fn stop(compiled: &Compiled, diagnostic: Diagnostic) -> Outcome {
+pub(super) fn stop(compiled: &Compiled, diagnostic: Diagnostic) -> Outcome {
     terminal::note(&render::human(&[diagnostic], &compiled.sources, terminal::colour(), terminal::width()));
     Outcome::Failed
 }
@@ -176,12 +200,10 @@ fn summary(run: &Run, page: &Path, seconds: f64) {
 }
 
 /// Names every expectation that was missed.
-fn verdicts(run: &Run, compiled: &Compiled) -> Outcome {
-    let missed: Vec<Diagnostic> = run
-        .summary
-        .expectations
+pub(super) fn verdicts(verdicts: &[Verdict], scenario: &Scenario, compiled: &Compiled) -> Outcome {
+    let missed: Vec<Diagnostic> = verdicts
         .iter()
-        .zip(&run.scenario.expectations)
+        .zip(&scenario.expectations)
         .filter(|(verdict, _)| !verdict.met)
         .map(|(verdict, expectation)| {
             let values: Vec<String> =

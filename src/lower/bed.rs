@@ -55,7 +55,7 @@ fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic
     }
     let largest = layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
     let spacing = *section.spacing;
-    let bays = (CELL * largest / spacing).ceil().max(1.0);
+    let bays = bays(largest, spacing);
     notes.push(format!("The cell is {bays} x {spacing} m long, at least {CELL} times as long as its largest grain."));
     if section.layers.len() > grains.len() {
         notes.push("Soil below the grains is a rigid floor while they are packed.".to_owned());
@@ -104,12 +104,23 @@ fn plate(scenario: &Scenario, section: usize, recipe: &Recipe, notes: &mut Vec<S
     }
 }
 
+/// Bays of a cell, by its largest grain and the spacing, m.
+fn bays(largest: f64, spacing: f64) -> f64 {
+    (CELL * largest / spacing).ceil().max(1.0)
+}
+
+/// Of a cell along the track, m.
+pub(super) fn cell_length(largest: f64, spacing: f64) -> f64 {
+    bays(largest, spacing) * spacing
+}
+
 /// Of the bed of one rail, or of both, m: from the centre line to the wall.
-fn width(scenario: &Scenario, section: usize) -> f64 {
+pub(super) fn width(scenario: &Scenario, section: usize) -> f64 {
     let track = &scenario.track;
     let sleeper = track.seats[track.seats_of(section)].iter().find_map(|seat| seat.sleeper);
-    let least = sleeper.map_or(HALF_WIDTH, |sleeper| 0.5 * sleeper.length);
-    let half = track.bed.half_width.map_or(least, |half| *half).max(least);
+    let least = sleeper.map(|sleeper| 0.5 * sleeper.length);
+    let stated = track.bed.half_width.map(|half| half.max(least.unwrap_or(0.0)));
+    let half = stated.or(least).unwrap_or(HALF_WIDTH);
     if scenario.solve.grains.both_rails { 2.0 * half } else { half }
 }
 

@@ -5,9 +5,11 @@ mod estimate;
 mod outlook;
 mod passage;
 mod records;
+mod rig;
 mod schedule;
 
 pub use bed::{BedPlan, beds};
+pub use rig::{RigCost, RigPlan, is_rig, rig, rig_cost};
 
 use crate::diag::{Code, Diagnostic, Severity};
 use crate::graph::{Decision, Graph, NamedLaw, Schedule, SubstructureNode, TrackNode};
@@ -19,7 +21,7 @@ use outlook::Outlook;
 pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
     let mut pass = Pass { decisions: Vec::new(), diagnostics: Vec::new() };
     if !scenario.track.is_sprung() {
-        return (None, pass.diagnostics);
+        return (None, rig::refusals(scenario));
     }
     let (substructure, schedule) = match &scenario.loading {
         Some(Loading::Rig(_)) => return (None, pass.diagnostics),

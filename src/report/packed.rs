@@ -42,7 +42,9 @@ impl BedPage<'_> {
         let mut html = opening(&summary.title, &subtitle);
         self.layers(&mut html);
         self.figures().iter().for_each(|figure| picture(&mut html, figure));
-        readings::write(&mut html, &summary.readings);
+        if let Some(found) = &summary.readings {
+            readings::write(&mut html, found);
+        }
         self.stages(&mut html);
         html += "</main></body></html>\n";
         html

@@ -5,7 +5,7 @@ use super::number::{plain, significant, whole};
 use super::scene::force;
 use super::svg::{STYLE, escape};
 use super::{Figure, figures, laws};
-use crate::results::{Run, Verdict};
+use crate::results::{Provenance, Run, Verdict};
 use crate::scenario::{Loading, Scenario, Train};
 use std::fmt::Write;
 
@@ -20,7 +20,7 @@ pub fn page(run: &Run) -> String {
     figures.iter().for_each(|figure| picture(&mut html, figure));
     trains(&mut html, run);
     blocks(&mut html, run);
-    provenance(&mut html, run);
+    provenance(&mut html, &run.summary.provenance, &run.scenario);
     html += "</main></body></html>\n";
     html
 }
@@ -43,7 +43,7 @@ pub(super) fn opening(title: &str, subtitle: &str) -> String {
 }
 
 /// `wagon: 1 vehicle at 200 km/h, 500 axles. Track line, 66 m: ballasted 42 m, slab_track 24 m.`
-fn subtitle(scenario: &Scenario) -> String {
+pub(super) fn subtitle(scenario: &Scenario) -> String {
     let track = &scenario.track;
     let mut text = match &scenario.loading {
         Some(Loading::Traffic(traffic)) => {
@@ -87,7 +87,7 @@ fn contents(html: &mut String, figures: &[Figure], run: &Run) {
     *html += "<li><a href=\"#provenance\">What made this</a></li></ol></nav>\n";
 }
 
-fn expectations(html: &mut String, verdicts: &[Verdict]) {
+pub(super) fn expectations(html: &mut String, verdicts: &[Verdict]) {
     if verdicts.is_empty() {
         return;
     }
@@ -202,8 +202,7 @@ fn blocks(html: &mut String, run: &Run) {
     );
 }
 
-fn provenance(html: &mut String, run: &Run) {
-    let made = &run.summary.provenance;
+pub(super) fn provenance(html: &mut String, made: &Provenance, scenario: &Scenario) {
     let _ = writeln!(
         html,
         "<section class=\"long\" id=\"provenance\"><h2>What made this</h2><dl><dt>Program</dt><dd>{} {}</dd>\
@@ -214,7 +213,7 @@ fn provenance(html: &mut String, run: &Run) {
         escape(&made.source_sha256),
         made.seed
     );
-    for (rule, reason) in &run.scenario.allow {
+    for (rule, reason) in &scenario.allow {
         let _ =
             writeln!(html, "<p class=\"note\">Rule <code>{}</code> is silenced: {}</p>", escape(rule), escape(reason));
     }

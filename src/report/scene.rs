@@ -252,7 +252,7 @@ fn draw_loads(svg: &mut Svg, scenario: &Scenario, view: &View) -> f64 {
 }
 
 fn on(target: Target) -> &'static str {
-    if target == Target::Rail { "per rail" } else { "per seat" }
+    if target == Target::Sleepers { "per seat" } else { "per rail" }
 }
 
 /// `2.5 to 30 kN per seat, 5 Hz, 10000 times`

@@ -13,7 +13,7 @@ pub fn bed_hash(recipe: &Recipe) -> String {
 }
 
 pub(super) fn hash_of(what: &impl Serialize) -> String {
-    let text = serde_json::to_string(what).unwrap_or_default();
+    let text = format!("{METHOD} {}", serde_json::to_string(what).unwrap_or_default());
     let digest = Sha256::digest(text.as_bytes());
     digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
@@ -45,7 +45,8 @@ pub struct BedSummary {
     /// From the floor upwards.
     pub layers: Vec<BedLayer>,
     pub stages: Vec<Stage>,
-    pub readings: BedReadings,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub readings: Option<BedReadings>,
     pub notes: Vec<String>,
 }
 
@@ -71,7 +72,7 @@ pub struct BedLayer {
 }
 
 /// Sums up a bed of a plan, with what was read off it.
-pub fn bed_summary(title: &str, plan: &BedPlan, packed: &Packed<f32>, readings: BedReadings) -> BedSummary {
+pub fn bed_summary(title: &str, plan: &BedPlan, packed: &Packed<f32>, readings: Option<BedReadings>) -> BedSummary {
     let recipe = &plan.recipe;
     let layers = (0..recipe.layers.len()).map(|number| bed_layer(recipe, packed, number)).collect();
     BedSummary {
@@ -83,7 +84,7 @@ pub fn bed_summary(title: &str, plan: &BedPlan, packed: &Packed<f32>, readings: 
         pebbles: packed.bed.pebbles().count(),
         layers,
         stages: packed.stages.clone(),
-        notes: plan.notes.iter().chain(&readings.notes).cloned().collect(),
+        notes: plan.notes.iter().chain(readings.iter().flat_map(|readings| &readings.notes)).cloned().collect(),
         readings,
     }
 }

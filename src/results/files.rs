@@ -106,7 +106,7 @@ fn scenario_json(run: &Run, directory: &Path) -> Result<Vec<u8>, ResultsError> {
     }
 }
 
-fn json<T: Serialize>(value: &T, path: &Path) -> Result<Vec<u8>, ResultsError> {
+pub(super) fn json<T: Serialize>(value: &T, path: &Path) -> Result<Vec<u8>, ResultsError> {
     let mut bytes = serde_json::to_vec_pretty(value).map_err(|cause| ResultsError::unwritable(path, cause))?;
     bytes.push(b'\n');
     Ok(bytes)
@@ -117,7 +117,7 @@ fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, ResultsError> {
     serde_json::from_slice(&bytes).map_err(|cause| ResultsError::malformed(path, cause))
 }
 
-fn table<R: Row>(rows: &[R], directory: &Path) -> Result<Vec<u8>, ResultsError> {
+pub(super) fn table<R: Row>(rows: &[R], directory: &Path) -> Result<Vec<u8>, ResultsError> {
     let path = directory.join(R::FILE);
     let fail = |cause: csv::Error| ResultsError::unwritable(&path, cause);
     // The header is written by hand so that a table without rows has one too.

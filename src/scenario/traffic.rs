@@ -208,4 +208,6 @@ impl RigLoad {
 pub enum Target {
     Rail,
     Sleepers,
+    /// A plate over the whole bed, in the place of sleepers.
+    Bed,
 }

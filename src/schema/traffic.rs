@@ -201,7 +201,15 @@ pub(super) const LOAD: Kind = Kind {
     doc: "A test load on a track at rest.",
     role: Role::Scene { once: false },
     fields: &[
-        required("on", Form::Words(&[word("rail", ""), word("sleepers", "")]), "what it stands on"),
+        required(
+            "on",
+            Form::Words(&[
+                word("rail", ""),
+                word("sleepers", ""),
+                word("bed", "on a plate that covers the whole bed of grains, in the place of sleepers"),
+            ]),
+            "what it stands on",
+        ),
         required("at", Form::List(&Form::Place), "one force at each place"),
         optional(
             "from",

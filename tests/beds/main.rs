@@ -2,4 +2,5 @@
 
 mod bed;
 mod checkpoint;
+mod loaded;
 mod replicate;

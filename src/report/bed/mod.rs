@@ -118,6 +118,12 @@ impl View {
         if bed.grains.is_empty() {
             (low, high) = ([0.0; 2], [1.0; 2]);
         }
+        // blocks that stand on the bed
+        for wall in bed.walls {
+            if let Shape::Block { half } = &wall.shape {
+                high[1] = high[1].max(wall.pose(bed.domain).position.z + half.z);
+            }
+        }
         // a floor near enough to be worth the room
         let near = low[1] - 0.5 * (high[1] - low[1]);
         for level in bed.walls.iter().filter_map(|wall| floor(wall, bed.domain)).filter(|level| *level > near) {

@@ -252,6 +252,8 @@ impl<R: Real> Bed<R> {
             // a servo waits for what it will feel
             Motion::Servo { .. } => (Vector3::zeros(), Vector3::zeros()),
             faulty if faulty.check().is_err() => (Vector3::zeros(), Vector3::zeros()),
+            // what has a mass keeps its speed
+            Motion::Loaded { axis, .. } => (axis * wall.velocity.dot(axis), Vector3::zeros()),
             given => given.velocity(self.time, self.dt.max(f64::MIN_POSITIVE), &Felt::default()),
         };
         wall.motion = motion;

@@ -54,6 +54,7 @@ mod prefetch;
 pub mod probe;
 mod record;
 mod replicate;
+pub mod rig;
 pub mod rotation;
 mod scaling;
 mod search;

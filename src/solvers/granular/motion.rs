@@ -1,7 +1,12 @@
-//! How a wall moves: at rest, at a given velocity, along a table, to and fro, or after a force that it should feel.
+//! How a wall moves: at rest, at a given velocity, along a table, to and fro, after a force that it should feel, or as a body
+//! with a mass under a force that is applied to it.
 //!
 //! Velocities belong to a whole step, from `time` to `time + dt`, as a leapfrog scheme takes them: x += v dt. For given
 //! motions they are the mean over the step, so that the wall stands where it should after every step, whatever dt is.
+
+mod push;
+
+pub use push::Push;
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -67,6 +72,22 @@ pub enum Motion {
         #[serde(default = "usual_gain")]
         gain: f64,
     },
+    /// Moves along the unit axis as a body with a mass, and does not turn: `m dv/dt = F`, F the sum of weight, push and contact
+    /// forces along the axis.
+    ///
+    /// Leapfrog, as grains move: v = v' + F dt / m. A wall that is told so at a time has its speed of then as v', half a step
+    /// early. It swings on its contacts: dt stays well below sqrt(m / k) of their stiffness.
+    Loaded {
+        axis: Vector3<f64>,
+        /// kg.
+        mass: f64,
+        /// Along the axis, N.
+        weight: f64,
+        /// Local damping after Cundall, as grains have it: F loses this share of itself where it drives, and gains it where
+        /// it brakes.
+        damping: f64,
+        push: Push,
+    },
 }
 
 /// A number of a motion that is out of its range.
@@ -111,6 +132,13 @@ impl Motion {
                 require(fine, "speed limit of a servo", *speed_limit, "above 0 m/s")?;
                 require(*gain > 0.0 && *gain <= 1.0, "gain of a servo", *gain, "above 0 and up to 1")
             }
+            Motion::Loaded { axis, mass, weight, damping, push } => {
+                unit("axis of a loaded wall", axis)?;
+                require(mass.is_finite() && *mass > 0.0, "mass of a wall", *mass, "above 0 kg")?;
+                require(weight.is_finite(), "weight of a wall", *weight, "a finite number")?;
+                require((0.0..1.0).contains(damping), "damping of a wall", *damping, "from 0 to below 1")?;
+                push.check()
+            }
         }
     }
 
@@ -136,6 +164,12 @@ impl Motion {
                     speed_limit.copysign(excess)
                 };
                 axis * speed
+            }
+            Motion::Loaded { axis, mass, weight, damping, push } => {
+                let before = felt.velocity.dot(axis);
+                let drive = felt.force.dot(axis) + weight + push.at(time);
+                let braked = drive - damping * drive.abs() * if before == 0.0 { 0.0 } else { before.signum() };
+                axis * (before + braked * dt / mass)
             }
         };
         (linear, Vector3::zeros())

@@ -9,7 +9,6 @@ mod error;
 mod pace;
 mod place;
 mod press;
-mod rest;
 mod store;
 #[cfg(test)]
 mod tests;

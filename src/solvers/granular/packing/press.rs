@@ -3,12 +3,12 @@
 use super::super::bed::Bed;
 use super::super::grains::Grain;
 use super::super::lanes::Real;
+use super::super::measure::unbalance;
 use super::super::motion::{Motion, Pose};
 use super::super::shape::Shape;
 use super::super::walls::WallId;
 use super::pace::{Pace, SAFE};
 use super::place::{Room, set_loose};
-use super::rest::unbalance;
 use super::{PackingError, Progress, Recipe, Stage, State, chance, put};
 use nalgebra::Vector3;
 

@@ -1,0 +1,89 @@
+//! What a rig costs, without packing it: grains from gradings, steps from the lightest grain.
+
+use super::{cycles, is_rig, loads, period};
+use crate::lower::bed::{cell_length, width};
+use crate::scenario::{Contact, Granular, Scenario, Shape};
+use crate::solvers::granular::grains::Curve;
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// Share of the volume that grains fill in a packed bed.
+const SOLID: f64 = 0.6;
+/// Share of sqrt(m / k) of the lightest grain that a step takes.
+const STEP: f64 = 0.25;
+/// Time, s, that a stage of packing and the setting down of sleepers take; stages beside those of lifts.
+const STAGE: f64 = 0.45;
+const SET_DOWN: f64 = 0.3;
+const LAST_STAGES: u32 = 3;
+/// Steps of a pebble a second on two cores, of clumps of three (`docs/validation.md`); spheres are faster.
+const PEBBLE_STEPS: f64 = 7e6;
+
+/// An estimate, good to a factor of two.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct RigCost {
+    pub grains: f64,
+    pub pebbles: f64,
+    /// s.
+    pub time_step: f64,
+    pub packing_steps: f64,
+    /// Setting down included.
+    pub test_steps: f64,
+    pub repeats: u32,
+    /// Of all repeats, on two cores, s.
+    pub seconds: f64,
+}
+
+/// The estimate for a rig; `None` where a scene is none, or a grading no curve.
+pub fn rig_cost(scenario: &Scenario) -> Option<RigCost> {
+    if !is_rig(scenario) {
+        return None;
+    }
+    let section = &scenario.track.sections[0];
+    let materials: Vec<(f64, &Granular, Curve)> = section
+        .layers
+        .iter()
+        .filter_map(|layer| {
+            let granular = layer.granular()?;
+            Some((layer.thickness.at(section.start), granular, granular.grading.curve().ok()?))
+        })
+        .collect();
+    let largest = materials.iter().map(|(_, _, curve)| curve.ends()[1]).fold(0.0, f64::max);
+    let cell = cell_length(largest, *section.spacing);
+    let copies = ((section.end - section.start) / cell - 1e-9).ceil().max(1.0);
+    let plan = cell * width(scenario, 0);
+    let (mut grains, mut pebbles, mut lifts, mut step) = (0.0, 0.0, 0, f64::INFINITY);
+    for (thickness, granular, curve) in &materials {
+        let count = SOLID * plan * thickness / curve.mean_volume();
+        grains += count;
+        pebbles += count * pebbles_of(&granular.shape);
+        lifts += granular.packing.lifts;
+        step = step.min(STEP * lightest(granular, curve));
+    }
+    let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / step;
+    let loads = loads(scenario);
+    let test_steps = (SET_DOWN + (0.5 + cycles(&loads) as f64) * period(&loads)) / step;
+    let repeats = scenario.solve.grains.repeats;
+    // while a bed is packed half of it is there on average
+    let work = pebbles * (0.5 * packing_steps + copies * test_steps);
+    let seconds = f64::from(repeats) * work / PEBBLE_STEPS;
+    let (grains, pebbles) = (copies * grains, copies * pebbles);
+    Some(RigCost { grains, pebbles, time_step: step, packing_steps, test_steps, repeats, seconds })
+}
+
+fn pebbles_of(shape: &Shape) -> f64 {
+    match shape {
+        Shape::Clumps { pebbles: [fewest, most], .. } => f64::from(fewest + most) / 2.0,
+        _ => 1.0,
+    }
+}
+
+/// sqrt(m / k) of the lightest grain on one contact, s.
+fn lightest(granular: &Granular, curve: &Curve) -> f64 {
+    let mass = *granular.density * PI / 6.0 * curve.ends()[0].powi(3);
+    let stiffness = match granular.contact {
+        Contact::Linear { stiffness } => *stiffness * granular.shear_ratio.max(1.0),
+        // beds of such grains are refused before anything runs
+        Contact::Hertz { .. } => return f64::INFINITY,
+    };
+    (mass / stiffness).sqrt()
+}

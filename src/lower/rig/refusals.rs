@@ -1,0 +1,124 @@
+//! What no rig can be made of, told before anything is packed.
+
+use super::{acts_on, has_grains, loads, stands_on_its_bed};
+use crate::diag::{Code, Diagnostic};
+use crate::scenario::{Foot, Force, RigLoad, Scenario, Target};
+use crate::units::number;
+
+/// Every mistake of a rig; none of a scene that is no rig.
+pub(in crate::lower) fn refusals(scenario: &Scenario) -> Vec<Diagnostic> {
+    if !stands_on_its_bed(scenario) {
+        return Vec::new();
+    }
+    if let Some(section) = scenario.track.sections.iter().find(|section| !has_grains(section)) {
+        let message = format!("a rig stands on grains, and `{}` has no layer of them", section.name);
+        return vec![refused(message, "give its trackform `layers` with a `granular` on top")];
+    }
+    let mut found = Vec::new();
+    one_bed(scenario, &mut found);
+    let loads = loads(scenario);
+    if let [first, second, ..] = loads.as_slice()
+        && loads.iter().any(|load| load.on == Target::Bed)
+    {
+        let message = format!("`{}` and `{}` act together with a plate over the whole bed", first.name, second.name);
+        found.push(refused(message, "a plate leaves no room for another load: keep one"));
+    } else if loads.iter().all(|load| load.on == Target::Sleepers) {
+        sleepers(scenario, &mut found);
+        one_load_each(scenario, &loads, &mut found);
+    }
+    one_rhythm(&loads, &mut found);
+    found
+}
+
+fn refused(message: String, help: &str) -> Diagnostic {
+    Diagnostic::new(Code::E0611, message).help(help)
+}
+
+fn one_bed(scenario: &Scenario, found: &mut Vec<Diagnostic>) {
+    let sections = &scenario.track.sections;
+    if let [first, second, ..] = sections.as_slice() {
+        let message = format!("a rig stands on one bed, and `{}` lies beside `{}`", second.name, first.name);
+        let at = second.length_origin.span();
+        let mistake = refused(message, "keep one section, and run the other as a scene of its own");
+        found.push(match at {
+            Some(span) => mistake.at(span, "a second bed"),
+            None => mistake,
+        });
+    }
+}
+
+fn sleepers(scenario: &Scenario, found: &mut Vec<Diagnostic>) {
+    let track = &scenario.track;
+    let Some(seat) = track.seats.first() else { return };
+    let spacing = track.sections[seat.section].spacing;
+    let Some(body) = seat.sleeper.filter(|_| matches!(seat.foot, Foot::Sleeper { .. })) else {
+        found.push(refused(
+            "a rig loads sleepers, and this track has none".to_owned(),
+            "give the trackform a `sleeper`",
+        ));
+        return;
+    };
+    if track.seats.iter().any(|seat| seat.usp().is_some()) {
+        let message = "under sleeper pads on grains are not in this version".to_owned();
+        found.push(refused(message, "leave `usp` out: sleepers of a rig lie on the grains themselves"));
+    }
+    if body.base_width >= track.shortest_bay() {
+        let message = format!(
+            "sleepers of {} mm stand {} mm apart, and a bed under them needs a gap",
+            number((body.base_width * 1e3).round()),
+            number((track.shortest_bay() * 1e3).round())
+        );
+        let mistake = refused(message, "a wider `spacing`, or a narrower `base_width`");
+        found.push(match spacing.origin.span() {
+            Some(span) => mistake.at(span, "too close"),
+            None => mistake,
+        });
+    }
+}
+
+fn one_load_each(scenario: &Scenario, loads: &[RigLoad], found: &mut Vec<Diagnostic>) {
+    for seat in &scenario.track.seats {
+        let acting: Vec<&RigLoad> = loads.iter().filter(|load| acts_on(load, seat)).collect();
+        if let [first, second, ..] = acting.as_slice() {
+            let name = scenario.track.seat_name(seat);
+            let message = format!("`{}` and `{}` both act on sleeper {name}", first.name, second.name);
+            found.push(refused(message, "a sleeper has one actuator: leave one of them out"));
+            return;
+        }
+    }
+}
+
+/// Actuators that move to and fro do so in one rhythm, which is the cycle that is counted.
+fn one_rhythm(loads: &[RigLoad], found: &mut Vec<Diagnostic>) {
+    let mut first: Option<(&RigLoad, f64)> = None;
+    for load in loads {
+        let frequency = match &load.force {
+            Force::Constant(_) => continue,
+            Force::Cyclic { frequency, .. } => {
+                if **frequency <= 0.0 {
+                    let message = format!("`{}` comes back 0 times a second", load.name);
+                    found.push(refused(message, "a frequency above 0 Hz, or a constant force"));
+                    continue;
+                }
+                **frequency
+            }
+            Force::History(points) => {
+                if load.cycles > 1 || *load.speed > 0.0 {
+                    let message =
+                        format!("the forces of a file act once and in one place, `{}` asks for more", load.name);
+                    found.push(refused(message, "write every cycle into the file; leave `total` and `speed` out"));
+                }
+                1.0 / (points.last().map_or(0.0, |p| p[0]) - points.first().map_or(0.0, |p| p[0]))
+            }
+        };
+        match first {
+            Some((other, rhythm)) if rhythm != frequency || other.cycles != load.cycles => {
+                let message = format!("`{}` and `{}` differ in frequency or number of cycles", other.name, load.name);
+                found.push(refused(message, "the cycles of a rig are those of all its actuators"));
+                return;
+            }
+            Some(_) => {}
+            None => first = Some((load, frequency)),
+        }
+    }
+}

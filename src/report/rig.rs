@@ -1,0 +1,249 @@
+//! The page of a test rig: settlement and stiffness against cycles, loops, what sensors read, and the bed with its chains.
+
+use super::Figure;
+use super::bed::{BedView, Colour, Side, bed_svg};
+use super::chart::{Axis, Chart, Mark, Series};
+use super::number::{significant, whole};
+use super::page::{expectations, opening, picture, provenance, subtitle};
+use super::scene::WIDTH;
+use super::svg::{Frame, Svg, escape};
+use crate::results::{Grain, Link, RigRun};
+use crate::solvers::granular::rig::{Cycle, Sample};
+use crate::solvers::granular::{Domain, Wall};
+use std::fmt::Write;
+
+const HEIGHT: f64 = 320.0;
+/// Cycles whose loops can be told apart.
+const LOOPS: usize = 4;
+
+/// A rig as the page shows it, with its last bed as it ended.
+pub struct RigPage<'a> {
+    pub run: &'a RigRun,
+    pub grains: &'a [Grain],
+    pub links: &'a [Link],
+    pub walls: &'a [Wall],
+    pub domain: &'a Domain,
+}
+
+impl RigPage<'_> {
+    /// The whole page, which needs nothing from elsewhere.
+    pub fn html(&self) -> String {
+        let run = self.run;
+        let mut html = opening(&run.scenario.title, &subtitle(&run.scenario));
+        self.headline(&mut html);
+        expectations(&mut html, &run.summary.expectations);
+        self.figures().iter().for_each(|figure| picture(&mut html, figure));
+        self.beds(&mut html);
+        provenance(&mut html, &run.summary.provenance, &run.scenario);
+        html += "</main></body></html>\n";
+        html
+    }
+
+    fn headline(&self, html: &mut String) {
+        let lines: [(&str, &str, &str, f64); 11] = [
+            ("Settlement after the last cycle", "max_settlement", "mm", 1e-3),
+            ("Settlement after the first cycle", "first_settlement", "mm", 1e-3),
+            ("Resilient stiffness, last cycle", "support_stiffness", "MN/m", 1e6),
+            ("Resilient stiffness, first cycle", "first_support_stiffness", "MN/m", 1e6),
+            ("Oedometric modulus, resilient, last cycle", "oedometric_modulus", "MPa", 1e6),
+            ("Oedometric modulus, first loading", "first_oedometric_modulus", "MPa", 1e6),
+            ("Largest force of the bed on a sleeper", "max_contact_force", "kN", 1e3),
+            ("Grains", "grains", "", 1.0),
+            ("Porosity inside the top layer, as packed", "porosity", "", 1.0),
+            ("Neighbours a grain of it, as packed", "coordination_number", "", 1.0),
+            ("Time steps of a test", "steps", "", 1.0),
+        ];
+        let scalar = |name: &str| self.run.summary.scalars.get(name).map(|scalar| scalar.value);
+        let cycles = whole(scalar("cycles").unwrap_or(0.0) as u64);
+        let packings = match self.run.tests.len() {
+            1 => "one packing".to_owned(),
+            n => format!("{n} packings, with the 95 % interval of their mean"),
+        };
+        let _ = write!(
+            html,
+            "<section id=\"headline\"><h2>At a glance</h2><p class=\"caption\">{cycles} cycles on {packings}. Settlement counts from \
+             rest under the sleeper's own weight. Forces and stiffness are of {}.</p><div class=\"scroll\"><table><tbody>",
+            if self.run.scenario.solve.grains.both_rails { "both rails" } else { "one rail" }
+        );
+        for (label, name, unit, size) in lines {
+            let Some(value) = scalar(name) else { continue };
+            let band = scalar(&format!("{name}_confidence"));
+            let band = band.map_or(String::new(), |half| format!(" \u{b1} {}", significant(half / size, 2)));
+            let value = significant(value / size, 4);
+            let _ = write!(html, "<tr><td class=\"text\">{label}</td><td><b>{value}</b>{band} {unit}</td></tr>");
+        }
+        *html += "</tbody></table></div></section>\n";
+    }
+
+    fn figures(&self) -> Vec<Figure> {
+        let mut figures = vec![self.against_cycles(false), self.against_cycles(true), self.stiffness(), self.loops()];
+        figures.extend(self.strain());
+        figures.extend(self.stress());
+        figures.push(self.bed(Side::X, "along", "The bed along the track", "At the end, under the lower force."));
+        figures.push(self.bed(Side::Y, "across", "The bed across", "Lines join grains that press on each other."));
+        figures
+    }
+
+    /// Cycles of each packing and sleeper, with their name.
+    fn series(&self, of: impl Fn(&Cycle) -> f64) -> Vec<Series> {
+        let mut found = Vec::new();
+        for (number, test) in self.run.tests.iter().enumerate() {
+            for (index, (name, _)) in self.run.sleepers.iter().enumerate() {
+                let cycles = test.cycles.iter().filter(|cycle| cycle.sleeper == index);
+                let points: Vec<(f64, f64)> = cycles.map(|cycle| (cycle.number as f64, of(cycle))).collect();
+                let (name, class) = match (self.run.tests.len(), self.run.sleepers.len()) {
+                    (1, _) => (format!("sleeper {name}"), index),
+                    (_, 1) => (format!("seed {}", test.seed), number),
+                    _ => (format!("sleeper {name}, seed {}", test.seed), index),
+                };
+                let mark = if points.len() > 40 { Mark::Line } else { Mark::Dots };
+                found.push(Series::new(&name, &class_of(class), mark, points));
+            }
+        }
+        found
+    }
+
+    fn against_cycles(&self, logarithmic: bool) -> Figure {
+        let x = Axis { logarithmic, ..Axis::new("Cycles", ("", 1.0)) };
+        let y = Axis { downwards: true, from_zero: true, ..Axis::new("Settlement", ("mm", 1e-3)) };
+        let mut chart = Chart::new(x, y);
+        chart.series = self.series(|cycle| cycle.settlement);
+        let (id, title, caption) = match logarithmic {
+            false => ("settlement", "Settlement against cycles", "At the lower force after every cycle, downwards."),
+            true => (
+                "settlement_log",
+                "Settlement against the logarithm of cycles",
+                "A straight line settles with the logarithm.",
+            ),
+        };
+        figure(chart, id, title, caption)
+    }
+
+    fn stiffness(&self) -> Figure {
+        let y = Axis { from_zero: true, ..Axis::new("Resilient stiffness", ("MN/m", 1e6)) };
+        let mut chart = Chart::new(Axis::new("Cycles", ("", 1.0)), y);
+        chart.series = self.series(|cycle| cycle.stiffness);
+        figure(
+            chart,
+            "stiffness",
+            "Stiffness against cycles",
+            "Range of the force over the rebound from the deepest place.",
+        )
+    }
+
+    /// Of the sleeper that settles most, in the first packing.
+    fn loops(&self) -> Figure {
+        let x = Axis { from_zero: true, ..Axis::new("Depth", ("mm", 1e-3)) };
+        let mut chart = Chart::new(x, Axis { from_zero: true, ..Axis::new("Force of the actuator", ("kN", 1e3)) });
+        let test = &self.run.tests[0];
+        let worst = test.cycles.iter().max_by(|a, b| a.settlement.total_cmp(&b.settlement)).map_or(0, |c| c.sleeper);
+        let samples: Vec<&Sample> = test.samples.iter().filter(|sample| sample.sleeper == worst).collect();
+        for (number, cycle) in some(kept(&samples, |sample| sample.cycle), LOOPS).into_iter().enumerate() {
+            let of = samples.iter().filter(|sample| sample.cycle == cycle);
+            let points = of.map(|sample| (sample.depth, sample.force)).collect();
+            chart.series.push(Series::new(&format!("cycle {cycle}"), &class_of(number), Mark::Line, points));
+        }
+        let caption = format!(
+            "Sleeper {}, seed {}: what a loop encloses is work that the bed keeps.",
+            self.run.sleepers.get(worst).map_or("", |(name, _)| name),
+            test.seed
+        );
+        figure(chart, "loops", "Force against depth", &caption)
+    }
+
+    /// Stress against strain under a plate, first packing.
+    fn strain(&self) -> Option<Figure> {
+        let area = self.run.plate?;
+        let test = &self.run.tests[0];
+        let height = RigRun::height(test);
+        let x = Axis { from_zero: true, ..Axis::new("Vertical strain", ("%", 0.01)) };
+        let mut chart = Chart::new(x, Axis { from_zero: true, ..Axis::new("Vertical stress", ("kPa", 1e3)) });
+        for (number, cycle) in some(kept(&test.samples, |sample| sample.cycle), LOOPS).into_iter().enumerate() {
+            let of = test.samples.iter().filter(|sample| sample.cycle == cycle);
+            let points = of.map(|sample| (sample.depth / height, sample.force / area)).collect();
+            chart.series.push(Series::new(&format!("cycle {cycle}"), &class_of(number), Mark::Line, points));
+        }
+        let caption = "Of the plate, from rest under its own weight; sides do not give way: an oedometer.";
+        Some(figure(chart, "strain", "Stress against strain", caption))
+    }
+
+    /// Vertical stress at the sensors of the first packing over the last cycle that is kept.
+    fn stress(&self) -> Option<Figure> {
+        let readings = &self.run.tests[0].readings;
+        let last = readings.iter().map(|reading| reading.cycle).max()?;
+        let y = Axis { from_zero: true, ..Axis::new("Vertical stress", ("kPa", 1e3)) };
+        let mut chart = Chart::new(Axis { range: Some((0.0, 1.0)), ..Axis::new("Share of the cycle", ("%", 0.01)) }, y);
+        for (index, (name, _)) in self.run.sensors.iter().enumerate() {
+            let of = |cycle: u64| readings.iter().filter(move |r| (r.sensor, r.cycle) == (index, cycle));
+            let line = |cycle| of(cycle).map(|reading| (reading.phase, reading.stress)).collect::<Vec<_>>();
+            chart.series.push(Series::new("", &class_of(index), Mark::Faint, line(1)));
+            chart.series.push(Series::new(&format!("sleeper {name}"), &class_of(index), Mark::Line, line(last)));
+        }
+        let caption = format!("Positive in compression, in cycle {last}; thin lines are the first cycle.");
+        Some(figure(chart, "stress", "Stress at the sensors", &caption))
+    }
+
+    fn bed(&self, side: Side, id: &str, title: &str, caption: &str) -> Figure {
+        let svg = bed_svg(&BedView {
+            title,
+            grains: self.grains,
+            chains: self.links,
+            walls: self.walls,
+            domain: self.domain,
+            side,
+            colour: Colour::Force,
+        });
+        let caption = format!("{caption} Grains nearest to the eye, coloured by the largest force on them.");
+        Figure { id: id.to_owned(), title: title.to_owned(), caption, svg }
+    }
+
+    fn beds(&self, html: &mut String) {
+        *html += "<section class=\"long\" id=\"beds\"><h2>Beds</h2>";
+        for test in &self.run.tests {
+            let bed = &test.bed;
+            let layers = bed.layers.iter().rev().map(|layer| {
+                format!(
+                    "{} {} mm, {} grains, porosity {} inside, {} neighbours",
+                    layer.name,
+                    significant(1e3 * layer.thickness_m, 3),
+                    whole(layer.bodies as u64),
+                    significant(layer.inner_porosity, 3),
+                    significant(layer.coordination, 3)
+                )
+            });
+            let layers = layers.collect::<Vec<_>>().join("; ");
+            let _ = writeln!(html, "<p class=\"note\">Seed {}: {}.</p>", test.seed, escape(&layers));
+        }
+        for note in self.run.tests.first().map_or(&[][..], |test| &test.bed.notes) {
+            let _ = writeln!(html, "<p class=\"note\">{}</p>", escape(note));
+        }
+        *html += "</section>\n";
+    }
+}
+
+fn figure(chart: Chart, id: &str, title: &str, caption: &str) -> Figure {
+    let mut svg = Svg::default();
+    chart.draw(&mut svg, id, Frame { x: 0.0, y: 4.0, width: WIDTH, height: HEIGHT });
+    let svg = svg.finish(WIDTH, HEIGHT + 12.0, title);
+    Figure { id: id.to_owned(), title: title.to_owned(), caption: caption.to_owned(), svg }
+}
+
+fn class_of(index: usize) -> String {
+    const CLASSES: [&str; 8] = ["s0", "s1", "s2", "s3", "k5", "k2", "k0", "k4"];
+    CLASSES[index % CLASSES.len()].to_owned()
+}
+
+fn kept<T>(rows: &[T], of: impl Fn(&T) -> u64) -> Vec<u64> {
+    let mut cycles: Vec<u64> = rows.iter().map(of).collect();
+    cycles.sort_unstable();
+    cycles.dedup();
+    cycles
+}
+
+/// At most so many of a list, its ends among them.
+fn some(list: Vec<u64>, most: usize) -> Vec<u64> {
+    if list.len() <= most {
+        return list;
+    }
+    (0..most).map(|k| list[k * (list.len() - 1) / (most - 1)]).collect()
+}

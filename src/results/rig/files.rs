@@ -1,0 +1,28 @@
+//! The directory of a test rig.
+
+use super::super::files::{check_finite, json, table};
+use super::super::{ResultsError, Row, atomic};
+use super::{CycleRow, LoopRow, RigRun, SensorRow, VolumeRow};
+use std::fs;
+use std::path::Path;
+
+const SUMMARY: &str = "summary.json";
+const BEDS: &str = "beds.json";
+
+/// Writes tables and summary into `directory`, which is made where it does not exist. Equal runs leave equal bytes.
+pub fn write_rig(run: &RigRun, directory: &Path) -> Result<(), ResultsError> {
+    for (name, scalar) in &run.summary.scalars {
+        check_finite(SUMMARY, name, 1, scalar.value)?;
+    }
+    let beds: Vec<_> = run.tests.iter().map(|test| &test.bed).collect();
+    let files = [
+        (CycleRow::FILE, table(&run.cycles(), directory)?),
+        (LoopRow::FILE, table(&run.loops(), directory)?),
+        (SensorRow::FILE, table(&run.readings(), directory)?),
+        (VolumeRow::FILE, table(&run.volumes(), directory)?),
+        (BEDS, json(&beds, &directory.join(BEDS))?),
+        (SUMMARY, json(&run.summary, &directory.join(SUMMARY))?), // last: a directory with a summary is complete
+    ];
+    fs::create_dir_all(directory).map_err(|cause| ResultsError::io(directory, "create", cause))?;
+    files.iter().try_for_each(|(name, bytes)| atomic::write(&directory.join(name), bytes))
+}

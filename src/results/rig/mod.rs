@@ -1,0 +1,225 @@
+//! What a test rig leaves behind: cycles, loops, what sensors read, a summary, and the files that hold them.
+
+mod files;
+mod summarise;
+
+pub use files::write_rig;
+
+use super::{BedSummary, Provenance, Row, Summary};
+use crate::diag::Sources;
+use crate::lower::RigPlan;
+use crate::scenario::Scenario;
+use crate::solvers::granular::rig::{Cycle, Reading, Sample};
+use serde::{Deserialize, Serialize};
+
+/// One packing under test, as it ended.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Tested {
+    pub seed: u64,
+    pub bed: BedSummary,
+    pub cycles: Vec<Cycle>,
+    pub samples: Vec<Sample>,
+    pub readings: Vec<Reading>,
+    /// Time steps of the test.
+    pub steps: u64,
+}
+
+/// Everything that the directory of a rig says, as data.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RigRun {
+    pub scenario: Scenario,
+    pub summary: Summary,
+    /// Names and chainages, m.
+    pub sleepers: Vec<(String, f64)>,
+    pub sensors: Vec<(String, f64)>,
+    /// Area of a plate over the whole bed in the place of sleepers, m2.
+    pub plate: Option<f64>,
+    /// One for each seed.
+    pub tests: Vec<Tested>,
+}
+
+/// A sleeper over one cycle (`cycles.csv`). Forces are on what the bed models: of one rail, or of both.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)] // the names are the file's columns
+pub struct CycleRow {
+    pub seed: u64,
+    pub sleeper: String,
+    pub cycle: u64,
+    /// At the end of the cycle, below the place of rest under its own weight.
+    pub settlement_m: f64,
+    pub deepest_m: f64,
+    /// Range of force over rebound; 0 where nothing rebounds.
+    pub stiffness_N_per_m: f64,
+    pub max_contact_force_N: f64,
+    pub work_J: f64,
+    pub steps: u64,
+}
+
+/// A sleeper at an instant of a cycle that is kept (`loops.csv`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub struct LoopRow {
+    pub seed: u64,
+    pub sleeper: String,
+    pub cycle: u64,
+    /// Share of the cycle that is over.
+    pub phase: f64,
+    pub force_N: f64,
+    pub contact_force_N: f64,
+    pub depth_m: f64,
+    pub velocity_m_per_s: f64,
+}
+
+/// A sensor at an instant of a cycle that is kept (`sensors.csv`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub struct SensorRow {
+    pub seed: u64,
+    pub sensor: String,
+    pub cycle: u64,
+    pub phase: f64,
+    pub stress_Pa: f64,
+    pub velocity_m_per_s: f64,
+    pub coordination_number: f64,
+}
+
+/// A sensor over a cycle that is kept (`volumes.csv`).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub struct VolumeRow {
+    pub seed: u64,
+    pub sensor: String,
+    pub cycle: u64,
+    /// At its end.
+    pub porosity: f64,
+    pub min_stress_Pa: f64,
+    pub max_stress_Pa: f64,
+}
+
+impl Row for CycleRow {
+    const FILE: &'static str = "cycles.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "seed",
+        "sleeper",
+        "cycle",
+        "settlement_m",
+        "deepest_m",
+        "stiffness_N_per_m",
+        "max_contact_force_N",
+        "work_J",
+        "steps",
+    ];
+}
+
+impl Row for LoopRow {
+    const FILE: &'static str = "loops.csv";
+    const COLUMNS: &'static [&'static str] =
+        &["seed", "sleeper", "cycle", "phase", "force_N", "contact_force_N", "depth_m", "velocity_m_per_s"];
+}
+
+impl Row for SensorRow {
+    const FILE: &'static str = "sensors.csv";
+    const COLUMNS: &'static [&'static str] =
+        &["seed", "sensor", "cycle", "phase", "stress_Pa", "velocity_m_per_s", "coordination_number"];
+}
+
+impl Row for VolumeRow {
+    const FILE: &'static str = "volumes.csv";
+    const COLUMNS: &'static [&'static str] = &["seed", "sensor", "cycle", "porosity", "min_stress_Pa", "max_stress_Pa"];
+}
+
+impl RigRun {
+    /// Takes together what was tested. `sources` are the texts that made it, the main file first, and `sha256` is their hash.
+    pub fn gather(
+        scenario: &Scenario,
+        plan: &RigPlan,
+        tests: Vec<Tested>,
+        sources: &Sources,
+        sha256: String,
+        listing: String,
+    ) -> RigRun {
+        let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_string();
+        let main = sources.iter().next().map(|(_, s)| (name(&s.name), s.text.clone())).unwrap_or_default();
+        let provenance = Provenance {
+            program: env!("CARGO_PKG_NAME").into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            file: main.0,
+            source: main.1,
+            source_sha256: sha256,
+            seed: scenario.solve.seed,
+            plan: listing,
+        };
+        let (sleepers, sensors) = (plan.sleepers.clone(), plan.sensors.clone());
+        let scalars = summarise::scalars(&tests, plan.plate);
+        let expectations = summarise::expectations(scenario, &sleepers, &sensors, &tests, &scalars);
+        let summary = Summary { scalars, expectations, provenance };
+        RigRun { scenario: scenario.clone(), summary, sleepers, sensors, plate: plan.plate, tests }
+    }
+
+    /// Height of the bed of a test as it was packed, m.
+    pub fn height(test: &Tested) -> f64 {
+        test.bed.layers.iter().map(|layer| layer.thickness_m).sum()
+    }
+
+    pub fn cycles(&self) -> Vec<CycleRow> {
+        let row = |test: &Tested, cycle: &Cycle| CycleRow {
+            seed: test.seed,
+            sleeper: self.sleepers[cycle.sleeper].0.clone(),
+            cycle: cycle.number,
+            settlement_m: cycle.settlement,
+            deepest_m: cycle.deepest,
+            stiffness_N_per_m: cycle.stiffness,
+            max_contact_force_N: cycle.contact_force,
+            work_J: cycle.work,
+            steps: cycle.steps,
+        };
+        self.tests.iter().flat_map(|test| test.cycles.iter().map(move |cycle| row(test, cycle))).collect()
+    }
+
+    pub fn loops(&self) -> Vec<LoopRow> {
+        let row = |test: &Tested, sample: &Sample| LoopRow {
+            seed: test.seed,
+            sleeper: self.sleepers[sample.sleeper].0.clone(),
+            cycle: sample.cycle,
+            phase: sample.phase,
+            force_N: sample.force,
+            contact_force_N: sample.contact_force,
+            depth_m: sample.depth,
+            velocity_m_per_s: sample.velocity,
+        };
+        self.tests.iter().flat_map(|test| test.samples.iter().map(move |sample| row(test, sample))).collect()
+    }
+
+    pub fn readings(&self) -> Vec<SensorRow> {
+        let row = |test: &Tested, reading: &Reading| SensorRow {
+            seed: test.seed,
+            sensor: self.sensors[reading.sensor].0.clone(),
+            cycle: reading.cycle,
+            phase: reading.phase,
+            stress_Pa: reading.stress,
+            velocity_m_per_s: reading.velocity,
+            coordination_number: reading.coordination,
+        };
+        self.tests.iter().flat_map(|test| test.readings.iter().map(move |reading| row(test, reading))).collect()
+    }
+
+    pub fn volumes(&self) -> Vec<VolumeRow> {
+        let mut rows = Vec::new();
+        for test in &self.tests {
+            for end in &test.readings {
+                let Some(porosity) = end.porosity else { continue };
+                let same = test.readings.iter().filter(|r| (r.sensor, r.cycle) == (end.sensor, end.cycle));
+                let stresses = same.map(|reading| reading.stress);
+                rows.push(VolumeRow {
+                    seed: test.seed,
+                    sensor: self.sensors[end.sensor].0.clone(),
+                    cycle: end.cycle,
+                    porosity,
+                    min_stress_Pa: stresses.clone().fold(f64::INFINITY, f64::min),
+                    max_stress_Pa: stresses.fold(f64::NEG_INFINITY, f64::max),
+                });
+            }
+        }
+        rows
+    }
+}

@@ -1,0 +1,149 @@
+//! The few numbers of a test, over its packings, and what the scene expects of it.
+
+use super::super::{HistoryRow, Scalar, SleeperRow, Tables, Verdict, verdicts};
+use super::{RigRun, Tested};
+use crate::scenario::Scenario;
+use crate::scenario::response::Response;
+use crate::solvers::granular::rig::Cycle;
+use std::collections::BTreeMap;
+
+/// 97.5 % quantiles of Student's t for 1, 2, ... degrees of freedom; beyond them that of the normal distribution serves.
+const STUDENT: [f64; 20] = [
+    12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120,
+    2.110, 2.101, 2.093, 2.086,
+];
+
+/// Mean, and half the width of its 95 % confidence interval; `None` of fewer than two values.
+pub(super) fn mean_and_confidence(values: &[f64]) -> (f64, Option<f64>) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    if values.len() < 2 {
+        return (mean, None);
+    }
+    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    let quantile = STUDENT.get(values.len() - 2).copied().unwrap_or(1.960);
+    (mean, Some(quantile * (variance / count).sqrt()))
+}
+
+/// Of the sleeper that settles most in each packing: mean over packings, and its confidence where there are several.
+pub(super) fn scalars(tests: &[Tested], plate: Option<f64>) -> BTreeMap<String, Scalar> {
+    let mut scalars = BTreeMap::new();
+    let last = tests.iter().flat_map(|test| &test.cycles).map(|cycle| cycle.number).max().unwrap_or(0);
+    let worst = |test: &Tested, number: u64| -> Option<Cycle> {
+        let of = test.cycles.iter().filter(|cycle| cycle.number == number);
+        of.copied().max_by(|a, b| a.settlement.total_cmp(&b.settlement))
+    };
+    let mut put = |name: &str, unit: &str, of: &dyn Fn(&Tested) -> Option<f64>| {
+        let values: Vec<f64> = tests.iter().filter_map(of).collect();
+        if values.is_empty() {
+            return;
+        }
+        let (mean, confidence) = mean_and_confidence(&values);
+        scalars.insert(name.to_owned(), Scalar::new(mean, unit));
+        if let Some(half) = confidence {
+            scalars.insert(format!("{name}_confidence"), Scalar::new(half, unit));
+        }
+    };
+    put("max_settlement", "m", &|test| Some(worst(test, last)?.settlement));
+    put("first_settlement", "m", &|test| Some(worst(test, 1)?.settlement));
+    put("support_stiffness", "N/m", &|test| Some(worst(test, last)?.stiffness));
+    put("first_support_stiffness", "N/m", &|test| Some(worst(test, 1)?.stiffness));
+    // of a plate: E = (F / A) / (u / h), and that of the virgin loading from its first to its deepest place
+    if let Some(area) = plate {
+        let modulus = |test: &Tested, stiffness: f64| stiffness * RigRun::height(test) / area;
+        put("oedometric_modulus", "Pa", &|test| Some(modulus(test, worst(test, last)?.stiffness)));
+        put("first_oedometric_modulus", "Pa", &|test| {
+            let samples = || test.samples.iter().filter(|sample| sample.cycle == 1);
+            let deepest = samples().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
+            let first = samples().next()?;
+            Some(modulus(test, (deepest.force - first.force) / (deepest.depth - first.depth)))
+        });
+    }
+    put("max_contact_force", "N", &|test| test.cycles.iter().map(|cycle| cycle.contact_force).reduce(f64::max));
+    put("steps", "1", &|test| Some(test.steps as f64));
+    put("grains", "1", &|test| Some(test.bed.bodies as f64));
+    put("porosity", "1", &|test| Some(test.bed.layers.last()?.inner_porosity));
+    put("coordination_number", "1", &|test| Some(test.bed.layers.last()?.coordination));
+    scalars.insert("cycles".to_owned(), Scalar::new(last as f64, "1"));
+    scalars.insert("repeats".to_owned(), Scalar::new(tests.len() as f64, "1"));
+    scalars
+}
+
+/// What the scene expects, of means over packings.
+pub(super) fn expectations(
+    scenario: &Scenario,
+    sleepers: &[(String, f64)],
+    sensors: &[(String, f64)],
+    tests: &[Tested],
+    scalars: &BTreeMap<String, Scalar>,
+) -> Vec<Verdict> {
+    let rows = sleeper_rows(sleepers, tests);
+    let histories = histories(sensors, sleepers, tests);
+    let track = &scenario.track;
+    verdicts(scenario, Tables { sleepers: &rows, blocks: &[], rail: &[], histories: &histories, scalars, track })
+}
+
+/// A row for each sleeper and cycle, as expectations read them: counts are cycles. What a rig does not know is no number, and an
+/// expectation of it is missed with its reason.
+fn sleeper_rows(sleepers: &[(String, f64)], tests: &[Tested]) -> Vec<SleeperRow> {
+    let Some(first) = tests.first() else { return Vec::new() };
+    let row = |(index, cycle): (usize, &Cycle)| {
+        // packings of one scene end their cycles in the same order
+        let mean = |of: fn(&Cycle) -> f64| {
+            let values: Vec<f64> = tests.iter().filter_map(|test| test.cycles.get(index)).map(of).collect();
+            mean_and_confidence(&values).0
+        };
+        let (name, x) = &sleepers[cycle.sleeper];
+        SleeperRow {
+            axles: cycle.number,
+            sleeper: name.clone(),
+            x_m: *x,
+            settlement_m: mean(|c| c.settlement),
+            void_m: f64::NAN,
+            gravity_contact_force_N: f64::NAN,
+            max_contact_force_N: mean(|c| c.contact_force),
+            max_rail_seat_load_N: f64::NAN,
+            max_sleeper_displacement_m: mean(|c| c.deepest),
+            support_stiffness_N_per_m: mean(|c| c.stiffness),
+            contact_loss_s: f64::NAN,
+        }
+    };
+    first.cycles.iter().enumerate().map(row).collect()
+}
+
+/// What sensors and sleepers did in the cycles that are kept, of all packings.
+fn histories(sensors: &[(String, f64)], sleepers: &[(String, f64)], tests: &[Tested]) -> Vec<HistoryRow> {
+    let mut rows = Vec::new();
+    let mut put = |cycle: u64, phase: f64, quantity: Response, (id, x): &(String, f64), value: f64| {
+        let (quantity, id) = (quantity.name().to_owned(), id.clone());
+        rows.push(HistoryRow { axles: cycle, time_s: phase, quantity, id, x_m: *x, value, train: String::new() });
+    };
+    for test in tests {
+        for reading in &test.readings {
+            let at = &sensors[reading.sensor];
+            put(reading.cycle, reading.phase, Response::BallastStress, at, reading.stress);
+            put(reading.cycle, reading.phase, Response::BallastVelocity, at, reading.velocity);
+            put(reading.cycle, reading.phase, Response::CoordinationNumber, at, reading.coordination);
+            if let Some(porosity) = reading.porosity {
+                put(reading.cycle, reading.phase, Response::Porosity, at, porosity);
+            }
+        }
+        for sample in &test.samples {
+            put(sample.cycle, sample.phase, Response::SleeperVelocity, &sleepers[sample.sleeper], sample.velocity);
+        }
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mean_is_as_sure_as_students_t_says() {
+        assert_eq!(mean_and_confidence(&[3.0]), (3.0, None));
+        // of 1, 2, 3: standard deviation 1, t of two degrees of freedom 4.303
+        let (mean, half) = mean_and_confidence(&[1.0, 2.0, 3.0]);
+        assert!((mean - 2.0).abs() < 1e-12 && (half.unwrap() - 4.303 / 3f64.sqrt()).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,46 @@
+//! Why a test has no answer.
+
+use super::super::watch::Failure;
+use std::fmt;
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum RigError {
+    /// Forces are not in balance after the time that a stage may take.
+    Restless {
+        stage: &'static str,
+        unbalance: f64,
+        limit: f64,
+        /// Share of the force on the sleepers that the bed does not carry.
+        uncarried: f64,
+        time: f64,
+    },
+    /// A sleeper goes down as if nothing carried it.
+    Sunk { sleeper: usize, depth: f64, cycle: u64 },
+    /// The motion of grains has run away.
+    Failure { cycle: u64, failure: Failure },
+}
+
+impl fmt::Display for RigError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            RigError::Restless { stage, unbalance, limit, uncarried, time } => write!(
+                f,
+                "{stage}: forces are out of balance by {:.2} % after {time:.2} s, expected {:.2} %; {:.1} % of the force on the \
+                 sleepers is not carried",
+                100.0 * unbalance,
+                100.0 * limit,
+                100.0 * uncarried
+            ),
+            RigError::Sunk { sleeper, depth, cycle } => write!(
+                f,
+                "sleeper {} has sunk {:.0} mm into the bed in cycle {cycle}: the bed does not carry it",
+                sleeper + 1,
+                1e3 * depth
+            ),
+            RigError::Failure { cycle: 0, failure } => write!(f, "as sleepers are set down: {failure}"),
+            RigError::Failure { cycle, failure } => write!(f, "in cycle {cycle}: {failure}"),
+        }
+    }
+}
+
+impl std::error::Error for RigError {}

@@ -1,0 +1,27 @@
+//! A test as data, to go on with later.
+
+use super::super::checkpoint::{Checkpoint, RestoreError};
+use super::super::lanes::Real;
+use super::trial::State;
+use super::{Rig, Trial};
+use crate::solvers::granular::Bed;
+use serde::{Deserialize, Serialize};
+
+/// What [`Trial`] holds. A test that comes back goes on bit by bit as the one that was stored.
+#[derive(Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct Stored<R: Real> {
+    bed: Checkpoint<R>,
+    state: State,
+}
+
+impl<'a, R: Real> Trial<'a, R> {
+    pub fn store(&self) -> Stored<R> {
+        Stored { bed: self.bed.checkpoint(), state: self.state.clone() }
+    }
+
+    /// Of the same rig. Fails where what was stored is damaged.
+    pub fn restore(stored: Stored<R>, rig: &'a Rig) -> Result<Self, RestoreError> {
+        Ok(Trial { bed: Bed::restore(stored.bed)?, rig, state: stored.state })
+    }
+}

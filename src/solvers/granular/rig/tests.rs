@@ -1,0 +1,140 @@
+//! Sleepers on small beds: what they press on the bed, how far they go, and that nothing depends on threads or pauses.
+
+use super::super::measure::Region;
+use super::super::packing::{Layer, Packing, Recipe, Rest, pack};
+use super::super::{Bed, DashpotMode, Surface, clump::Template, grains::Curve};
+use super::*;
+use std::sync::OnceLock;
+
+/// A bed of 0.6 m x 0.6 m x 0.2 m of coarse spheres, packed once.
+fn bed() -> Bed<f32> {
+    static BED: OnceLock<Bed<f32>> = OnceLock::new();
+    let packed = || {
+        let surface = Surface {
+            normal_stiffness: 2.6e7,
+            shear_stiffness: 2.6e7,
+            friction: 0.7,
+            damping: [0.3; 2],
+            mode: DashpotMode::default(),
+        };
+        let recipe = Recipe {
+            plan: [0.6, 0.6],
+            walls: true,
+            layers: vec![Layer {
+                name: "stone".into(),
+                curve: Curve::new(&[[0.05, 0.0], [0.07, 1.0]]).unwrap(),
+                templates: vec![Template::sphere(0.5).unwrap()],
+                density: 2700.0,
+                surface,
+                wall_friction: 0.7,
+                thickness: 0.2,
+                lifts: 1,
+                pressure: 200e3,
+                packing: Packing { friction: 0.0, local_damping: 0.7, viscous_damping: 0.0 },
+            }],
+            gravity: 9.81,
+            local_damping: 0.2,
+            rest: Rest::default(),
+            seed: 1,
+        };
+        pack::<f32>(&recipe, |_| {}).unwrap().bed
+    };
+    BED.get_or_init(packed).clone()
+}
+
+fn rig(load: Load, cycles: u64) -> Rig {
+    let sleeper = Sleeper { place: [0.3, 0.0], size: [0.3, 1.2, 0.2], mass: 150.0, load };
+    let region = Region::block([0.15, 0.0, 0.05], [0.45, 0.6, 0.15]).unwrap();
+    Rig {
+        sleepers: vec![sleeper],
+        period: 0.04,
+        cycles,
+        gravity: 9.81,
+        densities: vec![2700.0],
+        kept: vec![1, cycles],
+        sensors: vec![Sensor { region }],
+    }
+}
+
+fn cyclic(cycles: u64) -> Rig {
+    rig(Load::Cyclic { range: [2e3, 20e3], delay: 0.0 }, cycles)
+}
+
+fn run<'a>(rig: &'a Rig) -> Trial<'a, f32> {
+    let mut trial = Trial::new(bed(), rig, |_| {}).unwrap();
+    while trial.advance().unwrap() {}
+    trial
+}
+
+#[test]
+fn a_sleeper_rests_on_the_bed_and_settles_less_and_less() {
+    let rig = cyclic(6);
+    let trial = run(&rig);
+    let cycles = trial.cycles();
+    assert_eq!(cycles.iter().map(|cycle| cycle.number).collect::<Vec<_>>(), [1, 2, 3, 4, 5, 6]);
+    let settled: Vec<f64> = cycles.iter().map(|cycle| cycle.settlement).collect();
+    assert!(settled[0] > 0.0 && settled[5] < 0.02, "{settled:?}");
+    assert!(settled[5] - settled[4] < settled[0], "{settled:?}");
+    for cycle in cycles {
+        assert!(cycle.deepest > cycle.settlement, "{cycle:?}");
+        // half a sleeper on 0.2 m of stones over a rigid floor
+        assert!((5e6..500e6).contains(&cycle.stiffness), "{cycle:?}");
+        // weight and push, and what its mass does to them
+        assert!((cycle.contact_force / (20e3 + 150.0 * 9.81) - 1.0).abs() < 0.15, "{cycle:?}");
+        assert!(cycle.work > 0.0, "friction keeps work: {cycle:?}");
+    }
+    assert_eq!(trial.samples().len(), 128);
+    // the bed under it carries what presses on it: across 0.6 m and along twice its width at most
+    let peak = trial.readings().iter().filter(|r| r.cycle == 6).map(|r| r.stress).fold(0.0, f64::max);
+    let pressure = (20e3 + 150.0 * 9.81) / (0.3 * 0.6);
+    assert!((0.3..1.3).contains(&(peak / pressure)), "{peak} {pressure}");
+    let porosity = trial.readings().iter().filter_map(|r| r.porosity).next().unwrap();
+    assert!((0.3..0.5).contains(&porosity), "{porosity}");
+}
+
+#[test]
+fn a_test_that_pauses_and_one_on_other_threads_end_with_the_same_bits() {
+    let rig = cyclic(2);
+    let whole = run(&rig);
+    let mut trial = Trial::new(bed(), &rig, |_| {}).unwrap();
+    for _ in 0..77 {
+        trial.advance().unwrap();
+    }
+    let kept = serde_json::to_string(&trial.store()).unwrap();
+    let mut again = Trial::<f32>::restore(serde_json::from_str(&kept).unwrap(), &rig).unwrap();
+    while again.advance().unwrap() {}
+    assert_eq!(
+        (again.cycles(), again.samples(), again.readings()),
+        (whole.cycles(), whole.samples(), whole.readings())
+    );
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let cycles = alone.install(|| run(&rig).cycles().to_vec());
+    assert_eq!(cycles, whole.cycles());
+}
+
+#[test]
+fn constant_forces_and_histories_are_followed() {
+    let constant = rig(Load::Constant(10e3), 1);
+    let held = run(&constant).cycles()[0];
+    assert!(held.stiffness > 1e6 && (held.contact_force / 11.5e3 - 1.0).abs() < 0.1, "{held:?}");
+    let points = vec![[0.0, 1e3], [0.02, 15e3], [0.04, 1e3]];
+    let history = Rig { period: 0.04, ..rig(Load::History(points), 1) };
+    let trial = run(&history);
+    let middle = trial.samples().iter().find(|sample| sample.phase == 0.5).unwrap();
+    assert!((middle.force - 15e3).abs() < 1.0, "{middle:?}");
+    assert!(trial.cycles()[0].deepest > trial.cycles()[0].settlement);
+}
+
+#[test]
+fn what_no_bed_carries_is_told() {
+    let heavy = rig(Load::Cyclic { range: [2e3, 3e7], delay: 0.0 }, 3);
+    let mut trial = Trial::new(bed(), &heavy, |_| {}).unwrap();
+    let error = loop {
+        match trial.advance() {
+            Ok(more) => assert!(more, "the bed carries 30 MN"),
+            Err(error) => break error,
+        }
+    };
+    let said = error.to_string();
+    assert!(said.contains("in cycle 1"), "{said}");
+}

@@ -1,0 +1,237 @@
+//! A test as it runs: piece by piece of a cycle, so that it can stop and go on between any two of them.
+
+use super::super::bed::Bed;
+use super::super::lanes::Real;
+use super::super::motion::Push;
+use super::super::walls::WallId;
+use super::set_down::{in_cycle, longest_step, motion, place, until_rest};
+use super::{Cycle, Load, Reading, Rig, RigError, Sample};
+use serde::{Deserialize, Serialize};
+
+/// Pieces of a cycle: forces and depths are looked at after each, sensors are read after every second one. The deepest place of a
+/// sine is missed by less than a thousandth.
+pub(super) const PIECES: u64 = 64;
+const SENSORS: u64 = 2;
+/// Pieces over which the lower force grows.
+const RAMP: u64 = PIECES / 2;
+/// Share of the height of the bed that a sleeper may sink before nothing carries it.
+const SUNK: f64 = 0.5;
+
+/// A bed with its sleepers under test.
+pub struct Trial<'a, R: Real> {
+    pub bed: Bed<R>,
+    pub(super) rig: &'a Rig,
+    pub(super) state: State,
+}
+
+/// What a test knows beside its bed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct State {
+    pub walls: Vec<WallId>,
+    /// Of the sleepers' middles as they rest under their own weight, m.
+    pub rest: Vec<f64>,
+    /// Time at which the first ramp begins, s.
+    pub start: f64,
+    pub pieces: u64,
+    pub steps: u64,
+    /// That grains and sleepers bear by the contacts of now, s. A bed that comes back knows its contacts after a step only.
+    pub longest_step: f64,
+    pub current: Vec<Current>,
+    pub cycles: Vec<Cycle>,
+    pub samples: Vec<Sample>,
+    pub readings: Vec<Reading>,
+}
+
+/// The cycle that a sleeper is in.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub(super) struct Current {
+    deepest: f64,
+    contact_force: f64,
+    work: f64,
+    /// After the piece before: of the actuator, N, and of the sleeper, m.
+    force: f64,
+    depth: f64,
+}
+
+impl<'a, R: Real> Trial<'a, R> {
+    /// Sets the sleepers down and lets them come to rest. `tell` hears the share of the longest time that this may take.
+    pub fn new(mut bed: Bed<R>, rig: &'a Rig, tell: impl FnMut(f64)) -> Result<Self, RigError> {
+        let before = bed.steps();
+        let walls = place(&mut bed, rig);
+        until_rest(&mut bed, &walls, "sleepers set down", tell)?;
+        let rest = walls.iter().map(|wall| bed.wall(*wall).pose(bed.domain()).position.z).collect();
+        let state = State {
+            start: bed.time(),
+            pieces: 0,
+            steps: bed.steps() - before,
+            longest_step: longest_step(&bed, &walls),
+            current: vec![Current::default(); walls.len()],
+            walls,
+            rest,
+            cycles: Vec::new(),
+            samples: Vec::new(),
+            readings: Vec::new(),
+        };
+        let mut trial = Trial { bed, rig, state };
+        trial.engage();
+        Ok(trial)
+    }
+
+    /// Gives each sleeper the force of its actuator.
+    fn engage(&mut self) {
+        let rig = self.rig;
+        let ramp = RAMP as f64 * self.piece();
+        for (number, sleeper) in rig.sleepers.iter().enumerate() {
+            let start = self.state.start + (RAMP + self.delay(number)) as f64 * self.piece();
+            let push = match &sleeper.load {
+                Load::None => Push::Constant(0.0),
+                Load::Constant(force) => Push::Table { times: vec![start - ramp, start], forces: vec![0.0, *force] },
+                Load::Cyclic { range: [low, high], .. } => {
+                    Push::Cyclic { low: *low, high: *high, frequency: 1.0 / rig.period, start, ramp }
+                }
+                Load::History(points) => history(points, start, ramp),
+            };
+            let damping = self.bed.damping;
+            self.bed.set_motion(self.state.walls[number], motion(sleeper, rig.gravity, damping, push));
+        }
+    }
+
+    /// s.
+    fn piece(&self) -> f64 {
+        self.rig.period / PIECES as f64
+    }
+
+    /// Pieces by which the actuator of a sleeper begins later than the first.
+    fn delay(&self, sleeper: usize) -> u64 {
+        match self.rig.sleepers[sleeper].load {
+            Load::Cyclic { delay, .. } => (delay / self.piece()).round() as u64,
+            _ => 0,
+        }
+    }
+
+    /// Pieces of the whole test, ramp and delays included.
+    pub fn pieces(&self) -> u64 {
+        let latest = (0..self.rig.sleepers.len()).map(|sleeper| self.delay(sleeper)).max().unwrap_or(0);
+        RAMP + latest + PIECES * self.rig.cycles
+    }
+
+    /// Pieces that are done.
+    pub fn done(&self) -> u64 {
+        self.state.pieces
+    }
+
+    /// Time steps of the test so far, setting down included.
+    pub fn steps(&self) -> u64 {
+        self.state.steps
+    }
+
+    /// Cycles that are over, in the order in which they ended.
+    pub fn cycles(&self) -> &[Cycle] {
+        &self.state.cycles
+    }
+
+    pub fn samples(&self) -> &[Sample] {
+        &self.state.samples
+    }
+
+    pub fn readings(&self) -> &[Reading] {
+        &self.state.readings
+    }
+
+    /// Whether the last piece ended a cycle of the first actuator.
+    pub fn at_end_of_cycle(&self) -> bool {
+        self.state.pieces > RAMP && (self.state.pieces - RAMP).is_multiple_of(PIECES)
+    }
+
+    /// Runs the next piece; false where there is none.
+    pub fn advance(&mut self) -> Result<bool, RigError> {
+        if self.state.pieces == self.pieces() {
+            return Ok(false);
+        }
+        let cycle = self.state.pieces.saturating_sub(RAMP) / PIECES + 1;
+        let piece = self.piece();
+        let count = (piece / self.state.longest_step).ceil().max(1.0);
+        self.bed.set_time_step(piece / count);
+        self.bed.run(count as u64).map_err(in_cycle(cycle))?;
+        self.state.steps += count as u64;
+        self.state.pieces += 1;
+        (0..self.rig.sleepers.len()).try_for_each(|sleeper| self.look_at(sleeper, cycle))?;
+        self.state.longest_step = longest_step(&self.bed, &self.state.walls);
+        self.read(cycle)?;
+        Ok(true)
+    }
+
+    fn look_at(&mut self, sleeper: usize, running: u64) -> Result<(), RigError> {
+        let wall = self.bed.wall(self.state.walls[sleeper]);
+        let level = wall.pose(self.bed.domain()).position.z;
+        let (depth, contact_force) = (self.state.rest[sleeper] - level, wall.felt().force.z);
+        let velocity = -wall.velocity().0[2];
+        let super::super::Motion::Loaded { push, .. } = wall.motion() else { return Ok(()) };
+        let force = push.at(self.bed.time());
+        let height = self.state.rest[sleeper] - self.rig.sleepers[sleeper].size[2] / 2.0;
+        if depth > SUNK * height {
+            return Err(RigError::Sunk { sleeper, depth, cycle: running });
+        }
+        let begin = RAMP + self.delay(sleeper);
+        let current = &mut self.state.current[sleeper];
+        let (before, moved) = (current.force, depth - current.depth);
+        (current.force, current.depth) = (force, depth);
+        let Some(since) = self.state.pieces.checked_sub(begin).filter(|since| *since > 0) else { return Ok(()) };
+        let (cycle, part) = ((since - 1) / PIECES + 1, (since - 1) % PIECES + 1);
+        if cycle > self.rig.cycles {
+            return Ok(());
+        }
+        current.deepest = if part == 1 { depth } else { current.deepest.max(depth) };
+        current.contact_force = if part == 1 { contact_force } else { current.contact_force.max(contact_force) };
+        current.work = if part == 1 { 0.0 } else { current.work } + 0.5 * (before + force) * moved;
+        if self.rig.kept.contains(&cycle) {
+            let phase = part as f64 / PIECES as f64;
+            self.state.samples.push(Sample { sleeper, cycle, phase, force, contact_force, depth, velocity });
+        }
+        if part == PIECES {
+            self.state.cycles.push(self.ended(sleeper, cycle));
+        }
+        Ok(())
+    }
+
+    /// A sleeper at the end of its cycle.
+    fn ended(&self, sleeper: usize, number: u64) -> Cycle {
+        let Current { deepest, contact_force, work, depth: settlement, .. } = self.state.current[sleeper];
+        let load = &self.rig.sleepers[sleeper].load;
+        let [low, high] = load.range();
+        // a constant force has no rebound: all of it stands against the whole way
+        let rebound = if matches!(load, Load::Constant(_)) { settlement } else { deepest - settlement };
+        let stiffness = if rebound > 0.0 { (high - low) / rebound } else { 0.0 };
+        Cycle { sleeper, number, settlement, deepest, stiffness, contact_force, work, steps: self.state.steps }
+    }
+
+    /// Reads the sensors in the cycles that are kept, by the first actuator.
+    fn read(&mut self, cycle: u64) -> Result<(), RigError> {
+        let Some(since) = self.state.pieces.checked_sub(RAMP).filter(|since| *since > 0) else { return Ok(()) };
+        let part = (since - 1) % PIECES + 1;
+        let wanted = self.rig.kept.contains(&cycle) && cycle <= self.rig.cycles && part.is_multiple_of(SENSORS);
+        if !wanted || self.rig.sensors.is_empty() {
+            return Ok(());
+        }
+        let snapshot = self.bed.snapshot().map_err(in_cycle(cycle))?;
+        for (number, sensor) in self.rig.sensors.iter().enumerate() {
+            let porosity = (part == PIECES).then(|| sensor.porosity(&self.bed, &self.rig.densities));
+            let phase = part as f64 / PIECES as f64;
+            let reading = sensor.read(&self.bed, &snapshot);
+            self.state.readings.push(Reading { sensor: number, cycle, phase, porosity, ..reading });
+        }
+        Ok(())
+    }
+}
+
+/// A history that begins at `start`, after a ramp to its first force.
+fn history(points: &[[f64; 2]], start: f64, ramp: f64) -> Push {
+    let first = points.first().copied().unwrap_or_default();
+    let mut times = vec![start - ramp];
+    let mut forces = vec![0.0];
+    for [time, force] in points {
+        times.push(start + time - first[0]);
+        forces.push(*force);
+    }
+    Push::Table { times, forces }
+}

@@ -1,0 +1,188 @@
+//! Test rigs run as a person runs them: from a scene to cycles, a report and a verdict.
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use trackbed::check::NoModules;
+use trackbed::compile;
+use trackbed::diag::Code;
+
+mod common {
+    pub mod program;
+}
+use common::program::{said, trackbed};
+
+/// Coarse spheres under one sleeper: packed and run in seconds.
+const SCENE: &str = r#"
+use std
+grading coarse { passing = [50 mm: 0 %, 65 mm: 100 %] }
+granular stone {
+  grading = coarse, density = 2700 kg/m^3, contact_stiffness = 13 MN/m per contact, friction = 0.7
+  packing = { lifts = 1, pressure = 200 kPa }
+}
+trackform bed { sleeper = sleepers.B70, spacing = 0.6 m, layers = [stone: 150 mm] }
+track box { sections = [bed: 1 sleeper] }
+load actuator { on = sleepers, at = 1 sleeper, force = cyclic(5 .. 60 kN, 40 Hz) per sleeper, total = 4 cycles }
+solve { substructure = full }
+record { at = 1 sleeper, depth = 75 mm, volume = sphere(70 mm), after = [1, 4] cycles, quantities = ballast_stress }
+expect { that = [0 mm < max(settlement) < 10 mm, max(ballast_stress, after = 4 cycles) > 1 kPa, max(contact_force) < 50 kN per seat] }
+"#;
+
+fn scene(directory: &Path, text: &str) -> String {
+    let path = directory.join("box.track");
+    fs::write(&path, text).unwrap();
+    path.display().to_string()
+}
+
+#[test]
+fn a_rig_runs_from_its_scene_to_its_report() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), SCENE);
+    let path = |name: &str| directory.path().join(name).display().to_string();
+    let run = |out: &str, more: &[&str]| {
+        trackbed(&[&["run", &scene, "--out", &path(out), "--cache", &path("cache")], more].concat())
+    };
+    let first = run("first", &["--threads", "2"]);
+    assert!(first.status.success() && said(&first).contains("resilient stiffness"), "{}", said(&first));
+    let cycles = fs::read_to_string(path("first/cycles.csv")).unwrap();
+    assert_eq!(cycles.lines().count(), 5, "{cycles}");
+    let summary: Value = serde_json::from_str(&fs::read_to_string(path("first/summary.json")).unwrap()).unwrap();
+    let of = |name: &str| summary[name]["value"].as_f64().unwrap();
+    assert!(of("max_settlement") > 0.0 && of("support_stiffness") > 1e6 && of("cycles") == 4.0, "{summary}");
+    assert!(summary["expectations"].as_array().unwrap().iter().all(|v| v["met"] == true), "{summary}");
+    let page = fs::read_to_string(path("first/report.html")).unwrap();
+    for figure in ["settlement", "settlement_log", "stiffness", "loops", "stress", "along", "across"] {
+        assert!(page.contains(&format!("<section id=\"{figure}\">")), "{figure}");
+    }
+    // equal runs leave equal tables, on any number of threads and with a bed that was kept
+    let again = run("again", &["--threads", "1"]);
+    assert!(again.status.success(), "{}", said(&again));
+    for file in ["cycles.csv", "loops.csv", "sensors.csv", "volumes.csv", "summary.json", "beds.json", "report.html"] {
+        let read = |run: &str| fs::read(path(&format!("{run}/{file}"))).unwrap();
+        assert!(read("first") == read("again"), "{file}");
+    }
+    let taken = run("first", &[]);
+    assert!(!taken.status.success() && said(&taken).contains("E0802"), "{}", said(&taken));
+}
+
+#[test]
+fn further_packings_give_a_band_and_a_missed_expectation_is_named() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), &SCENE.replace("0 mm < max(settlement) < 10 mm", "max(settlement) < 0.001 mm"));
+    let (out, cache) = (directory.path().join("out").display().to_string(), directory.path().join("cache"));
+    let arguments = ["run", &scene, "--out", &out, "--cache", cache.to_str().unwrap(), "--set", "solve.repeats=2"];
+    let run = trackbed(&arguments);
+    assert!(!run.status.success() && said(&run).contains("E0804"), "{}", said(&run));
+    let summary: Value = serde_json::from_str(&fs::read_to_string(format!("{out}/summary.json")).unwrap()).unwrap();
+    assert!(summary["max_settlement_confidence"]["value"].as_f64().unwrap() > 0.0, "{summary}");
+    let cycles = fs::read_to_string(format!("{out}/cycles.csv")).unwrap();
+    let seeds: Vec<&str> = cycles.lines().skip(1).map(|line| line.split(',').next().unwrap()).collect();
+    assert_eq!(seeds, ["1", "1", "1", "1", "2", "2", "2", "2"]);
+}
+
+#[test]
+fn a_force_that_no_bed_carries_is_told() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), &SCENE.replace("5 .. 60 kN", "5 .. 9000 kN"));
+    let (out, cache) = (directory.path().join("out"), directory.path().join("cache"));
+    let run = trackbed(&["run", &scene, "--out", out.to_str().unwrap(), "--cache", cache.to_str().unwrap()]);
+    assert!(!run.status.success() && said(&run).contains("E0812") && said(&run).contains("in cycle"), "{}", said(&run));
+    assert!(!out.join("summary.json").exists());
+}
+
+#[test]
+fn a_plate_over_the_bed_gives_stress_against_strain() {
+    let directory = tempfile::tempdir().unwrap();
+    let text = SCENE
+        .replace("sleeper = sleepers.B70, ", "")
+        .replace("sections = [bed: 1 sleeper]", "sections = [bed: 0.6 m], bed_width = 1 m per track")
+        .replace(
+            "on = sleepers, at = 1 sleeper, force = cyclic(5 .. 60 kN, 40 Hz) per sleeper, total = 4",
+            "on = bed, at = 0.3 m, force = cyclic(0.6 .. 60 kN, 20 Hz) per rail, total = 2",
+        )
+        .replace("after = [1, 4]", "after = [1, 2]")
+        .replace(
+            "max(ballast_stress, after = 4 cycles) > 1 kPa, max(contact_force) < 50 kN per seat",
+            "max(ballast_stress) > 50 kPa",
+        );
+    let scene = scene(directory.path(), &text);
+    let (out, cache) = (directory.path().join("out").display().to_string(), directory.path().join("cache"));
+    let run = trackbed(&["run", &scene, "--out", &out, "--cache", cache.to_str().unwrap()]);
+    assert!(run.status.success() && said(&run).contains("oedometric modulus"), "{}", said(&run));
+    let summary: Value = serde_json::from_str(&fs::read_to_string(format!("{out}/summary.json")).unwrap()).unwrap();
+    let modulus = |name: &str| summary[name]["value"].as_f64().unwrap();
+    // stiffer on the way back than when it was first loaded; MPa, not GPa
+    assert!(modulus("oedometric_modulus") > modulus("first_oedometric_modulus"), "{summary}");
+    assert!((5e6..500e6).contains(&modulus("first_oedometric_modulus")), "{summary}");
+    assert!(fs::read_to_string(format!("{out}/report.html")).unwrap().contains("<section id=\"strain\">"));
+}
+
+#[test]
+fn actuators_load_sleepers_one_after_the_other() {
+    let directory = tempfile::tempdir().unwrap();
+    let (out, cache) = (directory.path().join("out").display().to_string(), directory.path().join("cache"));
+    let smaller = [
+        "rig.sections=[bed: 3 sleepers]",
+        "bed.layers=[stone: 150 mm]",
+        "stone.shape=spheres",
+        "stone.grading.cut_below=50 mm",
+        "stone.packing.lifts=1",
+        "actuators.force=cyclic(5 .. 60 kN, 40 Hz) per sleeper",
+        "actuators.total=2 cycles",
+        "pressure.at=2 sleepers",
+        "pressure.after=[1, 2] cycles",
+    ];
+    let mut arguments = vec!["run", "scenarios/bian_rig.track", "--out", &out, "--cache", cache.to_str().unwrap()];
+    arguments.extend(smaller.iter().flat_map(|edit| ["--set", edit]));
+    let run = trackbed(&arguments);
+    assert!(run.status.success(), "{}", said(&run));
+    let cycles = fs::read_to_string(format!("{out}/cycles.csv")).unwrap();
+    let ended: Vec<(&str, &str)> = cycles
+        .lines()
+        .skip(1)
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            (cells[1], cells[2])
+        })
+        .collect();
+    // 10 ms from sleeper to sleeper, and 25 ms a cycle
+    assert_eq!(ended, [("+1", "1"), ("+2", "1"), ("+3", "1"), ("+1", "2"), ("+2", "2"), ("+3", "2")]);
+}
+
+#[test]
+fn a_plan_says_what_a_rig_costs_without_packing_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), SCENE);
+    let plan = trackbed(&["plan", &scene]);
+    let text = said(&plan);
+    for word in ["test rig: 1 sleeper on a packed bed", "grains: about", "steps: about", "time: about"] {
+        assert!(plan.status.success() && text.contains(word), "{word}: {text}");
+    }
+    let hertz = trackbed(&["run", &scene, "--out", "unused", "--set", "stone.contact=hertz(50 GPa, 0.2)"]);
+    assert!(!hertz.status.success() && said(&hertz).contains("E0610"), "{}", said(&hertz));
+    assert!(!Path::new("unused").exists(), "nothing is written for what cannot be packed");
+}
+
+#[test]
+fn what_no_rig_has_is_refused_by_the_check() {
+    let rig = |from: &str, to: &str| {
+        assert!(SCENE.contains(from), "{from}");
+        let compiled = compile("box.track", &SCENE.replace(from, to), &NoModules, &[]);
+        let found: Vec<(Code, String)> = compiled.diagnostics.into_iter().map(|d| (d.code, d.message)).collect();
+        found
+    };
+    assert_eq!(rig("4 cycles }", "4 cycles }"), []);
+    let second = "4 cycles }\nload other { on = sleepers, at = 1 sleeper, force = 3 kN per sleeper }";
+    for (from, to, expected) in [
+        ("4 cycles }", second, "both act on sleeper +1"),
+        ("sections = [bed: 1 sleeper]", "sections = [bed: 1 sleeper, other: 1 sleeper]", "stands on one bed"),
+        ("spacing = 0.6 m", "spacing = 0.3 m", "a bed under them needs a gap"),
+    ] {
+        let from_bed = "trackform other : bed { layers.stone = 200 mm }\ntrack box";
+        let text = SCENE.replace(from, to);
+        let text = if to.contains("other: 1") { text.replace("track box", from_bed) } else { text };
+        let compiled = compile("box.track", &text, &NoModules, &[]);
+        let found: Vec<(Code, &str)> = compiled.diagnostics.iter().map(|d| (d.code, d.message.as_str())).collect();
+        assert!(found.iter().any(|(c, m)| *c == Code::E0611 && m.contains(expected)), "{expected}: {found:?}");
+    }
+}
