@@ -128,6 +128,8 @@ pub(super) fn kept_or_built(cache: Option<&Path>, plan: &BedPlan) -> Result<(Pac
     {
         terminal::error(&format!("the bed is not kept: {error}"));
     }
+    // what comes later must not know whether the bed was kept: it goes on from what is stored in both cases
+    let packed = Packed::restore(packed.store()).map_err(|error| Diagnostic::new(Code::E0810, error.to_string()))?;
     Ok((packed, false))
 }
 

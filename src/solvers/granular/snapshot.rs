@@ -181,6 +181,11 @@ impl<R: Real> Bed<R> {
                 });
             }
         }
+        // in an order that depends on who meets only: sums over contacts must not know how lists were made
+        states.sort_by_key(|contact: &ContactState| {
+            let walled = contact.second.body().is_none();
+            (walled, contact.first.min(contact.second), contact.first.max(contact.second))
+        });
         states
     }
 
