@@ -243,7 +243,7 @@ const PLANTED: &[Planted] = &[
     needs("p", plant("a sleeper off the track", "[-20, -5, -1, +1] sleepers", "[-200, -5, -1, +1] sleepers", Code::E0501)),
     needs("p", plant("an end off the track", "finish           = 15 m", "finish           = 25 m", Code::E0501)),
     needs("p", breaks("p", plant("part of a sleeper", "stiff: 24 m]", "stiff: 24.5 sleepers]", Code::E0502))),
-    breaks("p", plant("two names for one boundary", "[edge: soft_to_stiff]", "[edge: soft_to_stiff, end: stiff_to_soft]", Code::E0504)),
+    needs("p", breaks("p", plant("two names for one boundary", "[edge: soft_to_stiff]", "[edge: soft_to_stiff, end: stiff_to_soft]", Code::E0504))),
     plant("a span the wrong way round", "over       = -20 .. -1 sleepers", "over       = -1 .. -20 sleepers", Code::E0505),
     needs("p", plant("a transition that is not there", "at         = [-20,", "from = west, at = [-20,", Code::E0504)),
     // the run
