@@ -3,6 +3,8 @@
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
+use std::process::Command;
+use std::time::Duration;
 use trackbed::check::NoModules;
 use trackbed::compile;
 use trackbed::diag::Code;
@@ -184,5 +186,89 @@ fn what_no_rig_has_is_refused_by_the_check() {
         let compiled = compile("box.track", &text, &NoModules, &[]);
         let found: Vec<(Code, &str)> = compiled.diagnostics.iter().map(|d| (d.code, d.message.as_str())).collect();
         assert!(found.iter().any(|(c, m)| *c == Code::E0611 && m.contains(expected)), "{expected}: {found:?}");
+    }
+}
+
+/// A box of the same spheres, shortened under a pressure on its sides.
+fn triaxial() -> String {
+    let record = SCENE.find("record").unwrap();
+    SCENE[..record]
+        .replace("sleeper = sleepers.B70, spacing = 0.6 m", "spacing = 0.35 m")
+        .replace("stone: 150 mm", "stone: 350 mm")
+        .replace("friction = 0.7\n", "friction = 0.7, wall_friction = 0\n")
+        .replace("sections = [bed: 1 sleeper]", "sections = [bed: 0.35 m], bed_width = 0.7 m per track")
+        .replace(
+            "on = sleepers, at = 1 sleeper, force = cyclic(5 .. 60 kN, 40 Hz) per sleeper, total = 4 cycles",
+            "on = bed, at = 0.2 m, strain = 4 %, confinement = 100 kPa",
+        )
+}
+
+#[test]
+fn a_triaxial_test_gives_the_strength_of_its_grains() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), &triaxial());
+    let (out, cache) = (directory.path().join("out").display().to_string(), directory.path().join("cache"));
+    let run = trackbed(&["run", &scene, "--out", &out, "--cache", cache.to_str().unwrap()]);
+    assert!(run.status.success() && said(&run).contains("largest angle of friction"), "{}", said(&run));
+    let summary: Value = serde_json::from_str(&fs::read_to_string(format!("{out}/summary.json")).unwrap()).unwrap();
+    let of = |name: &str| summary[name]["value"].as_f64().unwrap();
+    // published ballast at such pressures: 40 to 60 degrees; a few spheres between smooth walls half of it
+    assert!((18.0..60.0).contains(&of("peak_friction_angle").to_degrees()), "{summary}");
+    assert!((1e6..1e9).contains(&of("secant_modulus")) && of("least_volume_strain") < 0.0, "{summary}");
+    assert!(summary.get("support_stiffness").is_none() && summary.get("oedometric_modulus").is_none(), "{summary}");
+    let rows = fs::read_to_string(format!("{out}/specimen.csv")).unwrap();
+    assert_eq!(rows.lines().count(), 65);
+    let page = fs::read_to_string(format!("{out}/report.html")).unwrap();
+    for figure in ["deviator", "volume"] {
+        assert!(page.contains(&format!("<section id=\"{figure}\">")), "{figure}");
+    }
+    assert!(!page.contains("<section id=\"settlement\">"), "one cycle has nothing to show against cycles");
+}
+
+#[test]
+fn sides_give_way_only_under_a_plate() {
+    let found = |text: &str| {
+        let diagnostics = compile("box.track", text, &NoModules, &[]).diagnostics;
+        diagnostics.into_iter().map(|d| (d.code, d.message)).collect::<Vec<_>>()
+    };
+    assert_eq!(found(&triaxial()), []);
+    let on_sleepers = SCENE.replace("total = 4 cycles", "total = 4 cycles, confinement = 60 kPa");
+    let [(Code::E0611, message)] = &found(&on_sleepers)[..] else { panic!("{:?}", found(&on_sleepers)) };
+    assert!(message.contains("`confinement` is of a specimen under a plate"), "{message}");
+    // a plate is loaded or driven, not both
+    let both = triaxial().replace("strain = 4 %", "strain = 4 %, force = 10 kN per rail");
+    assert!(matches!(found(&both)[..], [(Code::E0404, _)]), "{:?}", found(&both));
+    assert!(!found(&triaxial().replace("strain = 4 %, ", "")).is_empty());
+}
+
+#[test]
+fn a_killed_rig_goes_on_with_the_same_answer() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), SCENE);
+    let path = |name: &str| directory.path().join(name).display().to_string();
+    let cache = path("cache");
+    let words = |out: &str, more: &[&str]| {
+        let out = path(out);
+        let words = ["run", &scene, "--out", &out, "--cache", &cache, "--set", "solve.repeats=2"];
+        words.iter().chain(more).map(|word| word.to_string()).collect::<Vec<_>>()
+    };
+    let mut first = Command::new(env!("CARGO_BIN_EXE_trackbed")).args(words("killed", &[])).spawn().unwrap();
+    // the first packing is kept when it is over; the second is under way then
+    while !Path::new(&path("killed/checkpoint.json")).exists() {
+        assert!(first.try_wait().unwrap().is_none(), "the run ended before it could be killed");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    first.kill().unwrap();
+    first.wait().unwrap();
+    assert!(!Path::new(&path("killed/summary.json")).exists());
+    for (out, more) in [("killed", &["--resume"][..]), ("whole", &[])] {
+        let words = words(out, more);
+        let run = trackbed(&words.iter().map(String::as_str).collect::<Vec<_>>());
+        assert!(run.status.success(), "{}", said(&run));
+    }
+    for file in ["cycles.csv", "loops.csv", "sensors.csv", "volumes.csv", "summary.json", "beds.json"] {
+        assert!(
+            fs::read(path(&format!("killed/{file}"))).unwrap() == fs::read(path(&format!("whole/{file}"))).unwrap()
+        );
     }
 }

@@ -70,6 +70,9 @@ impl Checker<'_> {
 
     fn complete_alternative(&mut self, record: &mut Record, alternative: &'static Alternative) {
         let given = |path: &&str| record.at(path).is_some() || hidden_by_error(record, path);
+        if alternative.exclusive {
+            self.one_way(record, alternative);
+        }
         if alternative.ways.iter().any(|way| way.iter().all(given)) {
             return;
         }
@@ -85,6 +88,20 @@ impl Checker<'_> {
                     alternative.ways.iter().map(|way| format!("`{}`", way.join("` and `"))).collect();
                 self.missing(record, &or_list(&ways));
             }
+        }
+    }
+
+    /// Of ways that say different things one is enough.
+    fn one_way(&mut self, record: &Record, alternative: &'static Alternative) {
+        let fields = alternative.ways.iter().flat_map(|way| way.iter());
+        let given: Vec<(&str, Span)> = fields.filter_map(|path| Some((*path, record.at(path)?.span))).collect();
+        if let [(first, one), (second, other), ..] = given[..] {
+            self.report(
+                Diagnostic::new(Code::E0404, format!("`{first}` and `{second}` say two things where one can hold"))
+                    .at(other, "")
+                    .at(one, "")
+                    .help("keep one of the two"),
+            );
         }
     }
 

@@ -26,6 +26,31 @@ impl Checker<'_> {
             self.report(Diagnostic::new(Code::E0611, message).at(record.get("on")?.span, "no bed").help(help));
             return None;
         }
+        let sided = ["confinement", "strain"].into_iter().find_map(|field| Some((field, record.get(field)?.span)));
+        if let Some((field, span)) = sided.filter(|_| on != Target::Bed) {
+            let message =
+                format!("`{field}` is of a specimen under a plate, and this load acts on the {}", record.word("on")?);
+            self.report(Diagnostic::new(Code::E0611, message).at(span, "").help("write `on = bed`, or leave it out"));
+            return None;
+        }
+        let force = match given(record, "strain") {
+            Some(strain) => Force::Strain(strain),
+            None => self.force(record, on)?,
+        };
+        let chainages = self.chainages_at(record, "at", places.as_ref()?)?;
+        let confinement = given(record, "confinement");
+        let speed = given(record, "speed")?;
+        let cycles = record.number("total")?.value as u64;
+        let places = places.as_ref()?;
+        let load = |x: f64| {
+            let x = if on == Target::Sleepers { places.seats[places.nearest_seat(x)?].0 } else { x };
+            Some(RigLoad { name: record.name.clone(), on, x, force: force.clone(), confinement, speed, cycles })
+        };
+        chainages.into_iter().map(|(x, _)| load(x)).collect()
+    }
+
+    /// The force of a load, over one rail.
+    fn force(&mut self, record: &Record, on: Target) -> Option<Force> {
         let force = record.get("force")?;
         let mut history = None;
         let of = match &force.value {
@@ -57,23 +82,14 @@ impl Checker<'_> {
             self.report(Diagnostic::new(Code::E0304, message).at(force.span, format!("per {of}")));
             return None;
         }
-        let places = places.as_ref()?;
-        let chainages = self.chainages_at(record, "at", places)?;
-        let force = match history {
+        match history {
             // half of what acts on the track or on a whole sleeper is over one rail
             Some(history) => {
                 let share = if ["track", "sleeper"].contains(&of) { 0.5 } else { 1.0 };
-                Force::History(history.into_iter().map(|[time, force]| [time, share * force]).collect())
+                Some(Force::History(history.into_iter().map(|[time, force]| [time, share * force]).collect()))
             }
-            None => acting(record)?,
-        };
-        let speed = given(record, "speed")?;
-        let cycles = record.number("total")?.value as u64;
-        let load = |x: f64| {
-            let x = if on == Target::Sleepers { places.seats[places.nearest_seat(x)?].0 } else { x };
-            Some(RigLoad { name: record.name.clone(), on, x, force: force.clone(), speed, cycles })
-        };
-        chainages.into_iter().map(|(x, _)| load(x)).collect()
+            None => acting(record),
+        }
     }
 
     pub(super) fn solve(&mut self, record: &Record, places: &Option<Places>) -> Option<Solve> {

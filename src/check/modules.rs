@@ -144,13 +144,19 @@ pub(super) fn texts<'t>(main: &'t str, modules: &dyn Modules) -> Vec<Cow<'t, str
     let (mut known, mut next) = (BTreeSet::new(), 0);
     while let Some(text) = texts.get(next) {
         let uses = text.lines().filter_map(|line| line.trim().strip_prefix("use ")?.split([' ', '\t', '/']).next());
-        let files = uses.map(|path| format!("{}.track", path.replace('.', "/")));
+        // what is no path of names is told where it is read
+        let named = uses.filter(|path| path.split('.').all(is_name));
+        let files = named.map(|path| format!("{}.track", path.replace('.', "/")));
         let new: Vec<String> = files.filter(|file| known.insert(file.clone())).collect();
         let read = |file: &String| Some(Cow::Owned(String::from_utf8(modules.read(Path::new(file))?).ok()?));
         texts.extend(new.iter().filter_map(read));
         next += 1;
     }
     texts
+}
+
+fn is_name(part: &str) -> bool {
+    !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
 }
 
 /// Index of a scope: one file.

@@ -11,7 +11,7 @@ use std::path::Path;
 /// How many cells, and of how many kinds
 #[derive(clap::Args)]
 pub(super) struct TrackArguments {
-    /// Lay this many cells side by side, with walls at the ends, and bring them to rest
+    /// Lay this many cells side by side, with held grains at the ends, and bring them to rest
     #[arg(long, value_name = "N")]
     bays: Option<NonZeroU32>,
     /// Of so many cells, each packed from a seed of its own, mixed by chance
@@ -43,19 +43,19 @@ impl TrackArguments {
 /// Says what became of it, and writes it beside the cell.
 pub(super) fn tell(laid: &mut TrackBed<f32>, out: Option<&Path>, format: Format) -> Result<(), String> {
     let account = &laid.account;
-    let mut removed = format!("{} grains were in the way at the walls", account.removed_at_ends);
+    let mut ends = format!("{} more are held at its ends", account.held_at_ends);
     if account.removed_at_seams > 0 {
-        removed += &format!(", {} where unlike cells meet", account.removed_at_seams);
+        let (removed, mass) = (account.removed_at_seams, 100.0 * account.removed_mass);
+        ends += &format!("; {removed} were in the way where unlike cells meet ({mass:.2} % of the mass)");
     }
     // JSON is that of the cell; the track has its own file
     let say = if format == Format::Json { terminal::note } else { terminal::out };
     say(&format!(
-        "\ntrack of {} bays: {:.1} m, {} grains; {removed} ({:.2} % of the mass); at rest after {:.3} s ({} steps), forces \
+        "\ntrack of {} bays: {:.1} m, {} grains; {ends}; at rest after {:.3} s ({} steps), forces \
          out of balance by {:.1e}\n",
         account.order.len(),
         account.length,
         account.bodies,
-        100.0 * account.removed_mass,
         account.time,
         account.steps,
         account.unbalance

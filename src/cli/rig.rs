@@ -116,10 +116,9 @@ impl Work<'_> {
             Some(stored) => Trial::restore(stored, &rig)
                 .map_err(|error| Diagnostic::new(Code::E0803, error.to_string()).help("run with `--force`"))?,
             None => {
-                let whole = packed
-                    .bed
-                    .replicate(plan.copies)
-                    .map_err(|failure| diagnose(&RigError::Failure { cycle: 0, failure }))?;
+                let failed = |failure| diagnose(&RigError::Failure { cycle: 0, failure });
+                let whole =
+                    if plan.copies == 1 { packed.bed } else { packed.bed.replicate(plan.copies).map_err(failed)? };
                 Trial::new(whole, &rig, |_| {}).map_err(|error| diagnose(&error))?
             }
         };
@@ -130,6 +129,7 @@ impl Work<'_> {
             cycles: trial.cycles().to_vec(),
             samples: trial.samples().to_vec(),
             readings: trial.readings().to_vec(),
+            specimen: trial.specimen().to_vec(),
             steps: trial.steps(),
         };
         Ok((tested, trial.bed))
@@ -211,7 +211,9 @@ pub(super) fn listing(scenario: &Scenario) -> String {
 fn what_stands(scenario: &Scenario) -> String {
     let count = scenario.track.seats.len();
     let plate = |load: &RigLoad| load.on == Target::Bed;
-    if matches!(&scenario.loading, Some(Loading::Rig(loads)) if loads.iter().any(plate)) {
+    if matches!(&scenario.loading, Some(Loading::Rig(loads)) if loads.iter().any(|load| load.confinement.is_some())) {
+        "a plate on a specimen whose sides give way,".to_owned()
+    } else if matches!(&scenario.loading, Some(Loading::Rig(loads)) if loads.iter().any(plate)) {
         "a plate".to_owned()
     } else if count == 1 {
         "1 sleeper".to_owned()
@@ -223,23 +225,19 @@ fn what_stands(scenario: &Scenario) -> String {
 /// The few numbers that people ask for first.
 fn summary(rig: &RigRun, page: &Path, seconds: f64) {
     let mut out = format!("{}\n", rig.scenario.title);
-    let lines: [(&str, &str, &str, f64); 7] = [
+    let lines: [(&str, &str, &str, f64); 10] = [
         ("max_settlement", "settlement", "mm", 1e-3),
         ("first_settlement", "  after one cycle", "mm", 1e-3),
         ("support_stiffness", "resilient stiffness", "MN/m", 1e6),
         ("oedometric_modulus", "oedometric modulus", "MPa", 1e6),
+        ("peak_deviator", "largest deviator", "kPa", 1e3),
+        ("peak_friction_angle", "largest angle of friction", "deg", 1.0_f64.to_radians()),
+        ("peak_strain", "  at a strain of", "%", 0.01),
         ("cycles", "cycles", "", 1.0),
         ("repeats", "packings", "", 1.0),
         ("grains", "grains", "", 1.0),
     ];
-    for (name, label, unit, size) in lines {
-        let rounded = |value: f64| number((value / size * 1e4).round() / 1e4);
-        if let Some(scalar) = rig.summary.scalars.get(name) {
-            let band = rig.summary.scalars.get(&format!("{name}_confidence"));
-            let band = band.map_or(String::new(), |half| format!(" +- {}", rounded(half.value)));
-            out.push_str(&format!("  {label:<26}{}{band} {unit}\n", rounded(scalar.value)));
-        }
-    }
+    run::headline(&mut out, &rig.summary.scalars, &lines);
     out.push_str(&format!("{} ({} s)\n", page.display(), number((seconds * 10.0).round() / 10.0)));
     terminal::out(&out);
 }

@@ -5,7 +5,7 @@ use super::{Outcome, pack, progress, report, rig, terminal};
 use crate::diag::{Code, Diagnostic, render};
 use crate::graph;
 use crate::lower;
-use crate::results::{self, BlockRow, Run, RunRecorder, Store, Verdict, checkpoint};
+use crate::results::{self, BlockRow, Run, RunRecorder, Scalar, Store, Verdict, checkpoint};
 use crate::scenario::Scenario;
 use crate::units::number;
 use crate::{Compiled, fingerprint};
@@ -183,12 +183,7 @@ fn summary(run: &Run, page: &Path, seconds: f64) {
         ("max_rail_moment", "largest rail moment", "kN m", 1e3),
         ("max_rail_displacement", "largest rail displacement", "mm", 1e-3),
     ];
-    for (name, label, unit, size) in lines {
-        if let Some(scalar) = run.summary.scalars.get(name) {
-            let value = (scalar.value / size * 1e4).round() / 1e4;
-            out.push_str(&format!("  {label:<26}{} {unit}\n", number(value)));
-        }
-    }
+    headline(&mut out, &run.summary.scalars, &lines);
     if let Some(spread) = run.summary.scalars.get("law_spread") {
         out.push_str(&format!("  {:<26}{}\n", "spread between laws", number((spread.value * 1e2).round() / 1e2)));
     }
@@ -197,6 +192,17 @@ fn summary(run: &Run, page: &Path, seconds: f64) {
     }
     out.push_str(&format!("{} ({} s)\n", page.display(), number((seconds * 10.0).round() / 10.0)));
     terminal::out(&out);
+}
+
+/// A line for each scalar that there is, in its unit of so many SI units, with the band of its mean where it has one.
+pub(super) fn headline(out: &mut String, scalars: &BTreeMap<String, Scalar>, lines: &[(&str, &str, &str, f64)]) {
+    for (name, label, unit, size) in lines {
+        let rounded = |value: f64| number((value / size * 1e4).round() / 1e4);
+        let Some(scalar) = scalars.get(*name) else { continue };
+        let band = scalars.get(&format!("{name}_confidence"));
+        let band = band.map_or(String::new(), |half| format!(" +- {}", rounded(half.value)));
+        out.push_str(&format!("  {label:<26}{}{band} {unit}\n", rounded(scalar.value)));
+    }
 }
 
 /// Names every expectation that was missed.

@@ -1,7 +1,7 @@
 //! The beds of grains that a scene has, as recipes of the packer: one for each section with other layers.
 
 use crate::diag::{Code, Diagnostic};
-use crate::scenario::{BedEnds, Contact, Granular, Layer, Scenario, Shape};
+use crate::scenario::{BedEnds, Contact, Granular, Layer, Loading, Scenario, Shape};
 use crate::solvers::granular::clump::Template;
 use crate::solvers::granular::packing::{Layer as Filling, Packing, Recipe, Rest};
 use crate::solvers::granular::probe::{Outline, Plate, Stillness};
@@ -54,9 +54,15 @@ fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic
         layers.push(filling(layer, granular, middle, seed)?);
     }
     let largest = layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
-    let spacing = *section.spacing;
-    let bays = bays(largest, spacing);
-    notes.push(format!("The cell is {bays} x {spacing} m long, at least {CELL} times as long as its largest grain."));
+    let plan = plan(scenario, number, largest);
+    let boxed = confinement(scenario).is_some();
+    notes.push(if boxed {
+        "Walls stand around the bed, which is a box.".to_owned()
+    } else {
+        let spacing = *section.spacing;
+        let bays = (plan[0] / spacing).round();
+        format!("The cell is {bays} x {spacing} m long, at least {CELL} times as long as its largest grain.")
+    });
     if section.layers.len() > grains.len() {
         notes.push("Soil below the grains is a rigid floor while they are packed.".to_owned());
     }
@@ -64,8 +70,9 @@ fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic
         notes.push(format!("A bed has one local damping: {} of its top layer.", *top.local_damping));
     }
     let recipe = Recipe {
-        plan: [bays * spacing, width(scenario, number)],
+        plan,
         walls: true,
+        ends: boxed,
         layers,
         gravity: *scenario.solve.gravity,
         local_damping: *top.local_damping,
@@ -73,8 +80,8 @@ fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic
         seed,
     };
     recipe.check().map_err(|error| refused(&error.to_string()))?;
-    if scenario.track.bed.ends == BedEnds::Walls {
-        notes.push("The cell is periodic along the track; walls close the ends of the whole bed.".to_owned());
+    if scenario.track.bed.ends == BedEnds::Walls && !boxed {
+        notes.push("The cell is periodic along the track; held grains close the ends of the whole bed.".to_owned());
     }
     let plate = plate(scenario, number, &recipe, &mut notes);
     Ok(Some(BedPlan { section: section.name.clone(), recipe, plate, notes }))
@@ -104,18 +111,25 @@ fn plate(scenario: &Scenario, section: usize, recipe: &Recipe, notes: &mut Vec<S
     }
 }
 
-/// Bays of a cell, by its largest grain and the spacing, m.
-fn bays(largest: f64, spacing: f64) -> f64 {
-    (CELL * largest / spacing).ceil().max(1.0)
+/// Of a cell along and across, m: of so many bays that no grain of the largest meets itself; of a box the whole section.
+pub(super) fn plan(scenario: &Scenario, number: usize, largest: f64) -> [f64; 2] {
+    let section = &scenario.track.sections[number];
+    let spacing = *section.spacing;
+    let length = match confinement(scenario) {
+        Some(_) => section.end - section.start,
+        None => (CELL * largest / spacing).ceil().max(1.0) * spacing,
+    };
+    [length, width(scenario, number)]
 }
 
-/// Of a cell along the track, m.
-pub(super) fn cell_length(largest: f64, spacing: f64) -> f64 {
-    bays(largest, spacing) * spacing
+/// Pressure on the sides of a specimen, Pa.
+pub(super) fn confinement(scenario: &Scenario) -> Option<f64> {
+    let Some(Loading::Rig(loads)) = &scenario.loading else { return None };
+    loads.iter().find_map(|load| load.confinement).map(|pressure| *pressure)
 }
 
 /// Of the bed of one rail, or of both, m: from the centre line to the wall.
-pub(super) fn width(scenario: &Scenario, section: usize) -> f64 {
+fn width(scenario: &Scenario, section: usize) -> f64 {
     let track = &scenario.track;
     let sleeper = track.seats[track.seats_of(section)].iter().find_map(|seat| seat.sleeper);
     let least = sleeper.map(|sleeper| 0.5 * sleeper.length);

@@ -7,8 +7,8 @@ use super::number::{significant, whole};
 use super::page::{expectations, opening, picture, provenance, subtitle};
 use super::scene::WIDTH;
 use super::svg::{Frame, Svg, escape};
-use crate::results::{Grain, Link, RigRun};
-use crate::solvers::granular::rig::{Cycle, Sample};
+use crate::results::{Grain, Link, RigRun, Tested};
+use crate::solvers::granular::rig::{Cycle, Sample, SpecimenState};
 use crate::solvers::granular::{Domain, Wall};
 use std::fmt::Write;
 
@@ -40,29 +40,42 @@ impl RigPage<'_> {
     }
 
     fn headline(&self, html: &mut String) {
-        let lines: [(&str, &str, &str, f64); 11] = [
+        let lines: [(&str, &str, &str, f64); 17] = [
             ("Settlement after the last cycle", "max_settlement", "mm", 1e-3),
             ("Settlement after the first cycle", "first_settlement", "mm", 1e-3),
             ("Resilient stiffness, last cycle", "support_stiffness", "MN/m", 1e6),
             ("Resilient stiffness, first cycle", "first_support_stiffness", "MN/m", 1e6),
             ("Oedometric modulus, resilient, last cycle", "oedometric_modulus", "MPa", 1e6),
             ("Oedometric modulus, first loading", "first_oedometric_modulus", "MPa", 1e6),
-            ("Largest force of the bed on a sleeper", "max_contact_force", "kN", 1e3),
+            ("Largest deviator", "peak_deviator", "kPa", 1e3),
+            ("Largest angle of friction that is mobilised", "peak_friction_angle", "\u{b0}", 1.0_f64.to_radians()),
+            ("Strain at the largest deviator", "peak_strain", "%", 0.01),
+            ("Secant modulus to half of it", "secant_modulus", "MPa", 1e6),
+            ("Least volume strain", "least_volume_strain", "%", 0.01),
+            ("Greatest volume strain", "greatest_volume_strain", "%", 0.01),
+            ("Largest force of the bed on a sleeper or plate", "max_contact_force", "kN", 1e3),
             ("Grains", "grains", "", 1.0),
             ("Porosity inside the top layer, as packed", "porosity", "", 1.0),
             ("Neighbours a grain of it, as packed", "coordination_number", "", 1.0),
             ("Time steps of a test", "steps", "", 1.0),
         ];
         let scalar = |name: &str| self.run.summary.scalars.get(name).map(|scalar| scalar.value);
-        let cycles = whole(scalar("cycles").unwrap_or(0.0) as u64);
+        let cycles = match scalar("cycles").unwrap_or(0.0) as u64 {
+            1 => "One cycle".to_owned(),
+            n => format!("{} cycles", whole(n)),
+        };
+        let counts = match self.run.tests.iter().any(|test| !test.specimen.is_empty()) {
+            true => "Settlement and strains count from the end of consolidation",
+            false => "Settlement counts from rest under the sleeper's or plate's own weight",
+        };
         let packings = match self.run.tests.len() {
             1 => "one packing".to_owned(),
             n => format!("{n} packings, with the 95 % interval of their mean"),
         };
         let _ = write!(
             html,
-            "<section id=\"headline\"><h2>At a glance</h2><p class=\"caption\">{cycles} cycles on {packings}. Settlement counts from \
-             rest under the sleeper's own weight. Forces and stiffness are of {}.</p><div class=\"scroll\"><table><tbody>",
+            "<section id=\"headline\"><h2>At a glance</h2><p class=\"caption\">{cycles} on {packings}. {counts}. Forces and stiffness \
+             are of {}.</p><div class=\"scroll\"><table><tbody>",
             if self.run.scenario.solve.grains.both_rails { "both rails" } else { "one rail" }
         );
         for (label, name, unit, size) in lines {
@@ -76,7 +89,14 @@ impl RigPage<'_> {
     }
 
     fn figures(&self) -> Vec<Figure> {
-        let mut figures = vec![self.against_cycles(false), self.against_cycles(true), self.stiffness(), self.loops()];
+        let mut figures = Vec::new();
+        figures.extend(self.deviator());
+        figures.extend(self.volume());
+        // a bed that is shortened once has nothing to show against cycles
+        if self.run.tests.iter().any(|test| test.cycles.iter().any(|cycle| cycle.number > 1)) {
+            figures.extend([self.against_cycles(false), self.against_cycles(true), self.stiffness()]);
+        }
+        figures.push(self.loops());
         figures.extend(self.strain());
         figures.extend(self.stress());
         figures.push(self.bed(Side::X, "along", "The bed along the track", "At the end, under the lower force."));
@@ -151,9 +171,55 @@ impl RigPage<'_> {
         figure(chart, "loops", "Force against depth", &caption)
     }
 
+    /// Of a specimen whose sides give way.
+    fn deviator(&self) -> Option<Figure> {
+        let y = Axis { from_zero: true, ..Axis::new("Deviator", ("kPa", 1e3)) };
+        let caption =
+            "Vertical less lateral stress: of plate and floor, and of the four sides, which keep their pressure.";
+        self.against_strain(y, SpecimenState::deviator, "deviator", "Deviator against strain", caption)
+    }
+
+    fn volume(&self) -> Option<Figure> {
+        let y = Axis { from_zero: true, ..Axis::new("Volume strain", ("%", 0.01)) };
+        let caption = "Positive where the specimen is compressed, negative where it dilates.";
+        self.against_strain(y, |state| state.volume_strain, "volume", "Volume strain against axial strain", caption)
+    }
+
+    /// A line for each packing of one cycle, or for some cycles of the first packing.
+    fn against_strain(
+        &self,
+        y: Axis,
+        of: impl Fn(&SpecimenState) -> f64,
+        id: &str,
+        title: &str,
+        caption: &str,
+    ) -> Option<Figure> {
+        let x = Axis { from_zero: true, ..Axis::new("Axial strain", ("%", 0.01)) };
+        let mut chart = Chart::new(x, y);
+        let tests = &self.run.tests;
+        let cycles = some(kept(&tests[0].specimen, |state| state.cycle), LOOPS);
+        let point = |state: &SpecimenState| (state.axial_strain, of(state));
+        let mut line = |name: String, test: &Tested, cycle: u64, class: usize| {
+            let points: Vec<_> = test.specimen.iter().filter(|state| state.cycle == cycle).map(point).collect();
+            chart.series.push(Series::new(&name, &class_of(class), Mark::Line, points));
+        };
+        match cycles[..] {
+            [] => return None,
+            [cycle] => tests
+                .iter()
+                .enumerate()
+                .for_each(|(number, test)| line(format!("seed {}", test.seed), test, cycle, number)),
+            _ => cycles
+                .iter()
+                .enumerate()
+                .for_each(|(number, cycle)| line(format!("cycle {cycle}"), &tests[0], *cycle, number)),
+        }
+        Some(figure(chart, id, title, caption))
+    }
+
     /// Stress against strain under a plate, first packing.
     fn strain(&self) -> Option<Figure> {
-        let area = self.run.plate?;
+        let area = self.run.plate.filter(|_| self.run.tests[0].specimen.is_empty())?;
         let test = &self.run.tests[0];
         let height = RigRun::height(test);
         let x = Axis { from_zero: true, ..Axis::new("Vertical strain", ("%", 0.01)) };

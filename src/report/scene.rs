@@ -264,11 +264,15 @@ pub(super) fn force(load: &RigLoad) -> String {
             format!("up to {} kN {}, as in its file", kilonewtons(most), on(load.on))
         }
         Force::Constant(force) => format!("{} kN {}", kilonewtons(**force), on(load.on)),
+        Force::Strain(strain) => format!("{} % shorter", plain(100.0 * **strain, 3)),
         Force::Cyclic { range: [least, most], frequency, .. } => {
             let (least, most, frequency) = (kilonewtons(**least), kilonewtons(**most), plain(**frequency, 3));
             format!("{least} to {most} kN {}, {frequency} Hz, {} times", on(load.on), whole(load.cycles))
         }
     };
+    if let Some(pressure) = load.confinement {
+        text += &format!(", {} kPa on all sides", plain(*pressure / 1e3, 4));
+    }
     if *load.speed > 0.0 {
         text += &format!(", {} m/s", plain(*load.speed, 3));
     }

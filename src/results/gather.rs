@@ -22,18 +22,7 @@ impl Run {
         scalars.extend(summarise_laws(scenario, &laws));
         let view = tables.view(&histories, &scalars, &scenario.track);
         let expectations = verdicts(scenario, view);
-        // the name alone: equal scenes give equal files wherever they lie
-        let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_string();
-        let main = sources.iter().next().map(|(_, s)| (name(&s.name), s.text.clone())).unwrap_or_default();
-        let provenance = Provenance {
-            program: env!("CARGO_PKG_NAME").into(),
-            version: env!("CARGO_PKG_VERSION").into(),
-            file: main.0,
-            source: main.1,
-            source_sha256: sha256,
-            seed: scenario.solve.seed,
-            plan: graph.listing().text(),
-        };
+        let provenance = Provenance::of(sources, sha256, scenario.solve.seed, graph.listing().text());
         Run {
             scenario: scenario.clone(),
             summary: Summary { scalars, expectations, provenance },

@@ -1,5 +1,6 @@
 //! `summary.json`: the scalars of a run under their names, its expectations, and what made it.
 
+use crate::diag::Sources;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -51,4 +52,22 @@ pub struct Provenance {
     pub seed: u64,
     /// The solver graph as `trackbed plan` prints it.
     pub plan: String,
+}
+
+impl Provenance {
+    /// Of a run of `sources`, the main file first, with the hash of all that made it and its plan.
+    pub fn of(sources: &Sources, sha256: String, seed: u64, plan: String) -> Provenance {
+        // the name alone: equal scenes give equal files wherever they lie
+        let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_string();
+        let main = sources.iter().next().map(|(_, s)| (name(&s.name), s.text.clone())).unwrap_or_default();
+        Provenance {
+            program: env!("CARGO_PKG_NAME").into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            file: main.0,
+            source: main.1,
+            source_sha256: sha256,
+            seed,
+            plan,
+        }
+    }
 }

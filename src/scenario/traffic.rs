@@ -166,6 +166,8 @@ pub struct RigLoad {
     /// Chainage at the start, m.
     pub x: f64,
     pub force: Force,
+    /// On the sides of a specimen under a plate, Pa.
+    pub confinement: Option<Given>,
     /// Along the rail, m/s; 0 stays.
     pub speed: Given,
     /// Times that a cyclic force comes back.
@@ -185,6 +187,8 @@ pub enum Force {
     },
     /// Time, s, and force, straight in between; held beyond the ends.
     History(Vec<[f64; 2]>),
+    /// Shortening of the bed under a plate that is driven down, over its height; no force.
+    Strain(Given),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -196,7 +200,7 @@ impl RigLoad {
     /// A load that stays as it is, where this is one.
     pub fn at_rest(&self) -> Option<StaticLoad> {
         match self.force {
-            Force::Constant(force) if *self.speed == 0.0 => {
+            Force::Constant(force) if *self.speed == 0.0 && self.confinement.is_none() => {
                 Some(StaticLoad { name: self.name.clone(), on: self.on, x: self.x, force })
             }
             _ => None,

@@ -67,6 +67,7 @@ fn remarks(kind: &Kind) -> Vec<String> {
         let ways = crate::diag::or_list(&ways);
         match alternative.default {
             Some((field, value)) => format!("Give {ways}; where none is given, `{field} = {value}`."),
+            None if alternative.exclusive => format!("Give {ways}, and no other."),
             None => format!("Give {ways}; given together they must agree within 2 %."),
         }
     });

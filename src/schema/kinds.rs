@@ -53,7 +53,11 @@ const fn side(name: &'static str, doc: &'static str) -> Word {
     Word { name, doc, arguments: SEATS, planned: false }
 }
 pub(super) const fn either(ways: &'static [&'static [&'static str]]) -> Alternative {
-    Alternative { ways, default: None }
+    Alternative { ways, default: None, exclusive: false }
+}
+/// Ways that say different things: one of them, and no other.
+pub(super) const fn one_of(ways: &'static [&'static [&'static str]]) -> Alternative {
+    Alternative { exclusive: true, ..either(ways) }
 }
 
 /// What scatters along the track. Its first argument, the mean, and `sd` are of the field that varies.
@@ -173,6 +177,7 @@ pub const KINDS: &[Kind] = &[
         alternatives: &[Alternative {
             ways: &[&["damping"], &["damping_time"]],
             default: Some(("damping_time", "0.125 ms")),
+            exclusive: false,
         }],
         planned: &[],
     },
@@ -261,6 +266,7 @@ pub const KINDS: &[Kind] = &[
         alternatives: &[Alternative {
             ways: &[&["damping"], &["damping_time"]],
             default: Some(("damping_time", "1 ms")),
+            exclusive: false,
         }],
         planned: &[],
     },
@@ -323,7 +329,11 @@ pub const KINDS: &[Kind] = &[
             ),
         ],
         // layers and support stand beside each other, a slab alone
-        alternatives: &[Alternative { ways: &[&["slab"], &["layers", "support"]], default: Some(("slab", "none")) }],
+        alternatives: &[Alternative {
+            ways: &[&["slab"], &["layers", "support"]],
+            default: Some(("slab", "none")),
+            exclusive: false,
+        }],
         planned: &[],
     },
     Kind {

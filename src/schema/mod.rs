@@ -143,6 +143,8 @@ pub struct Alternative {
     pub ways: &'static [&'static [&'static str]],
     /// Field and value where no way is given; without it one way is required.
     pub default: Option<(&'static str, &'static str)>,
+    /// Whether only one way may be given: they say different things.
+    pub exclusive: bool,
 }
 
 /// Kinds of the language that this version does not read yet.

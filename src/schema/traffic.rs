@@ -1,6 +1,8 @@
 //! Kinds of what loads the track: vehicles, trains, traffic, test loads.
 
-use super::kinds::{AXLES_OR_MASS, along, default, either, measure, number, optional, per, required, way, word};
+use super::kinds::{
+    AXLES_OR_MASS, along, default, either, measure, number, one_of, optional, per, required, way, word,
+};
 use super::{Basis, Form, Kind, Measure, Role, Word};
 
 const FORCE: Basis = Basis { names: &[("rail", 1.0), ("track", 0.5), ("seat", 1.0), ("sleeper", 0.5)], assumed: None };
@@ -216,14 +218,24 @@ pub(super) const LOAD: Kind = Kind {
             Form::List(&Form::Name),
             "the transitions from which `at` counts, mirrored at each; needed where there are several",
         ),
-        required(
+        way(
             "force",
             Form::OneOf(&[per("kN", 0.0, 10_000.0, &FORCE), Form::Words(&[CYCLIC, FORCE_FILE])]),
             "constant, cyclic or of a file, positive down",
         ),
+        way(
+            "strain",
+            number("%", 0.1, 30.0),
+            "of the bed under a plate that is driven down, slowly enough for its grains, instead of a force",
+        ),
+        optional(
+            "confinement",
+            number("kPa", 1.0, 2000.0),
+            "pressure on all sides of the bed under a plate, which then give way: a triaxial test; the force is the deviator, on top of it",
+        ),
         default("total", number("cycles", 1.0, 1e9), "1 cycle", "times that a force that changes comes back"),
         default("speed", number("m/s", 0.0, 200.0), "0 m/s", "with which it moves along the rail"),
     ],
-    alternatives: &[],
+    alternatives: &[one_of(&[&["force"], &["strain"]])],
     planned: &[],
 };

@@ -1,7 +1,7 @@
 //! What a rig costs, without packing it: grains from gradings, steps from the lightest grain.
 
-use super::{cycles, is_rig, loads, period};
-use crate::lower::bed::{cell_length, width};
+use super::{cycles, is_rig, loads, period, rest_time};
+use crate::lower::bed::{confinement, plan};
 use crate::scenario::{Contact, Granular, Scenario, Shape};
 use crate::solvers::granular::grains::Curve;
 use serde::Serialize;
@@ -9,14 +9,15 @@ use std::f64::consts::PI;
 
 /// Share of the volume that grains fill in a packed bed.
 const SOLID: f64 = 0.6;
-/// Share of sqrt(m / k) of the lightest grain that a step takes.
-const STEP: f64 = 0.25;
-/// Time, s, that a stage of packing and the setting down of sleepers take; stages beside those of lifts.
+/// Over sqrt(m / k) of the lightest grain, the step of a test and that of packing, which holds light grains back.
+const STEP: f64 = 0.1;
+const PACKING_STEP: f64 = 0.25;
+/// Time, s, that a stage of packing takes, and stages beside those of lifts; and the setting down of sleepers, at twice the step.
 const STAGE: f64 = 0.45;
-const SET_DOWN: f64 = 0.3;
 const LAST_STAGES: u32 = 3;
-/// Steps of a pebble a second on two cores, of clumps of three (`docs/validation.md`); spheres are faster.
-const PEBBLE_STEPS: f64 = 7e6;
+const SET_DOWN: f64 = 0.15;
+/// Steps of a pebble a second on two cores, of clumps of three, while it is packed and tested (`docs/validation.md`).
+const PEBBLE_STEPS: [f64; 2] = [7e6, 14e6];
 
 /// An estimate, good to a factor of two.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -48,24 +49,29 @@ pub fn rig_cost(scenario: &Scenario) -> Option<RigCost> {
         })
         .collect();
     let largest = materials.iter().map(|(_, _, curve)| curve.ends()[1]).fold(0.0, f64::max);
-    let cell = cell_length(largest, *section.spacing);
-    let copies = ((section.end - section.start) / cell - 1e-9).ceil().max(1.0);
-    let plan = cell * width(scenario, 0);
-    let (mut grains, mut pebbles, mut lifts, mut step) = (0.0, 0.0, 0, f64::INFINITY);
+    let [length, width] = plan(scenario, 0, largest);
+    let copies = ((section.end - section.start) / length - 1e-9).ceil().max(1.0);
+    let plan = length * width;
+    let pressure = |granular: &Granular| confinement(scenario).unwrap_or(*granular.packing.pressure);
+    let of =
+        |(_, granular, curve): &(f64, &Granular, Curve)| [curve.mean_volume(), *granular.density, pressure(granular)];
+    let rest = rest_time(materials.iter().map(of));
+    let (mut grains, mut pebbles, mut lifts, mut light) = (0.0, 0.0, 0, f64::INFINITY);
     for (thickness, granular, curve) in &materials {
         let count = SOLID * plan * thickness / curve.mean_volume();
         grains += count;
         pebbles += count * pebbles_of(&granular.shape);
         lifts += granular.packing.lifts;
-        step = step.min(STEP * lightest(granular, curve));
+        light = light.min(lightest(granular, curve));
     }
-    let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / step;
+    let step = STEP * light;
+    let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
     let loads = loads(scenario);
-    let test_steps = (SET_DOWN + (0.5 + cycles(&loads) as f64) * period(&loads)) / step;
+    let test_steps = (SET_DOWN + (0.5 + cycles(&loads) as f64) * period(&loads, rest)) / step;
     let repeats = scenario.solve.grains.repeats;
     // while a bed is packed half of it is there on average
-    let work = pebbles * (0.5 * packing_steps + copies * test_steps);
-    let seconds = f64::from(repeats) * work / PEBBLE_STEPS;
+    let [packing, testing] = [0.5 * packing_steps, copies * test_steps];
+    let seconds = f64::from(repeats) * pebbles * (packing / PEBBLE_STEPS[0] + testing / PEBBLE_STEPS[1]);
     let (grains, pebbles) = (copies * grains, copies * pebbles);
     Some(RigCost { grains, pebbles, time_step: step, packing_steps, test_steps, repeats, seconds })
 }

@@ -6,16 +6,23 @@ mod refusals;
 pub use cost::{RigCost, rig_cost};
 pub(super) use refusals::refusals;
 
-use super::bed::{BedPlan, beds};
+use super::bed::{BedPlan, beds, confinement};
 use crate::diag::Diagnostic;
 use crate::scenario::{Foot, Force, Given, Loading, RigLoad, Scenario, Seat, Section, SleeperBody, Target, Volume};
 use crate::solvers::granular::measure::Region;
-use crate::solvers::granular::rig::{Load, Rig, Sensor, Sleeper};
+use crate::solvers::granular::packing::Layer;
+use crate::solvers::granular::rig::{Load, Rig, Sensor, Sleeper, Specimen};
+use crate::units::number;
+use std::f64::consts::PI;
 
 /// Name of a plate, and its mass over its area: 20 mm of steel, kg/m2; height, m.
 const PLATE: &str = "plate";
 const PLATE_MASS: f64 = 157.0;
 const PLATE_HEIGHT: f64 = 0.02;
+/// By how much it is wider than a specimen, which may grow under it.
+const WIDER: f64 = 2.0;
+/// Inertial number up to which grains move as if at rest (GDR MiDi 2004): a plate that is driven is no faster.
+const INERTIAL: f64 = 1e-3;
 /// A constant force grows and is held for this long, s.
 const HELD: f64 = 0.5;
 
@@ -27,6 +34,8 @@ pub struct RigPlan {
     pub copies: u32,
     /// Area of a plate in the place of sleepers, m2.
     pub plate: Option<f64>,
+    /// On the sides of a specimen, Pa.
+    pub confinement: Option<f64>,
     /// Names and chainages of the sleepers or of the plate, m.
     pub sleepers: Vec<(String, f64)>,
     /// Names and chainages of the sensors, m.
@@ -74,8 +83,11 @@ pub fn rig(scenario: &Scenario) -> Result<RigPlan, Vec<Diagnostic>> {
     }
     let mut bed = beds(scenario)?.remove(0);
     bed.notes.retain(|note| !note.starts_with("The cell is periodic"));
-    bed.notes
-        .push("The bed goes on periodically along the track; nothing lies beside or between the sleepers.".to_owned());
+    let confinement = confinement(scenario);
+    bed.notes.push(match confinement {
+        Some(pressure) => format!("Its four sides give way under {} kPa.", number(pressure / 1e3)),
+        None => "The bed goes on periodically along the track; nothing lies beside or between the sleepers.".to_owned(),
+    });
     let section = &scenario.track.sections[0];
     let [cell, across] = bed.recipe.plan;
     let copies = ((section.end - section.start) / cell - 1e-9).ceil().max(1.0) as u32;
@@ -94,9 +106,14 @@ pub fn rig(scenario: &Scenario) -> Result<RigPlan, Vec<Diagnostic>> {
     };
     let densities = bed.recipe.layers.iter().map(|layer| layer.density).collect();
     let (sensors, places) = sensors(scenario, length, across);
+    let of = |layer: &Layer| [layer.curve.mean_volume(), layer.density, confinement.unwrap_or(layer.pressure)];
+    let rest = rest_time(bed.recipe.layers.iter().map(of));
+    bed.notes.extend(driven(&loads, rest));
+    let specimen = confinement.zip(bed.recipe.sides());
     let rig = Rig {
         sleepers,
-        period: period(&loads),
+        specimen: specimen.map(|(pressure, sides)| Specimen { floor: bed.recipe.floor(), sides, pressure }),
+        period: period(&loads, rest),
         cycles: cycles(&loads),
         gravity: *scenario.solve.gravity,
         densities,
@@ -104,7 +121,7 @@ pub fn rig(scenario: &Scenario) -> Result<RigPlan, Vec<Diagnostic>> {
         sensors: Vec::new(),
     };
     let plate = pressed.map(|_| length * across);
-    Ok(RigPlan { bed, copies, plate, sleepers: names, sensors, rig, places })
+    Ok(RigPlan { bed, copies, plate, confinement, sleepers: names, sensors, rig, places })
 }
 
 impl RigPlan {
@@ -149,6 +166,7 @@ fn loads(scenario: &Scenario) -> Vec<RigLoad> {
                 on: load.on,
                 x: load.x,
                 force: Force::Constant(load.force),
+                confinement: None,
                 speed: Given::derived(0.0),
                 cycles: 1,
             })
@@ -157,14 +175,30 @@ fn loads(scenario: &Scenario) -> Vec<RigLoad> {
     }
 }
 
-/// Of a cycle, s.
-fn period(loads: &[RigLoad]) -> f64 {
+/// Of a cycle, s; `rest` is the [`rest_time`] of the bed.
+fn period(loads: &[RigLoad], rest: f64) -> f64 {
     let of = |load: &RigLoad| match &load.force {
         Force::Constant(_) => None,
         Force::Cyclic { frequency, .. } => Some(1.0 / **frequency),
         Force::History(points) => Some(points.last()?[0] - points.first()?[0]),
+        Force::Strain(strain) => Some(**strain * rest / INERTIAL),
     };
     loads.iter().find_map(of).unwrap_or(HELD)
+}
+
+/// In which a pressure moves a grain by its own size, d sqrt(rho / p), s: the longest of layers of mean volume, density and pressure.
+fn rest_time(layers: impl Iterator<Item = [f64; 3]>) -> f64 {
+    let of = |[volume, density, pressure]: [f64; 3]| (6.0 * volume / PI).cbrt() * (density / pressure).sqrt();
+    layers.map(of).fold(0.0, f64::max)
+}
+
+/// How fast a plate is driven, and why.
+fn driven(loads: &[RigLoad], rest: f64) -> Option<String> {
+    let strain = loads.iter().any(|load| matches!(load.force, Force::Strain(_)));
+    let rate = format!("{:.1}", 100.0 * INERTIAL / rest);
+    strain.then(|| {
+        format!("The plate shortens the bed by {rate} % a second: an inertial number of {INERTIAL}, as if at rest.")
+    })
 }
 
 fn cycles(loads: &[RigLoad]) -> u64 {
@@ -211,9 +245,10 @@ fn sleeper(scenario: &Scenario, seat: &Seat, loads: &[RigLoad], across: f64) -> 
 /// A plate over the whole bed.
 fn plate(scenario: &Scenario, load: &RigLoad, [length, across]: [f64; 2]) -> Sleeper {
     let share = if scenario.solve.grains.both_rails { 2.0 } else { 1.0 };
+    let wider = if load.confinement.is_some() { WIDER } else { 1.0 };
     Sleeper {
         place: [length / 2.0, across / 2.0],
-        size: [length, across, PLATE_HEIGHT],
+        size: [wider * length, wider * across, PLATE_HEIGHT],
         mass: PLATE_MASS * length * across,
         load: force(load, share, 0.0),
     }
@@ -227,6 +262,7 @@ fn force(load: &RigLoad, share: f64, away: f64) -> Load {
             let delay = if *load.speed > 0.0 { away / *load.speed } else { 0.0 };
             Load::Cyclic { range: [share * **low, share * **high], delay }
         }
+        Force::Strain(strain) => Load::Strain(**strain),
         Force::History(points) => Load::History(points.iter().map(|[time, force]| [*time, share * force]).collect()),
     }
 }

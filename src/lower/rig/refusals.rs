@@ -110,6 +110,8 @@ fn one_rhythm(loads: &[RigLoad], found: &mut Vec<Diagnostic>) {
                 }
                 1.0 / (points.last().map_or(0.0, |p| p[0]) - points.first().map_or(0.0, |p| p[0]))
             }
+            // a plate is alone on its bed
+            Force::Strain(_) => continue,
         };
         match first {
             Some((other, rhythm)) if rhythm != frequency || other.cycles != load.cycles => {

@@ -2,7 +2,7 @@
 
 use super::super::files::{check_finite, json, table};
 use super::super::{ResultsError, Row, atomic};
-use super::{CycleRow, LoopRow, RigRun, SensorRow, VolumeRow};
+use super::{CycleRow, LoopRow, RigRun, SensorRow, SpecimenRow, VolumeRow};
 use std::fs;
 use std::path::Path;
 
@@ -15,14 +15,19 @@ pub fn write_rig(run: &RigRun, directory: &Path) -> Result<(), ResultsError> {
         check_finite(SUMMARY, name, 1, scalar.value)?;
     }
     let beds: Vec<_> = run.tests.iter().map(|test| &test.bed).collect();
-    let files = [
+    let mut files = vec![
         (CycleRow::FILE, table(&run.cycles(), directory)?),
         (LoopRow::FILE, table(&run.loops(), directory)?),
         (SensorRow::FILE, table(&run.readings(), directory)?),
         (VolumeRow::FILE, table(&run.volumes(), directory)?),
+    ];
+    if run.tests.iter().any(|test| !test.specimen.is_empty()) {
+        files.push((SpecimenRow::FILE, table(&run.specimen(), directory)?));
+    }
+    files.extend([
         (BEDS, json(&beds, &directory.join(BEDS))?),
         (SUMMARY, json(&run.summary, &directory.join(SUMMARY))?), // last: a directory with a summary is complete
-    ];
+    ]);
     fs::create_dir_all(directory).map_err(|cause| ResultsError::io(directory, "create", cause))?;
     files.iter().try_for_each(|(name, bytes)| atomic::write(&directory.join(name), bytes))
 }

@@ -9,7 +9,7 @@ use super::{BedSummary, Provenance, Row, Summary};
 use crate::diag::Sources;
 use crate::lower::RigPlan;
 use crate::scenario::Scenario;
-use crate::solvers::granular::rig::{Cycle, Reading, Sample};
+use crate::solvers::granular::rig::{Cycle, Reading, Sample, SpecimenState};
 use serde::{Deserialize, Serialize};
 
 /// One packing under test, as it ended.
@@ -20,6 +20,8 @@ pub struct Tested {
     pub cycles: Vec<Cycle>,
     pub samples: Vec<Sample>,
     pub readings: Vec<Reading>,
+    /// Of a specimen with sides that give way.
+    pub specimen: Vec<SpecimenState>,
     /// Time steps of the test.
     pub steps: u64,
 }
@@ -96,6 +98,20 @@ pub struct VolumeRow {
     pub max_stress_Pa: f64,
 }
 
+/// A specimen at an instant of a cycle that is kept (`specimen.csv`); compression and shortening are positive.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[allow(non_snake_case)]
+pub struct SpecimenRow {
+    pub seed: u64,
+    pub cycle: u64,
+    pub phase: f64,
+    pub axial_strain: f64,
+    pub volume_strain: f64,
+    pub axial_stress_Pa: f64,
+    pub lateral_stress_Pa: f64,
+    pub deviator_Pa: f64,
+}
+
 impl Row for CycleRow {
     const FILE: &'static str = "cycles.csv";
     const COLUMNS: &'static [&'static str] = &[
@@ -128,6 +144,20 @@ impl Row for VolumeRow {
     const COLUMNS: &'static [&'static str] = &["seed", "sensor", "cycle", "porosity", "min_stress_Pa", "max_stress_Pa"];
 }
 
+impl Row for SpecimenRow {
+    const FILE: &'static str = "specimen.csv";
+    const COLUMNS: &'static [&'static str] = &[
+        "seed",
+        "cycle",
+        "phase",
+        "axial_strain",
+        "volume_strain",
+        "axial_stress_Pa",
+        "lateral_stress_Pa",
+        "deviator_Pa",
+    ];
+}
+
 impl RigRun {
     /// Takes together what was tested. `sources` are the texts that made it, the main file first, and `sha256` is their hash.
     pub fn gather(
@@ -138,17 +168,7 @@ impl RigRun {
         sha256: String,
         listing: String,
     ) -> RigRun {
-        let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_string();
-        let main = sources.iter().next().map(|(_, s)| (name(&s.name), s.text.clone())).unwrap_or_default();
-        let provenance = Provenance {
-            program: env!("CARGO_PKG_NAME").into(),
-            version: env!("CARGO_PKG_VERSION").into(),
-            file: main.0,
-            source: main.1,
-            source_sha256: sha256,
-            seed: scenario.solve.seed,
-            plan: listing,
-        };
+        let provenance = Provenance::of(sources, sha256, scenario.solve.seed, listing);
         let (sleepers, sensors) = (plan.sleepers.clone(), plan.sensors.clone());
         let scalars = summarise::scalars(&tests, plan.plate);
         let expectations = summarise::expectations(scenario, &sleepers, &sensors, &tests, &scalars);
@@ -201,6 +221,20 @@ impl RigRun {
             coordination_number: reading.coordination,
         };
         self.tests.iter().flat_map(|test| test.readings.iter().map(move |reading| row(test, reading))).collect()
+    }
+
+    pub fn specimen(&self) -> Vec<SpecimenRow> {
+        let row = |test: &Tested, state: &SpecimenState| SpecimenRow {
+            seed: test.seed,
+            cycle: state.cycle,
+            phase: state.phase,
+            axial_strain: state.axial_strain,
+            volume_strain: state.volume_strain,
+            axial_stress_Pa: state.axial_stress,
+            lateral_stress_Pa: state.lateral_stress,
+            deviator_Pa: state.deviator(),
+        };
+        self.tests.iter().flat_map(|test| test.specimen.iter().map(move |state| row(test, state))).collect()
     }
 
     pub fn volumes(&self) -> Vec<VolumeRow> {

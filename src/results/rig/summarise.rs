@@ -46,12 +46,26 @@ pub(super) fn scalars(tests: &[Tested], plate: Option<f64>) -> BTreeMap<String, 
     };
     put("max_settlement", "m", &|test| Some(worst(test, last)?.settlement));
     put("first_settlement", "m", &|test| Some(worst(test, 1)?.settlement));
-    put("support_stiffness", "N/m", &|test| Some(worst(test, last)?.stiffness));
-    put("first_support_stiffness", "N/m", &|test| Some(worst(test, 1)?.stiffness));
+    // what is driven has none
+    let stiffness = |cycle: Cycle| Some(cycle.stiffness).filter(|stiffness| *stiffness > 0.0);
+    put("support_stiffness", "N/m", &|test| stiffness(worst(test, last)?));
+    put("first_support_stiffness", "N/m", &|test| stiffness(worst(test, 1)?));
+    // of a specimen: the largest deviator of all that is kept, what it mobilises, and the secant to half of it
+    let peak = |test: &Tested| test.specimen.iter().copied().max_by(|a, b| a.deviator().total_cmp(&b.deviator()));
+    put("peak_deviator", "Pa", &|test| Some(peak(test)?.deviator()));
+    put("peak_friction_angle", "rad", &|test| Some(peak(test)?.mobilised_friction()));
+    put("peak_strain", "1", &|test| Some(peak(test)?.axial_strain));
+    put("secant_modulus", "Pa", &|test| {
+        let half = 0.5 * peak(test)?.deviator();
+        let state = test.specimen.iter().find(|state| state.deviator() >= half)?;
+        Some(state.deviator() / state.axial_strain)
+    });
+    put("least_volume_strain", "1", &|test| test.specimen.iter().map(|state| state.volume_strain).reduce(f64::min));
+    put("greatest_volume_strain", "1", &|test| test.specimen.iter().map(|state| state.volume_strain).reduce(f64::max));
     // of a plate: E = (F / A) / (u / h), and that of the virgin loading from its first to its deepest place
-    if let Some(area) = plate {
+    if let Some(area) = plate.filter(|_| tests.iter().all(|test| test.specimen.is_empty())) {
         let modulus = |test: &Tested, stiffness: f64| stiffness * RigRun::height(test) / area;
-        put("oedometric_modulus", "Pa", &|test| Some(modulus(test, worst(test, last)?.stiffness)));
+        put("oedometric_modulus", "Pa", &|test| Some(modulus(test, stiffness(worst(test, last)?)?)));
         put("first_oedometric_modulus", "Pa", &|test| {
             let samples = || test.samples.iter().filter(|sample| sample.cycle == 1);
             let deepest = samples().max_by(|a, b| a.depth.total_cmp(&b.depth))?;

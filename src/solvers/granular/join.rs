@@ -15,8 +15,8 @@ struct Bay {
 }
 
 impl<R: Real> Bed<R> {
-    /// Beds of one period of the same length along x, side by side: bay `b` holds cell `order[b]`. The ends are open, and no
-    /// longer meet.
+    /// Beds of one period of the same length along x, side by side: bay `b` holds cell `order[b]` and stands `first + b` lengths
+    /// along. The ends are open, and no longer meet.
     ///
     /// Contacts go on with their histories inside a bay, and into the next one where that is the same cell; where it is
     /// another, bodies may overlap. Bodies that `kept` (bay, body of the cell) denies are left out. Walls, laws, gravity and
@@ -27,6 +27,7 @@ impl<R: Real> Bed<R> {
     pub fn side_by_side(
         cells: &mut [Bed<R>],
         order: &[usize],
+        first: i32,
         kept: impl Fn(usize, BodyId) -> bool,
     ) -> Result<Bed<R>, Failure> {
         let length = cells[order[0]].period_of_cell();
@@ -43,7 +44,7 @@ impl<R: Real> Bed<R> {
         bed.arms.clear();
         let mut bays = Vec::with_capacity(order.len());
         for (bay, &cell) in order.iter().enumerate() {
-            let numbers = bed.take_over(cells, cell, bay, |body| kept(bay, body));
+            let numbers = bed.take_over(cells, cell, first + bay as i32, |body| kept(bay, body));
             bays.push(Bay { cell, numbers });
         }
         let (carried, touches) = histories(cells, &bays);
@@ -61,7 +62,7 @@ impl<R: Real> Bed<R> {
         &mut self,
         cells: &[Bed<R>],
         number: usize,
-        bay: usize,
+        bay: i32,
         kept: impl Fn(BodyId) -> bool,
     ) -> Vec<Option<u32>> {
         let cell = &cells[number];
@@ -82,7 +83,7 @@ impl<R: Real> Bed<R> {
                 body.clump = self.clumps.len() as u32;
                 self.clumps.push(clump);
             }
-            body.cell[0] = bay as i32;
+            body.cell[0] = bay;
             (body.id, body.rank, body.first) = (id, before as u32 + body.rank, pebbles);
             self.records.extend_from_slice(&cell.records[own.clone()]);
             self.owner.resize(self.owner.len() + own.len(), id);

@@ -61,6 +61,7 @@ mod search;
 pub mod shape;
 mod snapshot;
 mod step;
+mod stride;
 mod union;
 mod vector;
 mod walls;

@@ -31,9 +31,11 @@ pub fn balance<R: Real>(bed: &Bed<R>, snapshot: &Snapshot) -> Vec<Balance> {
 }
 
 /// Mean of what is out of balance on a body over the mean of the sum of what acts on it: PFC's average ratio. 0 in perfect
-/// rest, 1 in free fall.
+/// rest, 1 in free fall. Bodies that are held do not count.
 pub fn unbalance<R: Real>(bed: &Bed<R>, snapshot: &Snapshot) -> f64 {
-    let forces = balance(bed, snapshot);
+    let mut forces = balance(bed, snapshot);
+    let mut moves = bed.index.iter().map(|&place| bed.bodies[place as usize].inverse_mass > 0.0);
+    forces.retain(|_| moves.next() == Some(true));
     let out: f64 = forces.iter().map(|force| norm(force.net)).sum();
     let all: f64 = forces.iter().map(|force| force.acting).sum();
     if all > 0.0 { out / all } else { 0.0 }

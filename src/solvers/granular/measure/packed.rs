@@ -39,6 +39,7 @@ pub(in super::super) fn recipe() -> Recipe {
     Recipe {
         plan: [0.3, 0.3],
         walls: false,
+        ends: false,
         layers: vec![layer],
         gravity: GRAVITY,
         local_damping: 0.2,

@@ -1,7 +1,7 @@
 //! A compacted bed from gradings: lifts of loose grains fall and are pressed by a plate, without friction, until they are at
 //! rest; then friction comes back and the plate goes (Ahmadi et al. 2026, section 2.1.2; methods 1.7).
 //!
-//! The bed is one periodic cell along x, between walls across or periodic there too, on a floor at z = 0. Every stage ends when
+//! The bed is one periodic cell along x or a box with ends, between walls across or periodic there too, on a floor at z = 0. Every stage ends when
 //! forces are in balance, never by a count of steps; one that does not get there is told with what it reached.
 
 mod describe;
@@ -26,6 +26,7 @@ use super::grains::{Curve, Random, Sample, grains};
 use super::gravity::Gravity;
 use super::lanes::Real;
 use super::law::{Law, Laws, Surface};
+use super::walls::WallId;
 use press::Press;
 use serde::{Deserialize, Serialize};
 
@@ -36,6 +37,8 @@ pub struct Recipe {
     pub plan: [f64; 2],
     /// Whether walls stand at both ends across; else the bed is periodic there too.
     pub walls: bool,
+    /// Whether walls stand at both ends along too.
+    pub ends: bool,
     /// From the floor upwards.
     pub layers: Vec<Layer>,
     /// Downwards, m/s2.
@@ -124,8 +127,8 @@ pub struct Progress {
     pub steps: u64,
 }
 
-/// Counts the ways in which beds have been packed: another one makes another bed of the same recipe.
-pub const METHOD: u32 = 2;
+/// Counts the ways in which beds have been packed and read: another one makes another bed of the same recipe.
+pub const METHOD: u32 = 3;
 
 /// Solid share that a layer will have, before a lift of it has shown its own.
 const SOLID: f64 = 0.60;
@@ -200,6 +203,11 @@ impl Recipe {
         self.between(|layer| (layer.surface, layer.wall_friction))
     }
 
+    /// The same without dashpots, which forces at rest do not know.
+    fn laws_without_dashpots(&self) -> Laws {
+        self.between(|layer| (Surface { damping: [0.0; 2], ..layer.surface }, layer.wall_friction))
+    }
+
     /// Laws while it is packed.
     fn packing_laws(&self) -> Laws {
         self.between(|layer| {
@@ -245,7 +253,7 @@ impl Recipe {
     /// An empty bed of this plan, with floor and walls, as it is packed.
     fn ground<R: Real>(&self) -> Bed<R> {
         let [length, width] = self.plan;
-        let domain = Domain::open().periodic(0, length);
+        let domain = if self.ends { Domain::open() } else { Domain::open().periodic(0, length) };
         let domain = if self.walls { domain } else { domain.periodic(1, width) };
         let mut bed = Bed::new(domain, self.packing_laws());
         bed.set_gravity(Gravity::Constant([0.0, 0.0, -self.gravity]));
@@ -254,7 +262,21 @@ impl Recipe {
             bed.add_plane([0.0; 3], [0.0, 1.0, 0.0], self.wall_surface());
             bed.add_plane([0.0, width, 0.0], [0.0, -1.0, 0.0], self.wall_surface());
         }
+        if self.ends {
+            bed.add_plane([0.0; 3], [1.0, 0.0, 0.0], self.wall_surface());
+            bed.add_plane([length, 0.0, 0.0], [-1.0, 0.0, 0.0], self.wall_surface());
+        }
         bed
+    }
+
+    /// The walls of a box, the lower and the upper one along and across. `None` of a bed that goes on.
+    pub fn sides(&self) -> Option<[[WallId; 2]; 2]> {
+        // in the order of `ground`
+        (self.walls && self.ends).then_some([[WallId(3), WallId(4)], [WallId(1), WallId(2)]])
+    }
+
+    pub fn floor(&self) -> WallId {
+        WallId(0)
     }
 }
 

@@ -15,12 +15,10 @@ const MOST_GROWTHS: usize = 90;
 
 /// Room above a bed, m.
 pub(super) struct Room {
-    /// Along x, which is periodic.
-    pub length: f64,
-    /// Across, from 0.
-    pub width: f64,
-    /// Whether y is periodic too; else walls stand at both ends of it.
-    pub periodic: bool,
+    /// Along x and y, from 0, m.
+    pub plan: [f64; 2],
+    /// Whether it goes on along x and y; else walls stand at both ends.
+    pub periodic: [bool; 2],
     /// What lies below.
     pub base: f64,
 }
@@ -46,7 +44,7 @@ pub(super) fn set_loose(
     let solid: f64 = scaled.iter().map(|template| template.volume).sum();
     let widest = scaled.iter().flat_map(|t| &t.pebbles).map(|p| 2.0 * p.radius).fold(0.0, f64::max);
     let highest = scaled.iter().map(|t| 2.0 * t.bounding_radius()).fold(0.0, f64::max);
-    let mut height = (solid / (room.length * room.width * LOOSE)).max(highest);
+    let mut height = (solid / (room.plan[0] * room.plan[1] * LOOSE)).max(highest);
     let mut taken = Taken::new(room, widest.max(f64::MIN_POSITIVE));
     let mut placed = Vec::with_capacity(scaled.len());
     for template in scaled {
@@ -74,8 +72,8 @@ struct Taken<'a> {
 
 impl Taken<'_> {
     fn new(room: &Room, widest: f64) -> Taken<'_> {
-        let cells = [room.length, room.width].map(|side| ((side / widest).floor() as usize).max(1));
-        let edge = [room.length / cells[0] as f64, room.width / cells[1] as f64, widest];
+        let cells = room.plan.map(|side| ((side / widest).floor() as usize).max(1));
+        let edge = [room.plan[0] / cells[0] as f64, room.plan[1] / cells[1] as f64, widest];
         Taken { room, cells, edge, pebbles: Vec::new() }
     }
 
@@ -91,12 +89,12 @@ impl Taken<'_> {
         let arms: Vec<(Vector3<f64>, f64)> = template.pebbles.iter().map(|p| (attitude * p.centre, p.radius)).collect();
         let reach = |axis: usize, side: f64| arms.iter().map(|(arm, r)| side * arm[axis] + r).fold(0.0, f64::max);
         let between = |low: f64, high: f64, random: &mut Random| (low <= high).then(|| random.between(low, high));
-        let x = random.between(0.0, room.length);
-        let y = if room.periodic {
-            random.between(0.0, room.width)
-        } else {
-            between(reach(1, -1.0), room.width - reach(1, 1.0), random)?
+        let inside = |axis: usize, random: &mut Random| match room.periodic[axis] {
+            true => Some(random.between(0.0, room.plan[axis])),
+            false => between(reach(axis, -1.0), room.plan[axis] - reach(axis, 1.0), random),
         };
+        let x = inside(0, random)?;
+        let y = inside(1, random)?;
         let z = between(room.base + reach(2, -1.0), room.base + height - reach(2, 1.0), random)?;
         let centre = Vector3::new(x, y, z);
         let pebbles: Vec<(Vec3, f64)> = arms.iter().map(|(arm, r)| ((centre + arm).into(), *r)).collect();
@@ -136,10 +134,11 @@ impl Taken<'_> {
 
     /// Square of the distance the shorter way round, m2.
     fn square(&self, a: &Vec3, b: &Vec3) -> f64 {
-        let around = |d: f64, period: f64| d - period * (d / period).round();
-        let dx = around(a[0] - b[0], self.room.length);
-        let dy = if self.room.periodic { around(a[1] - b[1], self.room.width) } else { a[1] - b[1] };
-        dx * dx + dy * dy + (a[2] - b[2]).powi(2)
+        let apart = |axis: usize| {
+            let (d, period) = (a[axis] - b[axis], self.room.plan[axis]);
+            if self.room.periodic[axis] { d - period * (d / period).round() } else { d }
+        };
+        apart(0).powi(2) + apart(1).powi(2) + (a[2] - b[2]).powi(2)
     }
 }
 

@@ -87,7 +87,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
     /// A lift of loose grains is laid on the bed and pressed.
     pub fn lay(&mut self, recipe: &Recipe, number: usize, lift: u32, grains: &[Grain]) -> Result<(), PackingError> {
         let layer = &recipe.layers[number];
-        let room = Room { length: recipe.plan[0], width: recipe.plan[1], periodic: !recipe.walls, base: self.top() };
+        let room = Room { plan: recipe.plan, periodic: [!recipe.ends, !recipe.walls], base: self.top() };
         let mut random = chance(recipe, number, lift);
         let Some((loose, top)) = set_loose(grains, &layer.templates, &room, &mut random) else {
             return Err(PackingError::NoRoom { layer: layer.name.clone() });
@@ -164,13 +164,11 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
     /// Some steps, each as long as it may be.
     fn advance(&mut self, stage: &str) -> Result<(), PackingError> {
         let failed = |failure| PackingError::Failure { stage: stage.to_owned(), failure };
-        match &self.pace {
-            Some(pace) => pace.hold(&mut self.bed).map_err(failed)?,
-            None => {
-                let step = self.bed.bound_time_step(0.0).map_err(failed)?;
-                self.bed.set_time_step(SAFE * step.min(self.recipe.mean_step()));
-            }
+        if let Some(pace) = &mut self.pace {
+            return pace.run(&mut self.bed, LOOK).map_err(failed);
         }
+        let step = self.bed.bound_time_step(0.0).map_err(failed)?;
+        self.bed.set_time_step(SAFE * step.min(self.recipe.mean_step()));
         self.bed.run(LOOK).map_err(failed)
     }
 

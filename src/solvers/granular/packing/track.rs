@@ -1,8 +1,11 @@
-//! The bed of a track: packed cells side by side between walls at its ends, brought to rest.
+//! The bed of a track: packed cells side by side, with held grains at its ends, brought to rest.
 //!
-//! Copies of one cell fit each other grain by grain. Where another cell stands beside one, and at the walls, grains would be
-//! pressed into each other: the smaller of two that overlap is taken out, and so is what stands in a wall. What is left closes
-//! the gaps under its own weight.
+//! Copies of one cell fit each other grain by grain. The ends are rough walls: of the bay that would come next, the grains that
+//! touch the bed stand there and are held, so that no grain of the bed loses a contact, and copies of one cell are at rest as they
+//! lie. A plane instead would let go what the bed has locked in along the track, and let it slide for seconds.
+//!
+//! Where another cell stands beside one, grains would be pressed into each other: of two that overlap deeply the lighter is taken
+//! out, the others push each other apart slowly, and what is left comes to rest under its own weight.
 
 use super::super::bed::Bed;
 use super::super::body::BodyId;
@@ -32,9 +35,10 @@ pub struct TrackAccount {
     pub order: Vec<usize>,
     /// m.
     pub length: f64,
+    /// Those that are held at the ends are not among them.
     pub bodies: usize,
-    /// Taken out at the walls, and where unlike cells meet.
-    pub removed_at_ends: usize,
+    pub held_at_ends: usize,
+    /// Taken out where unlike cells meet.
     pub removed_at_seams: usize,
     /// Share of the mass that was taken out.
     pub removed_mass: f64,
@@ -44,8 +48,13 @@ pub struct TrackAccount {
     pub unbalance: f64,
 }
 
-/// Overlap over the smaller radius from which two grains were not packed together.
-const OVERLAP: f64 = 2e-3;
+/// Overlap over the smaller radius beyond which the lighter of two grains goes.
+const DEEP: f64 = 0.15;
+/// Rounds, and steps of each, after which grains that push each other apart stand still again; and the share of the pace at which
+/// they do.
+const ROUNDS: usize = 100;
+const STEPS: u64 = 5;
+const SLOWLY: f64 = 0.25;
 /// Local damping while gaps close.
 const DAMPING: f64 = 0.7;
 /// Steps between looks at rest and at inertia.
@@ -85,28 +94,25 @@ pub fn lay<R: Real>(
 ) -> Result<TrackBed<R>, PackingError> {
     let failed = |failure| PackingError::Failure { stage: LAID.to_owned(), failure };
     let mut beds: Vec<Bed<R>> = cells.iter().map(|cell| cell.bed.clone()).collect();
-    let all = Bed::side_by_side(&mut beds, &order.0, |_, _| true).map_err(failed)?;
-    let length = recipe.plan[0] * order.0.len() as f64;
-    let out = in_the_way(all, length).map_err(failed)?;
+    let bays = with_ends(&order.0);
+    let all = Bed::side_by_side(&mut beds, &bays, -1, |_, _| true).map_err(failed)?;
+    let sizes: Vec<usize> = bays.iter().map(|&cell| beds[cell].len()).collect();
+    let parts = Parts::of(all, &sizes).map_err(failed)?;
     // numbers of `all` go bay by bay, body by body
-    let starts: Vec<usize> =
-        order.0.iter().scan(0, |next, &cell| Some(std::mem::replace(next, *next + beds[cell].len()))).collect();
-    let mut bed =
-        Bed::side_by_side(&mut beds, &order.0, |bay, body| !out.gone[starts[bay] + body.0 as usize]).map_err(failed)?;
-    let surface = recipe.wall_surface();
-    bed.add_plane([0.0; 3], [1.0, 0.0, 0.0], surface);
-    bed.add_plane([length, 0.0, 0.0], [-1.0, 0.0, 0.0], surface);
+    let starts: Vec<usize> = sizes.iter().scan(0, |next, size| Some(std::mem::replace(next, *next + size))).collect();
+    let role = |bay: usize, body: BodyId| parts.roles[starts[bay] + body.0 as usize];
+    let mut bed = Bed::side_by_side(&mut beds, &bays, -1, |bay, body| role(bay, body) != Role::Out).map_err(failed)?;
+    let held = hold(&mut bed, &parts);
+    close(&mut bed, recipe, order.0.len());
     let (time, steps) = (bed.time(), bed.steps());
-    bed.set_damping(DAMPING);
-    let unbalance = settle(&mut bed, recipe, &mut tell)?;
-    bed.set_damping(recipe.local_damping);
+    let unbalance = settle(&mut bed, recipe, order.0.windows(2).any(|pair| pair[0] != pair[1]), &mut tell)?;
     let account = TrackAccount {
         order: order.0.clone(),
-        length,
-        bodies: bed.len(),
-        removed_at_ends: out.at_ends,
-        removed_at_seams: out.at_seams,
-        removed_mass: out.mass,
+        length: recipe.plan[0] * order.0.len() as f64,
+        bodies: bed.len() - held,
+        held_at_ends: held,
+        removed_at_seams: parts.removed,
+        removed_mass: parts.removed_mass,
         time: bed.time() - time,
         steps: bed.steps() - steps,
         unbalance,
@@ -117,65 +123,132 @@ pub fn lay<R: Real>(
 /// The name of the stage.
 const LAID: &str = "cells side by side";
 
-struct Out {
-    gone: Vec<bool>,
-    at_ends: usize,
-    at_seams: usize,
-    mass: f64,
+/// With a further bay at each end, of the cell that stands there.
+fn with_ends(order: &[usize]) -> Vec<usize> {
+    [&order[..1], order, &order[order.len() - 1..]].concat()
 }
 
-/// What stands in the walls at the ends, and of two that overlap the lighter one, deepest overlaps first.
-fn in_the_way<R: Real>(mut all: Bed<R>, length: f64) -> Result<Out, Failure> {
-    let mut gone = vec![false; all.len()];
-    for pebble in all.pebbles() {
-        let slack = OVERLAP * pebble.radius;
-        let (low, high) = (pebble.place[0] - pebble.radius, pebble.place[0] + pebble.radius);
-        gone[pebble.body.0 as usize] |= low < -slack || high > length + slack;
-    }
-    let at_ends = gone.iter().filter(|gone| **gone).count();
-    let mut least = vec![f64::INFINITY; all.len()];
-    for pebble in all.pebbles() {
-        let least = &mut least[pebble.body.0 as usize];
-        *least = least.min(pebble.radius);
-    }
-    let mut deep: Vec<(f64, BodyId, BodyId)> = all
-        .snapshot()?
-        .contacts
-        .iter()
-        .filter_map(|contact| {
-            let (a, b) = (contact.first.body()?, contact.second.body()?);
-            let radius = least[a.0 as usize].min(least[b.0 as usize]);
-            (contact.overlap > OVERLAP * radius).then_some((contact.overlap, a, b))
-        })
-        .collect();
-    deep.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-    let masses: Vec<f64> = all.states().map(|state| state.mass).collect();
-    for (_, a, b) in deep {
-        let (a, b) = (a.0 as usize, b.0 as usize);
-        if !gone[a] && !gone[b] {
-            gone[if masses[a] < masses[b] { a } else { b }] = true;
+/// What becomes of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Role {
+    Free,
+    Held,
+    Out,
+}
+
+struct Parts {
+    /// Of every body of every bay.
+    roles: Vec<Role>,
+    removed: usize,
+    /// Share of the mass.
+    removed_mass: f64,
+}
+
+impl Parts {
+    /// Of bays with so many bodies, the first and the last beyond the ends.
+    fn of<R: Real>(mut all: Bed<R>, sizes: &[usize]) -> Result<Parts, Failure> {
+        let inside = sizes[0]..all.len() - sizes[sizes.len() - 1];
+        let mut roles = vec![Role::Out; all.len()];
+        roles[inside.clone()].fill(Role::Free);
+        let mut least = vec![f64::INFINITY; all.len()];
+        for pebble in all.pebbles() {
+            let least = &mut least[pebble.body.0 as usize];
+            *least = least.min(pebble.radius);
         }
+        let mut deep: Vec<(f64, usize, usize)> = Vec::new();
+        for contact in &all.snapshot()?.contacts {
+            let (Some(a), Some(b)) = (contact.first.body(), contact.second.body()) else { continue };
+            let (a, b) = (a.0 as usize, b.0 as usize);
+            match (inside.contains(&a), inside.contains(&b)) {
+                (true, false) => roles[b] = Role::Held,
+                (false, true) => roles[a] = Role::Held,
+                (true, true) => {
+                    let share = contact.overlap / least[a].min(least[b]);
+                    if share > DEEP {
+                        deep.push((share, a, b));
+                    }
+                }
+                (false, false) => {}
+            }
+        }
+        // the deepest first
+        deep.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+        let masses: Vec<f64> = all.states().map(|state| state.mass).collect();
+        for (_, a, b) in deep {
+            if roles[a] == Role::Free && roles[b] == Role::Free {
+                roles[if masses[a] < masses[b] { a } else { b }] = Role::Out;
+            }
+        }
+        let gone = || inside.clone().filter(|&body| roles[body] == Role::Out);
+        let removed_mass = gone().map(|body| masses[body]).fold(0.0, |sum, mass| sum + mass)
+            / masses[inside.clone()].iter().sum::<f64>();
+        let removed = gone().count();
+        Ok(Parts { roles, removed, removed_mass })
     }
-    let at_seams = gone.iter().filter(|gone| **gone).count() - at_ends;
-    let taken: f64 = masses.iter().zip(&gone).filter(|(_, gone)| **gone).map(|(mass, _)| mass).sum();
-    Ok(Out { gone, at_ends, at_seams, mass: taken / masses.iter().sum::<f64>() })
+}
+
+/// Holds the grains at the ends, and gives how many they are.
+fn hold<R: Real>(bed: &mut Bed<R>, parts: &Parts) -> usize {
+    let there = parts.roles.iter().filter(|role| **role != Role::Out).enumerate();
+    let held: Vec<BodyId> =
+        there.filter(|(_, role)| **role == Role::Held).map(|(number, _)| BodyId(number as u32)).collect();
+    for body in &held {
+        bed.set_velocity(*body, [0.0; 3], [0.0; 3]);
+        bed.fix(*body);
+    }
+    held.len()
+}
+
+/// Walls behind the held grains, for what might find its way between them.
+fn close<R: Real>(bed: &mut Bed<R>, recipe: &Recipe, bays: usize) {
+    let length = recipe.plan[0] * bays as f64;
+    let reach = |side: f64, from: f64| {
+        bed.pebbles().map(|pebble| side * (pebble.place[0] - from) + pebble.radius).fold(0.0, f64::max)
+    };
+    let (before, behind) = (reach(-1.0, 0.0), reach(1.0, length));
+    let surface = recipe.wall_surface();
+    bed.add_plane([-before, 0.0, 0.0], [1.0, 0.0, 0.0], surface);
+    bed.add_plane([length + behind, 0.0, 0.0], [-1.0, 0.0, 0.0], surface);
+}
+
+/// Grains that overlap push each other apart, and stand still again after every few steps: what they store does not become speed.
+fn push_apart<R: Real>(bed: &mut Bed<R>, pace: &Pace) -> Result<(), Failure> {
+    for _ in 0..ROUNDS {
+        pace.hold(bed)?;
+        bed.set_time_step(SLOWLY * bed.time_step());
+        bed.run(STEPS)?;
+        (0..bed.len() as u32).for_each(|body| bed.set_velocity(BodyId(body), [0.0; 3], [0.0; 3]));
+    }
+    Ok(())
 }
 
 /// Runs until forces are in balance, and gives how far they are.
-fn settle<R: Real>(bed: &mut Bed<R>, recipe: &Recipe, tell: &mut impl FnMut(&Progress)) -> Result<f64, PackingError> {
+fn settle<R: Real>(
+    bed: &mut Bed<R>,
+    recipe: &Recipe,
+    unlike: bool,
+    tell: &mut impl FnMut(&Progress),
+) -> Result<f64, PackingError> {
     let failed = |failure| PackingError::Failure { stage: LAID.to_owned(), failure };
-    let (start, limit) = (bed.time(), recipe.rest.bed);
-    let pace = Pace::of(recipe);
+    // where unlike cells meet, grains find their places for a second and more: as calm as a lift is calm enough there
+    let (start, limit) = (bed.time(), if unlike { recipe.rest.lift } else { recipe.rest.bed });
+    let mut pace = Pace::with_friction(recipe);
+    bed.set_laws(recipe.laws_without_dashpots());
+    bed.set_damping(DAMPING);
+    if unlike {
+        push_apart(bed, &pace).map_err(failed)?;
+    }
     let (mut calm, mut first) = (0, None);
     loop {
-        pace.hold(bed).map_err(failed)?;
-        bed.run(LOOK).map_err(failed)?;
         let snapshot: Snapshot = bed.snapshot().map_err(failed)?;
         let unbalance = unbalance(bed, &snapshot);
         calm = if unbalance <= limit { calm + 1 } else { 0 };
         let took = bed.time() - start;
-        if calm >= CALM {
+        // copies of one cell lie as they did, and need no second look
+        if calm >= CALM || calm > 0 && took == 0.0 {
             bed.unscale_masses();
+            bed.set_laws(recipe.laws());
+            bed.set_damping(recipe.local_damping);
             return Ok(unbalance);
         }
         if took > recipe.rest.longest {
@@ -185,5 +258,6 @@ fn settle<R: Real>(bed: &mut Bed<R>, recipe: &Recipe, tell: &mut impl FnMut(&Pro
         let far = (unbalance / limit).ln().max(0.0);
         let share = 1.0 - (far / *first.get_or_insert(far.max(1.0))).min(1.0);
         tell(&Progress { stage: LAID.to_owned(), share, bodies: bed.len(), steps: bed.steps() });
+        pace.run(bed, LOOK).map_err(failed)?;
     }
 }

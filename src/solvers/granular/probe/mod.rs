@@ -14,6 +14,7 @@ use super::lanes::Real;
 use super::measure::unbalance;
 use super::motion::{Motion, Pose};
 use super::shape::{Mesh, Shape};
+use super::stride::Stride;
 use super::vector::Vec3;
 use super::walls::WallId;
 use nalgebra::Vector3;
@@ -83,8 +84,8 @@ const LOCAL_DAMPING: f64 = 0.7;
 /// Of the plate, m/s; and the gain of its servo, as under the plate of the packing.
 const SPEED: f64 = 0.02;
 const GAIN: f64 = 0.2;
-/// Share of the stable step of bodies that touch.
-const SAFE: f64 = 0.8;
+/// Inertia that may be added meanwhile, over all mass: states of rest do not know it.
+const ADDED: f64 = 0.2;
 /// Steps between looks, and looks in a row that must find rest.
 const LOOK: u64 = 200;
 const CALM: usize = 2;
@@ -238,8 +239,7 @@ struct Test<'a, R: Real> {
     depth: f64,
     /// Level at which it was seated, m.
     seat: f64,
-    /// Of the bed that was given, s.
-    longest_step: f64,
+    stride: Stride,
 }
 
 impl<'a, R: Real> Test<'a, R> {
@@ -250,10 +250,8 @@ impl<'a, R: Real> Test<'a, R> {
         let pose = Pose { position: Vector3::new(x, y, top + depth), ..Pose::default() };
         let wall = bed.add_wall(shape, pose, plate.surface, Motion::Fixed);
         bed.set_damping(LOCAL_DAMPING);
-        let longest_step = bed.time_step();
-        // a bed that was kept knows its contacts only when it has looked for them, and its first step goes by them
-        bed.snapshot().map_err(ProbeError::Failure)?;
-        Ok(Test { bed, plate, wall, depth, seat: top, longest_step })
+        let stride = Stride::with_added(&mut bed, ADDED).map_err(ProbeError::Failure)?;
+        Ok(Test { bed, plate, wall, depth, seat: top, stride })
     }
 
     /// Of the lower face, m.
@@ -274,8 +272,7 @@ impl<'a, R: Real> Test<'a, R> {
         let (start, from) = (self.bed.time(), seat.unwrap_or(self.seat));
         let mut calm = 0;
         loop {
-            self.bed.set_time_step((SAFE * self.bed.body_time_step()).min(self.longest_step));
-            self.bed.run(LOOK).map_err(ProbeError::Failure)?;
+            self.stride.run_steps(&mut self.bed, &[], LOOK).map_err(ProbeError::Failure)?;
             let snapshot = self.bed.snapshot().map_err(ProbeError::Failure)?;
             let (pressure, settlement) = (self.pressure(), from - self.level());
             let missed = (pressure - target).abs() / self.plate.pressure;

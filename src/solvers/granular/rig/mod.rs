@@ -6,10 +6,14 @@
 //!
 //! A cycle goes from the lower force to the upper one and back. What is read of it: the settlement at its end, the resilient
 //! stiffness, range of force / rebound from the deepest place to the end, and the work that the bed keeps.
+//!
+//! A plate over the whole bed may be driven down instead of loaded, and the sides of a bed that is a box may give way under a
+//! pressure: see [`Specimen`]. Forces on the plate are then on top of that pressure.
 
 mod error;
 mod sensor;
 mod set_down;
+mod specimen;
 mod store;
 #[cfg(test)]
 mod tests;
@@ -17,6 +21,7 @@ mod trial;
 
 pub use error::RigError;
 pub use sensor::{Reading, Sensor};
+pub use specimen::{Specimen, State as SpecimenState};
 pub use store::Stored;
 pub use trial::Trial;
 
@@ -26,6 +31,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rig {
     pub sleepers: Vec<Sleeper>,
+    /// Sides that give way under a pressure; the one sleeper is then a plate over all of the bed.
+    pub specimen: Option<Specimen>,
     /// Of a cycle, s; of a history its length.
     pub period: f64,
     pub cycles: u64,
@@ -61,6 +68,8 @@ pub enum Load {
     },
     /// Time, s, and force, straight in between.
     History(Vec<[f64; 2]>),
+    /// No force: it is driven down in one cycle, by this share of the height of the bed.
+    Strain(f64),
 }
 
 /// A sleeper over one of its cycles.
@@ -103,7 +112,7 @@ impl Load {
     /// From the least to the greatest force, N.
     pub fn range(&self) -> [f64; 2] {
         match self {
-            Load::None => [0.0; 2],
+            Load::None | Load::Strain(_) => [0.0; 2],
             Load::Constant(force) => [0.0, *force],
             Load::Cyclic { range, .. } => *range,
             Load::History(points) => points

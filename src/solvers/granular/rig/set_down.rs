@@ -5,26 +5,24 @@ use super::super::lanes::Real;
 use super::super::measure::unbalance;
 use super::super::motion::{Motion, Pose, Push};
 use super::super::shape::Shape;
+use super::super::stride::Stride;
 use super::super::walls::WallId;
 use super::super::watch::Failure;
 use super::{Rig, RigError, Sleeper};
 use nalgebra::Vector3;
 
 /// Steps between looks at forces, and looks in a row that must find rest.
-const LOOK: u64 = 400;
-const CALM: usize = 3;
+pub(super) const LOOK: u64 = 400;
+pub(super) const CALM: usize = 3;
 /// Force out of balance over the forces that act, mean over all bodies, and share of a sleeper's force that the bed may not carry.
-const REST: f64 = 2e-3;
-const CARRIED: f64 = 0.01;
+pub(super) const REST: f64 = 2e-3;
+pub(super) const CARRIED: f64 = 0.01;
 /// Time that it may take, s.
-const LONGEST: f64 = 6.0;
+pub(super) const LONGEST: f64 = 6.0;
 /// Local damping meanwhile.
-const DAMPING: f64 = 0.7;
-/// Share of the stable step of bodies that touch, of what the lightest body bears in a dense bed, and of sqrt(m / k) of a
-/// sleeper on its contacts.
-const SAFE: f64 = 0.8;
-const PRIOR: f64 = 0.25;
-const SLEEPER: f64 = 0.2;
+pub(super) const DAMPING: f64 = 0.7;
+/// Inertia that may be added meanwhile, over all mass: forces at rest do not know it.
+pub(super) const ADDED: f64 = 0.2;
 
 /// Puts the sleepers on the bed, each where it touches its first grain.
 pub(super) fn place<R: Real>(bed: &mut Bed<R>, rig: &Rig) -> Vec<WallId> {
@@ -38,14 +36,15 @@ pub(super) fn place<R: Real>(bed: &mut Bed<R>, rig: &Rig) -> Vec<WallId> {
     };
     let blocks: Vec<_> = rig.sleepers.iter().map(stand).collect();
     let walls = blocks.into_iter().zip(&rig.sleepers).map(|((shape, pose), sleeper)| {
-        bed.add_wall(shape, pose, surface, motion(sleeper, rig.gravity, DAMPING, Push::Constant(0.0)))
+        let weight = rig.gravity * sleeper.mass;
+        bed.add_wall(shape, pose, surface, motion(sleeper, weight, DAMPING, Push::Constant(0.0)))
     });
     walls.collect()
 }
 
-/// Of a sleeper under its weight and a push.
-pub(super) fn motion(sleeper: &Sleeper, gravity: f64, damping: f64, push: Push) -> Motion {
-    Motion::Loaded { axis: -Vector3::z(), mass: sleeper.mass, weight: gravity * sleeper.mass, damping, push }
+/// Of a sleeper under its weight, N, and a push.
+pub(super) fn motion(sleeper: &Sleeper, weight: f64, damping: f64, push: Push) -> Motion {
+    Motion::Loaded { axis: -Vector3::z(), mass: sleeper.mass, weight, damping, push }
 }
 
 /// Highest point of the grains that reach under a sleeper, m.
@@ -70,10 +69,10 @@ pub(super) fn until_rest<R: Real>(
     let failed = |failure| RigError::Failure { cycle: 0, failure };
     let (start, damping) = (bed.time(), bed.damping);
     bed.set_damping(DAMPING);
+    let stride = Stride::with_added(bed, ADDED).map_err(failed)?;
     let mut calm = 0;
     while calm < CALM {
-        bed.set_time_step(longest_step(bed, walls));
-        bed.run(LOOK).map_err(failed)?;
+        stride.run_steps(bed, walls, LOOK).map_err(failed)?;
         let snapshot = bed.snapshot().map_err(failed)?;
         let (unbalance, uncarried) = (unbalance(bed, &snapshot), uncarried(bed, walls));
         calm = if unbalance <= REST && uncarried <= CARRIED { calm + 1 } else { 0 };
@@ -83,6 +82,7 @@ pub(super) fn until_rest<R: Real>(
             return Err(RigError::Restless { stage, unbalance, limit: REST, uncarried, time });
         }
     }
+    bed.unscale_masses();
     bed.set_damping(damping);
     Ok(())
 }
@@ -96,29 +96,6 @@ fn uncarried<R: Real>(bed: &Bed<R>, walls: &[WallId]) -> f64 {
         if force > 0.0 { (wall.felt().force.z / force - 1.0).abs() } else { 0.0 }
     };
     walls.iter().map(of).fold(0.0, f64::max)
-}
-
-/// Time step that grains and sleepers bear now, s.
-pub(super) fn longest_step<R: Real>(bed: &Bed<R>, walls: &[WallId]) -> f64 {
-    let of_sleeper = |wall: &WallId| {
-        let wall = bed.wall(*wall);
-        match wall.motion() {
-            Motion::Loaded { mass, .. } if wall.felt().stiffness > 0.0 => (mass / wall.felt().stiffness).sqrt(),
-            _ => f64::INFINITY,
-        }
-    };
-    let of_sleepers = walls.iter().map(of_sleeper).fold(f64::INFINITY, f64::min);
-    (SAFE * bed.body_time_step()).min(PRIOR * lightest_step(bed)).min(SLEEPER * of_sleepers)
-}
-
-/// sqrt(m / k) of the lightest body on one of its contacts, s.
-fn lightest_step<R: Real>(bed: &Bed<R>) -> f64 {
-    let stiffness = |surface: u16| match bed.laws().get(surface, surface) {
-        super::super::Law::Linear(law) => law.normal_stiffness.max(law.shear_stiffness),
-        // beds of a scene have linear contacts; others are bounded by the contacts of now alone
-        super::super::Law::HertzMindlin(_) => 0.0,
-    };
-    bed.states().map(|body| (body.mass / stiffness(body.surface)).sqrt()).fold(f64::INFINITY, f64::min)
 }
 
 /// A failure in a cycle.

@@ -20,6 +20,7 @@ fn bed() -> Bed<f32> {
         let recipe = Recipe {
             plan: [0.6, 0.6],
             walls: true,
+            ends: false,
             layers: vec![Layer {
                 name: "stone".into(),
                 curve: Curve::new(&[[0.05, 0.0], [0.07, 1.0]]).unwrap(),
@@ -47,6 +48,7 @@ fn rig(load: Load, cycles: u64) -> Rig {
     let region = Region::block([0.15, 0.0, 0.05], [0.45, 0.6, 0.15]).unwrap();
     Rig {
         sleepers: vec![sleeper],
+        specimen: None,
         period: 0.04,
         cycles,
         gravity: 9.81,
@@ -137,4 +139,89 @@ fn what_no_bed_carries_is_told() {
     };
     let said = error.to_string();
     assert!(said.contains("in cycle 1"), "{said}");
+}
+
+/// A box of 0.3 m x 0.3 m x 0.4 m of spheres with smooth walls, and the rig that shortens it by a tenth under 100 kPa.
+fn specimen(friction: f64) -> (Bed<f32>, Rig) {
+    let surface = Surface {
+        normal_stiffness: 2.6e7,
+        shear_stiffness: 2.6e7,
+        friction,
+        damping: [0.3; 2],
+        mode: DashpotMode::default(),
+    };
+    let recipe = Recipe {
+        plan: [0.3, 0.3],
+        walls: true,
+        ends: true,
+        layers: vec![Layer {
+            name: "stone".into(),
+            curve: Curve::new(&[[0.04, 0.0], [0.05, 1.0]]).unwrap(),
+            templates: vec![Template::sphere(0.5).unwrap()],
+            density: 2700.0,
+            surface,
+            wall_friction: 0.0,
+            thickness: 0.4,
+            lifts: 1,
+            pressure: 200e3,
+            packing: Packing { friction: 0.0, local_damping: 0.7, viscous_damping: 0.0 },
+        }],
+        gravity: 9.81,
+        local_damping: 0.2,
+        rest: Rest::default(),
+        seed: 1,
+    };
+    let packed = pack::<f32>(&recipe, |_| {}).unwrap();
+    let plate = Sleeper { place: [0.15, 0.15], size: [0.3, 0.3, 0.02], mass: 14.0, load: Load::Strain(0.1) };
+    let rig = Rig {
+        sleepers: vec![plate],
+        specimen: Some(Specimen { floor: recipe.floor(), sides: recipe.sides().unwrap(), pressure: 100e3 }),
+        period: 0.9,
+        cycles: 1,
+        gravity: 9.81,
+        densities: vec![2700.0],
+        kept: vec![1],
+        sensors: vec![Sensor { region: Region::block([0.0, 0.0, 0.1], [0.3, 0.3, 0.3]).unwrap() }],
+    };
+    (packed.bed, rig)
+}
+
+#[test]
+fn a_specimen_keeps_its_pressure_dilates_and_bears_what_its_friction_bears() {
+    let (bed, rig) = specimen(0.5);
+    let mut trial = Trial::new(bed, &rig, |_| {}).unwrap();
+    while trial.advance().unwrap() {}
+    let states = trial.specimen();
+    assert_eq!(states.len(), 64);
+    let last = states[63];
+    assert!((last.axial_strain - 0.1).abs() < 2e-3, "{last:?}");
+    for state in states {
+        assert!((state.lateral_stress / 100e3 - 1.0).abs() < 0.1, "{state:?}");
+    }
+    let mean = states.iter().map(|state| state.lateral_stress).sum::<f64>() / 64.0;
+    assert!((mean / 100e3 - 1.0).abs() < 0.02, "{mean}");
+    // spheres of friction 0.5 that roll freely, seven to a side of the box
+    let peak = states.iter().map(|state| state.mobilised_friction().to_degrees()).fold(0.0, f64::max);
+    assert!((18.0..40.0).contains(&peak), "{peak}");
+    assert!(states.iter().any(|state| state.volume_strain < -0.005), "a dense specimen dilates");
+    // what walls feel is what contacts inside carry, as long as the specimen has not outgrown the region
+    let early: Vec<_> = states.iter().filter(|state| state.axial_strain < 0.01).collect();
+    let inside: Vec<f64> =
+        trial.readings().iter().filter(|r| r.phase <= early[early.len() - 1].phase).map(|r| r.stress).collect();
+    let felt: Vec<f64> =
+        early.iter().filter(|state| (state.phase * 64.0) as u64 % 2 == 0).map(|s| s.axial_stress).collect();
+    assert!(inside.len() == felt.len() && inside.len() >= 3);
+    let ratio = inside.iter().sum::<f64>() / felt.iter().sum::<f64>();
+    assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
+}
+
+#[test]
+fn a_specimen_without_friction_has_little_strength() {
+    let (bed, rig) = specimen(0.0);
+    let mut trial = Trial::new(bed, &rig, |_| {}).unwrap();
+    while trial.advance().unwrap() {}
+    let late: Vec<f64> = trial.specimen()[32..].iter().map(|state| state.mobilised_friction().to_degrees()).collect();
+    let mean = late.iter().sum::<f64>() / late.len() as f64;
+    // 5.8 degrees at rest (Peyneau and Roux 2008); an inertial number of 1e-3 adds a few
+    assert!((2.0..14.0).contains(&mean), "{mean}");
 }

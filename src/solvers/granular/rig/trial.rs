@@ -2,10 +2,13 @@
 
 use super::super::bed::Bed;
 use super::super::lanes::Real;
-use super::super::motion::Push;
+use super::super::motion::{Motion, Push};
+use super::super::stride::Stride;
 use super::super::walls::WallId;
-use super::set_down::{in_cycle, longest_step, motion, place, until_rest};
+use super::set_down::{DAMPING, in_cycle, motion, place, until_rest};
+use super::specimen::{Size, State as SpecimenState};
 use super::{Cycle, Load, Reading, Rig, RigError, Sample};
+use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
 /// Pieces of a cycle: forces and depths are looked at after each, sensors are read after every second one. The deepest place of a
@@ -14,6 +17,8 @@ pub(super) const PIECES: u64 = 64;
 const SENSORS: u64 = 2;
 /// Pieces over which the lower force grows.
 const RAMP: u64 = PIECES / 2;
+/// Inertia that may be added to grains while they are loaded, over all mass.
+const ADDED: f64 = 0.005;
 /// Share of the height of the bed that a sleeper may sink before nothing carries it.
 const SUNK: f64 = 0.5;
 
@@ -28,14 +33,17 @@ pub struct Trial<'a, R: Real> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct State {
     pub walls: Vec<WallId>,
-    /// Of the sleepers' middles as they rest under their own weight, m.
+    /// Of the sleepers' middles as they rest under their own weight, or under the pressure on a specimen, m.
     pub rest: Vec<f64>,
+    /// Of a specimen that is consolidated.
+    pub size: Option<Size>,
+    pub specimen: Vec<SpecimenState>,
     /// Time at which the first ramp begins, s.
     pub start: f64,
     pub pieces: u64,
     pub steps: u64,
-    /// That grains and sleepers bear by the contacts of now, s. A bed that comes back knows its contacts after a step only.
-    pub longest_step: f64,
+    /// That the bed is held at, s.
+    pub stride: f64,
     pub current: Vec<Current>,
     pub cycles: Vec<Cycle>,
     pub samples: Vec<Sample>,
@@ -55,19 +63,22 @@ pub(super) struct Current {
 
 impl<'a, R: Real> Trial<'a, R> {
     /// Sets the sleepers down and lets them come to rest. `tell` hears the share of the longest time that this may take.
-    pub fn new(mut bed: Bed<R>, rig: &'a Rig, tell: impl FnMut(f64)) -> Result<Self, RigError> {
+    pub fn new(mut bed: Bed<R>, rig: &'a Rig, mut tell: impl FnMut(f64)) -> Result<Self, RigError> {
         let before = bed.steps();
         let walls = place(&mut bed, rig);
-        until_rest(&mut bed, &walls, "sleepers set down", tell)?;
+        until_rest(&mut bed, &walls, "sleepers set down", &mut tell)?;
+        let size = consolidated(&mut bed, rig, &walls, tell)?;
         let rest = walls.iter().map(|wall| bed.wall(*wall).pose(bed.domain()).position.z).collect();
         let state = State {
             start: bed.time(),
             pieces: 0,
             steps: bed.steps() - before,
-            longest_step: longest_step(&bed, &walls),
+            stride: Stride::with_added(&mut bed, ADDED).map_err(in_cycle(0))?.0,
             current: vec![Current::default(); walls.len()],
             walls,
             rest,
+            size,
+            specimen: Vec::new(),
             cycles: Vec::new(),
             samples: Vec::new(),
             readings: Vec::new(),
@@ -77,23 +88,54 @@ impl<'a, R: Real> Trial<'a, R> {
         Ok(trial)
     }
 
-    /// Gives each sleeper the force of its actuator.
+    /// Gives each sleeper the force of its actuator, and the sides of a specimen their pressure, on the areas of now.
     fn engage(&mut self) {
-        let rig = self.rig;
-        let ramp = RAMP as f64 * self.piece();
-        for (number, sleeper) in rig.sleepers.iter().enumerate() {
-            let start = self.state.start + (RAMP + self.delay(number)) as f64 * self.piece();
-            let push = match &sleeper.load {
-                Load::None => Push::Constant(0.0),
-                Load::Constant(force) => Push::Table { times: vec![start - ramp, start], forces: vec![0.0, *force] },
-                Load::Cyclic { range: [low, high], .. } => {
-                    Push::Cyclic { low: *low, high: *high, frequency: 1.0 / rig.period, start, ramp }
-                }
-                Load::History(points) => history(points, start, ramp),
-            };
-            let damping = self.bed.damping;
-            self.bed.set_motion(self.state.walls[number], motion(sleeper, rig.gravity, damping, push));
+        let weights = match (self.rig.specimen, self.size()) {
+            (Some(specimen), Some(size)) => {
+                specimen.hold(&mut self.bed, &size);
+                vec![specimen.pressure * size.area()]
+            }
+            _ => self.rig.sleepers.iter().map(|sleeper| self.rig.gravity * sleeper.mass).collect(),
+        };
+        for (number, weight) in weights.into_iter().enumerate() {
+            let motion = self.motion(number, weight);
+            self.bed.set_motion(self.state.walls[number], motion);
         }
+    }
+
+    /// Of a sleeper under a weight, N.
+    fn motion(&self, number: usize, weight: f64) -> Motion {
+        let sleeper = &self.rig.sleepers[number];
+        let ramp = RAMP as f64 * self.piece();
+        let start = self.state.start + (RAMP + self.delay(number)) as f64 * self.piece();
+        let push = match &sleeper.load {
+            Load::None => Push::Constant(0.0),
+            Load::Constant(force) => Push::Table { times: vec![start - ramp, start], forces: vec![0.0, *force] },
+            Load::Cyclic { range: [low, high], .. } => {
+                Push::Cyclic { low: *low, high: *high, frequency: 1.0 / self.rig.period, start, ramp }
+            }
+            Load::History(points) => history(points, start, ramp),
+            Load::Strain(share) => {
+                // it takes a piece to gather speed, and is half a piece late for it
+                let time = self.rig.period - 0.5 * self.piece();
+                let speed = share * (self.state.rest[number] - sleeper.size[2] / 2.0) / time;
+                let velocities = vec![Vector3::zeros(), -speed * Vector3::z()];
+                return Motion::Table { times: vec![start, start + self.piece()], velocities };
+            }
+        };
+        motion(sleeper, weight, self.bed.damping, push)
+    }
+
+    /// Of a specimen as it is.
+    fn size(&self) -> Option<Size> {
+        let [plate] = self.state.walls[..] else { return None };
+        let level = self.bed.wall(plate).pose(self.bed.domain()).position.z - self.face();
+        Some(self.rig.specimen?.size(&self.bed, level))
+    }
+
+    /// From the middle of the plate down to its face, m.
+    fn face(&self) -> f64 {
+        self.rig.sleepers[0].size[2] / 2.0
     }
 
     /// s.
@@ -134,6 +176,11 @@ impl<'a, R: Real> Trial<'a, R> {
         &self.state.samples
     }
 
+    /// What a specimen did in the cycles that are kept.
+    pub fn specimen(&self) -> &[SpecimenState] {
+        &self.state.specimen
+    }
+
     pub fn readings(&self) -> &[Reading] {
         &self.state.readings
     }
@@ -149,14 +196,15 @@ impl<'a, R: Real> Trial<'a, R> {
             return Ok(false);
         }
         let cycle = self.state.pieces.saturating_sub(RAMP) / PIECES + 1;
+        if self.rig.specimen.is_some() {
+            self.engage();
+        }
+        let stride = Stride(self.state.stride);
         let piece = self.piece();
-        let count = (piece / self.state.longest_step).ceil().max(1.0);
-        self.bed.set_time_step(piece / count);
-        self.bed.run(count as u64).map_err(in_cycle(cycle))?;
-        self.state.steps += count as u64;
+        self.state.steps += stride.run(&mut self.bed, &self.state.walls, piece).map_err(in_cycle(cycle))?;
         self.state.pieces += 1;
         (0..self.rig.sleepers.len()).try_for_each(|sleeper| self.look_at(sleeper, cycle))?;
-        self.state.longest_step = longest_step(&self.bed, &self.state.walls);
+        self.look_at_specimen(cycle);
         self.read(cycle)?;
         Ok(true)
     }
@@ -166,8 +214,11 @@ impl<'a, R: Real> Trial<'a, R> {
         let level = wall.pose(self.bed.domain()).position.z;
         let (depth, contact_force) = (self.state.rest[sleeper] - level, wall.felt().force.z);
         let velocity = -wall.velocity().0[2];
-        let super::super::Motion::Loaded { push, .. } = wall.motion() else { return Ok(()) };
-        let force = push.at(self.bed.time());
+        let force = match wall.motion() {
+            Motion::Loaded { push, .. } => push.at(self.bed.time()),
+            // a plate that is driven: what it presses with, on top of the pressure on a specimen
+            _ => contact_force - self.rig.specimen.zip(self.size()).map_or(0.0, |(s, size)| s.pressure * size.area()),
+        };
         let height = self.state.rest[sleeper] - self.rig.sleepers[sleeper].size[2] / 2.0;
         if depth > SUNK * height {
             return Err(RigError::Sunk { sleeper, depth, cycle: running });
@@ -192,6 +243,18 @@ impl<'a, R: Real> Trial<'a, R> {
             self.state.cycles.push(self.ended(sleeper, cycle));
         }
         Ok(())
+    }
+
+    fn look_at_specimen(&mut self, cycle: u64) {
+        let (Some(specimen), Some(rest), [plate]) = (self.rig.specimen, self.state.size, &self.state.walls[..]) else {
+            return;
+        };
+        let since = self.state.pieces.saturating_sub(RAMP);
+        if since > 0 && self.rig.kept.contains(&cycle) {
+            let phase = ((since - 1) % PIECES + 1) as f64 / PIECES as f64;
+            let state = specimen.state(&self.bed, *plate, self.face(), &rest);
+            self.state.specimen.push(SpecimenState { cycle, phase, ..state });
+        }
     }
 
     /// A sleeper at the end of its cycle.
@@ -222,6 +285,20 @@ impl<'a, R: Real> Trial<'a, R> {
         }
         Ok(())
     }
+}
+
+/// Lets the sides of a specimen press, and the plate as they do.
+fn consolidated<R: Real>(
+    bed: &mut Bed<R>,
+    rig: &Rig,
+    walls: &[WallId],
+    tell: impl FnMut(f64),
+) -> Result<Option<Size>, RigError> {
+    let (Some(specimen), [plate], [sleeper]) = (rig.specimen, walls, &rig.sleepers[..]) else { return Ok(None) };
+    let push = |bed: &mut Bed<R>, force: f64| {
+        bed.set_motion(*plate, motion(sleeper, force, DAMPING, Push::Constant(0.0)));
+    };
+    specimen.consolidate(bed, *plate, sleeper.size[2] / 2.0, push, tell).map(Some)
 }
 
 /// A history that begins at `start`, after a ramp to its first force.

@@ -1,0 +1,167 @@
+//! A specimen: a bed in a box whose four sides give way under a pressure that is held, as in a triaxial cell.
+//!
+//! Stress and strain are those of the box: lengths between its walls, forces on them over their areas, positive in compression.
+//! The vertical stress is the mean of what plate and floor feel, so that the weight of the grains counts by half, as it does at half
+//! the height. Strains count from the end of consolidation, over the lengths of then.
+
+use super::super::bed::Bed;
+use super::super::lanes::Real;
+use super::super::measure::unbalance;
+use super::super::motion::Motion;
+use super::super::stride::Stride;
+use super::super::walls::WallId;
+use super::RigError;
+use super::set_down::{ADDED, CALM, CARRIED, DAMPING, LONGEST, LOOK, REST};
+use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
+
+/// Of the sides, m/s; and the gain of their servos, the usual one: with less they lag behind a specimen that dilates.
+const SPEED: f64 = 0.1;
+const GAIN: f64 = 0.5;
+/// Share of its pressure that a side may miss when consolidation is over.
+const MISSED: f64 = 0.02;
+
+/// The walls that give way, and what they press with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Specimen {
+    pub floor: WallId,
+    /// Along, across: the lower and the upper of each.
+    pub sides: [[WallId; 2]; 2],
+    /// Pa.
+    pub pressure: f64,
+}
+
+/// Lengths of a specimen, m.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct Size {
+    /// Along, across.
+    pub plan: [f64; 2],
+    pub height: f64,
+}
+
+/// A specimen at an instant of a cycle that is kept.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    pub cycle: u64,
+    /// Share of the cycle that is over, 0 .. 1.
+    pub phase: f64,
+    /// Shortening over height, loss of volume over volume.
+    pub axial_strain: f64,
+    pub volume_strain: f64,
+    /// Pa.
+    pub axial_stress: f64,
+    /// Mean of the four sides, Pa.
+    pub lateral_stress: f64,
+}
+
+impl State {
+    /// Pa.
+    pub fn deviator(&self) -> f64 {
+        self.axial_stress - self.lateral_stress
+    }
+
+    /// Of Mohr's circle through the origin: sin phi = (s1 - s3)/(s1 + s3), rad.
+    pub fn mobilised_friction(&self) -> f64 {
+        (self.deviator() / (self.axial_stress + self.lateral_stress)).asin()
+    }
+}
+
+impl Size {
+    pub fn area(&self) -> f64 {
+        self.plan[0] * self.plan[1]
+    }
+
+    fn volume(&self) -> f64 {
+        self.area() * self.height
+    }
+}
+
+impl Specimen {
+    /// With a plate whose lower face is at `height`, m.
+    pub(super) fn size<R: Real>(&self, bed: &Bed<R>, height: f64) -> Size {
+        let plan = [0, 1].map(|axis| {
+            let [low, high] = self.sides[axis].map(|side| bed.wall(side).pose(bed.domain()).position[axis]);
+            high - low
+        });
+        Size { plan, height }
+    }
+
+    /// Lets the sides follow their pressure on the areas of now.
+    pub(super) fn hold<R: Real>(&self, bed: &mut Bed<R>, size: &Size) {
+        for (axis, side, outward) in self.each() {
+            let force = self.pressure * area_of_side(size, axis);
+            bed.set_motion(side, Motion::Servo { axis: outward, force, speed_limit: SPEED, gain: GAIN });
+        }
+    }
+
+    /// Runs until forces are in balance and sides and plate press as they should. `push` gives the plate its force, N.
+    pub(super) fn consolidate<R: Real>(
+        &self,
+        bed: &mut Bed<R>,
+        plate: WallId,
+        face: f64,
+        mut push: impl FnMut(&mut Bed<R>, f64),
+        mut tell: impl FnMut(f64),
+    ) -> Result<Size, RigError> {
+        let failed = |failure| RigError::Failure { cycle: 0, failure };
+        let (start, damping) = (bed.time(), bed.damping);
+        bed.set_damping(DAMPING);
+        let stride = Stride::with_added(bed, ADDED).map_err(failed)?;
+        let mut calm = 0;
+        loop {
+            let size = self.size(bed, bed.wall(plate).pose(bed.domain()).position.z - face);
+            if calm == CALM {
+                bed.unscale_masses();
+                bed.set_damping(damping);
+                return Ok(size);
+            }
+            self.hold(bed, &size);
+            push(bed, self.pressure * size.area());
+            stride.run_steps(bed, &[plate], LOOK).map_err(failed)?;
+            let snapshot = bed.snapshot().map_err(failed)?;
+            let unbalance = unbalance(bed, &snapshot);
+            let axial = bed.wall(plate).felt().force.z / size.area();
+            let uncarried = self.pressures(bed, &size).into_iter().map(|p| (p / self.pressure - 1.0).abs());
+            let uncarried = uncarried.fold((axial / self.pressure - 1.0).abs(), f64::max);
+            calm = if unbalance <= REST && uncarried <= MISSED.max(CARRIED) { calm + 1 } else { 0 };
+            let time = bed.time() - start;
+            tell((time / LONGEST).min(1.0));
+            if calm < CALM && time > LONGEST {
+                let stage = "specimen under the pressure on its sides";
+                return Err(RigError::Restless { stage, unbalance, limit: REST, uncarried, time });
+            }
+        }
+    }
+
+    /// What is read of it, against the size that it had.
+    pub(super) fn state<R: Real>(&self, bed: &Bed<R>, plate: WallId, face: f64, rest: &Size) -> State {
+        let plate = bed.wall(plate);
+        let size = self.size(bed, plate.pose(bed.domain()).position.z - face);
+        let vertical = 0.5 * (plate.felt().force.z - bed.wall(self.floor).felt().force.z);
+        State {
+            cycle: 0,
+            phase: 0.0,
+            axial_strain: 1.0 - size.height / rest.height,
+            volume_strain: 1.0 - size.volume() / rest.volume(),
+            axial_stress: vertical / size.area(),
+            lateral_stress: self.pressures(bed, &size).into_iter().sum::<f64>() / 4.0,
+        }
+    }
+
+    /// On each side, Pa.
+    fn pressures<R: Real>(&self, bed: &Bed<R>, size: &Size) -> [f64; 4] {
+        self.each().map(|(axis, side, outward)| bed.wall(side).felt().force.dot(&outward) / area_of_side(size, axis))
+    }
+
+    /// Axis, wall, and the way out.
+    fn each(&self) -> [(usize, WallId, Vector3<f64>); 4] {
+        let [[west, east], [near, far]] = self.sides;
+        let (x, y) = (Vector3::x(), Vector3::y());
+        [(0, west, -x), (0, east, x), (1, near, -y), (1, far, y)]
+    }
+}
+
+/// Of one that stands across an axis, m2.
+fn area_of_side(size: &Size, axis: usize) -> f64 {
+    size.plan[1 - axis] * size.height
+}

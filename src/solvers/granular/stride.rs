@@ -1,0 +1,98 @@
+//! The time step of a test on a bed: that of all but a few grains. The few that would need a shorter one (light, long, in many contacts with
+//! dashpots) have some inertia added, and no weight; how much there may be of it in all is a choice.
+
+use super::bed::{Bed, BodyState};
+use super::lanes::Real;
+use super::law::Law;
+use super::motion::Motion;
+use super::walls::WallId;
+use super::watch::Failure;
+
+/// Share of the stable step that is taken.
+const SAFE: f64 = 0.8;
+/// Of sqrt(m / k), that a body bears for contacts still to come; and the same of a sleeper on all its contacts.
+const PRIOR: f64 = 0.25;
+const SLEEPER: f64 = 0.2;
+/// Steps after which the contacts of now are looked at again.
+const LOOK: u64 = 200;
+/// Halvings of the range in which the step is sought, and its width as a factor.
+const HALVINGS: usize = 6;
+const WIDEST: f64 = 64.0;
+
+/// A step that a bed is held at, s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Stride(pub f64);
+
+impl Stride {
+    /// The longest for which no more than `share` of the mass of all bodies is added as inertia.
+    pub fn with_added<R: Real>(bed: &mut Bed<R>, share: f64) -> Result<Stride, Failure> {
+        bed.unscale_masses();
+        // free grains that touch nothing bound no step: then any will do to begin with
+        let own = Some(bed.bound_time_step(0.0)?).filter(|step| step.is_finite()).unwrap_or(bed.time_step());
+        let (mut fine, mut factor) = (1.0, WIDEST.sqrt());
+        for _ in 0..HALVINGS {
+            if Stride(own * fine * factor).hold(bed)? <= share {
+                fine *= factor;
+            }
+            factor = factor.sqrt();
+        }
+        bed.unscale_masses();
+        Ok(Stride(own * fine))
+    }
+
+    /// Prepares a bed for some steps, and gives the share of mass that is added.
+    fn hold<R: Real>(&self, bed: &mut Bed<R>) -> Result<f64, Failure> {
+        let stiffness = stiffness(bed);
+        let root = PRIOR / (SAFE * self.0);
+        let least = |body: &BodyState| stiffness[usize::from(body.surface)] / (root * root * body.mass);
+        Ok(bed.hold_time_step(self.0, least)?.added_share)
+    }
+
+    /// Runs for a time, s, and gives the steps that it took.
+    pub fn run<R: Real>(&self, bed: &mut Bed<R>, sleepers: &[WallId], time: f64) -> Result<u64, Failure> {
+        let (mut left, mut steps) = (time, 0);
+        loop {
+            self.hold(bed)?;
+            let count = (left / self.longest(bed, sleepers)).ceil().max(1.0);
+            let step = left / count;
+            let part = (count as u64).min(LOOK);
+            bed.set_time_step(step);
+            bed.run(part)?;
+            steps += part;
+            if part == count as u64 {
+                return Ok(steps);
+            }
+            left -= step * part as f64;
+        }
+    }
+
+    /// Runs some steps.
+    pub fn run_steps<R: Real>(&self, bed: &mut Bed<R>, sleepers: &[WallId], steps: u64) -> Result<(), Failure> {
+        self.hold(bed)?;
+        bed.set_time_step(self.longest(bed, sleepers));
+        bed.run(steps)
+    }
+
+    /// That sleepers bear on their contacts of now too, s.
+    fn longest<R: Real>(&self, bed: &Bed<R>, sleepers: &[WallId]) -> f64 {
+        let of = |wall: &WallId| {
+            let wall = bed.wall(*wall);
+            match wall.motion() {
+                Motion::Loaded { mass, .. } if wall.felt().stiffness > 0.0 => (mass / wall.felt().stiffness).sqrt(),
+                _ => f64::INFINITY,
+            }
+        };
+        let of_sleepers = sleepers.iter().map(of).fold(f64::INFINITY, f64::min);
+        (SAFE * self.0).min(SLEEPER * of_sleepers)
+    }
+}
+
+/// Of a contact between bodies of each surface, N/m.
+fn stiffness<R: Real>(bed: &Bed<R>) -> Vec<f64> {
+    let of = |surface: u16| match bed.laws().get(surface, surface) {
+        Law::Linear(law) => law.normal_stiffness.max(law.shear_stiffness),
+        // beds of a scene have linear contacts; others are bounded by the contacts of now alone
+        Law::HertzMindlin(_) => 0.0,
+    };
+    (0..bed.laws().surfaces() as u16).map(of).collect()
+}
