@@ -209,7 +209,7 @@ fn a_specimen_keeps_its_pressure_dilates_and_bears_what_its_friction_bears() {
     let inside: Vec<f64> =
         trial.readings().iter().filter(|r| r.phase <= early[early.len() - 1].phase).map(|r| r.stress).collect();
     let felt: Vec<f64> =
-        early.iter().filter(|state| (state.phase * 64.0) as u64 % 2 == 0).map(|s| s.axial_stress).collect();
+        early.iter().filter(|state| ((state.phase * 64.0) as u64).is_multiple_of(2)).map(|s| s.axial_stress).collect();
     assert!(inside.len() == felt.len() && inside.len() >= 3);
     let ratio = inside.iter().sum::<f64>() / felt.iter().sum::<f64>();
     assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
