@@ -14,7 +14,7 @@ use std::time::Instant;
 use trackbed::results;
 use trackbed::solvers::granular::clump::Template;
 use trackbed::solvers::granular::grains::{ClumpShape, Curve};
-use trackbed::solvers::granular::packing::{Layer, Order, Packed, Packing, Recipe, Rest, lay, pack};
+use trackbed::solvers::granular::packing::{Layer, Order, Packed, Packing, PackingError, Recipe, Rest, lay, pack};
 use trackbed::solvers::granular::{DashpotMode, Surface};
 
 const USAGE: &str = "beds cell [seed] | track BAYS [CELLS] | seeds COUNT | readings | accuracy";
@@ -82,8 +82,15 @@ fn paper(seed: u64) -> Recipe {
     }
 }
 
-/// The bed, and the seconds that it took.
+/// The bed, and the seconds that it took; a bed that cannot be packed ends the program.
 fn packed(recipe: &Recipe) -> (Packed<f32>, f64) {
+    tried(recipe).unwrap_or_else(|error| {
+        eprintln!("{error}");
+        std::process::exit(1)
+    })
+}
+
+fn tried(recipe: &Recipe) -> Result<(Packed<f32>, f64), PackingError> {
     let start = Instant::now();
     let mut last = String::new();
     let packed = pack::<f32>(recipe, |progress| {
@@ -92,11 +99,7 @@ fn packed(recipe: &Recipe) -> (Packed<f32>, f64) {
             last.clone_from(&progress.stage);
         }
     });
-    let packed = packed.unwrap_or_else(|error| {
-        eprintln!("{error}");
-        std::process::exit(1)
-    });
-    (packed, start.elapsed().as_secs_f64())
+    Ok((packed?, start.elapsed().as_secs_f64()))
 }
 
 /// The bed, built once and kept below the folder of temporary files.
@@ -212,8 +215,10 @@ fn readings() {
         cases.push((name, rough));
     }
     for (name, recipe) in cases {
-        let (packed, seconds) = packed(&recipe);
-        println!("{}", row(name, &packed, seconds));
+        match tried(&recipe) {
+            Ok((packed, seconds)) => println!("{}", row(name, &packed, seconds)),
+            Err(error) => eprintln!("{name}: {error}"),
+        }
     }
 }
 
