@@ -6,40 +6,42 @@ use super::super::{Bed, DashpotMode, Surface, clump::Template, grains::Curve};
 use super::*;
 use std::sync::OnceLock;
 
+/// Spheres of these sizes on a plan, in a box with smooth walls or in a cell with rough ones.
+fn recipe(plan: [f64; 2], thickness: f64, sizes: [f64; 2], friction: f64, boxed: bool) -> Recipe {
+    let surface = Surface {
+        normal_stiffness: 2.6e7,
+        shear_stiffness: 2.6e7,
+        friction,
+        damping: [0.3; 2],
+        mode: DashpotMode::default(),
+    };
+    Recipe {
+        plan,
+        walls: true,
+        ends: boxed,
+        layers: vec![Layer {
+            name: "stone".into(),
+            curve: Curve::new(&[[sizes[0], 0.0], [sizes[1], 1.0]]).unwrap(),
+            templates: vec![Template::sphere(0.5).unwrap()],
+            density: 2700.0,
+            surface,
+            wall_friction: if boxed { 0.0 } else { friction },
+            thickness,
+            lifts: 1,
+            pressure: 200e3,
+            packing: Packing { friction: 0.0, local_damping: 0.7, viscous_damping: 0.0 },
+        }],
+        gravity: 9.81,
+        local_damping: 0.2,
+        rest: Rest::default(),
+        seed: 1,
+    }
+}
+
 /// A bed of 0.6 m x 0.6 m x 0.2 m of coarse spheres, packed once.
 fn bed() -> Bed<f32> {
     static BED: OnceLock<Bed<f32>> = OnceLock::new();
-    let packed = || {
-        let surface = Surface {
-            normal_stiffness: 2.6e7,
-            shear_stiffness: 2.6e7,
-            friction: 0.7,
-            damping: [0.3; 2],
-            mode: DashpotMode::default(),
-        };
-        let recipe = Recipe {
-            plan: [0.6, 0.6],
-            walls: true,
-            ends: false,
-            layers: vec![Layer {
-                name: "stone".into(),
-                curve: Curve::new(&[[0.05, 0.0], [0.07, 1.0]]).unwrap(),
-                templates: vec![Template::sphere(0.5).unwrap()],
-                density: 2700.0,
-                surface,
-                wall_friction: 0.7,
-                thickness: 0.2,
-                lifts: 1,
-                pressure: 200e3,
-                packing: Packing { friction: 0.0, local_damping: 0.7, viscous_damping: 0.0 },
-            }],
-            gravity: 9.81,
-            local_damping: 0.2,
-            rest: Rest::default(),
-            seed: 1,
-        };
-        pack::<f32>(&recipe, |_| {}).unwrap().bed
-    };
+    let packed = || pack::<f32>(&recipe([0.6; 2], 0.2, [0.05, 0.07], 0.7, false), |_| {}).unwrap().bed;
     BED.get_or_init(packed).clone()
 }
 
@@ -143,34 +145,7 @@ fn what_no_bed_carries_is_told() {
 
 /// A box of 0.3 m x 0.3 m x 0.4 m of spheres with smooth walls, and the rig that shortens it by a tenth under 100 kPa.
 fn specimen(friction: f64) -> (Bed<f32>, Rig) {
-    let surface = Surface {
-        normal_stiffness: 2.6e7,
-        shear_stiffness: 2.6e7,
-        friction,
-        damping: [0.3; 2],
-        mode: DashpotMode::default(),
-    };
-    let recipe = Recipe {
-        plan: [0.3, 0.3],
-        walls: true,
-        ends: true,
-        layers: vec![Layer {
-            name: "stone".into(),
-            curve: Curve::new(&[[0.04, 0.0], [0.05, 1.0]]).unwrap(),
-            templates: vec![Template::sphere(0.5).unwrap()],
-            density: 2700.0,
-            surface,
-            wall_friction: 0.0,
-            thickness: 0.4,
-            lifts: 1,
-            pressure: 200e3,
-            packing: Packing { friction: 0.0, local_damping: 0.7, viscous_damping: 0.0 },
-        }],
-        gravity: 9.81,
-        local_damping: 0.2,
-        rest: Rest::default(),
-        seed: 1,
-    };
+    let recipe = recipe([0.3; 2], 0.4, [0.04, 0.05], friction, true);
     let packed = pack::<f32>(&recipe, |_| {}).unwrap();
     let plate = Sleeper { place: [0.15, 0.15], size: [0.3, 0.3, 0.02], mass: 14.0, load: Load::Strain(0.1) };
     let rig = Rig {
