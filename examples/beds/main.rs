@@ -5,7 +5,7 @@
 //! beds track BAYS [CELLS]      copies of it, or of so many cells, side by side and at rest
 //! beds seeds COUNT             coordination and porosity over seeds, with their scatter
 //! beds readings                both readings of the paper's contact stiffness and of its friction while packed
-//! beds accuracy                criterion, pressure, lifts, pebbles and length of the cell against time
+//! beds accuracy [WORD]         criterion, pressure, lifts, pebbles and length of the cell against time; cases with a word in their name
 //! ```
 //!
 //! Tables are CSV on standard output; what it does meanwhile stands on standard error.
@@ -17,7 +17,7 @@ use trackbed::solvers::granular::grains::{ClumpShape, Curve};
 use trackbed::solvers::granular::packing::{Layer, Order, Packed, Packing, PackingError, Recipe, Rest, lay, pack};
 use trackbed::solvers::granular::{DashpotMode, Surface};
 
-const USAGE: &str = "beds cell [seed] | track BAYS [CELLS] | seeds COUNT | readings | accuracy";
+const USAGE: &str = "beds cell [seed] | track BAYS [CELLS] | seeds COUNT | readings | accuracy [WORD]";
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -27,7 +27,7 @@ fn main() {
         Some("track") => track(number(1, 40) as usize, number(2, 1)),
         Some("seeds") => seeds(number(1, 8)),
         Some("readings") => readings(),
-        Some("accuracy") => accuracy(),
+        Some("accuracy") => accuracy(words.get(1).map_or("", String::as_str)),
         _ => eprintln!("{USAGE}"),
     }
 }
@@ -222,7 +222,7 @@ fn readings() {
     }
 }
 
-fn accuracy() {
+fn accuracy(word: &str) {
     println!("{HEADER}");
     let with = |change: &dyn Fn(&mut Recipe)| {
         let mut recipe = paper(1);
@@ -241,7 +241,7 @@ fn accuracy() {
         ("two bays", with(&|r| r.plan[0] = 1.2)),
         ("ballast of spheres", with(&|r| r.layers[1].templates = r.layers[0].templates.clone())),
     ];
-    for (name, recipe) in cases {
+    for (name, recipe) in cases.into_iter().filter(|(name, _)| name.contains(word)) {
         let (packed, seconds) = packed(&recipe);
         println!("{}", row(name, &packed, seconds));
     }

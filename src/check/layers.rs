@@ -254,9 +254,15 @@ impl Checker<'_> {
         if let Some(cut) = granular.grading.cut_above.and_then(|cut| cut.origin.span()) {
             mistake = mistake.at(cut, "grains up to this size");
         }
-        self.report(
-            mistake.help(format!("make it {} mm or more, or cut the grading with a smaller `cut_above`", mm(needed))),
-        );
+        let coarse = *granular.scale > 1.0;
+        if let Some(scale) = granular.scale.origin.span().filter(|_| coarse) {
+            mistake = mistake.at(scale, "grains are modelled larger than they are");
+        }
+        let smaller = if coarse { ", or model its grains with a smaller `scale`" } else { "" };
+        self.report(mistake.help(format!(
+            "make it {} mm or more, or cut the grading with a smaller `cut_above`{smaller}",
+            mm(needed)
+        )));
         false
     }
 

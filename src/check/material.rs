@@ -57,8 +57,9 @@ impl Checker<'_> {
             Some(_) => given(record, "wall_friction")?,
             None => friction,
         };
-        Some(Granular {
+        let granular = Granular {
             grading: grading?,
+            scale: given(record, "scale")?,
             density: given(record, "density")?,
             shape: shape?,
             contact: contact?,
@@ -79,7 +80,8 @@ impl Checker<'_> {
             youngs_modulus: None,
             poisson_ratio: given(record, "poisson_ratio")?,
             spread: given(record, "spread")?,
-        })
+        };
+        Some(granular.coarsened())
     }
 
     fn grain_shape(&mut self, record: &Record) -> Option<Shape> {

@@ -66,6 +66,12 @@ fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic
     if section.layers.len() > grains.len() {
         notes.push("Soil below the grains is a rigid floor while they are packed.".to_owned());
     }
+    for (layer, granular) in grains.iter().filter(|(_, granular)| *granular.scale != 1.0) {
+        let (name, scale) = (&layer.name, *granular.scale);
+        notes.push(format!(
+            "Grains of `{name}` are {scale} times as large as in the ground, and their contacts as much stiffer."
+        ));
+    }
     if grains.iter().any(|(_, granular)| granular.local_damping.value != top.local_damping.value) {
         notes.push(format!("A bed has one local damping: {} of its top layer.", *top.local_damping));
     }

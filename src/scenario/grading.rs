@@ -78,6 +78,18 @@ impl Passing {
 const TAIL: f64 = 1e-3;
 
 impl Grading {
+    /// The same of grains so many times as large.
+    pub fn scaled(self, factor: f64) -> Grading {
+        let cut = |cut: Option<Given>| cut.map(|cut| Given { value: *cut * factor, ..cut });
+        let passing = match self.passing {
+            Passing::Sieves(sieves) => {
+                Passing::Sieves(sieves.into_iter().map(|[size, share]| [size * factor, share]).collect())
+            }
+            Passing::LogNormal { median, spread } => Passing::LogNormal { median: median * factor, spread },
+        };
+        Grading { passing, cut_below: cut(self.cut_below), cut_above: cut(self.cut_above), ..self }
+    }
+
     /// Size of the smallest modelled grain, m.
     pub fn smallest(&self) -> f64 {
         self.cut_below.map_or(0.0, |cut| *cut).max(self.passing.ends()[0])

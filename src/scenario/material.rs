@@ -25,7 +25,10 @@ pub enum Material {
 /// Ballast or sub-ballast: grains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Granular {
+    /// Of what is modelled: `scale` times the real one.
     pub grading: Grading,
+    /// Size of modelled over real grains.
+    pub scale: Given,
     /// Of a grain, kg/m^3.
     pub density: Given,
     pub shape: Shape,
@@ -50,6 +53,26 @@ pub struct Granular {
     pub poisson_ratio: Given,
     /// At which the layer spreads a load, rad against the vertical.
     pub spread: Given,
+}
+
+impl Granular {
+    /// The same as fewer and larger grains. The stiffness of a layer goes as that of its contacts over the size of its grains, and
+    /// its strength as that of its bonds over their area, so they grow with the size and with its square.
+    pub fn coarsened(self) -> Granular {
+        let scale = *self.scale;
+        let times = |given: Given, factor: f64| Given { value: *given * factor, ..given };
+        let bond = self.bond.map(|bond| Bond {
+            stiffness: times(bond.stiffness, scale),
+            tensile_strength: times(bond.tensile_strength, scale * scale),
+            shear_strength: times(bond.shear_strength, scale * scale),
+        });
+        let contact = match self.contact {
+            Contact::Linear { stiffness } => Contact::Linear { stiffness: times(stiffness, scale) },
+            // grows with the size by itself
+            hertz @ Contact::Hertz { .. } => hertz,
+        };
+        Granular { grading: self.grading.scaled(scale), contact, bond, ..self }
+    }
 }
 
 /// The shape of grains. A grain has the volume of the sphere of its size.

@@ -55,6 +55,12 @@ pub(super) const GRANULAR: Kind = Kind {
     role: Role::Part,
     fields: &[
         required("grading", Form::Object("grading"), "of the grains"),
+        default(
+            "scale",
+            number("", 1.0, 4.0),
+            "1",
+            "size of modelled over real grains: fewer and larger ones, whose contacts are as much stiffer that the layer stays as stiff",
+        ),
         required("density", number("kg/m^3", 1500.0, 3500.0), "of a grain, without pores between grains"),
         default(
             "shape",

@@ -11,7 +11,7 @@ use crate::diag::Diagnostic;
 use crate::scenario::{Foot, Force, Given, Loading, RigLoad, Scenario, Seat, Section, SleeperBody, Target, Volume};
 use crate::solvers::granular::measure::Region;
 use crate::solvers::granular::packing::Layer;
-use crate::solvers::granular::rig::{Load, Rig, Sensor, Sleeper, Specimen};
+use crate::solvers::granular::rig::{ADDED, Load, Rig, Sensor, Sleeper, Specimen};
 use crate::units::number;
 use std::f64::consts::PI;
 
@@ -119,6 +119,7 @@ pub fn rig(scenario: &Scenario) -> Result<RigPlan, Vec<Diagnostic>> {
         densities,
         kept: kept(scenario, cycles(&loads)),
         sensors: Vec::new(),
+        added: ADDED,
     };
     let plate = pressed.map(|_| length * across);
     Ok(RigPlan { bed, copies, plate, confinement, sleepers: names, sensors, rig, places })

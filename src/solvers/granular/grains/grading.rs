@@ -135,6 +135,20 @@ impl Curve {
         1.0 / self.classes().map(|class| class.number()).sum::<f64>()
     }
 
+    /// Share of space that frictionless spheres of this curve fill, packed densely by chance (Desmond and Weeks 2014, eq. 3): by
+    /// the mean, the scatter and the skewness of their sizes by number.
+    pub fn solid_share(&self) -> f64 {
+        let moment = |power: f64| self.classes().map(|class| class.moment(power)).sum::<f64>();
+        let number = moment(0.0);
+        let [mean, second, third] = [1.0, 2.0, 3.0].map(|power| moment(power) / number);
+        let variance = (second - mean * mean).max(0.0);
+        let scatter = variance.sqrt() / mean;
+        // third central moment over variance, over the mean: skewness times the scatter
+        let skewed =
+            if scatter > 1e-6 { (third - 3.0 * mean * variance - mean.powi(3)) / (variance * mean) } else { 0.0 };
+        0.634 + 0.0658 * scatter + 0.0857 * skewed * scatter
+    }
+
     /// Whole grains whose volumes sum to `volume` (m³), the same ones for the same seed.
     pub fn sample(&self, volume: f64, seed: u64) -> Result<Sample, GradingError> {
         if !(volume > 0.0 && volume.is_finite()) {
@@ -190,12 +204,16 @@ struct Piece {
 }
 
 impl Piece {
-    /// Grains in a unit of solid volume of the whole curve: with w the width and v the volume of the finest grain,
-    /// m/v ∫₀¹ exp(-3 w s) ds.
+    /// Grains in a unit of solid volume of the whole curve.
     fn number(&self) -> f64 {
-        let w = 3.0 * self.widths;
+        self.moment(0.0)
+    }
+
+    /// Sum of d^p over these grains: with w the width, f the finest size and v its volume, m f^p / v ∫₀¹ exp((p - 3) w s) ds.
+    fn moment(&self, power: f64) -> f64 {
+        let w = (3.0 - power) * self.widths;
         let mean = if w > 0.0 { -(-w).exp_m1() / w } else { 1.0 };
-        self.mass / ball(self.finest) * mean
+        self.mass / ball(self.finest) * self.finest.powf(power) * mean
     }
 
     /// Size (m) of the grain up to which there are `number` in this class: the inverse of the same integral.

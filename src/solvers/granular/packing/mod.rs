@@ -128,10 +128,18 @@ pub struct Progress {
 }
 
 /// Counts the ways in which beds have been packed and read: another one makes another bed of the same recipe.
-pub const METHOD: u32 = 3;
+pub const METHOD: u32 = 4;
 
-/// Solid share that a layer will have, before a lift of it has shown its own.
-const SOLID: f64 = 0.60;
+/// Solid share of clumps over that of spheres of the same sizes.
+const CLUMPS: f64 = 1.03;
+
+impl Layer {
+    /// That it will have, before a lift of it has shown its own.
+    fn solid_share(&self) -> f64 {
+        let spheres = self.templates.iter().all(|template| template.pebbles.len() == 1);
+        self.curve.solid_share() * if spheres { 1.0 } else { CLUMPS }
+    }
+}
 
 impl Recipe {
     /// What no bed can be made of, before any is tried.
@@ -184,7 +192,7 @@ fn fill<R: Real, T: FnMut(&Progress)>(
     for lift in 0..layer.lifts {
         let left = f64::from(layer.lifts - lift);
         let reached = press.level() - base;
-        let solid = if taken > 0.0 { taken / (area * reached) } else { SOLID };
+        let solid = if taken > 0.0 { taken / (area * reached) } else { layer.solid_share() };
         let volume = area * ((top - base - reached) * solid / left).max(0.0);
         let sample = layer.curve.sample(volume, recipe.seed.wrapping_add((number as u64) << 32 | u64::from(lift)))?;
         taken += sample.volume;

@@ -67,6 +67,15 @@ fn a_small_bed_is_dense_level_and_at_rest() {
 }
 
 #[test]
+fn a_layer_of_one_lift_is_as_thick_as_asked() {
+    let mut recipe = small();
+    recipe.layers[0].lifts = 1;
+    recipe.layers[0].templates = super::super::grains::ClumpShape::default().templates(1).unwrap();
+    let level = packed(&recipe).levels[0];
+    assert!((level / 0.2 - 1.0).abs() < 0.05, "{level}");
+}
+
+#[test]
 fn a_bed_that_moves_on_is_refused() {
     let short = Rest { longest: 0.02, ..Rest::default() };
     let outcome = |recipe: &Recipe| pack::<f32>(recipe, |_| ()).err().unwrap();

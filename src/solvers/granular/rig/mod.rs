@@ -42,7 +42,13 @@ pub struct Rig {
     /// Cycles of which loops of force and depth and what sensors read are kept, the first is 1.
     pub kept: Vec<u64>,
     pub sensors: Vec<Sensor>,
+    /// Share of the mass of the bed that may be added as inertia for the sake of a longer step; [`ADDED`] unless somebody asks what
+    /// it changes.
+    pub added: f64,
 }
+
+/// Of the mass of a bed, added as inertia while it is loaded.
+pub const ADDED: f64 = 0.005;
 
 /// A block on the bed, in the bed's own axes.
 #[derive(Debug, Clone, PartialEq)]

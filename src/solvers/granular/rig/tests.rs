@@ -57,6 +57,7 @@ fn rig(load: Load, cycles: u64) -> Rig {
         densities: vec![2700.0],
         kept: vec![1, cycles],
         sensors: vec![Sensor { region }],
+        added: ADDED,
     }
 }
 
@@ -157,6 +158,7 @@ fn specimen(friction: f64) -> (Bed<f32>, Rig) {
         densities: vec![2700.0],
         kept: vec![1],
         sensors: vec![Sensor { region: Region::block([0.0, 0.0, 0.1], [0.3, 0.3, 0.3]).unwrap() }],
+        added: ADDED,
     };
     (packed.bed, rig)
 }

@@ -17,8 +17,6 @@ pub(super) const PIECES: u64 = 64;
 const SENSORS: u64 = 2;
 /// Pieces over which the lower force grows.
 const RAMP: u64 = PIECES / 2;
-/// Inertia that may be added to grains while they are loaded, over all mass.
-const ADDED: f64 = 0.005;
 /// Share of the height of the bed that a sleeper may sink before nothing carries it.
 const SUNK: f64 = 0.5;
 
@@ -73,7 +71,7 @@ impl<'a, R: Real> Trial<'a, R> {
             start: bed.time(),
             pieces: 0,
             steps: bed.steps() - before,
-            stride: Stride::with_added(&mut bed, ADDED).map_err(in_cycle(0))?.0,
+            stride: Stride::with_added(&mut bed, rig.added).map_err(in_cycle(0))?.0,
             current: vec![Current::default(); walls.len()],
             walls,
             rest,

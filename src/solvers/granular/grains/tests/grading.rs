@@ -113,6 +113,24 @@ fn every_template_has_its_share_of_the_grains() {
     assert_ne!(found, grains(&sample, 5, 2));
 }
 
+#[test]
+fn what_a_curve_fills_follows_from_its_sizes() {
+    // spheres of one size, packed densely by chance
+    assert_eq!(Curve::single(0.05).unwrap().solid_share(), 0.634);
+    // the same from the sizes of many grains, and more of the space the more they differ
+    let wide = Curve::new(&[[0.025, 0.0], [0.0375, 0.27], [0.05, 0.4], [0.1, 0.8], [0.15, 1.0]]).unwrap();
+    let shares = [ballast(), wide].map(|curve| {
+        let sizes = of_count(&curve, 20_000, 1).sizes;
+        let mean = sizes.iter().sum::<f64>() / 2e4;
+        let central = |power: i32| sizes.iter().map(|d| (d - mean).powi(power)).sum::<f64>() / 2e4;
+        let (scatter, skewness) = (central(2).sqrt() / mean, central(3) / central(2).powf(1.5));
+        let share = 0.634 + 0.0658 * scatter + 0.0857 * skewness * scatter * scatter;
+        assert!((curve.solid_share() / share - 1.0).abs() < 1e-3, "{} {share}", curve.solid_share());
+        share
+    });
+    assert!(0.634 < shares[0] && shares[0] + 0.03 < shares[1] && shares[1] < 0.75, "{shares:?}");
+}
+
 fn curves() -> impl Strategy<Value = Curve> {
     let class = (0.0..0.8f64, prop_oneof![Just(0.0), 0.01..1.0f64]);
     (0.005..0.05f64, prop::collection::vec(class, 1..7), 0.01..1.0f64).prop_map(|(finest, classes, last)| {

@@ -1,0 +1,156 @@
+//! Six panels: settlement and stiffness against wall time, one setting changed in each, with the scatter of packings as a band.
+
+use super::Row;
+use super::test::Answer;
+use std::fmt::Write as _;
+
+const WIDTH: f64 = 1180.0;
+const HEIGHT: f64 = 830.0;
+const PANEL: (f64, f64) = (320.0, 250.0);
+/// Of the vertical axis, over the mean of the usual setting.
+const MOST: f64 = 2.5;
+
+const PANELS: [(&str, &str); 6] = [
+    ("pebbles", "Pebbles a grain (usual: 2 or 3)"),
+    ("scale", "Particle scale (usual: 1)"),
+    ("step", "Mass added as inertia for a longer step (0.5 %)"),
+    ("pressure", "Pressure while packed (200 kPa)"),
+    ("criterion", "Force out of balance of a packed lift (0.01)"),
+    ("length", "Length of the cell (1 bay)"),
+];
+
+const STYLE: &str = "text{font:12px system-ui,sans-serif;fill:#1d2733}.t{font-weight:600;font-size:14px}.m{fill:#5b6877}\
+.a{stroke:#c9d1da;stroke-width:1}.f{fill:none;stroke:#8a97a6}.b{fill:#dbe9f1}.c{fill:#f6e3d8}.s{stroke:#0b6e99;fill:#0b6e99}\
+.k{stroke:#c2571a;fill:#c2571a}.o{fill:#fff}.e{stroke-width:1.4}";
+
+/// What is shown of a test, and the classes of its marks and of its band.
+type Series = (&'static str, &'static str, fn(&Answer) -> f64);
+
+const SERIES: [Series; 2] = [("k", "c", |a| a.stiffness), ("s", "b", |a| a.growth)];
+
+/// Mean and its standard error.
+#[derive(Clone, Copy)]
+struct Mean {
+    value: f64,
+    error: f64,
+}
+
+fn mean(answers: &[&Answer], of: impl Fn(&Answer) -> f64) -> Mean {
+    let count = answers.len() as f64;
+    let value = answers.iter().map(|a| of(a)).sum::<f64>() / count;
+    let square = answers.iter().map(|a| (of(a) - value).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    Mean { value, error: (square / count).sqrt() }
+}
+
+/// Settings of a chart in their order, with what their tests answered.
+fn settings<'a>(rows: &'a [Row], chart: &str) -> Vec<(&'a str, Vec<&'a Answer>)> {
+    let mut found: Vec<(&str, Vec<&Answer>)> = Vec::new();
+    for row in rows.iter().filter(|row| row.chart == chart) {
+        let Ok(answer) = &row.answer else { continue };
+        match found.iter_mut().find(|(name, _)| *name == row.name) {
+            Some((_, answers)) => answers.push(answer),
+            None => found.push((&row.name, vec![answer])),
+        }
+    }
+    found
+}
+
+pub fn draw(rows: &[Row]) -> String {
+    let mut svg = String::new();
+    let usual = settings(rows, "usual").into_iter().flat_map(|(_, answers)| answers).collect::<Vec<_>>();
+    let _ = write!(
+        svg,
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {WIDTH} {HEIGHT}' width='{WIDTH}' height='{HEIGHT}'><style>{STYLE}</style>\
+         <rect width='{WIDTH}' height='{HEIGHT}' fill='#fff'/>\
+         <text class='t' x='30' y='28'>Half a sleeper on 0.3 m of ballast, ten cycles of 5 to 60 kN: what each setting costs and changes</text>"
+    );
+    legend(&mut svg, rows, &usual);
+    for (number, (chart, title)) in PANELS.iter().enumerate() {
+        let at = (70.0 + (number % 3) as f64 * 385.0, 130.0 + (number / 3) as f64 * 350.0);
+        let mut shown = settings(rows, chart);
+        shown.push(("usual", usual.clone()));
+        panel(&mut svg, title, &shown, &usual, at);
+    }
+    svg.push_str("</svg>\n");
+    svg
+}
+
+fn legend(svg: &mut String, rows: &[Row], usual: &[&Answer]) {
+    let [stiffness, growth] = SERIES.map(|(_, _, of)| mean(usual, of));
+    let scatter = |m: Mean| 100.0 * m.error * (usual.len() as f64).sqrt() / m.value;
+    let failed = rows.iter().filter(|row| row.answer.is_err()).count();
+    let _ = write!(
+        svg,
+        "<circle class='s' cx='36' cy='52' r='4'/><text x='48' y='56'>settlement from cycle 2 to 10 over its usual mean, {:.3} mm (one packing scatters by {:.0} %)</text>\
+         <circle class='k' cx='36' cy='74' r='4'/><text x='48' y='78'>resilient stiffness of cycle 10 over its usual mean, {:.0} MN/m ({:.0} %)</text>\
+         <text class='m' x='640' y='56'>Marks: means over {} packings (usual: {}), bars their standard errors, bands that of the usual setting.</text>\
+         <text class='m' x='640' y='78'>Across: wall time of packing and test, one core, two tests at a time. Tests that failed: {failed}.</text>",
+        1e3 * growth.value,
+        scatter(growth),
+        1e-6 * stiffness.value,
+        scatter(stiffness),
+        super::SEEDS,
+        usual.len(),
+    );
+}
+
+fn panel(svg: &mut String, title: &str, shown: &[(&str, Vec<&Answer>)], usual: &[&Answer], (left, top): (f64, f64)) {
+    let (width, height) = PANEL;
+    let seconds = |answers: &[&Answer]| mean(answers, |a| a.packing + a.testing).value;
+    let times: Vec<f64> = shown.iter().map(|(_, answers)| seconds(answers)).collect();
+    let least = 0.8 * times.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = 1.25 * times.iter().copied().fold(0.0, f64::max);
+    let x = |time: f64| left + width * (time / least).ln() / (most / least).ln();
+    let y = |value: f64| top + height * (1.0 - value.clamp(0.0, MOST) / MOST);
+    let _ = write!(svg, "<text class='t' x='{left}' y='{}'>{title}</text>", top - 12.0);
+    for (_, band, of) in SERIES {
+        let Mean { value, error } = mean(usual, of);
+        let (high, low) = (y(1.0 + error / value), y(1.0 - error / value));
+        let _ =
+            write!(svg, "<rect class='{band}' x='{left}' y='{high:.1}' width='{width}' height='{:.1}'/>", low - high);
+    }
+    for tick in [0.0, 0.5, 1.0, 1.5, 2.0, 2.5] {
+        let at = y(tick);
+        let _ = write!(
+            svg,
+            "<path class='a' d='M{left} {at}h{width}'/><text class='m' text-anchor='end' x='{}' y='{}'>{tick}</text>",
+            left - 6.0,
+            at + 4.0
+        );
+    }
+    for tick in [5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0].into_iter().filter(|t| (least..most).contains(t)) {
+        let (at, under) = (x(tick), top + height);
+        let _ = write!(
+            svg,
+            "<path class='a' d='M{at:.1} {under}v5'/><text class='m' text-anchor='middle' x='{at:.1}' y='{}'>{tick} s</text>",
+            under + 18.0
+        );
+    }
+    let _ = write!(svg, "<rect class='f' x='{left}' y='{top}' width='{width}' height='{height}'/>");
+    for (mark, _, of) in SERIES {
+        let whole = mean(usual, of).value;
+        for ((name, answers), time) in shown.iter().zip(&times) {
+            let Mean { value, error } = mean(answers, of);
+            let (at, middle) = (x(*time), y(value / whole));
+            let (high, low) = (y((value + error) / whole), y((value - error) / whole));
+            let open = if *name == "usual" { " o" } else { "" };
+            let _ = write!(
+                svg,
+                "<path class='{mark} e' d='M{at:.1} {high:.1}V{low:.1}'/><circle class='{mark}{open}' cx='{at:.1}' cy='{middle:.1}' r='4'/>"
+            );
+        }
+    }
+    names(svg, shown.iter().zip(&times).map(|((name, _), time)| (x(*time), *name)).collect(), top + 14.0);
+}
+
+/// Names above their marks, in rows where they would lie on each other.
+fn names(svg: &mut String, mut marks: Vec<(f64, &str)>, top: f64) {
+    marks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut ends = [f64::NEG_INFINITY; 4];
+    for (at, name) in marks {
+        let half = 3.4 * name.chars().count() as f64;
+        let row = ends.iter().position(|end| *end < at - half - 4.0).unwrap_or(0);
+        ends[row] = at + half;
+        let _ = write!(svg, "<text text-anchor='middle' x='{at:.1}' y='{}'>{name}</text>", top + 14.0 * row as f64);
+    }
+}
