@@ -250,6 +250,9 @@ pub fn compile(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overr
         let (lowered, found) = lower::lower(scenario);
         // beside errors of the text, only further errors are worth a word
         diagnostics.extend(found.into_iter().filter(|d| checked.sound || d.is_error()));
+        if checked.sound && lowered.is_none() && lower::is_rig(scenario) {
+            diagnostics.extend(lint::lint_rig(scenario));
+        }
         if let Some(lowered) = lowered.filter(|_| checked.sound) {
             diagnostics.extend(lint::lint(scenario, &lowered));
             // track and trains of a scene with grains are planned and looked at; its substructure cannot be run

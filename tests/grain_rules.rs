@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 use trackbed::check::NoModules;
-use trackbed::compile;
 use trackbed::diag::Code;
+use trackbed::{Compiled, compile, lower};
 
 /// 42 m of track on a layer of stone and a metre of soil; each part may be replaced.
 #[derive(Clone, Copy)]
@@ -233,4 +233,60 @@ fn unchecked_values_are_named_when_asked_for() {
     // a default is named too, entries with another evidence are not
     assert!(!of("vehicles.ore_wagon_20t") && !of("gradings.ballast_31_63"), "{found:?}");
     assert!(named("scenario { warn = [unchecked_values], allow = [unchecked_values: \"a sketch\"] }").is_empty());
+}
+
+/// A box of ballast under a sleeper, with something more in its materials and in `solve`.
+fn box_test(stone: &str, solve: &str) -> Compiled {
+    let text = format!(
+        "use std
+granular base {{ {STONE} }}
+granular stone : base {{ {stone} }}
+trackform bed {{ sleeper = sleepers.concrete, spacing = 0.6 m, layers = [stone: 400 mm] }}
+track box {{ sections = [bed: 1 sleeper], bed_width = 2.6 m per track }}
+load actuator {{ on = sleepers, at = 1 sleeper, force = cyclic(5 .. 60 kN, 20 Hz) per sleeper, total = 10 cycles }}
+solve {{ substructure = full, {solve} }}
+"
+    );
+    compile("box.track", &text, &NoModules, &[])
+}
+
+fn told(compiled: &Compiled) -> Vec<(Code, &str)> {
+    compiled.diagnostics.iter().map(|d| (d.code, d.message.as_str())).collect()
+}
+
+#[test]
+fn rules_hold_for_test_rigs() {
+    assert_eq!(told(&box_test("scale = 1", "budget = 1000 h")), []);
+    let compiled = box_test("scale = 1", "budget = 1 s");
+    let [(Code::L1022, message)] = told(&compiled)[..] else { panic!("{:?}", compiled.diagnostics) };
+    assert!(message.starts_with("the test is expected to take") && message.contains("its budget is 1 s:"), "{message}");
+    // soft contacts under the plate that packs them
+    let soft = box_test("contact_stiffness = 0.5 MN/m per contact", "");
+    assert!(told(&soft).iter().any(|(code, _)| *code == Code::L1021), "{:?}", soft.diagnostics);
+    // a step that no grain bears
+    let long = box_test("scale = 1", "grain_step = 1 ms");
+    assert!(told(&long).iter().any(|(code, _)| *code == Code::L1020), "{:?}", long.diagnostics);
+}
+
+#[test]
+fn larger_grains_are_fewer_and_as_much_stiffer() {
+    let bed = |scale: &str| {
+        let compiled = box_test(&format!("scale = {scale}"), "");
+        let plan = lower::rig(compiled.scenario.as_ref().unwrap()).unwrap();
+        let cost = lower::rig_cost(compiled.scenario.as_ref().unwrap()).unwrap();
+        (plan.bed, cost)
+    };
+    let ((fine, many), (coarse, few)) = (bed("1"), bed("1.5"));
+    let [one, other] = [&fine.recipe.layers[0], &coarse.recipe.layers[0]];
+    let near = |value: f64, wanted: f64| assert!((value / wanted - 1.0).abs() < 1e-12, "{value} {wanted}");
+    (0..2).for_each(|end| near(other.curve.ends()[end], 1.5 * one.curve.ends()[end]));
+    near(other.surface.normal_stiffness, 1.5 * one.surface.normal_stiffness);
+    near(many.grains / few.grains, 1.5f64.powi(3));
+    near(few.time_step / many.time_step, 1.5);
+    assert!(coarse.notes.iter().any(|note| note.contains("`stone` are 1.5 times as large")), "{:?}", coarse.notes);
+    // a layer of fewer than four of its coarse grains is told, of fewer than two of its largest refused
+    assert!(told(&box_test("scale = 2.4", "")).iter().any(|(code, _)| *code == Code::L1009));
+    let thin = box_test("scale = 3", "");
+    let refused = thin.diagnostics.iter().find(|d| d.code == Code::E0511).unwrap();
+    assert!(refused.help.as_deref().is_some_and(|help| help.contains("a smaller `scale`")), "{refused:?}");
 }

@@ -4,20 +4,25 @@
 //! beds cell [seed]             every stage of the paper's cell, as it ended
 //! beds track BAYS [CELLS]      copies of it, or of so many cells, side by side and at rest
 //! beds seeds COUNT             coordination and porosity over seeds, with their scatter
-//! beds readings                both readings of the paper's contact stiffness and of its friction while packed
-//! beds accuracy [WORD]         criterion, pressure, lifts, pebbles and length of the cell against time; cases with a word in their name
+//! beds readings [WORD]         both readings of the paper's contact stiffness and of its count of grains, and friction while packed
+//! beds accuracy [WORD]         criterion, pressure, lifts, pebbles and length of the cell against time
 //! ```
 //!
-//! Tables are CSV on standard output; what it does meanwhile stands on standard error.
+//! With a word only cases that have it in their name. Tables are CSV on standard output; what it does meanwhile stands on standard error. The last three pack as many cells at a time as there are
+//! cores, each with a core of its own.
+
+#[path = "../grain_charts/turns.rs"]
+mod turns;
 
 use std::time::Instant;
 use trackbed::results;
 use trackbed::solvers::granular::clump::Template;
 use trackbed::solvers::granular::grains::{ClumpShape, Curve};
 use trackbed::solvers::granular::packing::{Layer, Order, Packed, Packing, PackingError, Recipe, Rest, lay, pack};
+use trackbed::solvers::granular::probe::{Outline, Plate, Stillness, probe};
 use trackbed::solvers::granular::{DashpotMode, Surface};
 
-const USAGE: &str = "beds cell [seed] | track BAYS [CELLS] | seeds COUNT | readings | accuracy [WORD]";
+const USAGE: &str = "beds cell [seed] | track BAYS [CELLS] | seeds COUNT | readings [WORD] | accuracy [WORD]";
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
@@ -26,7 +31,7 @@ fn main() {
         Some("cell") => cell(number(1, 1)),
         Some("track") => track(number(1, 40) as usize, number(2, 1)),
         Some("seeds") => seeds(number(1, 8)),
-        Some("readings") => readings(),
+        Some("readings") => readings(words.get(1).map_or("", String::as_str)),
         Some("accuracy") => accuracy(words.get(1).map_or("", String::as_str)),
         _ => eprintln!("{USAGE}"),
     }
@@ -130,21 +135,24 @@ fn cell(seed: u64) {
             ballast.coordination
         );
     }
-    println!("{HEADER}\n{}", row("paper", &packed, seconds));
+    println!("{HEADER}\n{}", row("paper", &packed, seconds, None));
 }
 
-const HEADER: &str = "case,grains,thickness_sub_m,thickness_ballast_m,porosity_sub,porosity_ballast,z_sub_pressed,\
-                      z_ballast_pressed,z_sub,z_ballast,steps,seconds";
+const HEADER: &str = "case,grains,pebbles_ballast,thickness_sub_m,thickness_ballast_m,porosity_sub,porosity_ballast,z_sub_pressed,\
+                      z_ballast_pressed,z_sub,z_ballast,plate_MN_per_m,plate_again_MN_per_m,steps,seconds";
 
-fn row(name: &str, packed: &Packed<f32>, seconds: f64) -> String {
+/// Pressed is under the plate, before friction comes back.
+fn row(name: &str, packed: &Packed<f32>, seconds: f64, stiffness: Option<[f64; 2]>) -> String {
     let inside = |layer: usize| {
         let [low, high] = packed.between(layer);
         packed.porosity([low + 0.25 * (high - low), high - 0.25 * (high - low)])
     };
     let thick = |layer: usize| packed.between(layer)[1] - packed.between(layer)[0];
+    let pebbles = packed.bed.pebbles().filter(|pebble| pebble.body.0 >= packed.bodies[1]).count();
+    let [first, again] = stiffness.unwrap_or([f64::NAN; 2]).map(|stiffness| 1e-6 * stiffness);
     let [pressed, rest] = [packed.stages.len() - 3, packed.stages.len() - 1].map(|stage| &packed.stages[stage].state);
     format!(
-        "{name},{},{:.4},{:.4},{:.4},{:.4},{:.2},{:.2},{:.2},{:.2},{},{seconds:.1}",
+        "{name},{},{pebbles},{:.4},{:.4},{:.4},{:.4},{:.2},{:.2},{:.2},{:.2},{first:.1},{again:.1},{},{seconds:.1}",
         packed.bed.len(),
         thick(0),
         thick(1),
@@ -193,56 +201,88 @@ fn peak_memory() -> f64 {
     line.and_then(|line| line.trim().split(' ').next()?.parse::<f64>().ok()).map_or(f64::NAN, |kb| kb / 1e6)
 }
 
-fn seeds(count: u64) {
+/// A row for each case, as many at a time as there are cores.
+fn table(cases: &[(String, Recipe)]) {
     println!("{HEADER}");
-    for seed in 1..=count {
-        let (packed, seconds) = packed(&paper(seed));
-        println!("{}", row(&format!("seed {seed}"), &packed, seconds));
-    }
+    turns::each(cases, |(name, recipe)| match tried(recipe) {
+        Ok((packed, seconds)) => println!("{}", row(name, &packed, seconds, plate_stiffness(recipe, &packed))),
+        Err(error) => eprintln!("{name}: {error}"),
+    });
 }
 
-fn readings() {
-    println!("{HEADER}");
-    let mut cases = vec![("contact stiffness, no friction", paper(1))];
-    let mut body = paper(1);
-    for (layer, stiffness) in body.layers.iter_mut().zip([5e6, 1.3e7]) {
-        (layer.surface.normal_stiffness, layer.surface.shear_stiffness) = (stiffness, stiffness);
-    }
-    cases.push(("body stiffness", body));
-    for (name, friction) in [("friction 0.1 while packed", 0.1), ("friction 0.3 while packed", 0.3)] {
-        let mut rough = paper(1);
-        rough.layers.iter_mut().for_each(|layer| layer.packing.friction = friction);
-        cases.push((name, rough));
-    }
-    for (name, recipe) in cases {
-        match tried(&recipe) {
-            Ok((packed, seconds)) => println!("{}", row(name, &packed, seconds)),
-            Err(error) => eprintln!("{name}: {error}"),
-        }
-    }
+/// Under half a sleeper to 100 kPa, first and second loading, N/m.
+fn plate_stiffness(recipe: &Recipe, packed: &Packed<f32>) -> Option<[f64; 2]> {
+    let [length, width] = recipe.plan;
+    let plate = Plate {
+        outline: Outline::Rectangle { length: 0.3, width },
+        centre: [0.5 * length, 0.5 * width],
+        pressure: 100e3,
+        surface: recipe.wall_surface(),
+        rest: Stillness::default(),
+    };
+    let tested = probe(&packed.bed, &plate, |_, _, _| ());
+    tested.map_err(|error| eprintln!("no stiffness: {error}")).ok().map(|tested| [tested.first, tested.again])
+}
+
+fn seeds(count: u64) {
+    let cases: Vec<(String, Recipe)> = (1..=count).map(|seed| (format!("seed {seed}"), paper(seed))).collect();
+    table(&cases);
+}
+
+/// Grains so many times as large, in layers as stiff.
+fn scaled(layer: &mut Layer, factor: f64) {
+    let points: Vec<[f64; 2]> = layer.curve.points().iter().map(|[size, share]| [size * factor, *share]).collect();
+    layer.curve = Curve::new(&points).expect("a grading");
+    layer.surface.normal_stiffness *= factor;
+    layer.surface.shear_stiffness *= factor;
+}
+
+fn readings(word: &str) {
+    let with = |name: &str, change: &dyn Fn(&mut Layer)| {
+        let mut recipe = paper(1);
+        recipe.layers.iter_mut().for_each(change);
+        (name.to_owned(), recipe)
+    };
+    let of_bodies = |layer: &mut Layer| {
+        layer.surface.normal_stiffness *= 0.5;
+        layer.surface.shear_stiffness *= 0.5;
+    };
+    let mut clumps = paper(1);
+    // 6484 in place of about 3080
+    scaled(&mut clumps.layers[1], (3080.0f64 / 6484.0).cbrt());
+    let cases = [
+        with("contact stiffness and count of pebbles", &|_| ()),
+        ("count of clumps".into(), clumps),
+        with("body stiffness", &of_bodies),
+        with("friction 0.1 while packed", &|layer| layer.packing.friction = 0.1),
+        with("friction 0.3 while packed", &|layer| layer.packing.friction = 0.3),
+    ];
+    table(&named(cases, word));
 }
 
 fn accuracy(word: &str) {
-    println!("{HEADER}");
-    let with = |change: &dyn Fn(&mut Recipe)| {
+    let with = |name: &str, change: &dyn Fn(&mut Recipe)| {
         let mut recipe = paper(1);
         change(&mut recipe);
-        recipe
+        (name.to_owned(), recipe)
     };
     let all = |recipe: &mut Recipe, change: &dyn Fn(&mut Layer)| recipe.layers.iter_mut().for_each(change);
     let cases = [
-        ("as it is", with(&|_| ())),
-        ("lifts at rest to 0.03", with(&|r| r.rest.lift = 0.03)),
-        ("lifts at rest to 0.003", with(&|r| r.rest.lift = 0.003)),
-        ("100 kPa", with(&|r| all(r, &|layer| layer.pressure = 100e3))),
-        ("400 kPa", with(&|r| all(r, &|layer| layer.pressure = 400e3))),
-        ("one lift a layer", with(&|r| all(r, &|layer| layer.lifts = 1))),
-        ("two lifts a layer", with(&|r| all(r, &|layer| layer.lifts = 2))),
-        ("two bays", with(&|r| r.plan[0] = 1.2)),
-        ("ballast of spheres", with(&|r| r.layers[1].templates = r.layers[0].templates.clone())),
+        with("as it is", &|_| ()),
+        with("lifts at rest to 0.03", &|r| r.rest.lift = 0.03),
+        with("lifts at rest to 0.003", &|r| r.rest.lift = 0.003),
+        with("100 kPa", &|r| all(r, &|layer| layer.pressure = 100e3)),
+        with("400 kPa", &|r| all(r, &|layer| layer.pressure = 400e3)),
+        with("one lift a layer", &|r| all(r, &|layer| layer.lifts = 1)),
+        with("two lifts a layer", &|r| all(r, &|layer| layer.lifts = 2)),
+        with("two bays", &|r| r.plan[0] = 1.2),
+        with("grains 1.25 times as large", &|r| all(r, &|layer| scaled(layer, 1.25))),
+        with("ballast of spheres", &|r| r.layers[1].templates = r.layers[0].templates.clone()),
     ];
-    for (name, recipe) in cases.into_iter().filter(|(name, _)| name.contains(word)) {
-        let (packed, seconds) = packed(&recipe);
-        println!("{}", row(name, &packed, seconds));
-    }
+    table(&named(cases, word));
+}
+
+/// Cases with a word in their name.
+fn named(cases: impl IntoIterator<Item = (String, Recipe)>, word: &str) -> Vec<(String, Recipe)> {
+    cases.into_iter().filter(|(name, _)| name.contains(word)).collect()
 }

@@ -11,9 +11,9 @@
 
 mod chart;
 mod cycle;
+mod turns;
 
 use cycle::{Answer, Setting};
-use rayon::prelude::*;
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -94,8 +94,7 @@ fn settings() -> Vec<(&'static str, String, f64, Setting)> {
 
 /// The answers of all seeds; none where a run failed. Each run has a core to itself.
 fn runs(setting: &Setting) -> Vec<Option<Answer>> {
-    let alone = || rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool of one");
-    (0..SEEDS).into_par_iter().map(|seed| alone().install(|| cycle::run(setting, seed))).collect()
+    turns::each(&(0..SEEDS).collect::<Vec<_>>(), |seed| cycle::run(setting, *seed))
 }
 
 fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {

@@ -10,8 +10,9 @@
 mod chart;
 mod table;
 mod test;
+#[path = "../grain_charts/turns.rs"]
+mod turns;
 
-use rayon::prelude::*;
 use std::error::Error;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -56,15 +57,12 @@ fn rows() -> Vec<Row> {
     let tests: Vec<(&Case, u64)> =
         cases.iter().flat_map(|case| (1..=case.seeds).map(move |seed| (case, seed))).collect();
     let done = AtomicUsize::new(0);
-    let alone = || rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool of one");
-    let run = |(case, seed): &(&Case, u64)| {
-        let answer = alone().install(|| test::run(&case.setting, *seed));
+    turns::each(&tests, |(case, seed)| {
+        let answer = test::run(&case.setting, *seed);
         let row = Row { chart: case.chart.to_owned(), name: case.name.clone(), seed: *seed, answer };
         eprintln!("{:3} of {}: {}", 1 + done.fetch_add(1, Ordering::Relaxed), tests.len(), table::line(&row));
         row
-    };
-    // in turns, so that what else the machine does falls on all alike
-    tests.par_iter().with_max_len(1).map(run).collect()
+    })
 }
 
 /// One thing changed at a time.

@@ -1,5 +1,6 @@
-//! Progress with an estimate, on a terminal only.
+//! Progress with an estimate: bars on a terminal, a line a minute of long work elsewhere.
 
+use super::terminal;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -33,21 +34,28 @@ pub(super) fn at(bar: &ProgressBar, done: u64, all: u64) {
     bar.set_position(done);
 }
 
-/// A bar that waits until the work has taken two seconds; what is quick needs none.
+/// Between two lines where there is no terminal.
+const LINE: Duration = Duration::from_secs(60);
+
+/// A bar that waits until the work has taken two seconds; what is quick needs none. Without a terminal a line from time to time.
 pub(super) struct Patient {
     message: &'static str,
     start: Instant,
+    told: Instant,
     bar: Option<ProgressBar>,
 }
 
 impl Patient {
     pub(super) fn new(message: &'static str) -> Patient {
-        Patient { message, start: Instant::now(), bar: None }
+        Patient { message, start: Instant::now(), told: Instant::now(), bar: None }
     }
 
     pub(super) fn at(&mut self, done: u64, all: u64) {
         if self.start.elapsed() < Duration::from_secs(2) {
             return;
+        }
+        if !std::io::stderr().is_terminal() {
+            return self.tell(done, all);
         }
         let bar = self.bar.get_or_insert_with(|| {
             let bar = share();
@@ -55,6 +63,20 @@ impl Patient {
             bar
         });
         at(bar, done, all);
+    }
+
+    fn tell(&mut self, done: u64, all: u64) {
+        if self.told.elapsed() < LINE || done == 0 {
+            return;
+        }
+        self.told = Instant::now();
+        let (took, share) = (self.start.elapsed().as_secs_f64() / 60.0, done as f64 / all.max(done) as f64);
+        let left = took * (1.0 - share) / share;
+        terminal::note(&format!(
+            "{}: {:.0} % after {took:.0} min, about {left:.0} min left\n",
+            self.message,
+            100.0 * share
+        ));
     }
 }
 

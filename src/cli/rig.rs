@@ -1,10 +1,9 @@
 //! `trackbed run` of a test rig: packs its bed, sets the sleepers down and loads them, once for each packing.
 
-use super::{Outcome, pack, progress, run, terminal};
+use super::{Outcome, pack, progress, report, run, terminal};
 use crate::diag::{Code, Diagnostic, render};
 use crate::lower::{self, RigPlan};
-use crate::report::RigPage;
-use crate::results::{self, RigRun, Tested, checkpoint};
+use crate::results::{self, RigRun, RigView, Tested, checkpoint};
 use crate::scenario::{Loading, RigLoad, Scenario, Target};
 use crate::solvers::granular::Bed;
 use crate::solvers::granular::packing::Packed;
@@ -16,7 +15,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-const PAGE: &str = "report.html";
 /// Time between two checkpoints.
 const KEEP: Duration = Duration::from_secs(20);
 
@@ -51,11 +49,12 @@ pub(super) fn run_rig(compiled: &Compiled, scenario: &Scenario, options: &Option
             let computed = started.elapsed().as_secs_f64();
             let (sources, hash) = (&compiled.sources, work.hash.clone());
             let rig = RigRun::gather(scenario, &plan, tests, sources, hash, listing(scenario));
-            match work.write(&rig, bed, computed) {
-                Ok(page) => summary(&rig, &page, computed),
+            let expectations = rig.summary.expectations.clone();
+            match work.write(rig, bed, computed) {
+                Ok(told) => terminal::out(&told),
                 Err(message) => return run::stop(compiled, Diagnostic::new(Code::E0802, message)),
             }
-            run::verdicts(&rig.summary.expectations, scenario, compiled)
+            run::verdicts(&expectations, scenario, compiled)
         }
         Err(mistakes) => {
             let shown = render::human(&mistakes, &compiled.sources, terminal::colour(), terminal::width());
@@ -149,30 +148,27 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Tables, pictures and page.
-    fn write(&self, rig: &RigRun, mut bed: Bed<f32>, computed: f64) -> Result<PathBuf, String> {
+    /// Tables, pictures and page; gives what is told of them.
+    fn write(&self, rig: RigRun, mut bed: Bed<f32>, computed: f64) -> Result<String, String> {
         let out = self.options.out;
         let failure = |error: &dyn std::fmt::Display| format!("cannot write the results: {error}");
-        let snapshot = bed.snapshot().map_err(|error| failure(&error))?;
-        let (grains, links) = (results::grains(&bed, &snapshot, None), results::links(&bed, &snapshot));
-        let page = RigPage { run: rig, grains: &grains, links: &links, walls: bed.walls(), domain: bed.domain() };
+        let view = RigView::of(rig, &mut bed).map_err(|error| failure(&error))?;
         let (mut bodies, mut contacts) = (Vec::new(), Vec::new());
-        results::bodies_vtk(&grains, &mut bodies)
-            .and(results::contacts_vtk(&links, &mut contacts))
+        results::bodies_vtk(&view.grains, &mut bodies)
+            .and(results::contacts_vtk(&view.links, &mut contacts))
             .map_err(|error| failure(&error))?;
-        let path = out.join(PAGE);
-        let files = [("bodies.vtp", bodies), ("contacts.vtp", contacts), (PAGE, page.html().into_bytes())];
-        files.iter().try_for_each(|(name, bytes)| {
+        [("bodies.vtp", bodies), ("contacts.vtp", contacts)].iter().try_for_each(|(name, bytes)| {
             results::write_atomically(&out.join(name), bytes).map_err(|error| failure(&error))
         })?;
+        let page = report::write_rig(&view, out, false).map_err(|error| failure(&error))?;
         let timings = BTreeMap::from([
             ("total_s".to_string(), computed),
             ("threads".to_string(), rayon::current_num_threads() as f64),
         ]);
         results::write_timings(&timings, out).map_err(|error| failure(&error))?;
-        results::write_rig(rig, out).map_err(|error| failure(&error))?;
+        results::write_rig(&view, out).map_err(|error| failure(&error))?;
         checkpoint::remove(out).map_err(|error| failure(&error))?;
-        Ok(path)
+        Ok(summary(&view.run, &page, computed))
     }
 }
 
@@ -223,7 +219,7 @@ fn what_stands(scenario: &Scenario) -> String {
 }
 
 /// The few numbers that people ask for first.
-fn summary(rig: &RigRun, page: &Path, seconds: f64) {
+fn summary(rig: &RigRun, page: &Path, seconds: f64) -> String {
     let mut out = format!("{}\n", rig.scenario.title);
     let lines: [(&str, &str, &str, f64); 10] = [
         ("max_settlement", "settlement", "mm", 1e-3),
@@ -239,7 +235,7 @@ fn summary(rig: &RigRun, page: &Path, seconds: f64) {
     ];
     run::headline(&mut out, &rig.summary.scalars, &lines);
     out.push_str(&format!("{} ({} s)\n", page.display(), number((seconds * 10.0).round() / 10.0)));
-    terminal::out(&out);
+    out
 }
 
 /// Says what a rig would take, and whether it can be run; there is no graph to draw.

@@ -12,7 +12,7 @@ use crate::units::number;
 /// Overlap over radius.
 const LARGEST: f64 = 0.01;
 
-pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+pub(super) fn check(scenario: &Scenario, graph: Option<&Graph>) -> Vec<Diagnostic> {
     let mut found: Vec<Diagnostic> = Vec::new();
     for bed in beds(scenario) {
         let (pressure, median) = (bed.pressure(scenario, graph), bed.granular.grading.d(50.0));

@@ -3,7 +3,7 @@
 use crate::graph::{Blocks, Graph, Schedule};
 use crate::lint::dynamic::amplification;
 use crate::lint::winkler::seat_load;
-use crate::scenario::{Contact, Granular, Layer, Origin, Scenario, Section};
+use crate::scenario::{Contact, Granular, Layer, Loading, Origin, Scenario, Section, Target};
 use std::f64::consts::PI;
 
 /// Share of the volume that grains fill in a packed bed.
@@ -50,13 +50,15 @@ pub(super) fn of_sizes(granular: &Granular) -> Origin {
 }
 
 impl Bed<'_> {
-    /// Pressure on the layer, Pa: that of its packing, under the sleepers at least that of a passing wheel.
-    pub fn pressure(&self, scenario: &Scenario, graph: &Graph) -> f64 {
+    /// Pressure on the layer, Pa: that of its packing, under the sleepers at least that of a passing wheel, in a rig that of its loads.
+    pub fn pressure(&self, scenario: &Scenario, graph: Option<&Graph>) -> f64 {
         let packed = *self.granular.packing.pressure;
-        match &graph.schedule {
-            Schedule::Blocks(blocks) if self.top => packed.max(under_sleepers(scenario, blocks, self.index)),
-            _ => packed,
-        }
+        let loaded = match graph.map(|graph| &graph.schedule) {
+            Some(Schedule::Blocks(blocks)) if self.top => under_sleepers(scenario, blocks, self.index),
+            None if self.top => under_loads(scenario, self.index),
+            _ => 0.0,
+        };
+        packed.max(loaded)
     }
 }
 
@@ -66,6 +68,15 @@ fn under_sleepers(scenario: &Scenario, blocks: &Blocks, section: usize) -> f64 {
     let Some(load) = seat_load(scenario, blocks, section) else { return 0.0 };
     let area = track.seats[track.seats_of(section)].iter().find_map(|s| track.bearing_area(s));
     area.map_or(0.0, |area| load.peak.force * amplification(*blocks.train.speed) / area)
+}
+
+/// Pressure under the sleepers of a rig at the largest force of its loads, Pa; 0 where there are none.
+fn under_loads(scenario: &Scenario, section: usize) -> f64 {
+    let track = &scenario.track;
+    let Some(Loading::Rig(loads)) = &scenario.loading else { return 0.0 };
+    let area = track.seats[track.seats_of(section)].iter().find_map(|seat| track.bearing_area(seat));
+    let forces = loads.iter().filter(|load| load.on == Target::Sleepers).map(|load| load.force.largest());
+    area.map_or(0.0, |area| forces.fold(0.0, f64::max) / area)
 }
 
 /// Mean normal force, N, between grains of a size, m, under a pressure, Pa: `F = pi d^2 p / (Z phi)` of spheres of one size with

@@ -41,8 +41,10 @@ use crate::scenario::{Loading, Scenario, SettlementLaw};
 use std::borrow::Cow;
 
 type Rule = fn(&Scenario, &Graph) -> Vec<Diagnostic>;
+/// A rule that knows what to say where there is no plan: of a test rig.
+type RuleOfRigs = fn(&Scenario, Option<&Graph>) -> Vec<Diagnostic>;
 
-const RULES: [Rule; 26] = [
+const RULES: [Rule; 18] = [
     stiffness_jump::check,
     critical_speed::check,
     track_too_short::check,
@@ -58,6 +60,12 @@ const RULES: [Rule; 26] = [
     ballast_pressure::check,
     support_stiffness::check,
     car_body_frequency::check,
+    overdamped::check,
+    coarse_record::check,
+    wavelength::check,
+];
+
+const RULES_OF_RIGS: [RuleOfRigs; 8] = [
     thin_layer::check,
     unchecked_values::check,
     narrow_bed::check,
@@ -65,19 +73,31 @@ const RULES: [Rule; 26] = [
     grain_step::check,
     grain_overlap::check,
     over_budget::check,
-    overdamped::check,
     small_volume::check,
-    coarse_record::check,
-    wavelength::check,
 ];
 
 /// Applies every rule, at the level that the scene gives it. Rules know one train: of a mix each is asked in turn.
 pub fn lint(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let mut found = Vec::new();
-    for rule in RULES {
-        for (scenario, graph) in led_by_each(scenario, graph) {
-            let new: Vec<Diagnostic> = rule(&scenario, &graph).into_iter().filter(|d| !found.contains(d)).collect();
-            found.extend(new);
+    let views = led_by_each(scenario, graph);
+    let each = |rule: &dyn Fn(&Scenario, &Graph) -> Vec<Diagnostic>| {
+        views.iter().flat_map(|(scenario, graph)| rule(scenario, graph)).collect::<Vec<_>>()
+    };
+    let of_tracks = RULES.iter().flat_map(|rule| each(rule));
+    let of_both = RULES_OF_RIGS.iter().flat_map(|rule| each(&|scenario, graph| rule(scenario, Some(graph))));
+    levelled(of_tracks.chain(of_both), scenario)
+}
+
+/// Applies the rules that hold for a test rig.
+pub fn lint_rig(scenario: &Scenario) -> Vec<Diagnostic> {
+    levelled(RULES_OF_RIGS.iter().flat_map(|rule| rule(scenario, None)), scenario)
+}
+
+/// Each once, at the level that the scene gives its rule.
+fn levelled(all: impl Iterator<Item = Diagnostic>, scenario: &Scenario) -> Vec<Diagnostic> {
+    let mut found: Vec<Diagnostic> = Vec::new();
+    for diagnostic in all {
+        if !found.contains(&diagnostic) {
+            found.push(diagnostic);
         }
     }
     found

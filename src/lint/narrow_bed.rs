@@ -14,7 +14,7 @@ const FEWEST: f64 = 6.0;
 /// Bays of the longest periodic cell.
 const BAYS: f64 = 3.0;
 
-pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
+pub(super) fn check(scenario: &Scenario, _: Option<&Graph>) -> Vec<Diagnostic> {
     let coarsest =
         beds(scenario).into_iter().max_by(|a, b| a.granular.grading.d(90.0).total_cmp(&b.granular.grading.d(90.0)));
     let Some(bed) = coarsest else { return Vec::new() };

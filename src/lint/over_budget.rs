@@ -1,18 +1,24 @@
 //! L1022: the run is expected to take more time or memory than the scene allows.
 //!
-//! The estimate is that of the plan: passages x steps x unknowns x a measured cost, and bytes an unknown. Only what this version runs
-//! has one.
+//! The estimate is that of the plan: passages x steps x unknowns x a measured cost, and bytes an unknown; of a test rig steps x pebbles
+//! x a measured cost. Only what this version runs has one.
 
 use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
+use crate::lower;
 use crate::scenario::{Given, Scenario};
 use crate::units::number;
 
-pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let grains = &scenario.solve.grains;
-    if grains.tier.has_grains() {
-        return Vec::new();
+pub(super) fn check(scenario: &Scenario, graph: Option<&Graph>) -> Vec<Diagnostic> {
+    match graph {
+        Some(_) if scenario.solve.grains.tier.has_grains() => Vec::new(),
+        Some(graph) => of_a_run(scenario, graph),
+        None => of_a_rig(scenario).into_iter().collect(),
     }
+}
+
+fn of_a_run(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+    let grains = &scenario.solve.grains;
     let (seconds, bytes) = (graph.estimate.seconds, graph.estimate.bytes as f64);
     let time = grains.budget.filter(|budget| seconds > **budget).map(|budget| {
         let message = format!(
@@ -36,6 +42,21 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     time.into_iter().chain(memory).collect()
 }
 
+fn of_a_rig(scenario: &Scenario) -> Option<Diagnostic> {
+    let cost = lower::rig_cost(scenario)?;
+    let budget = scenario.solve.grains.budget.filter(|budget| cost.seconds > **budget)?;
+    let about = |value: f64| number(format!("{value:.1e}").parse().unwrap_or(value));
+    let message = format!(
+        "the test is expected to take {} on two cores, its budget is {}: {} grains, {} steps, {} packings",
+        duration(cost.seconds),
+        duration(*budget),
+        about(cost.grains),
+        about(cost.packing_steps + cost.test_steps),
+        cost.repeats
+    );
+    Some(said(message, budget, "fewer cycles or packings, a larger `cut_below` or larger grains (`scale`) cost less"))
+}
+
 const MIB: f64 = (1u64 << 20) as f64;
 
 fn said(message: String, limit: Given, help: &str) -> Diagnostic {
@@ -46,8 +67,12 @@ fn said(message: String, limit: Given, help: &str) -> Diagnostic {
     }
 }
 
-/// `40 s`, `12.5 min`
+/// `40 s`, `12.5 min`, `3.2 h`
 fn duration(seconds: f64) -> String {
     let tenth = |x: f64| number((x * 10.0).round() / 10.0);
-    if seconds < 120.0 { format!("{} s", tenth(seconds)) } else { format!("{} min", tenth(seconds / 60.0)) }
+    match seconds {
+        short if short < 120.0 => format!("{} s", tenth(short)),
+        middling if middling < 7200.0 => format!("{} min", tenth(middling / 60.0)),
+        long => format!("{} h", tenth(long / 3600.0)),
+    }
 }

@@ -12,7 +12,7 @@ use crate::units::number;
 /// Median grains across a volume.
 const FEWEST: f64 = 3.0;
 
-pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
+pub(super) fn check(scenario: &Scenario, _: Option<&Graph>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for record in &scenario.volumes {
         let Some(bed) = at_depth(scenario, record) else { continue };

@@ -12,7 +12,7 @@ use crate::units::number;
 /// Coarse grains across a layer.
 const FEWEST: f64 = 4.0;
 
-pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
+pub(super) fn check(scenario: &Scenario, _: Option<&Graph>) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for bed in beds(scenario) {
         let (thickness, coarse) = (bed.layer.thickness.smallest(), bed.granular.grading.d(90.0));

@@ -7,25 +7,25 @@ use super::number::{significant, whole};
 use super::page::{expectations, opening, picture, provenance, subtitle};
 use super::scene::WIDTH;
 use super::svg::{Frame, Svg, escape};
-use crate::results::{Grain, Link, RigRun, Tested};
+use crate::results::{RigRun, RigView, Tested};
 use crate::solvers::granular::rig::{Cycle, Sample, SpecimenState};
-use crate::solvers::granular::{Domain, Wall};
 use std::fmt::Write;
 
 const HEIGHT: f64 = 320.0;
 /// Cycles whose loops can be told apart.
 const LOOPS: usize = 4;
 
-/// A rig as the page shows it, with its last bed as it ended.
+/// The page of a rig.
 pub struct RigPage<'a> {
-    pub run: &'a RigRun,
-    pub grains: &'a [Grain],
-    pub links: &'a [Link],
-    pub walls: &'a [Wall],
-    pub domain: &'a Domain,
+    run: &'a RigRun,
+    view: &'a RigView,
 }
 
-impl RigPage<'_> {
+impl<'a> RigPage<'a> {
+    pub fn of(view: &'a RigView) -> RigPage<'a> {
+        RigPage { run: &view.run, view }
+    }
+
     /// The whole page, which needs nothing from elsewhere.
     pub fn html(&self) -> String {
         let run = self.run;
@@ -88,7 +88,7 @@ impl RigPage<'_> {
         *html += "</tbody></table></div></section>\n";
     }
 
-    fn figures(&self) -> Vec<Figure> {
+    pub fn figures(&self) -> Vec<Figure> {
         let mut figures = Vec::new();
         figures.extend(self.deviator());
         figures.extend(self.volume());
@@ -252,10 +252,10 @@ impl RigPage<'_> {
     fn bed(&self, side: Side, id: &str, title: &str, caption: &str) -> Figure {
         let svg = bed_svg(&BedView {
             title,
-            grains: self.grains,
-            chains: self.links,
-            walls: self.walls,
-            domain: self.domain,
+            grains: &self.view.grains,
+            chains: &self.view.links,
+            walls: &self.view.walls,
+            domain: &self.view.domain,
             side,
             colour: Colour::Force,
         });

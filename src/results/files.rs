@@ -112,7 +112,7 @@ pub(super) fn json<T: Serialize>(value: &T, path: &Path) -> Result<Vec<u8>, Resu
     Ok(bytes)
 }
 
-fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, ResultsError> {
+pub(super) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, ResultsError> {
     let bytes = fs::read(path).map_err(|cause| ResultsError::io(path, "read", cause))?;
     serde_json::from_slice(&bytes).map_err(|cause| ResultsError::malformed(path, cause))
 }

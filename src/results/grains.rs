@@ -1,9 +1,10 @@
 //! A bed of grains as people look at it: one row for each pebble, one for each contact, brought back into the period.
 
 use crate::solvers::granular::{Bed, ContactState, Domain, Party, Real, Snapshot};
+use serde::{Deserialize, Serialize};
 
 /// A pebble with what its body does.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Grain {
     /// With the body's centroid in the period \[m\].
     pub place: [f64; 3],
@@ -21,7 +22,7 @@ pub struct Grain {
 }
 
 /// A contact as a line from centroid to centroid, or from a centroid to a wall.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Link {
     /// \[m\]
     pub from: [f64; 3],

@@ -40,7 +40,7 @@ pub use grains::{Grain, Link, grains, links, places};
 pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};
 pub use level::{LongitudinalLevel, longitudinal_level};
 pub use recorder::{RunRecorder, RunTables, Store};
-pub use rig::{CycleRow, LoopRow, RigRun, SensorRow, SpecimenRow, Tested, VolumeRow, write_rig};
+pub use rig::{CycleRow, LoopRow, RigRun, RigView, SensorRow, SpecimenRow, Tested, VolumeRow, read_rig, write_rig};
 pub use states::remove as remove_states;
 pub use summarise::{RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise};
 pub use summary::{Provenance, Scalar, Summary, Verdict};

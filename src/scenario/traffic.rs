@@ -196,6 +196,18 @@ pub enum Wave {
     Sine,
 }
 
+impl Force {
+    /// N; 0 where the way is given and not the force.
+    pub fn largest(&self) -> f64 {
+        match self {
+            Force::Constant(force) => **force,
+            Force::Cyclic { range, .. } => *range[1],
+            Force::History(points) => points.iter().map(|point| point[1]).fold(0.0, f64::max),
+            Force::Strain(_) => 0.0,
+        }
+    }
+}
+
 impl RigLoad {
     /// A load that stays as it is, where this is one.
     pub fn at_rest(&self) -> Option<StaticLoad> {

@@ -2,15 +2,17 @@
 
 use super::super::files::{check_finite, json, table};
 use super::super::{ResultsError, Row, atomic};
-use super::{CycleRow, LoopRow, RigRun, SensorRow, SpecimenRow, VolumeRow};
+use super::view::VIEW;
+use super::{CycleRow, LoopRow, RigView, SensorRow, SpecimenRow, VolumeRow};
 use std::fs;
 use std::path::Path;
 
 const SUMMARY: &str = "summary.json";
 const BEDS: &str = "beds.json";
 
-/// Writes tables and summary into `directory`, which is made where it does not exist. Equal runs leave equal bytes.
-pub fn write_rig(run: &RigRun, directory: &Path) -> Result<(), ResultsError> {
+/// Writes tables, the view and the summary into `directory`, which is made where it does not exist. Equal runs leave equal bytes.
+pub fn write_rig(view: &RigView, directory: &Path) -> Result<(), ResultsError> {
+    let run = &view.run;
     for (name, scalar) in &run.summary.scalars {
         check_finite(SUMMARY, name, 1, scalar.value)?;
     }
@@ -24,7 +26,9 @@ pub fn write_rig(run: &RigRun, directory: &Path) -> Result<(), ResultsError> {
     if run.tests.iter().any(|test| !test.specimen.is_empty()) {
         files.push((SpecimenRow::FILE, table(&run.specimen(), directory)?));
     }
+    let whole = serde_json::to_vec(view).map_err(|cause| ResultsError::unwritable(&directory.join(VIEW), cause))?;
     files.extend([
+        (VIEW, whole),
         (BEDS, json(&beds, &directory.join(BEDS))?),
         (SUMMARY, json(&run.summary, &directory.join(SUMMARY))?), // last: a directory with a summary is complete
     ]);

@@ -2,8 +2,10 @@
 
 mod files;
 mod summarise;
+mod view;
 
 pub use files::write_rig;
+pub use view::{RigView, read_rig};
 
 use super::{BedSummary, Provenance, Row, Summary};
 use crate::diag::Sources;

@@ -89,7 +89,7 @@ pub struct Rest {
     pub bed: f64,
     /// Share by which the plate may miss its pressure.
     pub pressure: f64,
-    /// Time that a stage may take, s.
+    /// Time that a stage may take, s; under less than 200 kPa longer by the root of that.
     pub longest: f64,
 }
 
