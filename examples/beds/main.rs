@@ -250,13 +250,19 @@ fn readings(word: &str) {
     let mut clumps = paper(1);
     // 6484 in place of about 3080
     scaled(&mut clumps.layers[1], (3080.0f64 / 6484.0).cbrt());
-    let cases = [
-        with("contact stiffness and count of pebbles", &|_| ()),
-        ("count of clumps".into(), clumps),
-        with("body stiffness", &of_bodies),
-        with("friction 0.1 while packed", &|layer| layer.packing.friction = 0.1),
-        with("friction 0.3 while packed", &|layer| layer.packing.friction = 0.3),
+    let with_friction = |friction: f64| move |layer: &mut Layer| layer.packing.friction = friction;
+    let mut cases = vec![with("contact stiffness and count of pebbles", &|_| ()), ("count of clumps".into(), clumps)];
+    // lifts of 100 mm are thinner than stones of 150 mm, which then carry the plate alone, and softer or rougher grains do not bear that
+    let thicker = [
+        with("contact stiffness in two lifts", &|_| ()),
+        with("body stiffness in two lifts", &of_bodies),
+        with("friction 0.1 while packed in two lifts", &with_friction(0.1)),
+        with("friction 0.3 while packed in two lifts", &with_friction(0.3)),
     ];
+    cases.extend(thicker.map(|(name, mut recipe)| {
+        recipe.layers[0].lifts = 2;
+        (name, recipe)
+    }));
     table(&named(cases, word));
 }
 

@@ -8,17 +8,17 @@ const WIDTH: f64 = 1180.0;
 const HEIGHT: f64 = 790.0;
 const PANEL: (f64, f64) = (320.0, 250.0);
 /// Ends of the vertical axis, over the mean of the usual setting, as powers of two.
-const ENDS: [f64; 2] = [-2.0, 2.0];
+const ENDS: [f64; 2] = [-2.0, 3.0];
 /// Seconds that may be named below.
 const TICKS: [f64; 14] = [5.0, 7.0, 10.0, 15.0, 20.0, 30.0, 40.0, 60.0, 80.0, 100.0, 150.0, 200.0, 300.0, 500.0];
 
 const PANELS: [(&str, &str); 6] = [
     ("pebbles", "Pebbles a grain (usual: 2 or 3)"),
     ("scale", "Particle scale (usual: 1)"),
-    ("step", "Mass added as inertia, for a longer step (0.5 %)"),
-    ("pressure", "Pressure while packed (200 kPa)"),
-    ("criterion", "Force out of balance of a packed lift (0.01)"),
-    ("length", "Length of the cell (1 bay)"),
+    ("step", "Mass added as inertia (usual: 0.5 %)"),
+    ("pressure", "Pressure while packed (usual: 200 kPa)"),
+    ("criterion", "Force out of balance of a lift (usual: 0.01)"),
+    ("length", "Length of the cell (usual: 1 bay)"),
 ];
 
 const STYLE: &str = "text{font:12px system-ui,sans-serif;fill:#1d2733}.t{font-weight:600;font-size:13px}.m{fill:#5b6877}\
@@ -112,7 +112,7 @@ fn panel(svg: &mut String, title: &str, shown: &[(&str, Vec<&Answer>)], usual: &
         let _ =
             write!(svg, "<rect class='{band}' x='{left}' y='{high:.1}' width='{width}' height='{:.1}'/>", low - high);
     }
-    for tick in [0.25, 0.5, 1.0, 2.0, 4.0] {
+    for tick in [0.25, 0.5, 1.0, 2.0, 4.0, 8.0] {
         let at = y(tick);
         let _ = write!(
             svg,

@@ -17,7 +17,6 @@ const LEAST_BEARABLE: f64 = 0.1;
 /// Share of the stable step that is taken.
 pub(super) const SAFE: f64 = 0.8;
 
-#[derive(Clone)]
 pub(super) struct Pace {
     /// s.
     step: f64,

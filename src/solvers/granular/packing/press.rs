@@ -1,6 +1,6 @@
 //! The plate that presses a bed, and the stages that it goes through.
 
-use super::super::bed::{Bed, BodyState};
+use super::super::bed::Bed;
 use super::super::grains::Grain;
 use super::super::lanes::Real;
 use super::super::measure::unbalance;
@@ -18,8 +18,6 @@ const LOOK: u64 = 200;
 const CALM: usize = 3;
 /// At which loose grains fall and the plate comes down to them, m/s.
 const FALL: f64 = 1.0;
-/// Speeds, m/s, that falling grains do not exceed: a lift whose grains drive each other too deep is laid again, with the next.
-const FASTEST: [f64; 3] = [f64::INFINITY, 1.0, 0.5];
 /// Of the plate once it bears, m/s.
 const SLOW: f64 = 0.2;
 /// At which it goes away, m/s.
@@ -48,8 +46,6 @@ pub(super) struct Press<'a, R: Real, T> {
     level: f64,
     /// While grains are packed; `None` when they have their own inertia again.
     pace: Option<Pace>,
-    /// That grains fall with, m/s.
-    fastest: f64,
     /// Stages in all.
     count: usize,
     tell: T,
@@ -78,7 +74,6 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
             area: length * width,
             level: 0.0,
             pace: Some(Pace::of(recipe)),
-            fastest: f64::INFINITY,
             count: lifts as usize + 2,
             tell,
         };
@@ -93,27 +88,15 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
 
     /// A lift of loose grains is laid on the bed and pressed.
     pub fn lay(&mut self, recipe: &Recipe, number: usize, lift: u32, grains: &[Grain]) -> Result<(), PackingError> {
-        let before = (self.bed.clone(), self.pace.clone());
-        let mut slower = FASTEST.into_iter();
-        loop {
-            self.fastest = slower.next().unwrap_or(f64::INFINITY);
-            match self.lay_once(recipe, number, lift, grains) {
-                Err(PackingError::Failure { .. }) if slower.len() > 0 => (self.bed, self.pace) = before.clone(),
-                outcome => return outcome,
-            }
-        }
-    }
-
-    fn lay_once(&mut self, recipe: &Recipe, number: usize, lift: u32, grains: &[Grain]) -> Result<(), PackingError> {
         let layer = &recipe.layers[number];
         let room = Room { plan: recipe.plan, periodic: [!recipe.ends, !recipe.walls], base: self.top() };
         let mut random = chance(recipe, number, lift);
         let Some((loose, top)) = set_loose(grains, &layer.templates, &room, &mut random) else {
             return Err(PackingError::NoRoom { layer: layer.name.clone() });
         };
-        put(&mut self.bed, &loose, layer, number as u16, FALL.min(self.fastest));
+        put(&mut self.bed, &loose, layer, number as u16, FALL);
         self.bed.set_damping(layer.packing.local_damping);
-        self.lower_from(top, layer.pressure, FALL.min(self.fastest));
+        self.lower_from(top, layer.pressure, FALL);
         let stage = format!("{}, lift {} of {}", layer.name, lift + 1, layer.lifts);
         let goal = Goal { pressure: Some(layer.pressure), unbalance: recipe.rest.lift };
         self.until_rest(&stage, goal, top)?;
@@ -196,7 +179,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         let start = self.bed.time();
         // loose grains need their time to fall, and grains under a lower pressure more time to find their places
         let slower = goal.pressure.map_or(1.0, |pressure| (USUAL / pressure).sqrt().max(1.0));
-        let longest = slower * self.recipe.rest.longest + top / FALL.min(self.fastest);
+        let longest = slower * self.recipe.rest.longest + top / FALL;
         let (mut calm, mut bears) = (0, false);
         loop {
             self.advance(stage)?;
@@ -204,9 +187,6 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
             if let Some(target) = goal.pressure.filter(|target| !bears && pressure > BEARS * target) {
                 bears = true;
                 self.drive(target, SLOW);
-            }
-            if goal.pressure.is_some() && !bears {
-                self.slow();
             }
             let missed = goal.pressure.map_or(0.0, |target| (pressure / target - 1.0).abs());
             let snapshot =
@@ -228,17 +208,6 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
                     None => PackingError::Restless { stage, unbalance, limit: goal.unbalance, time: took },
                 });
             }
-        }
-    }
-
-    /// Grains that fall too fast lose what is too much.
-    fn slow(&mut self) {
-        let fastest = self.fastest;
-        let speed = |state: &BodyState| state.velocity.iter().map(|v| v * v).sum::<f64>().sqrt();
-        let fast: Vec<BodyState> = self.bed.states().filter(|state| speed(state) > fastest).collect();
-        for state in fast {
-            let share = fastest / speed(&state);
-            self.bed.set_velocity(state.id, state.velocity.map(|v| share * v), state.spin);
         }
     }
 
