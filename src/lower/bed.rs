@@ -6,6 +6,7 @@ use crate::solvers::granular::clump::Template;
 use crate::solvers::granular::packing::{Layer as Filling, Packing, Recipe, Rest};
 use crate::solvers::granular::probe::{Outline, Plate, Stillness};
 use crate::solvers::granular::{DashpotMode, Surface};
+use crate::units::number;
 
 /// The bed of a section.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,6 +75,11 @@ fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic
     }
     if grains.iter().any(|(_, granular)| granular.local_damping.value != top.local_damping.value) {
         notes.push(format!("A bed has one local damping: {} of its top layer.", *top.local_damping));
+    }
+    for layer in layers.iter().filter(|layer| layer.lifts > 1 && layer.has_thin_lifts()) {
+        let [name, lift, grain] =
+            [layer.name.clone(), mm(layer.thickness / f64::from(layer.lifts)), mm(layer.curve.ends()[1])];
+        notes.push(format!("Lifts of `{name}` of {lift} mm are thinner than its largest grain of {grain} mm, which bears the plate first."));
     }
     let recipe = Recipe {
         plan,
@@ -186,6 +192,11 @@ fn templates(shape: &Shape, seed: u64) -> Result<Vec<Template>, Box<dyn std::err
         None => Ok(vec![Template::sphere(0.5)?]),
         Some(shape) => Ok(shape.templates(seed)?),
     }
+}
+
+/// A length in mm.
+fn mm(length: f64) -> String {
+    number((length * 1e3).round())
 }
 
 fn refused(why: &str) -> Diagnostic {

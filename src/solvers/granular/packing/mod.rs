@@ -134,6 +134,11 @@ pub const METHOD: u32 = 4;
 const CLUMPS: f64 = 1.03;
 
 impl Layer {
+    /// Whether its largest grain carries the plate before a lift is full.
+    pub fn has_thin_lifts(&self) -> bool {
+        self.thickness / f64::from(self.lifts) < self.curve.ends()[1]
+    }
+
     /// That it will have, before a lift of it has shown its own.
     fn solid_share(&self) -> f64 {
         let spheres = self.templates.iter().all(|template| template.pebbles.len() == 1);
