@@ -43,15 +43,15 @@ fn a_bed_is_packed_once_and_is_the_same_on_any_number_of_threads() {
     let bed: Value = serde_json::from_str(&fs::read_to_string(path("bed/bed.json")).unwrap()).unwrap();
     let layer = &bed["layers"][0];
     let of = |name: &str| layer[name].as_f64().unwrap();
-    // one lift of three grains, which floor and plate loosen all through: 12 % too thick
-    assert!((of("thickness_m") / 0.15 - 1.0).abs() < 0.15, "{layer}");
+    // one lift of three grains, which floor and plate loosen all through
+    assert!((of("thickness_m") / 0.15 - 1.0).abs() < 0.03, "{layer}");
     // spheres of like sizes without friction: close to random close packing, looser at floor, walls and top
     assert!((0.33..0.46).contains(&of("inner_porosity")), "{layer}");
     assert!((4.0..6.5).contains(&of("coordination_pressed")), "{layer}");
     assert!((3.0..of("coordination_pressed")).contains(&of("coordination")), "{layer}");
     assert!(of("grading_error") < 0.02, "{layer}");
     let stages: Vec<&str> = bed["stages"].as_array().unwrap().iter().map(|s| s["name"].as_str().unwrap()).collect();
-    assert_eq!(stages, ["stone, lift 1 of 1", "friction restored", "plate lifted"]);
+    assert_eq!(stages, ["stone, lift 1 of 1", "plate eased", "friction restored", "plate lifted"]);
     for stage in bed["stages"].as_array().unwrap() {
         assert!(stage["state"]["unbalance"].as_f64().unwrap() < 0.011, "{stage}");
     }
@@ -91,7 +91,8 @@ fn what_is_read_off_it_is_sound(bed: &Value) {
     assert!((mean - porosity).abs() < 1e-9, "{mean} and {porosity}");
     let plate = &readings["plate"];
     let [first, again] = [0, 1].map(|k| number(&plate["stiffness_N_per_m"][k]));
-    assert!(1e7 < first && first < again && again < 5e8, "{plate}");
+    // a bed that was pressed is not much stiffer the second time
+    assert!(1e7 < first && 0.9 * first < again && again < 5e8, "{plate}");
     let [ev1, ev2] = [0, 1].map(|k| number(&plate["moduli_Pa"][k]));
     assert!((ev2 / ev1 / (again / first) - 1.0).abs() < 1e-12, "{plate}");
     assert_eq!(number(&plate["sides_m"][0]), 0.3);

@@ -1,24 +1,28 @@
-//! Six panels: settlement and stiffness against wall time, one setting changed in each, with the scatter of packings as a band.
+//! Panels: settlement and stiffness against wall time, one setting changed in each, with the scatter of packings as a band.
 
 use super::Row;
 use super::test::Answer;
 use std::fmt::Write as _;
 
 const WIDTH: f64 = 1180.0;
-const HEIGHT: f64 = 790.0;
+const HEIGHT: f64 = 1140.0;
 const PANEL: (f64, f64) = (320.0, 250.0);
-/// Ends of the vertical axis, over the mean of the usual setting, as powers of two.
+/// Ends of a vertical axis, over the mean of the usual setting, as powers of two: of most panels, and of a setting that changes more.
 const ENDS: [f64; 2] = [-2.0, 3.0];
+const WIDE: [f64; 2] = [-8.0, 4.0];
+/// Of two, named at the side.
+const POWERS: [f64; 10] = [1.0 / 256.0, 1.0 / 64.0, 1.0 / 16.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
 /// Seconds that may be named below.
 const TICKS: [f64; 14] = [5.0, 7.0, 10.0, 15.0, 20.0, 30.0, 40.0, 60.0, 80.0, 100.0, 150.0, 200.0, 300.0, 500.0];
 
-const PANELS: [(&str, &str); 6] = [
-    ("pebbles", "Pebbles a grain (usual: 2 or 3)"),
-    ("scale", "Particle scale (usual: 1)"),
-    ("step", "Mass added as inertia (usual: 0.5 %)"),
-    ("pressure", "Pressure while packed (usual: 200 kPa)"),
-    ("criterion", "Force out of balance of a lift (usual: 0.01)"),
-    ("length", "Length of the cell (usual: 1 bay)"),
+const PANELS: [(&str, &str, [f64; 2]); 7] = [
+    ("friction", "Friction while packed (usual: 0.2)", WIDE),
+    ("pebbles", "Pebbles a grain (usual: 2 or 3)", ENDS),
+    ("scale", "Particle scale (usual: 1)", ENDS),
+    ("pressure", "Pressure while packed (usual: 200 kPa)", ENDS),
+    ("step", "Mass added as inertia (usual: 0.5 %)", ENDS),
+    ("criterion", "Force out of balance of a lift (usual: 0.01)", ENDS),
+    ("length", "Length of the cell (usual: 1 bay)", ENDS),
 ];
 
 const STYLE: &str = "text{font:12px system-ui,sans-serif;fill:#1d2733}.t{font-weight:600;font-size:13px}.m{fill:#5b6877}\
@@ -67,11 +71,11 @@ pub fn draw(rows: &[Row]) -> String {
          <text class='t' x='30' y='28'>Half a sleeper on 0.3 m of ballast, ten cycles of 5 to 60 kN: what each setting costs and changes</text>"
     );
     legend(&mut svg, rows, &usual);
-    for (number, (chart, title)) in PANELS.iter().enumerate() {
+    for (number, (chart, title, ends)) in PANELS.iter().enumerate() {
         let at = (70.0 + (number % 3) as f64 * 385.0, 130.0 + (number / 3) as f64 * 350.0);
         let mut shown = settings(rows, chart);
         shown.push(("usual", usual.clone()));
-        panel(&mut svg, title, &shown, &usual, at);
+        panel(&mut svg, title, *ends, &shown, &usual, at);
     }
     svg.push_str("</svg>\n");
     svg
@@ -96,15 +100,21 @@ fn legend(svg: &mut String, rows: &[Row], usual: &[&Answer]) {
     );
 }
 
-fn panel(svg: &mut String, title: &str, shown: &[(&str, Vec<&Answer>)], usual: &[&Answer], (left, top): (f64, f64)) {
+fn panel(
+    svg: &mut String,
+    title: &str,
+    [lowest, highest]: [f64; 2],
+    shown: &[(&str, Vec<&Answer>)],
+    usual: &[&Answer],
+    (left, top): (f64, f64),
+) {
     let (width, height) = PANEL;
     let seconds = |answers: &[&Answer]| mean(answers, |a| a.packing + a.testing).value;
     let times: Vec<f64> = shown.iter().map(|(_, answers)| seconds(answers)).collect();
     let least = 0.8 * times.iter().copied().fold(f64::INFINITY, f64::min);
     let most = 1.25 * times.iter().copied().fold(0.0, f64::max);
     let x = |time: f64| left + width * (time / least).ln() / (most / least).ln();
-    let y =
-        |value: f64| top + height * (ENDS[1] - value.max(1e-9).log2().clamp(ENDS[0], ENDS[1])) / (ENDS[1] - ENDS[0]);
+    let y = |value: f64| top + height * (highest - value.max(1e-9).log2().clamp(lowest, highest)) / (highest - lowest);
     let _ = write!(svg, "<text class='t' x='{left}' y='{}'>{title}</text>", top - 12.0);
     for (_, band, of) in SERIES.into_iter().rev() {
         let Mean { value, error } = mean(usual, of);
@@ -112,13 +122,14 @@ fn panel(svg: &mut String, title: &str, shown: &[(&str, Vec<&Answer>)], usual: &
         let _ =
             write!(svg, "<rect class='{band}' x='{left}' y='{high:.1}' width='{width}' height='{:.1}'/>", low - high);
     }
-    for tick in [0.25, 0.5, 1.0, 2.0, 4.0, 8.0] {
+    for tick in POWERS.into_iter().filter(|tick| (lowest..=highest).contains(&tick.log2())) {
         let at = y(tick);
         let _ = write!(
             svg,
-            "<path class='a' d='M{left} {at}h{width}'/><text class='m' text-anchor='end' x='{}' y='{}'>{tick}</text>",
+            "<path class='a' d='M{left} {at}h{width}'/><text class='m' text-anchor='end' x='{}' y='{}'>{}</text>",
             left - 6.0,
-            at + 4.0
+            at + 4.0,
+            if tick < 0.25 { format!("1/{}", 1.0 / tick) } else { tick.to_string() }
         );
     }
     for tick in TICKS.into_iter().filter(|tick| (least..most).contains(tick)) {

@@ -1,4 +1,4 @@
-//! What accuracy of a box test costs: pebbles a grain, particle scale, time step, packing pressure and criterion, length of the cell.
+//! What accuracy of a box test costs: pebbles a grain, particle scale, time step, packing friction, pressure and criterion, length of the cell.
 //!
 //! ```sh
 //! cargo run --release --example rig_charts -- docs/charts
@@ -79,6 +79,9 @@ fn cases() -> Vec<Case> {
     }
     for added in [0.0, 0.05, 0.2] {
         add("step", format!("{} %", 100.0 * added), Setting { added, ..usual.clone() });
+    }
+    for friction in ["0", "0.1", "0.3"] {
+        add("friction", friction.into(), usual.clone().set("stone.packing.friction", friction));
     }
     for pressure in [50, 100, 400] {
         add(

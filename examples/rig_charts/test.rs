@@ -11,7 +11,7 @@ const FROM: u64 = 2;
 
 const BOX: &str = "
 use std
-granular stone : ballasts.granite_31_63 { grading.cut_below = 40 mm, packing.lifts = 1 }
+granular stone : ballasts.granite_31_63 { grading.cut_below = 40 mm, packing.lifts = 1, packing.friction = 0.2 }
 trackform bed { sleeper = sleepers.concrete, spacing = 0.6 m, layers = [stone: 300 mm] }
 track box { sections = [bed: 1 sleeper], bed_width = 2.6 m per track }
 load actuator { on = sleepers, at = 1 sleeper, force = cyclic(5 .. 60 kN, 20 Hz) per sleeper, total = 10 cycles }

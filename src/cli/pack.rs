@@ -137,14 +137,8 @@ fn build(plan: &BedPlan) -> Result<Packed<f32>, Diagnostic> {
     let mut bar = progress::Patient::new("the bed");
     let packed = pack::<f32>(&plan.recipe, |progress| bar.at((1e4 * progress.share) as u64, 10_000));
     packed.map_err(|error| {
-        let help = match plan.recipe.layers.iter().find(|layer| layer.has_thin_lifts()) {
-            Some(layer) => format!(
-                "lifts of `{}` are thinner than its largest grain: give its `packing` fewer `lifts`",
-                layer.name
-            ),
-            None => "give the `packing` of the material more `local_damping`, or less `pressure`".to_owned(),
-        };
-        Diagnostic::new(Code::E0810, error.to_string()).help(help)
+        Diagnostic::new(Code::E0810, error.to_string())
+            .help("give the `packing` of the material more `local_damping`, or less `pressure`")
     })
 }
 

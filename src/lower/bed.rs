@@ -76,10 +76,13 @@ fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic
     if grains.iter().any(|(_, granular)| granular.local_damping.value != top.local_damping.value) {
         notes.push(format!("A bed has one local damping: {} of its top layer.", *top.local_damping));
     }
-    for layer in layers.iter().filter(|layer| layer.lifts > 1 && layer.has_thin_lifts()) {
-        let [name, lift, grain] =
-            [layer.name.clone(), mm(layer.thickness / f64::from(layer.lifts)), mm(layer.curve.ends()[1])];
-        notes.push(format!("Lifts of `{name}` of {lift} mm are thinner than its largest grain of {grain} mm, which bears the plate first."));
+    for layer in layers.iter().filter(|layer| layer.lifts_that_fit() < layer.lifts) {
+        let (name, asked, fit) = (&layer.name, layer.lifts, layer.lifts_that_fit());
+        let times = if fit == 1 { "lift" } else { "lifts" };
+        notes.push(format!(
+            "`{name}` is packed in {fit} {times} instead of {asked}: a grain of {} mm would bear the plate of a thinner one alone.",
+            mm(layer.curve.ends()[1])
+        ));
     }
     let recipe = Recipe {
         plan,

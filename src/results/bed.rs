@@ -93,9 +93,7 @@ fn bed_layer(recipe: &Recipe, packed: &Packed<f32>, number: usize) -> BedLayer {
     let asked = &recipe.layers[number];
     let [low, high] = packed.between(number);
     let inset = 0.25 * (high - low);
-    // the last stage is the finished bed, two before it the last lift under the plate without friction
-    let state = |back: usize| packed.stages.len().checked_sub(back).map(|k| packed.stages[k].state.layers[number]);
-    let finished = state(1).unwrap_or_default();
+    let [pressed, finished] = packed.pressed_and_at_rest().map(|state| state.layers[number]);
     BedLayer {
         name: asked.name.clone(),
         bodies: finished.bodies,
@@ -104,7 +102,7 @@ fn bed_layer(recipe: &Recipe, packed: &Packed<f32>, number: usize) -> BedLayer {
         porosity: packed.porosity([low, high]),
         inner_porosity: packed.porosity([low + inset, high - inset]),
         grading_error: packed.samples[number].error(),
-        coordination_pressed: state(3).unwrap_or_default().coordination,
+        coordination_pressed: pressed.coordination,
         coordination: finished.coordination,
         coordination_without_rattlers: finished.without_rattlers,
         rattlers: finished.rattlers as f64 / finished.bodies.max(1) as f64,

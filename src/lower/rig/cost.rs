@@ -4,6 +4,7 @@ use super::{cycles, is_rig, loads, period, rest_time};
 use crate::lower::bed::{confinement, plan};
 use crate::scenario::{Contact, Granular, Scenario, Shape};
 use crate::solvers::granular::grains::Curve;
+use crate::solvers::granular::packing::lifts_that_fit;
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -61,7 +62,7 @@ pub fn rig_cost(scenario: &Scenario) -> Option<RigCost> {
         let count = SOLID * plan * thickness / curve.mean_volume();
         grains += count;
         pebbles += count * pebbles_of(&granular.shape);
-        lifts += granular.packing.lifts;
+        lifts += lifts_that_fit(granular.packing.lifts, *thickness, curve);
         light = light.min(lightest(granular, curve));
     }
     let step = STEP * light;

@@ -2,6 +2,7 @@
 
 use super::super::bed::Bed;
 use super::super::body::{Body, SPHERE};
+use super::super::domain::mirrored;
 use super::super::force::Tangent;
 use super::super::lanes::{BLOCK, Real};
 use super::super::record::Record;
@@ -31,6 +32,12 @@ impl Link {
     /// The two ends that are bodies, with their number in the link.
     pub fn ends(&self) -> impl Iterator<Item = (usize, u32)> {
         self.bodies.into_iter().enumerate().filter(|&(_, body)| body != GROUND)
+    }
+
+    /// The same from its other end.
+    fn turned(self) -> Link {
+        let ([a, b], [from_a, from_b]) = (self.bodies, self.arms);
+        Link { bodies: [b, a], normal: scale(self.normal, -1.0), arms: [from_b, from_a], ..self }
     }
 
     /// Velocity of the first against the second at the contact point.
@@ -97,8 +104,9 @@ impl<R: Real> Bed<R> {
         let pairs = (0..self.contacts.len()).filter(|&place| (self.contacts.first[place] as usize) < self.owner.len());
         let mut pairs: Vec<usize> = pairs.collect();
         pairs.sort_by_cached_key(|&place| {
-            let (a, b) = (self.contacts.first[place], self.contacts.second[place]);
-            (self.name(a), self.name(b), self.contacts.image[place])
+            let [a, b] = [self.contacts.first[place], self.contacts.second[place]].map(|pebble| self.name(pebble));
+            let image = self.contacts.image[place];
+            (a.min(b), a.max(b), if a < b { image } else { mirrored(image) })
         });
         let mut links: Vec<Link> = pairs.into_iter().filter_map(|place| self.pair(place, gap)).collect();
         let mut entries: Vec<usize> = (0..self.wall_contacts.entries.len()).collect();
@@ -181,7 +189,7 @@ impl<R: Real> Bed<R> {
         let normal = scale(apart, 1.0 / distance);
         let mass = reduced(one.mass().to_f64(), other.mass().to_f64());
         let law = &self.laws.all()[usize::from(self.contacts.law[place / BLOCK])];
-        Some(Link {
+        let link = Link {
             bodies: [a, b].map(|pebble| self.name(pebble).0),
             normal,
             arms: [
@@ -190,7 +198,9 @@ impl<R: Real> Bed<R> {
             ],
             tangent: Tangent::of(law, overlap, mass, reduced(one.radius(), other.radius())),
             mass,
-        })
+        };
+        // which of two comes first in a list is chance
+        Some(if self.name(a) < self.name(b) { link } else { link.turned() })
     }
 
     /// From the centroid of a pebble's body to a point given from the pebble's centre.

@@ -135,6 +135,12 @@ impl Curve {
         1.0 / self.classes().map(|class| class.number()).sum::<f64>()
     }
 
+    /// Mean size by surface (Sauter), m: as much surface to its volume as all grains have to theirs.
+    pub fn surface_mean(&self) -> f64 {
+        let [surface, volume] = [2.0, 3.0].map(|power| self.classes().map(|class| class.moment(power)).sum::<f64>());
+        volume / surface
+    }
+
     /// Share of space that frictionless spheres of this curve fill, packed densely by chance (Desmond and Weeks 2014, eq. 3): by
     /// the mean, the scatter and the skewness of their sizes by number.
     pub fn solid_share(&self) -> f64 {

@@ -32,8 +32,10 @@ const GAIN: f64 = 0.2;
 const GONE: f64 = 0.01;
 
 /// Stages after those of the lifts.
-pub(super) const RESTORED: &str = "friction restored";
-pub(super) const LIFTED: &str = "plate lifted";
+pub(super) const LAST: usize = 3;
+const EASED: &str = "plate eased";
+const RESTORED: &str = "friction restored";
+const LIFTED: &str = "plate lifted";
 
 /// A bed under a plate.
 pub(super) struct Press<'a, R: Real, T> {
@@ -64,7 +66,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         let mut bed = recipe.ground();
         let normal = Vector3::new(0.0, 0.0, -1.0);
         let plate = bed.add_wall(Shape::Plane { normal }, Pose::default(), recipe.wall_surface(), Motion::Fixed);
-        let lifts: u32 = recipe.layers.iter().map(|layer| layer.lifts).sum();
+        let lifts: u32 = recipe.layers.iter().map(|layer| layer.lifts_that_fit()).sum();
         let [length, width] = recipe.plan;
         let mut press = Press {
             bed,
@@ -74,7 +76,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
             area: length * width,
             level: 0.0,
             pace: Some(Pace::of(recipe)),
-            count: lifts as usize + 2,
+            count: lifts as usize + LAST,
             tell,
         };
         press.away();
@@ -97,17 +99,19 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         put(&mut self.bed, &loose, layer, number as u16, FALL);
         self.bed.set_damping(layer.packing.local_damping);
         self.lower_from(top, layer.pressure, FALL);
-        let stage = format!("{}, lift {} of {}", layer.name, lift + 1, layer.lifts);
+        let stage = format!("{}, lift {} of {}", layer.name, lift + 1, layer.lifts_that_fit());
         let goal = Goal { pressure: Some(layer.pressure), unbalance: recipe.rest.lift };
         self.until_rest(&stage, goal, top)?;
         self.level = self.height();
         Ok(())
     }
 
-    /// Friction comes back under the plate, and the plate goes. The other way round a bed without friction and load would flow
-    /// for seconds, and lose what the plate has gained.
-    pub fn finish(&mut self, recipe: &Recipe) -> Result<(), PackingError> {
-        let pressure = recipe.layers.last().map(|layer| layer.pressure);
+    /// The plate is eased, friction comes back under what it still bears, and the plate goes. With friction a bed that springs back opens
+    /// a third of its contacts; without friction and without load it would flow for seconds, and lose what the plate has gained.
+    /// `weight` is that of the bed over its area, Pa: half of it is what the plate presses with, as the bed's own weight does inside.
+    pub fn finish(&mut self, recipe: &Recipe, weight: f64) -> Result<(), PackingError> {
+        let pressure = recipe.layers.last().map(|layer| layer.pressure.min(0.5 * weight));
+        self.until_rest(EASED, Goal { pressure, unbalance: recipe.rest.lift }, self.level)?;
         let unbalance = recipe.rest.bed;
         self.pace = None;
         self.bed.unscale_masses();
