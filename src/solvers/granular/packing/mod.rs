@@ -138,10 +138,19 @@ pub struct Progress {
 /// Counts the ways in which beds have been packed and read: another one makes another bed of the same recipe.
 pub const METHOD: u32 = 5;
 
-/// Solid share far from flat surfaces over that of frictionless spheres of the same curve, and what flat surfaces take of it within their
-/// mean grain's size: of spheres, and of clumps. Fitted to fifteen layers of 2 to 10 grains, to 1.5 % (`docs/grains.md`).
-const SPHERES: [f64; 2] = [1.0, 0.133];
-const CLUMPS: [f64; 2] = [1.067, 0.097];
+/// How grains fill space, fitted to layers of 2 to 10 grains: to 1.5 % without friction, 3 % with it (`docs/grains.md`).
+struct Filling {
+    /// Solid share far from flat surfaces, over that of frictionless spheres of the same sizes.
+    far: f64,
+    /// Share of it that flat surfaces take, by the size of the mean grain.
+    flat: f64,
+    /// Share of it that much friction takes; as `1 - exp(-friction / ROUGH)`.
+    friction: f64,
+}
+
+const SPHERES: Filling = Filling { far: 1.0, flat: 0.133, friction: 0.132 };
+const CLUMPS: Filling = Filling { far: 1.067, flat: 0.097, friction: 0.222 };
+const ROUGH: f64 = 0.26;
 
 /// Of a layer so thick (m), none thinner than its largest grain, which would bear the plate alone; at most as many as asked for.
 pub fn lifts_that_fit(asked: u32, thickness: f64, curve: &Curve) -> u32 {
@@ -158,8 +167,10 @@ impl Layer {
     /// Share of its space that it is thought to fill, with this area of flat surfaces to a volume, 1/m.
     fn solid_share(&self, flat: f64) -> f64 {
         let spheres = self.templates.iter().all(|template| template.pebbles.len() == 1);
-        let [far, loosened] = if spheres { SPHERES } else { CLUMPS };
-        far * self.curve.solid_share() * (1.0 - loosened * self.curve.surface_mean() * flat)
+        let filling = if spheres { SPHERES } else { CLUMPS };
+        let loosened = (1.0 - filling.flat * self.curve.surface_mean() * flat)
+            * (1.0 + filling.friction * (-self.packing.friction / ROUGH).exp_m1());
+        filling.far * self.curve.solid_share() * loosened
     }
 }
 
