@@ -91,8 +91,8 @@ fn what_is_read_off_it_is_sound(bed: &Value) {
     assert!((mean - porosity).abs() < 1e-9, "{mean} and {porosity}");
     let plate = &readings["plate"];
     let [first, again] = [0, 1].map(|k| number(&plate["stiffness_N_per_m"][k]));
-    // a bed that was pressed is not much stiffer the second time
-    assert!(1e7 < first && 0.9 * first < again && again < 5e8, "{plate}");
+    // a dense bed is no stiffer the second time, and one of three spheres loses a little
+    assert!(1e7 < first && 0.75 * first < again && again < 5e8, "{plate}");
     let [ev1, ev2] = [0, 1].map(|k| number(&plate["moduli_Pa"][k]));
     assert!((ev2 / ev1 / (again / first) - 1.0).abs() < 1e-12, "{plate}");
     assert_eq!(number(&plate["sides_m"][0]), 0.3);

@@ -20,7 +20,7 @@ use std
 grading coarse { passing = [50 mm: 0 %, 65 mm: 100 %] }
 granular stone {
   grading = coarse, density = 2700 kg/m^3, contact_stiffness = 13 MN/m per contact, friction = 0.7
-  packing = { lifts = 1, pressure = 200 kPa }
+  packing = { lifts = 1, pressure = 200 kPa, friction = 0.2 }
 }
 trackform bed { sleeper = sleepers.B70, spacing = 0.6 m, layers = [stone: 150 mm] }
 track box { sections = [bed: 1 sleeper] }
