@@ -10,14 +10,15 @@ const PANEL: (f64, f64) = (320.0, 250.0);
 /// Ends of a vertical axis, over the mean of the usual setting, as powers of two: of most panels, and of a setting that changes more.
 const ENDS: [f64; 2] = [-2.0, 3.0];
 const WIDE: [f64; 2] = [-8.0, 4.0];
+const HIGH: [f64; 2] = [-2.0, 6.0];
 /// Of two, named at the side.
-const POWERS: [f64; 10] = [1.0 / 256.0, 1.0 / 64.0, 1.0 / 16.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
+const POWERS: [f64; 11] = [1.0 / 256.0, 1.0 / 64.0, 1.0 / 16.0, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 64.0];
 /// Seconds that may be named below.
 const TICKS: [f64; 14] = [5.0, 7.0, 10.0, 15.0, 20.0, 30.0, 40.0, 60.0, 80.0, 100.0, 150.0, 200.0, 300.0, 500.0];
 
 const PANELS: [(&str, &str, [f64; 2]); 7] = [
     ("friction", "Friction while packed (usual: 0.2)", WIDE),
-    ("pebbles", "Pebbles a grain (usual: 2 or 3)", ENDS),
+    ("pebbles", "Pebbles a grain (usual: 2 or 3)", HIGH),
     ("scale", "Particle scale (usual: 1)", ENDS),
     ("pressure", "Pressure while packed (usual: 200 kPa)", ENDS),
     ("step", "Mass added as inertia (usual: 0.5 %)", ENDS),
@@ -90,7 +91,7 @@ fn legend(svg: &mut String, rows: &[Row], usual: &[&Answer]) {
         "<circle class='s' cx='36' cy='52' r='4'/><text x='48' y='56'>settlement from cycle 2 to 10 over its usual mean, {:.3} mm (one packing scatters by {:.0} %)</text>\
          <circle class='k' cx='36' cy='74' r='4'/><text x='48' y='78'>resilient stiffness of cycle 10 over its usual mean, {:.0} MN/m ({:.0} %)</text>\
          <text class='m' x='640' y='56'>Means of {} packings (usual: {}) with standard errors; bands: of the usual.</text>\
-         <text class='m' x='640' y='78'>Across: seconds to pack and test, on one core of two. Tests that failed: {failed}.</text>",
+         <text class='m' x='640' y='78'>Across: seconds to pack and test, on one core of two. Tests that failed: {failed}. * has a mark beyond the axis.</text>",
         1e3 * growth.value,
         scatter(growth),
         1e-6 * stiffness.value,
@@ -145,6 +146,9 @@ fn panel(
         let whole = mean(usual, of).value;
         for ((name, answers), time) in shown.iter().zip(&times) {
             let Mean { value, error } = mean(answers, of);
+            if beyond(value / whole, [lowest, highest]) {
+                continue;
+            }
             let (at, middle) = (x(*time), y(value / whole));
             let (high, low) = (y((value + error) / whole), y((value - error) / whole));
             let open = if *name == "usual" { " o" } else { "" };
@@ -154,11 +158,21 @@ fn panel(
             );
         }
     }
-    names(svg, shown.iter().zip(&times).map(|((name, _), time)| (x(*time), *name)).collect(), top + 14.0);
+    let starred = |name: &str, answers: &[&Answer]| {
+        let lost = |(_, _, of): &Series| beyond(mean(answers, of).value / mean(usual, of).value, [lowest, highest]);
+        format!("{name}{}", if SERIES.iter().any(lost) { "*" } else { "" })
+    };
+    let named = shown.iter().zip(&times).map(|((name, answers), time)| (x(*time), starred(name, answers)));
+    names(svg, named.collect(), top + 14.0);
+}
+
+/// Whether a value, over that of the usual setting, lies outside of an axis.
+fn beyond(value: f64, [lowest, highest]: [f64; 2]) -> bool {
+    !(lowest..=highest).contains(&value.max(1e-9).log2())
 }
 
 /// Names above their marks, in rows where they would lie on each other.
-fn names(svg: &mut String, mut marks: Vec<(f64, &str)>, top: f64) {
+fn names(svg: &mut String, mut marks: Vec<(f64, String)>, top: f64) {
     marks.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut ends = [f64::NEG_INFINITY; 4];
     for (at, name) in marks {

@@ -192,7 +192,7 @@ pub(super) fn listing(scenario: &Scenario) -> String {
     format!(
         "test rig: {} on a packed bed\n\
          grains: about {} of {} pebbles in all, step {} us\n\
-         steps: about {} to pack the bed, {} to test it, {} times\n\
+         steps: about {} to pack the bed, {} to test it{}\n\
          time: about {time} on two cores, within a factor of two\n",
         what_stands(scenario),
         rounded(cost.grains),
@@ -200,7 +200,7 @@ pub(super) fn listing(scenario: &Scenario) -> String {
         number((cost.time_step * 1e7).round() / 10.0),
         rounded(cost.packing_steps),
         rounded(cost.test_steps),
-        cost.repeats
+        if cost.repeats > 1 { format!(", {} times", cost.repeats) } else { String::new() }
     )
 }
 

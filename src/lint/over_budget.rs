@@ -47,12 +47,15 @@ fn of_a_rig(scenario: &Scenario) -> Option<Diagnostic> {
     let budget = scenario.solve.grains.budget.filter(|budget| cost.seconds > **budget)?;
     let about = |value: f64| number(format!("{value:.1e}").parse().unwrap_or(value));
     let message = format!(
-        "the test is expected to take {} on two cores, its budget is {}: {} grains, {} steps, {} packings",
+        "the test is expected to take {} on two cores, its budget is {}: {} grains, {} steps, {}",
         duration(cost.seconds),
         duration(*budget),
         about(cost.grains),
         about(cost.packing_steps + cost.test_steps),
-        cost.repeats
+        match cost.repeats {
+            1 => "one packing".to_owned(),
+            several => format!("{several} packings"),
+        }
     );
     Some(said(message, budget, "fewer cycles or packings, a larger `cut_below` or larger grains (`scale`) cost less"))
 }

@@ -18,7 +18,7 @@ const STAGE: f64 = 0.45;
 const LAST_STAGES: u32 = 3;
 const SET_DOWN: f64 = 0.15;
 /// Steps of a pebble a second on two cores, of clumps of three, while it is packed and tested (`docs/validation.md`).
-const PEBBLE_STEPS: [f64; 2] = [7e6, 14e6];
+const PEBBLE_STEPS: [f64; 2] = [10e6, 20e6];
 
 /// An estimate, good to a factor of two.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
