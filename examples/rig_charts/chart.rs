@@ -91,7 +91,8 @@ fn legend(svg: &mut String, rows: &[Row], usual: &[&Answer]) {
         "<circle class='s' cx='36' cy='52' r='4'/><text x='48' y='56'>settlement from cycle 2 to 10 over its usual mean, {:.3} mm (one packing scatters by {:.0} %)</text>\
          <circle class='k' cx='36' cy='74' r='4'/><text x='48' y='78'>resilient stiffness of cycle 10 over its usual mean, {:.0} MN/m ({:.0} %)</text>\
          <text class='m' x='640' y='56'>Means of {} packings (usual: {}) with standard errors; bands: of the usual.</text>\
-         <text class='m' x='640' y='78'>Across: seconds to pack and test, on one core of two. Tests that failed: {failed}. * has a mark beyond the axis.</text>",
+         <text class='m' x='640' y='78'>Across: seconds to pack and test, on one core of two. Tests that failed: {failed}.</text>\
+         <text class='m' x='640' y='100'>* has a mark beyond its axis.</text>",
         1e3 * growth.value,
         scatter(growth),
         1e-6 * stiffness.value,

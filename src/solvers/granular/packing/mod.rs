@@ -1,5 +1,5 @@
 //! A compacted bed from gradings: lifts of loose grains fall and are pressed by a plate, without friction, until they are at
-//! rest; then friction comes back and the plate goes (Ahmadi et al. 2026, section 2.1.2; methods 1.7).
+//! rest; then the plate is eased, friction comes back and the plate goes (Ahmadi et al. 2026, section 2.1.2).
 //!
 //! The bed is one periodic cell along x or a box with ends, between walls across or periodic there too, on a floor at z = 0. Every stage ends when
 //! forces are in balance, never by a count of steps; one that does not get there is told with what it reached.
