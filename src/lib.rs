@@ -146,6 +146,22 @@ impl Scene {
         self.run_with(|_, _| {})
     }
 
+    /// Runs a test rig in memory: its bed is packed, or taken from where beds are kept, and tested, which takes minutes.
+    pub fn run_rig(&self, beds: &results::Beds) -> Result<results::RigRun, Stopped> {
+        let compiled = self.check().to_run();
+        let refused = |diagnostics: Vec<Diagnostic>| Stopped::refused(diagnostics, &compiled.sources);
+        if compiled.diagnostics.iter().any(Diagnostic::is_error) {
+            return Err(refused(compiled.diagnostics.clone()));
+        }
+        let Some(scenario) = compiled.scenario.as_ref().filter(|scenario| lower::is_rig(scenario)) else {
+            let message = "this scene is no test rig: loads on `sleepers` or a `bed`, layers of grains, no rails";
+            return Err(refused(vec![Diagnostic::new(Code::E0611, message).help("from a program: `Scene::run`")]));
+        };
+        let performed =
+            results::perform_rig(scenario, beds, results::Unfinished::default(), &mut ()).map_err(refused)?;
+        Ok(results::RigRun::gather(scenario, performed, &compiled.sources, fingerprint(&compiled.sources)).0)
+    }
+
     /// Runs it and tells from time to time how many axles of how many have passed.
     pub fn run_with(&self, progress: impl FnMut(u64, u64) + Send) -> Result<Run, Stopped> {
         let compiled = self.check().to_run();
@@ -154,8 +170,8 @@ impl Scene {
             return Err(refused());
         }
         if compiled.scenario.as_ref().is_some_and(lower::is_rig) {
-            let message = "a test rig packs its bed first, which takes minutes: `trackbed run` does so";
-            let help = "from a program: `lower::rig`, `packing::pack` and `rig::Trial`";
+            let message = "a test rig has cycles in the place of passages";
+            let help = "from a program: `Scene::run_rig`";
             let mistake = Diagnostic::new(Code::E0611, message).help(help);
             return Err(Stopped::refused(vec![mistake], &compiled.sources));
         }

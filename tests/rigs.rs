@@ -1,13 +1,15 @@
 //! Test rigs run as a person runs them: from a scene to cycles, a report and a verdict.
 
 use serde_json::Value;
+use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 use trackbed::check::NoModules;
-use trackbed::compile;
 use trackbed::diag::{Code, Diagnostic};
+use trackbed::results::Beds;
+use trackbed::{Scene, compile};
 
 mod common {
     pub mod program;
@@ -278,4 +280,78 @@ fn a_killed_rig_goes_on_with_the_same_answer() {
             fs::read(path(&format!("killed/{file}"))).unwrap() == fs::read(path(&format!("whole/{file}"))).unwrap()
         );
     }
+}
+
+/// Two points that pack alike, one that does not; the study is named after what it varies.
+const STUDY: &str = r#"
+study how {
+  vary   = [actuator.force: [cyclic(5 .. 40 kN, 40 Hz) per sleeper, cyclic(5 .. 60 kN, 40 Hz) per sleeper], stone.density: [2500, 2700] kg/m^3]
+  report = [max(settlement), mean(support_stiffness), mean(porosity)]
+}
+"#;
+
+#[test]
+fn a_study_runs_rigs_and_points_that_pack_alike_share_a_bed() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = scene(directory.path(), &format!("{SCENE}{STUDY}"));
+    let path = |name: &str| directory.path().join(name).display().to_string();
+    let study = |out: &str, more: &[&str]| {
+        trackbed(&[&["study", &scene, "--out", &path(out), "--cache", &path("cache")], more].concat())
+    };
+    let first = study("first", &[]);
+    assert!(first.status.success() && said(&first).contains("4 points"), "{}", said(&first));
+    let rows: Vec<HashMap<String, String>> =
+        csv::Reader::from_path(path("first/study.csv")).unwrap().deserialize().map(Result::unwrap).collect();
+    let settlements: Vec<f64> = rows
+        .iter()
+        .map(|row| row.iter().find(|(name, _)| name.contains("settlement")).unwrap().1.parse().unwrap())
+        .collect();
+    assert_eq!(settlements.len(), 4);
+    // the heavier load settles more in both beds
+    assert!(settlements[0] < settlements[2] && settlements[1] < settlements[3], "{rows:?}");
+    assert_eq!(fs::read_dir(path("cache")).unwrap().count(), 2);
+    // the same answer one after the other, with beds that were kept, and as a run alone
+    let again = study("again", &["--jobs", "1"]);
+    assert!(again.status.success(), "{}", said(&again));
+    for file in ["study.csv", "study.json", "study.html"] {
+        assert!(
+            fs::read(path(&format!("first/{file}"))).unwrap() == fs::read(path(&format!("again/{file}"))).unwrap(),
+            "{file}"
+        );
+    }
+    let alone = Scene::open(&scene).unwrap().run_rig(&Beds::kept_in(path("cache"))).unwrap();
+    let [run, point] = [1e3 * alone.summary.scalars["max_settlement"].value, settlements[3]];
+    assert!((run / point - 1.0).abs() < 1e-12, "{run} {point} mm");
+    let page = fs::read_to_string(path("first/study.html")).unwrap();
+    assert!(page.contains("<section id=\"effects\">") && !page.contains("NaN"));
+}
+
+#[test]
+fn a_study_of_rigs_is_checked_before_it_runs() {
+    let directory = tempfile::tempdir().unwrap();
+    let of = |study: &str| {
+        let scene = scene(directory.path(), &format!("{SCENE}{study}"));
+        let check = trackbed(&["check", &scene]);
+        (check.status.success(), said(&check))
+    };
+    let (sound, told) = of(STUDY);
+    assert!(sound, "{told}");
+    let (sound, told) = of("study how { vary = [stone.friction: [0.5, 0.7]], minimise = max(void) }");
+    assert!(!sound && told.contains("E0705") && told.contains("`void`"), "{told}");
+    // a point with a layer that is none
+    let (sound, told) = of("study how { vary = [bed.layers.stone: [60, 150] mm], minimise = max(settlement) }");
+    assert!(!sound && told.contains("point 1 of 2") && told.contains("(E0511)"), "{told}");
+    let (_, told) =
+        of("study how { vary = [stone.friction: [0.5, 0.7]], minimise = max(settlement), budget = 0.0001 h }");
+    assert!(told.contains("E0709"), "{told}");
+}
+
+#[test]
+fn a_program_that_runs_the_wrong_kind_of_scene_is_told_which_call_is_right() {
+    let rig = Scene::from_text(SCENE);
+    assert!(rig.run().unwrap_err().to_string().contains("Scene::run_rig"));
+    let wrong = rig.set("stone.packing.lifts", "0.5").run_rig(&Beds::not_kept()).unwrap_err();
+    assert!(wrong.to_string().contains("lifts"), "{wrong}");
+    let none = Scene::open("scenarios/static_check.track").unwrap().run_rig(&Beds::not_kept()).unwrap_err();
+    assert!(none.to_string().contains("E0611"), "{none}");
 }

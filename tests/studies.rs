@@ -360,7 +360,9 @@ fn a_study_is_chosen_by_its_name() {
 /// `check` looks at every point of the shipped studies.
 #[test]
 fn the_shipped_studies_are_without_a_mistake() {
-    for name in ["study_speed", "study_pads", "study_support", "study_usp", "study_spacing", "study_wedge"] {
+    for name in
+        ["study_speed", "study_pads", "study_support", "study_usp", "study_spacing", "study_wedge", "study_density"]
+    {
         let file = format!("scenarios/{name}.track");
         let output = trackbed(&["check", &file]);
         assert_eq!((output.status.code(), said(&output)), (Some(0), format!("{file}: no errors\n")));

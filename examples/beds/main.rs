@@ -11,16 +11,16 @@
 //! With a word only cases that have it in their name. Tables are CSV on standard output; what it does meanwhile stands on standard error. The last three pack as many cells at a time as there are
 //! cores, each with a core of its own.
 
-#[path = "../grain_charts/turns.rs"]
-mod turns;
-
 use std::time::Instant;
-use trackbed::results;
+use trackbed::results::Beds;
 use trackbed::solvers::granular::clump::Template;
 use trackbed::solvers::granular::grains::{ClumpShape, Curve};
-use trackbed::solvers::granular::packing::{Layer, Order, Packed, Packing, PackingError, Recipe, Rest, lay, pack};
+use trackbed::solvers::granular::packing::{
+    Layer, Order, Packed, Packing, PackingError, Progress, Recipe, Rest, lay, pack,
+};
 use trackbed::solvers::granular::probe::{Outline, Plate, Stillness, probe};
 use trackbed::solvers::granular::{DashpotMode, Surface};
+use trackbed::study::turns;
 
 const USAGE: &str = "beds cell [seed] | track BAYS [CELLS] | seeds COUNT | readings [WORD] | accuracy [WORD]";
 
@@ -96,25 +96,39 @@ fn packed(recipe: &Recipe) -> (Packed<f32>, f64) {
 }
 
 fn tried(recipe: &Recipe) -> Result<(Packed<f32>, f64), PackingError> {
-    let start = Instant::now();
-    let mut last = String::new();
-    let packed = pack::<f32>(recipe, |progress| {
-        if progress.stage != last {
-            eprintln!("{:7.1} s  {}: {} grains", start.elapsed().as_secs_f64(), progress.stage, progress.bodies);
-            last.clone_from(&progress.stage);
+    let mut told = Told::from_now();
+    let packed = pack::<f32>(recipe, |progress| told.stage(progress))?;
+    Ok((packed, told.start.elapsed().as_secs_f64()))
+}
+
+/// Says of each stage when it begins.
+struct Told {
+    start: Instant,
+    last: String,
+}
+
+impl Told {
+    fn from_now() -> Told {
+        Told { start: Instant::now(), last: String::new() }
+    }
+
+    fn stage(&mut self, progress: &Progress) {
+        if progress.stage != self.last {
+            eprintln!("{:7.1} s  {}: {} grains", self.start.elapsed().as_secs_f64(), progress.stage, progress.bodies);
+            self.last.clone_from(&progress.stage);
         }
-    });
-    Ok((packed?, start.elapsed().as_secs_f64()))
+    }
 }
 
 /// The bed, built once and kept below the folder of temporary files.
 fn kept(recipe: &Recipe) -> Packed<f32> {
-    let cache = std::env::temp_dir().join("trackbed_beds");
-    results::kept_bed(&cache, recipe).unwrap_or_else(|| {
-        let (packed, _) = packed(recipe);
-        results::keep_bed(&cache, recipe, &packed).expect("a folder to write to");
-        packed
-    })
+    let beds = Beds::kept_in(std::env::temp_dir().join("trackbed_beds"));
+    let mut told = Told::from_now();
+    let found = beds.bed(recipe, |progress| told.stage(progress)).unwrap_or_else(|error| {
+        eprintln!("{}", error.message);
+        std::process::exit(1)
+    });
+    found.packed
 }
 
 fn cell(seed: u64) {
@@ -204,10 +218,11 @@ fn peak_memory() -> f64 {
 /// A row for each case, as many at a time as there are cores.
 fn table(cases: &[(String, Recipe)]) {
     println!("{HEADER}");
-    turns::each(cases, |(name, recipe)| match tried(recipe) {
+    turns::each(cases, turns::cores(), |(name, recipe)| match tried(recipe) {
         Ok((packed, seconds)) => println!("{}", row(name, &packed, seconds, plate_stiffness(recipe, &packed))),
         Err(error) => eprintln!("{name}: {error}"),
-    });
+    })
+    .expect("threads");
 }
 
 /// Under half a sleeper to 100 kPa, first and second loading, N/m.

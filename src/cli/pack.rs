@@ -7,8 +7,8 @@ use crate::Compiled;
 use crate::diag::{Code, Diagnostic, render};
 use crate::lower::{self, BedPlan};
 use crate::report::{BedPage, Side};
-use crate::results::{self, BedReadings, BedSummary};
-use crate::solvers::granular::packing::{Packed, pack};
+use crate::results::{self, BedReadings, BedSummary, Beds, FoundBed};
+use crate::solvers::granular::packing::{Packed, Progress};
 use crate::units::number;
 use std::path::{Path, PathBuf};
 
@@ -50,12 +50,12 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         terminal::error(&format!("cannot make the directory `{}`: {error}", out.display()));
         return Outcome::Failed;
     }
-    let cache = cache(arguments.fresh, arguments.cache.as_deref());
-    let (mut packed, kept) = match kept_or_built(cache.as_deref(), &plan) {
+    let beds = if arguments.fresh { Beds::not_kept() } else { beds(arguments.cache.as_deref()) };
+    let (mut packed, kept) = match kept_or_built(&beds, &plan) {
         Ok(found) => found,
         Err(mistake) => return stop(&compiled, &[mistake]),
     };
-    let readings = match read(cache.as_deref(), &plan, &packed) {
+    let readings = match read(beds.folder(), &plan, &packed) {
         Ok(readings) => readings,
         Err(message) => {
             terminal::error(&message);
@@ -70,8 +70,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         return Outcome::Failed;
     }
     let told = tell(arguments, &summary, kept);
-    let further =
-        arguments.track.further(&plan).iter().map(|plan| Ok(kept_or_built(cache.as_deref(), plan)?.0)).collect();
+    let further = arguments.track.further(&plan).iter().map(|plan| Ok(kept_or_built(&beds, plan)?.0)).collect();
     let cells = match further {
         Ok::<Vec<_>, Diagnostic>(further) => [vec![packed], further].concat(),
         Err(mistake) => return stop(&compiled, &[mistake]),
@@ -108,38 +107,30 @@ fn chosen(arguments: &Arguments, plans: Vec<BedPlan>) -> Result<BedPlan, Vec<Dia
 }
 
 /// Where beds are kept: where the user says, else where programs of this machine keep what they can build again.
-pub(super) fn cache(fresh: bool, given: Option<&Path>) -> Option<PathBuf> {
-    if fresh {
-        return None;
-    }
+pub(super) fn beds(given: Option<&Path>) -> Beds {
     let home = || Some(PathBuf::from(std::env::var_os("HOME")?).join(".cache"));
     let usual = || Some(std::env::var_os("XDG_CACHE_HOME").map(PathBuf::from).or_else(home)?.join("trackbed/beds"));
-    given.map(Path::to_path_buf).or_else(usual)
+    given.map(Path::to_path_buf).or_else(usual).map_or_else(Beds::not_kept, Beds::kept_in)
 }
 
 /// The bed of a plan and whether it was there already; a new one is kept.
-pub(super) fn kept_or_built(cache: Option<&Path>, plan: &BedPlan) -> Result<(Packed<f32>, bool), Diagnostic> {
-    if let Some(packed) = cache.and_then(|cache| results::kept_bed(cache, &plan.recipe)) {
-        return Ok((packed, true));
-    }
-    let packed = build(plan)?;
-    if let Some(cache) = cache
-        && let Err(error) = results::keep_bed(cache, &plan.recipe, &packed)
-    {
-        terminal::error(&format!("the bed is not kept: {error}"));
-    }
-    // what comes later must not know whether the bed was kept: it goes on from what is stored in both cases
-    let packed = Packed::restore(packed.store()).map_err(|error| Diagnostic::new(Code::E0810, error.to_string()))?;
-    Ok((packed, false))
+fn kept_or_built(beds: &Beds, plan: &BedPlan) -> Result<(Packed<f32>, bool), Diagnostic> {
+    let mut bar = progress::Patient::new("the bed");
+    let found = beds.bed(&plan.recipe, |progress| at(&mut bar, progress))?;
+    tell_loss(&found);
+    Ok((found.packed, found.was_kept))
 }
 
-fn build(plan: &BedPlan) -> Result<Packed<f32>, Diagnostic> {
-    let mut bar = progress::Patient::new("the bed");
-    let packed = pack::<f32>(&plan.recipe, |progress| bar.at((1e4 * progress.share) as u64, 10_000));
-    packed.map_err(|error| {
-        Diagnostic::new(Code::E0810, error.to_string())
-            .help("give the `packing` of the material more `local_damping`, or less `pressure`")
-    })
+/// How far packing is.
+pub(super) fn at(bar: &mut progress::Patient, progress: &Progress) {
+    bar.at((1e4 * progress.share) as u64, 10_000);
+}
+
+/// A bed that cannot be kept is there all the same.
+pub(super) fn tell_loss(found: &FoundBed) {
+    if let Some(error) = &found.loss {
+        terminal::error(&format!("the bed is not kept: {error}"));
+    }
 }
 
 /// What is read off the bed, from before where it was kept.

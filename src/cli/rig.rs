@@ -2,17 +2,16 @@
 
 use super::{Outcome, pack, progress, report, run, terminal};
 use crate::diag::{Code, Diagnostic, render};
-use crate::lower::{self, RigPlan};
-use crate::results::{self, RigRun, RigView, Tested, checkpoint};
-use crate::scenario::{Loading, RigLoad, Scenario, Target};
+use crate::lower;
+use crate::results::{self, Beds, Follow, FoundBed, RigRun, RigView, Tested, Unfinished, checkpoint};
+use crate::scenario::Scenario;
 use crate::solvers::granular::Bed;
-use crate::solvers::granular::packing::Packed;
-use crate::solvers::granular::rig::{RigError, Stored, Trial};
+use crate::solvers::granular::packing::Progress;
+use crate::solvers::granular::rig::{Stored, Trial};
 use crate::units::number;
 use crate::{Compiled, fingerprint};
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Time between two checkpoints.
@@ -21,34 +20,29 @@ const KEEP: Duration = Duration::from_secs(20);
 /// Where a rig is run, and how.
 pub(super) struct Options<'a> {
     pub out: &'a Path,
-    /// Where packed beds are kept.
-    pub cache: Option<PathBuf>,
+    pub beds: Beds,
     pub resume: bool,
-}
-
-/// An unfinished run.
-#[derive(Serialize, Deserialize)]
-struct Unfinished {
-    done: Vec<Tested>,
-    running: Option<Stored<f32>>,
 }
 
 /// A rig on its way.
 struct Work<'a> {
-    scenario: &'a Scenario,
     options: &'a Options<'a>,
     hash: String,
+    /// Of the bed, then of its test.
+    bar: progress::Patient,
+    /// When something was kept last.
+    kept: Instant,
 }
 
 /// Runs the rig of a scene into a directory that is ready for it.
 pub(super) fn run_rig(compiled: &Compiled, scenario: &Scenario, options: &Options<'_>) -> Outcome {
     let started = Instant::now();
-    let work = Work { scenario, options, hash: fingerprint(&compiled.sources) };
-    match work.tests() {
-        Ok((plan, tests, bed)) => {
+    let mut work = Work { options, hash: fingerprint(&compiled.sources), bar: bed_bar(), kept: started };
+    let performed = work.unfinished().map_err(|mistake| vec![mistake]);
+    match performed.and_then(|from| results::perform_rig(scenario, &options.beds, from, &mut work)) {
+        Ok(performed) => {
             let computed = started.elapsed().as_secs_f64();
-            let (sources, hash) = (&compiled.sources, work.hash.clone());
-            let rig = RigRun::gather(scenario, &plan, tests, sources, hash, listing(scenario));
+            let (rig, bed) = RigRun::gather(scenario, performed, &compiled.sources, work.hash.clone());
             let expectations = rig.summary.expectations.clone();
             match work.write(rig, bed, computed) {
                 Ok(told) => terminal::out(&told),
@@ -64,87 +58,48 @@ pub(super) fn run_rig(compiled: &Compiled, scenario: &Scenario, options: &Option
     }
 }
 
-impl Work<'_> {
-    /// A test of each packing, and the bed of the last as it ended.
-    fn tests(&self) -> Result<(RigPlan, Vec<Tested>, Bed<f32>), Vec<Diagnostic>> {
-        let Unfinished { mut done, mut running } = self.unfinished().map_err(|mistake| vec![mistake])?;
-        let repeats = u64::from(self.scenario.solve.grains.repeats.max(1));
-        loop {
-            let mut scenario = self.scenario.clone();
-            scenario.solve.seed = self.scenario.solve.seed.wrapping_add(done.len() as u64);
-            let plan = lower::rig(&scenario)?;
-            let cache = self.options.cache.as_deref();
-            let (packed, _) = pack::kept_or_built(cache, &plan.bed).map_err(|mistake| vec![mistake])?;
-            let (tested, bed) = self
-                .test(&plan, packed, running.take(), &done, scenario.solve.seed)
-                .map_err(|mistake| vec![mistake])?;
-            done.push(tested);
-            if done.len() as u64 == repeats {
-                return Ok((plan, done, bed));
-            }
-            self.keep(&done, None).map_err(|mistake| vec![mistake])?;
-        }
+fn bed_bar() -> progress::Patient {
+    progress::Patient::new("the bed")
+}
+
+impl Follow for Work<'_> {
+    fn packing(&mut self, progress: &Progress) {
+        pack::at(&mut self.bar, progress);
     }
 
+    fn found(&mut self, found: &FoundBed) {
+        pack::tell_loss(found);
+        self.bar = progress::Patient::new("the test");
+    }
+
+    fn piece(&mut self, done: &[Tested], trial: &Trial<'_, f32>) -> Result<(), Diagnostic> {
+        self.bar.at(trial.done(), trial.pieces());
+        if trial.at_end_of_cycle() && self.kept.elapsed() > KEEP {
+            self.keep(done, Some(trial.store()))?;
+        }
+        Ok(())
+    }
+
+    fn tested(&mut self, done: &[Tested]) -> Result<(), Diagnostic> {
+        self.bar = bed_bar();
+        self.keep(done, None)
+    }
+}
+
+impl Work<'_> {
     fn unfinished(&self) -> Result<Unfinished, Diagnostic> {
         let read = || checkpoint::read(self.options.out, &self.hash);
         let found = self.options.resume.then(read).transpose().map_err(|error| {
             Diagnostic::new(Code::E0803, error.to_string()).help("run without `--resume`, with `--force`")
         })?;
-        Ok(found.flatten().unwrap_or(Unfinished { done: Vec::new(), running: None }))
+        Ok(found.flatten().unwrap_or_default())
     }
 
     /// Keeps what there is, to go on from.
-    fn keep(&self, done: &[Tested], running: Option<Stored<f32>>) -> Result<(), Diagnostic> {
+    fn keep(&mut self, done: &[Tested], running: Option<Stored<f32>>) -> Result<(), Diagnostic> {
         checkpoint::write(self.options.out, &self.hash, &Unfinished { done: done.to_vec(), running })
-            .map_err(|error| Diagnostic::new(Code::E0802, error.to_string()))
-    }
-
-    fn test(
-        &self,
-        plan: &RigPlan,
-        mut packed: Packed<f32>,
-        running: Option<Stored<f32>>,
-        done: &[Tested],
-        seed: u64,
-    ) -> Result<(Tested, Bed<f32>), Diagnostic> {
-        let bed = results::bed_summary(&self.scenario.title, &plan.bed, &packed, None);
-        let rig = plan.on(packed.levels.last().copied().unwrap_or_default());
-        let mut bar = progress::Patient::new("the test");
-        let mut trial = match running {
-            Some(stored) => Trial::restore(stored, &rig)
-                .map_err(|error| Diagnostic::new(Code::E0803, error.to_string()).help("run with `--force`"))?,
-            None => {
-                let failed = |failure| diagnose(&RigError::Failure { cycle: 0, failure });
-                let whole =
-                    if plan.copies == 1 { packed.bed } else { packed.bed.replicate(plan.copies).map_err(failed)? };
-                Trial::new(whole, &rig, |_| {}).map_err(|error| diagnose(&error))?
-            }
-        };
-        self.load(&mut trial, done, &mut bar)?;
-        let tested = Tested {
-            seed,
-            bed,
-            cycles: trial.cycles().to_vec(),
-            samples: trial.samples().to_vec(),
-            readings: trial.readings().to_vec(),
-            specimen: trial.specimen().to_vec(),
-            steps: trial.steps(),
-        };
-        Ok((tested, trial.bed))
-    }
-
-    /// Runs a test to its end, and keeps what there is from time to time.
-    fn load(&self, trial: &mut Trial<'_, f32>, done: &[Tested], bar: &mut progress::Patient) -> Result<(), Diagnostic> {
-        let mut kept = Instant::now();
-        let pieces = trial.pieces();
-        while trial.advance().map_err(|error| diagnose(&error))? {
-            bar.at(trial.done(), pieces);
-            if trial.at_end_of_cycle() && kept.elapsed() > KEEP {
-                self.keep(done, Some(trial.store()))?;
-                kept = Instant::now();
-            }
-        }
+            .map_err(|error| Diagnostic::new(Code::E0802, error.to_string()))?;
+        self.kept = Instant::now();
         Ok(())
     }
 
@@ -169,52 +124,6 @@ impl Work<'_> {
         results::write_rig(&view, out).map_err(|error| failure(&error))?;
         checkpoint::remove(out).map_err(|error| failure(&error))?;
         Ok(summary(&view.run, &page, computed))
-    }
-}
-
-fn diagnose(error: &RigError) -> Diagnostic {
-    match error {
-        RigError::Restless { .. } => Diagnostic::new(Code::E0811, error.to_string())
-            .help("give the `packing` of the material more `pressure`, or its grains more `friction`"),
-        _ => Diagnostic::new(Code::E0812, error.to_string()).help("is the `force` meant `per sleeper` or `per seat`?"),
-    }
-}
-
-/// What the plan says of a rig.
-pub(super) fn listing(scenario: &Scenario) -> String {
-    let Some(cost) = lower::rig_cost(scenario) else { return String::new() };
-    let rounded = |value: f64| number(format!("{value:.2e}").parse().unwrap_or(value));
-    let time = match cost.seconds {
-        seconds if seconds < 120.0 => format!("{} s", seconds.ceil()),
-        seconds if seconds < 7200.0 => format!("{} min", (seconds / 60.0).ceil()),
-        seconds => format!("{} h", (seconds / 3600.0).ceil()),
-    };
-    format!(
-        "test rig: {} on a packed bed\n\
-         grains: about {} of {} pebbles in all, step {} us\n\
-         steps: about {} to pack the bed, {} to test it{}\n\
-         time: about {time} on two cores, within a factor of two\n",
-        what_stands(scenario),
-        rounded(cost.grains),
-        rounded(cost.pebbles),
-        number((cost.time_step * 1e7).round() / 10.0),
-        rounded(cost.packing_steps),
-        rounded(cost.test_steps),
-        if cost.repeats > 1 { format!(", {} times", cost.repeats) } else { String::new() }
-    )
-}
-
-fn what_stands(scenario: &Scenario) -> String {
-    let count = scenario.track.seats.len();
-    let plate = |load: &RigLoad| load.on == Target::Bed;
-    if matches!(&scenario.loading, Some(Loading::Rig(loads)) if loads.iter().any(|load| load.confinement.is_some())) {
-        "a plate on a specimen whose sides give way,".to_owned()
-    } else if matches!(&scenario.loading, Some(Loading::Rig(loads)) if loads.iter().any(plate)) {
-        "a plate".to_owned()
-    } else if count == 1 {
-        "1 sleeper".to_owned()
-    } else {
-        format!("{count} sleepers")
     }
 }
 
@@ -253,7 +162,7 @@ pub(super) fn plan(scenario: &Scenario, compiled: &Compiled, json: bool) -> Outc
         },
         Ok(plan) => {
             let notes: String = plan.bed.notes.iter().map(|note| format!("{note}\n")).collect();
-            terminal::out(&format!("{}{notes}", listing(scenario)));
+            terminal::out(&format!("{}{notes}", lower::rig_listing(scenario)));
             Outcome::Fine
         }
         Err(mistakes) => {

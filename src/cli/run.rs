@@ -109,8 +109,8 @@ fn run_rig(arguments: &Arguments, compiled: &Compiled, scenario: &Scenario) -> O
         let help = "give another `--out`, or `--resume` or `--force`";
         return stop(compiled, Diagnostic::new(Code::E0802, message).help(help));
     }
-    let cache = pack::cache(false, arguments.cache.as_deref());
-    let options = rig::Options { out: &arguments.out, cache, resume: arguments.resume };
+    let beds = pack::beds(arguments.cache.as_deref());
+    let options = rig::Options { out: &arguments.out, beds, resume: arguments.resume };
     rig::run_rig(compiled, scenario, &options)
 }
 

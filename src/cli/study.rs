@@ -2,17 +2,16 @@
 
 use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
 use super::study_folder::{StudyFolder, Taken};
-use super::{Outcome, progress, terminal};
+use super::{Outcome, pack, progress, terminal};
 use crate::check::{Folder, Remembered};
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, has_errors, or_list, render};
+use crate::results::Beds;
 use crate::scenario::Study;
-use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Scene};
+use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Scene, turns};
 use crate::units::number;
-use crate::{Compiled, report};
+use crate::{Compiled, lower, report};
 use clap::ValueEnum;
-use indicatif::ProgressBar;
-use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::Instant;
@@ -38,6 +37,9 @@ pub(super) struct Arguments {
     /// Replace the results of another study in that directory.
     #[arg(long)]
     force: bool,
+    /// Where the packed beds of test rigs are kept, by what made them
+    #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]
+    cache: Option<PathBuf>,
     /// Where points run.
     #[arg(long, value_enum, default_value = "local")]
     executor: Executor,
@@ -63,7 +65,8 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     if failed(&compiled) {
         return Outcome::Failed;
     }
-    if compiled.scenario.is_none() || compiled.graph.is_none() {
+    let is_rig = compiled.scenario.as_ref().is_some_and(lower::is_rig);
+    if compiled.scenario.is_none() || compiled.graph.is_none() && !is_rig {
         return not_yet(&compiled);
     }
     let study = match chosen(&compiled, arguments.name.as_deref()) {
@@ -73,14 +76,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             return Outcome::Usage;
         }
     };
-    let threads = arguments.jobs.map_or(0, usize::from);
-    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(|| in_pool(arguments, &scene, &modules, &compiled, study)),
-        Err(error) => {
-            terminal::error(&format!("cannot start {threads} threads: {error}"));
-            Outcome::Failed
-        }
-    }
+    with_scene(&scene, &modules, &compiled, |scene| run_study(arguments, scene, &compiled, study))
 }
 
 /// The study of that name, or the only one.
@@ -121,48 +117,42 @@ fn with_scene<T>(
     f(Scene { name: &name, text, modules, set: &arguments.set })
 }
 
-fn in_pool(
-    arguments: &Arguments,
-    edited: &SceneArguments,
-    modules: &Asked,
-    compiled: &Compiled,
-    study: &Study,
-) -> Outcome {
-    with_scene(edited, modules, compiled, |scene| {
-        let plan = study::plan(scene, compiled, study);
-        say(&plan.diagnostics, compiled);
-        if has_errors(&plan.diagnostics) {
+fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study: &Study) -> Outcome {
+    let plan = study::plan(scene, compiled, study);
+    say(&plan.diagnostics, compiled);
+    if has_errors(&plan.diagnostics) {
+        return Outcome::Failed;
+    }
+    let folder = match StudyFolder::prepare(&arguments.out, &plan, compiled, arguments.resume, arguments.force) {
+        Ok(folder) => folder,
+        Err(taken) => {
+            say(&[refused(&taken)], compiled);
             return Outcome::Failed;
         }
-        let folder = match StudyFolder::prepare(&arguments.out, &plan, compiled, arguments.resume, arguments.force) {
-            Ok(folder) => folder,
-            Err(taken) => {
-                say(&[refused(&taken)], compiled);
-                return Outcome::Failed;
-            }
-        };
-        announce(&plan);
-        let started = Instant::now();
-        let results = match perform(scene, &plan, &folder) {
-            Ok(results) => results,
-            Err(message) => {
-                say(&[Diagnostic::new(Code::E0802, message).help("go on with `--resume`")], compiled);
-                return Outcome::Failed;
-            }
-        };
-        let title = compiled.scenario.as_ref().map_or("", |s| s.title.as_str());
-        let answer = Answer::new(title, &plan, results);
-        let name = arguments.scene.file.file_name().unwrap_or_default().to_string_lossy();
-        let best = answer.best().first().map(|index| scene.compile(&plan.points[*index].overrides));
-        let design = best.as_ref().and_then(|compiled| compiled.scenario.as_ref());
-        let page = report::study_page(&answer, &name, design);
-        if let Err(message) = folder.finish(&answer, &page, compiled, started.elapsed().as_secs_f64()) {
-            say(&[Diagnostic::new(Code::E0802, message)], compiled);
+    };
+    let jobs = arguments.jobs.map_or_else(turns::cores, usize::from);
+    announce(&plan, jobs);
+    let started = Instant::now();
+    let beds = pack::beds(arguments.cache.as_deref());
+    let results = match perform(scene, &plan, &folder, &beds, jobs) {
+        Ok(results) => results,
+        Err(message) => {
+            say(&[Diagnostic::new(Code::E0802, message).help("go on with `--resume`")], compiled);
             return Outcome::Failed;
         }
-        summary(&answer, &arguments.out, started.elapsed().as_secs_f64());
-        failures(&answer, compiled)
-    })
+    };
+    let title = compiled.scenario.as_ref().map_or("", |s| s.title.as_str());
+    let answer = Answer::new(title, &plan, results);
+    let name = arguments.scene.file.file_name().unwrap_or_default().to_string_lossy();
+    let best = answer.best().first().map(|index| scene.compile(&plan.points[*index].overrides));
+    let design = best.as_ref().and_then(|compiled| compiled.scenario.as_ref());
+    let page = report::study_page(&answer, &name, design);
+    if let Err(message) = folder.finish(&answer, &page, compiled, started.elapsed().as_secs_f64(), jobs) {
+        say(&[Diagnostic::new(Code::E0802, message)], compiled);
+        return Outcome::Failed;
+    }
+    summary(&answer, &arguments.out, started.elapsed().as_secs_f64());
+    failures(&answer, compiled)
 }
 
 fn refused(taken: &Taken) -> Diagnostic {
@@ -182,7 +172,7 @@ fn say(diagnostics: &[Diagnostic], compiled: &Compiled) {
 }
 
 /// What is about to run.
-fn announce(plan: &Plan) {
+fn announce(plan: &Plan, jobs: usize) {
     let runs = plan.points.len() * plan.study.repeats as usize;
     let left_out = match plan.left_out {
         0 => String::new(),
@@ -194,7 +184,7 @@ fn announce(plan: &Plan) {
         plan.study.name,
         plan.points.len(),
         duration(plan.seconds()),
-        rayon::current_num_threads()
+        jobs
     ));
 }
 
@@ -207,33 +197,37 @@ fn duration(seconds: f64) -> String {
 }
 
 /// Runs what has not run yet and keeps each point as soon as it is there. The order of the answer is that of the design.
-fn perform(scene: Scene<'_>, plan: &Plan, folder: &StudyFolder) -> Result<Vec<PointResult>, String> {
-    let bar = progress::share();
-    bar.set_message(format!("{} points", plan.points.len()));
-    let done = Mutex::new(0.0);
+fn perform(
+    scene: Scene<'_>,
+    plan: &Plan,
+    folder: &StudyFolder,
+    beds: &Beds,
+    jobs: usize,
+) -> Result<Vec<PointResult>, String> {
+    let done = Mutex::new((0.0, progress::Patient::new("the study")));
     let whole = plan.seconds().max(1e-9);
     let one = |point: &PlannedPoint| {
         let result = match folder.known(point) {
             Some(result) => result,
             None => {
-                let result = study::perform(scene, &plan.study, point);
+                let result = study::perform(scene, &plan.study, point, beds);
                 folder.keep(&result)?;
                 result
             }
         };
-        advance(&bar, &done, point.seconds * f64::from(plan.study.repeats) / whole);
+        advance(&done, point.seconds * f64::from(plan.study.repeats) / whole);
         Ok(result)
     };
-    let results = plan.points.par_iter().map(one).collect();
-    bar.finish_and_clear();
-    results
+    let results = turns::each(&plan.points, jobs, one).map_err(|error| format!("cannot start threads: {error}"))?;
+    results.into_iter().collect()
 }
 
 /// Points differ in cost: the bar counts thousandths of the estimate.
-fn advance(bar: &ProgressBar, done: &Mutex<f64>, share: f64) {
+fn advance(done: &Mutex<(f64, progress::Patient)>, share: f64) {
     if let Ok(mut done) = done.lock() {
-        *done += share;
-        progress::at(bar, (*done * 1e3) as u64, 1000);
+        let (all, bar) = &mut *done;
+        *all += share;
+        bar.at((*all * 1e3) as u64, 1000);
     }
 }
 

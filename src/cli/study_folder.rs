@@ -83,10 +83,17 @@ impl StudyFolder {
     }
 
     /// Writes the answer; equal studies leave equal bytes but for the timings.
-    pub fn finish(&self, answer: &Answer, page: &str, compiled: &Compiled, seconds: f64) -> Result<(), String> {
+    pub fn finish(
+        &self,
+        answer: &Answer,
+        page: &str,
+        compiled: &Compiled,
+        seconds: f64,
+        jobs: usize,
+    ) -> Result<(), String> {
         let mut found = answer.json();
         found["provenance"] = provenance(compiled);
-        let timings = json!({ "total_s": seconds, "jobs": rayon::current_num_threads() });
+        let timings = json!({ "total_s": seconds, "jobs": jobs });
         let texts = [answer.csv()?, text(&found)?, page.to_string(), text(&timings)?];
         ANSWERS.iter().zip(texts).try_for_each(|(name, text)| write(&self.directory.join(name), &text))
     }

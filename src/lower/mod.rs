@@ -9,7 +9,7 @@ mod rig;
 mod schedule;
 
 pub use bed::{BedPlan, beds};
-pub use rig::{RigCost, RigPlan, is_rig, rig, rig_cost};
+pub use rig::{RigCost, RigPlan, is_rig, rig, rig_cost, rig_listing};
 
 use crate::diag::{Code, Diagnostic, Severity};
 use crate::graph::{Decision, Graph, NamedLaw, Schedule, SubstructureNode, TrackNode};

@@ -1,37 +1,10 @@
-//! Packed beds that were built before, by what made them: a folder with one folder for each recipe.
+//! What people read off a packed bed.
 
-use super::{BedReadings, ResultsError, checkpoint};
+use super::{BedReadings, bed_hash};
 use crate::lower::BedPlan;
-use crate::solvers::granular::packing::{METHOD, Packed, Recipe, Stage, Stored};
+use crate::solvers::granular::packing::{Packed, Recipe, Stage};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
-use std::path::Path;
 
-/// Names what a recipe makes: the same recipe gives the same bed, bit by bit, for one version of the program.
-pub fn bed_hash(recipe: &Recipe) -> String {
-    hash_of(recipe)
-}
-
-pub(super) fn hash_of(what: &impl Serialize) -> String {
-    let text = format!("{METHOD} {}", serde_json::to_string(what).unwrap_or_default());
-    let digest = Sha256::digest(text.as_bytes());
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-/// A bed of this recipe that was kept; `None` where there is none that can be used.
-pub fn kept_bed(cache: &Path, recipe: &Recipe) -> Option<Packed<f32>> {
-    let hash = bed_hash(recipe);
-    let stored: Stored<f32> = checkpoint::read(&cache.join(&hash), &hash).ok()??;
-    Packed::restore(stored).ok()
-}
-
-/// Keeps a bed that is finished, whole or not at all.
-pub fn keep_bed(cache: &Path, recipe: &Recipe, bed: &Packed<f32>) -> Result<(), ResultsError> {
-    let hash = bed_hash(recipe);
-    checkpoint::write(&cache.join(&hash), &hash, &bed.store())
-}
-
-/// What people read off a bed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BedSummary {
     pub title: String,
@@ -71,10 +44,15 @@ pub struct BedLayer {
     pub rattlers: f64,
 }
 
+/// Share of the thickness asked for by which a layer may miss it without a word.
+const MISSED: f64 = 0.05;
+
 /// Sums up a bed of a plan, with what was read off it.
 pub fn bed_summary(title: &str, plan: &BedPlan, packed: &Packed<f32>, readings: Option<BedReadings>) -> BedSummary {
     let recipe = &plan.recipe;
-    let layers = (0..recipe.layers.len()).map(|number| bed_layer(recipe, packed, number)).collect();
+    let layers: Vec<BedLayer> = (0..recipe.layers.len()).map(|number| bed_layer(recipe, packed, number)).collect();
+    let read = readings.iter().flat_map(|readings| &readings.notes).cloned();
+    let notes = plan.notes.iter().cloned().chain(layers.iter().filter_map(BedLayer::missed)).chain(read).collect();
     BedSummary {
         title: title.to_owned(),
         section: plan.section.clone(),
@@ -84,8 +62,23 @@ pub fn bed_summary(title: &str, plan: &BedPlan, packed: &Packed<f32>, readings: 
         pebbles: packed.bed.pebbles().count(),
         layers,
         stages: packed.stages.clone(),
-        notes: plan.notes.iter().chain(readings.iter().flat_map(|readings| &readings.notes)).cloned().collect(),
+        notes,
         readings,
+    }
+}
+
+impl BedLayer {
+    /// What is said of a layer that is not as thick as it should be.
+    fn missed(&self) -> Option<String> {
+        let (asked, reached) = (self.thickness_asked_m, self.thickness_m);
+        ((reached / asked - 1.0).abs() > MISSED).then(|| {
+            let mm = |length: f64| (1e3 * length).round();
+            let (name, reached, asked) = (&self.name, mm(reached), mm(asked));
+            format!(
+                "`{name}` has become {reached} mm thick, not {asked} mm: what it holds is guessed before it is packed, better from \
+                 more `lifts`."
+            )
+        })
     }
 }
 

@@ -1,6 +1,6 @@
 //! What is measured in a packed bed: over its height, in its contacts, and under a plate.
 
-use super::{ResultsError, bed, checkpoint};
+use super::{ResultsError, beds, checkpoint};
 use crate::lower::BedPlan;
 use crate::solvers::granular::measure::{Fabric, ForceSpread, Reading, Region, Rose, Survey};
 use crate::solvers::granular::packing::{Layer, Packed};
@@ -97,7 +97,7 @@ pub fn keep_readings(cache: &Path, plan: &BedPlan, readings: &BedReadings) -> Re
 
 /// Names what made the bed and what it is measured with.
 fn readings_hash(plan: &BedPlan) -> String {
-    bed::hash_of(&(&plan.recipe, &plan.plate))
+    beds::hash_of(&(&plan.recipe, &plan.plate))
 }
 
 /// Levels between which a bed is measured, layer by layer.

@@ -205,23 +205,23 @@ fn peak(measure: &Measure, tables: Tables<'_>) -> Option<f64> {
     scalar.filter(|_| everywhere_at_last).map(|s| s.value)
 }
 
-/// What an expression asks for and a run of `graph` will not have; `None` where it has all of it.
-pub fn not_kept(expression: &Expression, graph: &Graph) -> Option<String> {
+/// What an expression asks for and a run will not have, by what it keeps; `None` where it has all of it.
+pub fn not_kept(expression: &Expression, kept: &dyn Fn(&Measure) -> bool) -> Option<String> {
     match expression {
         Expression::Number(_) => None,
-        Expression::Measure(measure) => (!kept(measure, graph)).then(|| absent(measure)),
-        Expression::Negate(inner) => not_kept(inner, graph),
-        Expression::Function(_, of) => of.iter().find_map(|e| not_kept(e, graph)),
-        Expression::Binary(left, _, right) => not_kept(left, graph).or_else(|| not_kept(right, graph)),
+        Expression::Measure(measure) => (!kept(measure)).then(|| absent(measure)),
+        Expression::Negate(inner) => not_kept(inner, kept),
+        Expression::Function(_, of) => of.iter().find_map(|e| not_kept(e, kept)),
+        Expression::Binary(left, _, right) => not_kept(left, kept).or_else(|| not_kept(right, kept)),
     }
 }
 
-/// Whether tables, peaks or histories of a run hold a response.
-fn kept(measure: &Measure, graph: &Graph) -> bool {
+/// Whether tables, peaks or histories of a run of a graph hold a response.
+pub fn kept_by_graph(measure: &Measure, graph: &Graph) -> bool {
     let response = measure.response;
     match response.place() {
         Place::Scene | Place::Wheel => true,
-        // only grains fill volumes, and no tier has them yet
+        // only grains fill volumes
         Place::Volume => false,
         // passages say all of the rail, a static check all but what needs a wheel
         Place::Rail => {

@@ -6,6 +6,7 @@
 mod atomic;
 mod bed;
 mod bed_readings;
+mod beds;
 pub mod checkpoint;
 mod error;
 mod evaluate;
@@ -28,11 +29,12 @@ mod vtk;
 pub(crate) mod example;
 
 pub use atomic::write as write_atomically;
-pub use bed::{BedLayer, BedSummary, bed_hash, bed_summary, keep_bed, kept_bed};
+pub use bed::{BedLayer, BedSummary, bed_summary};
 pub use bed_readings::{BedReadings, Directions, PlateTest, ProfileRow, keep_readings, kept_readings, read_bed};
+pub use beds::{Beds, FoundBed, bed_hash};
 pub use error::ResultsError;
 pub use evaluate::{
-    Tables, contact_pressures, evaluate, holds, known, not_kept, subgrade_pressures, verdict, verdicts,
+    Tables, contact_pressures, evaluate, holds, kept_by_graph, known, not_kept, subgrade_pressures, verdict, verdicts,
 };
 pub use failure::diagnose;
 pub use files::{read, read_timings, write, write_timings};
@@ -40,7 +42,10 @@ pub use grains::{Grain, Link, grains, links, places};
 pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};
 pub use level::{LongitudinalLevel, longitudinal_level};
 pub use recorder::{RunRecorder, RunTables, Store};
-pub use rig::{CycleRow, LoopRow, RigRun, RigView, SensorRow, SpecimenRow, Tested, VolumeRow, read_rig, write_rig};
+pub use rig::{
+    CycleRow, Follow, LoopRow, Performed, RigRun, RigTables, RigView, SensorRow, SpecimenRow, Tested, Unfinished,
+    VolumeRow, kept_by_rig, perform_rig, read_rig, write_rig,
+};
 pub use states::remove as remove_states;
 pub use summarise::{RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise};
 pub use summary::{Provenance, Scalar, Summary, Verdict};

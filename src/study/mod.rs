@@ -18,6 +18,7 @@ mod settled;
 pub mod stability;
 mod stress;
 mod tables;
+pub mod turns;
 mod variant;
 
 pub use answer::{Answer, Row};

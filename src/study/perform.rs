@@ -3,9 +3,10 @@
 use super::plan::{PlannedPoint, Scene};
 use crate::diag::Diagnostic;
 use crate::graph;
-use crate::results::{self, RunRecorder, Verdict};
-use crate::scenario::Study;
+use crate::lower;
+use crate::results::{self, Beds, RigTables, RunRecorder, Tables, Unfinished, Verdict};
 use crate::scenario::response::Expectation;
+use crate::scenario::{Scenario, Study};
 use crate::syntax::tree::Comparison;
 use serde::{Deserialize, Serialize};
 
@@ -33,10 +34,10 @@ pub enum PointOutcome {
     },
 }
 
-/// Runs a point.
-pub fn perform(scene: Scene<'_>, study: &Study, point: &PlannedPoint) -> PointResult {
+/// Runs a point. `beds` are those of test rigs: points that pack alike share one.
+pub fn perform(scene: Scene<'_>, study: &Study, point: &PlannedPoint, beds: &Beds) -> PointResult {
     let runs: Result<Vec<OneRun>, PointOutcome> =
-        (0..study.repeats).map(|repeat| run(scene, study, point, repeat)).collect();
+        (0..study.repeats).map(|repeat| run(scene, study, point, repeat, beds)).collect();
     let outcome = match runs {
         Ok(runs) => gathered(&runs),
         Err(failed) => failed,
@@ -57,25 +58,45 @@ pub(super) fn condition(comparison: &Expectation) -> Option<bool> {
 /// What one run says: what is measured, and whether each constraint is met.
 type OneRun = (Vec<f64>, Vec<bool>);
 
-fn run(scene: Scene<'_>, study: &Study, point: &PlannedPoint, repeat: u32) -> Result<OneRun, PointOutcome> {
+fn run(
+    scene: Scene<'_>,
+    study: &Study,
+    point: &PlannedPoint,
+    repeat: u32,
+    beds: &Beds,
+) -> Result<OneRun, PointOutcome> {
     let compiled = scene.compile(&point.overrides_of(repeat));
     if let Some(mistake) = compiled.diagnostics.iter().find(|d| d.is_error()) {
         return Err(failed(mistake));
     }
     let nothing = || fail("there is nothing to run");
-    let (Some(scenario), Some(graph)) = (&compiled.scenario, &compiled.graph) else { return Err(nothing()) };
     // places and counts of the point's own track
     let own = compiled.studies.iter().find(|s| s.name == study.name).ok_or_else(nothing)?;
+    let scenario = compiled.scenario.as_ref().ok_or_else(nothing)?;
+    if lower::is_rig(scenario) {
+        return rig(scenario, own, beds);
+    }
+    let graph = compiled.graph.as_ref().ok_or_else(nothing)?;
     let mut recorder = RunRecorder::new(scenario, None, |_, _| {});
     graph::execute(graph, &mut recorder, None).map_err(|error| failed(&results::diagnose(&error, scenario, graph)))?;
     let (tables, histories) = (&recorder.tables, recorder.all_histories());
     let scalars = results::summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
-    let view = tables.view(&histories, &scalars, &scenario.track);
+    answered(own, tables.view(&histories, &scalars, &scenario.track))
+}
+
+fn rig(scenario: &Scenario, study: &Study, beds: &Beds) -> Result<OneRun, PointOutcome> {
+    let performed = results::perform_rig(scenario, beds, Unfinished::default(), &mut ());
+    let performed = performed.map_err(|mistakes| mistakes.first().map_or_else(|| fail("the rig failed"), failed))?;
+    answered(study, RigTables::of(&performed).view(&scenario.track))
+}
+
+/// What a study asks of the tables of a run.
+fn answered(study: &Study, view: Tables<'_>) -> Result<OneRun, PointOutcome> {
     let measure = |m: &crate::scenario::Measured| {
         results::evaluate(&m.expression, view).map_err(|why| fail(&format!("`{}`: {why}", m.text)))
     };
-    let values: Vec<f64> = own.measured().into_iter().map(measure).collect::<Result<_, _>>()?;
-    let verdicts = own.constraints.iter().map(|c| results::verdict(c, view));
+    let values: Vec<f64> = study.measured().into_iter().map(measure).collect::<Result<_, _>>()?;
+    let verdicts = study.constraints.iter().map(|c| results::verdict(c, view));
     let met: Vec<bool> = verdicts.map(held).collect::<Result<_, _>>()?;
     Ok((values, met))
 }

@@ -19,6 +19,8 @@ const LAST_STAGES: u32 = 3;
 const SET_DOWN: f64 = 0.15;
 /// Steps of a pebble a second on two cores, of clumps of three, while it is packed and tested (`docs/validation.md`).
 const PEBBLE_STEPS: [f64; 2] = [10e6, 20e6];
+/// Time on one core over that on two.
+const SECOND_CORE: f64 = 1.7;
 
 /// An estimate, good to a factor of two.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -33,6 +35,13 @@ pub struct RigCost {
     pub repeats: u32,
     /// Of all repeats, on two cores, s.
     pub seconds: f64,
+}
+
+impl RigCost {
+    /// Of all repeats, s.
+    pub fn seconds_on_one_core(&self) -> f64 {
+        SECOND_CORE * self.seconds
+    }
 }
 
 /// The estimate for a rig; `None` where a scene is none, or a grading no curve.

@@ -1,9 +1,11 @@
 //! A scene of test loads on sleepers over grains, as a bed to pack and a rig to run.
 
 mod cost;
+mod listing;
 mod refusals;
 
 pub use cost::{RigCost, rig_cost};
+pub use listing::rig_listing;
 pub(super) use refusals::refusals;
 
 use super::bed::{BedPlan, beds, confinement};

@@ -1,16 +1,20 @@
 //! What a test rig leaves behind: cycles, loops, what sensors read, a summary, and the files that hold them.
 
 mod files;
+mod perform;
 mod summarise;
 mod view;
 
 pub use files::write_rig;
+pub use perform::{Follow, Performed, Unfinished, perform_rig};
+pub use summarise::{RigTables, kept_by_rig};
 pub use view::{RigView, read_rig};
 
-use super::{BedSummary, Provenance, Row, Summary};
+use super::{BedSummary, Provenance, Row, Summary, verdicts};
 use crate::diag::Sources;
-use crate::lower::RigPlan;
+use crate::lower::{RigPlan, rig_listing};
 use crate::scenario::Scenario;
+use crate::solvers::granular::Bed;
 use crate::solvers::granular::rig::{Cycle, Reading, Sample, SpecimenState};
 use serde::{Deserialize, Serialize};
 
@@ -161,21 +165,16 @@ impl Row for SpecimenRow {
 }
 
 impl RigRun {
-    /// Takes together what was tested. `sources` are the texts that made it, the main file first, and `sha256` is their hash.
-    pub fn gather(
-        scenario: &Scenario,
-        plan: &RigPlan,
-        tests: Vec<Tested>,
-        sources: &Sources,
-        sha256: String,
-        listing: String,
-    ) -> RigRun {
-        let provenance = Provenance::of(sources, sha256, scenario.solve.seed, listing);
-        let (sleepers, sensors) = (plan.sleepers.clone(), plan.sensors.clone());
-        let scalars = summarise::scalars(&tests, plan.plate);
-        let expectations = summarise::expectations(scenario, &sleepers, &sensors, &tests, &scalars);
-        let summary = Summary { scalars, expectations, provenance };
-        RigRun { scenario: scenario.clone(), summary, sleepers, sensors, plate: plan.plate, tests }
+    /// Takes together what was tested, and gives the last bed beside it. `sources` are the texts that made it, the main file first,
+    /// and `sha256` is their hash.
+    pub fn gather(scenario: &Scenario, performed: Performed, sources: &Sources, sha256: String) -> (RigRun, Bed<f32>) {
+        let provenance = Provenance::of(sources, sha256, scenario.solve.seed, rig_listing(scenario));
+        let tables = RigTables::of(&performed);
+        let expectations = verdicts(scenario, tables.view(&scenario.track));
+        let summary = Summary { scalars: tables.scalars, expectations, provenance };
+        let Performed { plan, tests, bed } = performed;
+        let RigPlan { sleepers, sensors, plate, .. } = plan;
+        (RigRun { scenario: scenario.clone(), summary, sleepers, sensors, plate, tests }, bed)
     }
 
     /// Height of the bed of a test as it was packed, m.

@@ -1,9 +1,9 @@
 //! The few numbers of a test, over its packings, and what the scene expects of it.
 
-use super::super::{HistoryRow, Scalar, SleeperRow, Tables, Verdict, verdicts};
-use super::{RigRun, Tested};
-use crate::scenario::Scenario;
-use crate::scenario::response::Response;
+use super::super::{HistoryRow, Scalar, SleeperRow, Tables};
+use super::{Performed, RigRun, Tested};
+use crate::scenario::response::{Measure, Response};
+use crate::scenario::{Scenario, Track};
 use crate::solvers::granular::rig::Cycle;
 use std::collections::BTreeMap;
 
@@ -26,7 +26,7 @@ pub(super) fn mean_and_confidence(values: &[f64]) -> (f64, Option<f64>) {
 }
 
 /// Of the sleeper that settles most in each packing: mean over packings, and its confidence where there are several.
-pub(super) fn scalars(tests: &[Tested], plate: Option<f64>) -> BTreeMap<String, Scalar> {
+fn scalars(tests: &[Tested], plate: Option<f64>) -> BTreeMap<String, Scalar> {
     let mut scalars = BTreeMap::new();
     let last = tests.iter().flat_map(|test| &test.cycles).map(|cycle| cycle.number).max().unwrap_or(0);
     let worst = |test: &Tested, number: u64| -> Option<Cycle> {
@@ -83,18 +83,45 @@ pub(super) fn scalars(tests: &[Tested], plate: Option<f64>) -> BTreeMap<String, 
     scalars
 }
 
-/// What the scene expects, of means over packings.
-pub(super) fn expectations(
-    scenario: &Scenario,
-    sleepers: &[(String, f64)],
-    sensors: &[(String, f64)],
-    tests: &[Tested],
-    scalars: &BTreeMap<String, Scalar>,
-) -> Vec<Verdict> {
-    let rows = sleeper_rows(sleepers, tests);
-    let histories = histories(sensors, sleepers, tests);
-    let track = &scenario.track;
-    verdicts(scenario, Tables { sleepers: &rows, blocks: &[], rail: &[], histories: &histories, scalars, track })
+/// What expressions can be about, in means over packings.
+pub struct RigTables {
+    sleepers: Vec<SleeperRow>,
+    histories: Vec<HistoryRow>,
+    pub(super) scalars: BTreeMap<String, Scalar>,
+}
+
+impl RigTables {
+    pub fn of(performed: &Performed) -> RigTables {
+        let Performed { plan, tests, .. } = performed;
+        RigTables {
+            sleepers: sleeper_rows(&plan.sleepers, tests),
+            histories: histories(&plan.sensors, &plan.sleepers, tests),
+            scalars: scalars(tests, plan.plate),
+        }
+    }
+
+    pub fn view<'a>(&'a self, track: &'a Track) -> Tables<'a> {
+        let RigTables { sleepers, histories, scalars } = self;
+        Tables { sleepers, blocks: &[], rail: &[], histories, scalars, track }
+    }
+}
+
+/// Whether a rig of this scene answers to a measure.
+pub fn kept_by_rig(measure: &Measure, scenario: &Scenario) -> bool {
+    match measure.response {
+        Response::Settlement
+        | Response::SupportStiffness
+        | Response::SleeperDisplacement
+        | Response::SleeperVelocity
+        | Response::ContactForce => true,
+        Response::ContactPressure => {
+            scenario.track.seats.iter().any(|seat| scenario.track.bearing_area(seat).is_some())
+        }
+        Response::BallastStress | Response::BallastVelocity | Response::CoordinationNumber | Response::Porosity => {
+            !scenario.volumes.is_empty()
+        }
+        _ => false,
+    }
 }
 
 /// A row for each sleeper and cycle, as expectations read them: counts are cycles. What a rig does not know is no number, and an
