@@ -32,6 +32,14 @@ impl Row {
         }
     }
 
+    /// Standard deviations of the same over repeats, 0 for one run.
+    pub fn deviations(&self) -> Option<&[f64]> {
+        match &self.outcome {
+            PointOutcome::Done { deviations, .. } => Some(deviations),
+            PointOutcome::Failed { .. } => None,
+        }
+    }
+
     /// Whether it ran and meets every constraint.
     pub fn feasible(&self) -> bool {
         matches!(&self.outcome, PointOutcome::Done { met, .. } if met.iter().all(|m| *m))

@@ -49,15 +49,21 @@ pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
         panel(&mut svg, answer, *m, measured[*m], *axis, frame);
     }
     let height = (panels.len() / each * rows_each) as f64 * (HEIGHT + GAP);
-    let caption = "Dots: the mean over all points that share a value (or lie in one of six pieces of its range). \
-                   Bars: from the smallest to the largest of them. Rings: the points. A level line says that the value \
-                   hardly matters."
+    let mut caption = "Dots: the mean over all points that share a value (or lie in one of six pieces of its range). \
+                       Bars: from the smallest to the largest of them. Rings: the points. A level line says that the value \
+                       hardly matters."
         .to_owned();
+    if answer.study.repeats > 1 {
+        caption +=
+            " Whiskers: a standard deviation of the repeats up and down; what is smaller than they are may be chance.";
+    }
     Some((svg.finish(WIDTH, height, "Main effects of what varies"), caption))
 }
 
 fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize, frame: Frame) {
     let value = |row: usize| answer.rows[row].values().map(|v| v[m] / what.unit.1);
+    let scatter = |row: usize| answer.rows[row].deviations().map_or(0.0, |d| d[m] / what.unit.1);
+    let ends = |row: usize| Some([value(row)? - scatter(row), value(row)? + scatter(row)]);
     let groups = groups(answer, axis);
     let own = &answer.study.axes[axis];
     let numbers = place(answer, axis);
@@ -66,7 +72,7 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
     let plane = Plane {
         frame: Frame { x: frame.x + 58.0, y: frame.y + 26.0, width: frame.width - 66.0, height: frame.height - 72.0 },
         x: range(xs),
-        y: range((0..answer.rows.len()).filter_map(value)),
+        y: range((0..answer.rows.len()).filter_map(ends).flatten()),
     };
     plane.upright_scale(svg);
     if groups.iter().any(|g| !g.label.is_empty()) {
@@ -90,6 +96,13 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
         if let Some(y) = value(*row) {
             let text = format!("point {}", answer.rows[*row].number);
             svg.circle("faint", plane.at((numbers(*row), y)), 2.5, &text);
+            if scatter(*row) > 0.0 {
+                whisker(
+                    svg,
+                    plane.at((numbers(*row), y - scatter(*row))),
+                    plane.at((numbers(*row), y + scatter(*row))),
+                );
+            }
         }
     }
     let places: Vec<(f64, f64)> = means.iter().map(|(at, ..)| *at).collect();
@@ -97,6 +110,15 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
     for (at, mean, count) in means {
         let text = format!("mean of {count}: {} {}", crate::report::number::significant(mean, 4), what.unit.0);
         svg.circle("dot s0", at, 4.0, &text);
+    }
+}
+
+/// An upright line with its ends.
+fn whisker(svg: &mut Svg, low: (f64, f64), high: (f64, f64)) {
+    const HALF: f64 = 4.0;
+    svg.line("faint s0", low, high);
+    for (x, y) in [low, high] {
+        svg.line("faint s0", (x - HALF, y), (x + HALF, y));
     }
 }
 
