@@ -300,6 +300,8 @@ fn a_study_runs_rigs_and_points_that_pack_alike_share_a_bed() {
     };
     let first = study("first", &[]);
     assert!(first.status.success() && said(&first).contains("4 points"), "{}", said(&first));
+    // without an objective all of them are told
+    assert!(said(&first).contains("point 4 ") && said(&first).contains("max(settlement) "), "{}", said(&first));
     let rows: Vec<HashMap<String, String>> =
         csv::Reader::from_path(path("first/study.csv")).unwrap().deserialize().map(Result::unwrap).collect();
     let settlements: Vec<f64> = rows

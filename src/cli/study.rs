@@ -8,12 +8,13 @@ use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, has_errors, or_list, render};
 use crate::results::Beds;
 use crate::scenario::Study;
-use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Scene, turns};
+use crate::study::{self, Answer, Plan, PointResult, Repeat, Scene, turns};
 use crate::units::number;
 use crate::{Compiled, lower, report};
 use clap::ValueEnum;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Run a study of a scene: its points, its best design
@@ -196,7 +197,8 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-/// Runs what has not run yet and keeps each point as soon as it is there. The order of the answer is that of the design.
+/// Runs what has not run yet, repeat by repeat, and keeps each point as soon as it is there. The order of the answer is that of the
+/// design.
 fn perform(
     scene: Scene<'_>,
     plan: &Plan,
@@ -204,39 +206,62 @@ fn perform(
     beds: &Beds,
     jobs: usize,
 ) -> Result<Vec<PointResult>, String> {
-    let done = Mutex::new((0.0, progress::Patient::new("the study")));
-    let whole = plan.seconds().max(1e-9);
-    let one = |point: &PlannedPoint| {
-        let result = match folder.known(point) {
-            Some(result) => result,
-            None => {
-                let result = study::perform(scene, &plan.study, point, beds);
-                folder.keep(&result)?;
-                result
-            }
-        };
-        advance(&done, point.seconds * f64::from(plan.study.repeats) / whole);
-        Ok(result)
+    let known: Vec<Option<PointResult>> = plan.points.iter().map(|point| folder.known(point)).collect();
+    let missing = known.iter().enumerate().filter(|(_, result)| result.is_none());
+    let tasks: Vec<(usize, u32)> =
+        missing.flat_map(|(index, _)| (0..plan.study.repeats).map(move |repeat| (index, repeat))).collect();
+    let work = Mutex::new(Work { plan, known, runs: BTreeMap::new(), bar: progress::Patient::new("the study") });
+    let one = |(index, repeat): &(usize, u32)| {
+        let run = study::perform(scene, &plan.study, &plan.points[*index], *repeat, beds);
+        work.lock().unwrap_or_else(PoisonError::into_inner).take(*index, *repeat, run, folder)
     };
-    let results = turns::each(&plan.points, jobs, one).map_err(|error| format!("cannot start threads: {error}"))?;
-    results.into_iter().collect()
+    let kept = turns::each(&tasks, jobs, one).map_err(|error| format!("cannot start threads: {error}"))?;
+    kept.into_iter().collect::<Result<(), String>>()?;
+    Ok(work.into_inner().unwrap_or_else(PoisonError::into_inner).known.into_iter().flatten().collect())
 }
 
-/// Points differ in cost: the bar counts thousandths of the estimate.
-fn advance(done: &Mutex<(f64, progress::Patient)>, share: f64) {
-    if let Ok(mut done) = done.lock() {
-        let (all, bar) = &mut *done;
-        *all += share;
-        bar.at((*all * 1e3) as u64, 1000);
+/// What there is of a study while it runs.
+struct Work<'a> {
+    plan: &'a Plan,
+    /// One for each point of the plan.
+    known: Vec<Option<PointResult>>,
+    /// By point and repeat, of points that are not finished.
+    runs: BTreeMap<(usize, u32), Repeat>,
+    bar: progress::Patient,
+}
+
+impl Work<'_> {
+    /// A run is over; with the last of its point that is kept.
+    fn take(&mut self, index: usize, repeat: u32, run: Repeat, folder: &StudyFolder) -> Result<(), String> {
+        self.runs.insert((index, repeat), run);
+        let (point, all) = (&self.plan.points[index], self.plan.study.repeats);
+        let runs: Vec<Repeat> = (0..all).map_while(|repeat| self.runs.get(&(index, repeat)).cloned()).collect();
+        if runs.len() == all as usize {
+            let result = PointResult::of(point, &runs);
+            folder.keep(&result)?;
+            self.known[index] = Some(result);
+            self.runs.retain(|(other, _), _| *other != index);
+        }
+        self.tell();
+        Ok(())
+    }
+
+    /// Points differ in cost: the bar counts thousandths of the estimate.
+    fn tell(&mut self) {
+        let seconds = |index: usize| self.plan.points[index].seconds;
+        let finished = self.known.iter().enumerate().filter(|(_, result)| result.is_some());
+        let done = finished.map(|(index, _)| seconds(index) * f64::from(self.plan.study.repeats)).sum::<f64>()
+            + self.runs.keys().map(|(index, _)| seconds(*index)).sum::<f64>();
+        self.bar.at((1e3 * done / self.plan.seconds().max(1e-9)) as u64, 1000);
     }
 }
 
-/// The best design, or the Pareto front.
+/// The best design, or the Pareto front; the first points where nothing is better than anything else.
 fn summary(answer: &Answer, out: &Path, seconds: f64) {
     let measured = answer.study.measured();
     let mut text = format!("{}, study `{}`\n", answer.title, answer.study.name);
-    let best = answer.best();
     let objectives = answer.study.objectives.len();
+    let best = if objectives == 0 { (0..answer.rows.len()).collect() } else { answer.best() };
     match (objectives, best.len()) {
         (0, _) => {}
         (_, 0) => text.push_str("  no design runs and meets every constraint\n"),
@@ -248,21 +273,24 @@ fn summary(answer: &Answer, out: &Path, seconds: f64) {
     for index in best.iter().take(shown) {
         let row = &answer.rows[*index];
         text.push_str(&format!("  point {:<4} {}\n", row.number, answer.lines(row).join(", ")));
-        for (m, value) in measured.iter().zip(row.values().unwrap_or_default()) {
-            let value = number(rounded(value / m.unit.1));
-            text.push_str(&format!("             {} {value} {}\n", m.text, m.unit.0));
+        let (values, deviations) = (row.values().unwrap_or_default(), row.deviations().unwrap_or_default());
+        for (m, (value, deviation)) in measured.iter().zip(values.iter().zip(deviations)) {
+            let shown = |x: f64, digits: usize| number(rounded(x / m.unit.1, digits));
+            let scatter =
+                if answer.study.repeats > 1 { format!(", sd {}", shown(*deviation, 2)) } else { String::new() };
+            text.push_str(&format!("             {} {} {}{scatter}\n", m.text, shown(*value, 4), m.unit.0));
         }
     }
-    if objectives > 1 && best.len() > MOST {
+    if objectives != 1 && best.len() > MOST {
         text.push_str(&format!("  and {} more\n", best.len() - MOST));
     }
     text.push_str(&format!("{} ({} s)\n", out.join("study.html").display(), number((seconds * 10.0).round() / 10.0)));
     terminal::out(&text);
 }
 
-/// Four digits.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.3e}").parse().unwrap_or(x)
+/// To so many digits.
+fn rounded(x: f64, digits: usize) -> f64 {
+    format!("{x:.*e}", digits - 1).parse().unwrap_or(x)
 }
 
 /// Points that failed are named once a reason.

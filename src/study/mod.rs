@@ -23,7 +23,7 @@ mod variant;
 
 pub use answer::{Answer, Row};
 pub use chart::{Chart, Level, Outcome, Point, Request, Sweep};
-pub use perform::{PointOutcome, PointResult, perform};
+pub use perform::{PointOutcome, PointResult, Repeat, perform};
 pub use plan::{Plan, PlannedPoint, Scene, plan, values};
 pub use settled::{NotSettled, Settled, settled};
 pub use stability::{Cell, Map, Stability, Verdict, Void};

@@ -34,15 +34,21 @@ pub enum PointOutcome {
     },
 }
 
-/// Runs a point. `beds` are those of test rigs: points that pack alike share one.
-pub fn perform(scene: Scene<'_>, study: &Study, point: &PlannedPoint, beds: &Beds) -> PointResult {
-    let runs: Result<Vec<OneRun>, PointOutcome> =
-        (0..study.repeats).map(|repeat| run(scene, study, point, repeat, beds)).collect();
-    let outcome = match runs {
-        Ok(runs) => gathered(&runs),
-        Err(failed) => failed,
-    };
-    PointResult { number: point.number, outcome }
+/// A run of a point, one of its repeats.
+#[derive(Debug, Clone)]
+pub struct Repeat(Result<OneRun, PointOutcome>);
+
+/// Runs one repeat of a point. `beds` are those of test rigs: points that pack alike share one.
+pub fn perform(scene: Scene<'_>, study: &Study, point: &PlannedPoint, repeat: u32, beds: &Beds) -> Repeat {
+    Repeat(run(scene, study, point, repeat, beds))
+}
+
+impl PointResult {
+    /// Of all repeats of a point, in their order; the first that failed speaks for it.
+    pub fn of(point: &PlannedPoint, repeats: &[Repeat]) -> PointResult {
+        let runs: Result<Vec<OneRun>, PointOutcome> = repeats.iter().map(|repeat| repeat.0.clone()).collect();
+        PointResult { number: point.number, outcome: runs.map_or_else(|failed| failed, |runs| gathered(&runs)) }
+    }
 }
 
 /// What a comparison that needs no run says; `None` for the others.
