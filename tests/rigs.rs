@@ -55,7 +55,7 @@ fn a_rig_runs_from_its_scene_to_its_report() {
     assert!(of("max_settlement") > 0.0 && of("support_stiffness") > 1e6 && of("cycles") == 4.0, "{summary}");
     assert!(summary["expectations"].as_array().unwrap().iter().all(|v| v["met"] == true), "{summary}");
     let page = fs::read_to_string(path("first/report.html")).unwrap();
-    for figure in ["settlement", "settlement_log", "stiffness", "loops", "stress", "along", "across"] {
+    for figure in ["settlement", "settlement_log", "stiffness", "loops", "stress", "velocity", "along", "across"] {
         assert!(page.contains(&format!("<section id=\"{figure}\">")), "{figure}");
     }
     // equal runs leave equal tables, on any number of threads and with a bed that was kept

@@ -21,6 +21,8 @@ pub struct Axis {
     pub from_zero: bool,
     /// Powers of ten at equal distances; values are above zero. Bars and second scales are not drawn so.
     pub logarithmic: bool,
+    /// Marks at whole numbers only: counts of few things.
+    pub whole: bool,
 }
 
 impl Axis {
@@ -33,6 +35,7 @@ impl Axis {
             range: None,
             from_zero: false,
             logarithmic: false,
+            whole: false,
         }
     }
 
@@ -249,8 +252,9 @@ impl Chart {
             svg.text("small muted", (frame.x - 7.0, y + 4.0), Anchor::End, &label);
         }
         let (low, high) = (plane.x.0 / self.x.size, plane.x.1 / self.x.size);
-        let marks =
-            if self.x.logarithmic { decades(low, high) } else { ticks(low, high, (frame.width / 75.0) as usize) };
+        let most = frame.width / 75.0;
+        let pieces = if self.x.whole { most.min(high - low) } else { most };
+        let marks = if self.x.logarithmic { decades(low, high) } else { ticks(low, high, pieces as usize) };
         let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
         for mark in marks {
             let x = plane.at((mark * self.x.size, plane.y.0)).0;
@@ -429,6 +433,17 @@ mod tests {
         let text = svg.finish(300.0, 200.0, "d");
         assert!(!text.contains("NaN") && !text.contains("inf"));
         assert_eq!(text.matches(r#"<path class="line"#).count(), 2);
+    }
+
+    #[test]
+    fn counts_of_few_things_are_marked_at_whole_numbers() {
+        let mut chart = Chart::new(Axis { whole: true, ..Axis::new("Cycles", ("", 1.0)) }, Axis::new("b", ("", 1.0)));
+        chart.series = vec![Series::new("", "s0", Mark::Line, vec![(1.0, 0.0), (3.0, 400.0)])];
+        let mut svg = Svg::default();
+        chart.draw(&mut svg, "id", Frame { x: 0.0, y: 0.0, width: 960.0, height: 300.0 });
+        let picture = svg.finish(960.0, 300.0, "");
+        assert!(["1", "2", "3"].iter().all(|mark| picture.contains(&format!(">{mark}</text>"))), "{picture}");
+        assert!(!picture.contains(">1.2</text>") && !picture.contains(">1.5</text>"), "{picture}");
     }
 
     #[test]

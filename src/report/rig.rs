@@ -8,7 +8,7 @@ use super::page::{expectations, opening, picture, provenance, subtitle};
 use super::scene::WIDTH;
 use super::svg::{Frame, Svg, escape};
 use crate::results::{RigRun, RigView, Tested};
-use crate::solvers::granular::rig::{Cycle, Sample, SpecimenState};
+use crate::solvers::granular::rig::{Cycle, Reading, Sample, SpecimenState};
 use std::fmt::Write;
 
 const HEIGHT: f64 = 320.0;
@@ -99,6 +99,7 @@ impl<'a> RigPage<'a> {
         figures.push(self.loops());
         figures.extend(self.strain());
         figures.extend(self.stress());
+        figures.extend(self.velocity());
         figures.push(self.bed(Side::X, "along", "The bed along the track", "At the end, under the lower force."));
         figures.push(self.bed(Side::Y, "across", "The bed across", "Lines join grains that press on each other."));
         figures
@@ -111,10 +112,11 @@ impl<'a> RigPage<'a> {
             for (index, (name, _)) in self.run.sleepers.iter().enumerate() {
                 let cycles = test.cycles.iter().filter(|cycle| cycle.sleeper == index);
                 let points: Vec<(f64, f64)> = cycles.map(|cycle| (cycle.number as f64, of(cycle))).collect();
+                let name = if self.run.plate.is_some() { name.clone() } else { format!("sleeper {name}") };
                 let (name, class) = match (self.run.tests.len(), self.run.sleepers.len()) {
-                    (1, _) => (format!("sleeper {name}"), index),
+                    (1, _) => (name, index),
                     (_, 1) => (format!("seed {}", test.seed), number),
-                    _ => (format!("sleeper {name}, seed {}", test.seed), index),
+                    _ => (format!("{name}, seed {}", test.seed), index),
                 };
                 let mark = if points.len() > 40 { Mark::Line } else { Mark::Dots };
                 found.push(Series::new(&name, &class_of(class), mark, points));
@@ -124,7 +126,7 @@ impl<'a> RigPage<'a> {
     }
 
     fn against_cycles(&self, logarithmic: bool) -> Figure {
-        let x = Axis { logarithmic, ..Axis::new("Cycles", ("", 1.0)) };
+        let x = Axis { logarithmic, whole: true, ..Axis::new("Cycles", ("", 1.0)) };
         let y = Axis { downwards: true, from_zero: true, ..Axis::new("Settlement", ("mm", 1e-3)) };
         let mut chart = Chart::new(x, y);
         chart.series = self.series(|cycle| cycle.settlement);
@@ -141,7 +143,7 @@ impl<'a> RigPage<'a> {
 
     fn stiffness(&self) -> Figure {
         let y = Axis { from_zero: true, ..Axis::new("Resilient stiffness", ("MN/m", 1e6)) };
-        let mut chart = Chart::new(Axis::new("Cycles", ("", 1.0)), y);
+        let mut chart = Chart::new(Axis { whole: true, ..Axis::new("Cycles", ("", 1.0)) }, y);
         chart.series = self.series(|cycle| cycle.stiffness);
         figure(
             chart,
@@ -233,20 +235,30 @@ impl<'a> RigPage<'a> {
         Some(figure(chart, "strain", "Stress against strain", caption))
     }
 
-    /// Vertical stress at the sensors of the first packing over the last cycle that is kept.
     fn stress(&self) -> Option<Figure> {
+        let y = Axis { from_zero: true, ..Axis::new("Vertical stress", ("kPa", 1e3)) };
+        let caption = "Positive in compression";
+        self.at_sensors(y, |reading| reading.stress, "stress", "Stress at the sensors", caption)
+    }
+
+    fn velocity(&self) -> Option<Figure> {
+        let y = Axis::new("Velocity", ("mm/s", 1e-3));
+        let caption = "The mean of the grains inside, positive downwards";
+        self.at_sensors(y, |reading| reading.velocity, "velocity", "Velocity at the sensors", caption)
+    }
+
+    /// What sensors of the first packing read over the last cycle that is kept.
+    fn at_sensors(&self, y: Axis, of: fn(&Reading) -> f64, id: &str, title: &str, caption: &str) -> Option<Figure> {
         let readings = &self.run.tests[0].readings;
         let last = readings.iter().map(|reading| reading.cycle).max()?;
-        let y = Axis { from_zero: true, ..Axis::new("Vertical stress", ("kPa", 1e3)) };
         let mut chart = Chart::new(Axis { range: Some((0.0, 1.0)), ..Axis::new("Share of the cycle", ("%", 0.01)) }, y);
         for (index, (name, _)) in self.run.sensors.iter().enumerate() {
-            let of = |cycle: u64| readings.iter().filter(move |r| (r.sensor, r.cycle) == (index, cycle));
-            let line = |cycle| of(cycle).map(|reading| (reading.phase, reading.stress)).collect::<Vec<_>>();
+            let over = |cycle: u64| readings.iter().filter(move |r| (r.sensor, r.cycle) == (index, cycle));
+            let line = |cycle| over(cycle).map(|reading| (reading.phase, of(reading))).collect::<Vec<_>>();
             chart.series.push(Series::new("", &class_of(index), Mark::Faint, line(1)));
             chart.series.push(Series::new(&format!("sleeper {name}"), &class_of(index), Mark::Line, line(last)));
         }
-        let caption = format!("Positive in compression, in cycle {last}; thin lines are the first cycle.");
-        Some(figure(chart, "stress", "Stress at the sensors", &caption))
+        Some(figure(chart, id, title, &format!("{caption}, in cycle {last}; thin lines are the first cycle.")))
     }
 
     fn bed(&self, side: Side, id: &str, title: &str, caption: &str) -> Figure {
