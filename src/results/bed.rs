@@ -75,8 +75,7 @@ impl BedLayer {
             let mm = |length: f64| (1e3 * length).round();
             let (name, reached, asked) = (&self.name, mm(reached), mm(asked));
             format!(
-                "`{name}` has become {reached} mm thick, not {asked} mm: what it holds is guessed before it is packed, better from \
-                 more `lifts`."
+                "`{name}` has become {reached} mm thick, not {asked} mm: what it holds is guessed before it is packed."
             )
         })
     }
@@ -99,5 +98,31 @@ fn bed_layer(recipe: &Recipe, packed: &Packed<f32>, number: usize) -> BedLayer {
         coordination: finished.coordination,
         coordination_without_rattlers: finished.without_rattlers,
         rattlers: finished.rattlers as f64 / finished.bodies.max(1) as f64,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_layer_that_misses_its_thickness_says_so() {
+        let of = |thickness_m: f64| BedLayer {
+            name: "gravel".to_owned(),
+            bodies: 100,
+            thickness_asked_m: 0.3,
+            thickness_m,
+            porosity: 0.4,
+            inner_porosity: 0.4,
+            grading_error: 0.0,
+            coordination_pressed: 6.0,
+            coordination: 5.0,
+            coordination_without_rattlers: 5.0,
+            rattlers: 0.0,
+        };
+        assert_eq!((of(0.29).missed(), of(0.312).missed()), (None, None));
+        let told = "`gravel` has become 259 mm thick, not 300 mm: what it holds is guessed before it is packed.";
+        assert_eq!(of(0.2592).missed().as_deref(), Some(told));
+        assert!(of(0.341).missed().is_some());
     }
 }
