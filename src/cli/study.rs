@@ -278,7 +278,8 @@ fn summary(answer: &Answer, out: &Path, seconds: f64) {
             let shown = |x: f64, digits: usize| number(rounded(x / m.unit.1, digits));
             let scatter =
                 if answer.study.repeats > 1 { format!(", sd {}", shown(*deviation, 2)) } else { String::new() };
-            text.push_str(&format!("             {} {} {}{scatter}\n", m.text, shown(*value, 4), m.unit.0));
+            let line = format!("             {} {} {}", m.text, shown(*value, 4), m.unit.0);
+            text.push_str(&format!("{}{scatter}\n", line.trim_end()));
         }
     }
     if objectives != 1 && best.len() > MOST {
