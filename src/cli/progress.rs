@@ -50,19 +50,31 @@ impl Patient {
         Patient { message, start: Instant::now(), told: Instant::now(), bar: None }
     }
 
+    /// One that is seen at once: the first word of the work may be minutes away.
+    pub(super) fn seen(message: &'static str) -> Patient {
+        let mut patient = Patient::new(message);
+        if std::io::stderr().is_terminal() {
+            at(patient.shown(), 0, 1);
+        }
+        patient
+    }
+
     pub(super) fn at(&mut self, done: u64, all: u64) {
-        if self.start.elapsed() < Duration::from_secs(2) {
+        if self.bar.is_none() && self.start.elapsed() < Duration::from_secs(2) {
             return;
         }
         if !std::io::stderr().is_terminal() {
             return self.tell(done, all);
         }
-        let bar = self.bar.get_or_insert_with(|| {
+        at(self.shown(), done, all);
+    }
+
+    fn shown(&mut self) -> &ProgressBar {
+        self.bar.get_or_insert_with(|| {
             let bar = share();
             bar.set_message(self.message);
             bar
-        });
-        at(bar, done, all);
+        })
     }
 
     fn tell(&mut self, done: u64, all: u64) {

@@ -210,7 +210,7 @@ fn perform(
     let missing = known.iter().enumerate().filter(|(_, result)| result.is_none());
     let tasks: Vec<(usize, u32)> =
         missing.flat_map(|(index, _)| (0..plan.study.repeats).map(move |repeat| (index, repeat))).collect();
-    let work = Mutex::new(Work { plan, known, runs: BTreeMap::new(), bar: progress::Patient::new("the study") });
+    let work = Mutex::new(Work { plan, known, runs: BTreeMap::new(), bar: progress::Patient::seen("the study") });
     let one = |(index, repeat): &(usize, u32)| {
         let run = study::perform(scene, &plan.study, &plan.points[*index], *repeat, beds);
         work.lock().unwrap_or_else(PoisonError::into_inner).take(*index, *repeat, run, folder)
