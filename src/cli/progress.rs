@@ -1,7 +1,8 @@
 //! Progress with an estimate: bars on a terminal, a line a minute of long work elsewhere.
 
 use super::terminal;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use std::fmt::Write;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
@@ -23,10 +24,19 @@ pub(super) fn bar() -> ProgressBar {
 pub(super) fn share() -> ProgressBar {
     let bar = bar();
     bar.set_style(
-        ProgressStyle::with_template("{spinner} {bar:32} {percent} % of {msg}, {eta} left")
-            .unwrap_or_else(|_| ProgressStyle::default_bar()),
+        ProgressStyle::with_template("{spinner} {bar:32} {percent} % of {msg}, {left}")
+            .unwrap_or_else(|_| ProgressStyle::default_bar())
+            .with_key("left", left),
     );
     bar
+}
+
+/// What is left, as soon as something is done.
+fn left(state: &ProgressState, text: &mut dyn Write) {
+    let _ = match state.pos() {
+        0 => write!(text, "{:#} so far", HumanDuration(state.elapsed())),
+        _ => write!(text, "{:#} left", HumanDuration(state.eta())),
+    };
 }
 
 pub(super) fn at(bar: &ProgressBar, done: u64, all: u64) {
