@@ -14,6 +14,7 @@ use crate::{Compiled, lower, report};
 use clap::ValueEnum;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -211,9 +212,15 @@ fn perform(
     let tasks: Vec<(usize, u32)> =
         missing.flat_map(|(index, _)| (0..plan.study.repeats).map(move |repeat| (index, repeat))).collect();
     let work = Mutex::new(Work { plan, known, runs: BTreeMap::new(), bar: progress::Patient::seen("the study") });
+    // what cannot be written would be computed for nothing
+    let broken = AtomicBool::new(false);
     let one = |(index, repeat): &(usize, u32)| {
+        if broken.load(Ordering::Relaxed) {
+            return Ok(());
+        }
         let run = study::perform(scene, &plan.study, &plan.points[*index], *repeat, beds);
-        work.lock().unwrap_or_else(PoisonError::into_inner).take(*index, *repeat, run, folder)
+        let taken = work.lock().unwrap_or_else(PoisonError::into_inner).take(*index, *repeat, run, folder);
+        taken.inspect_err(|_| broken.store(true, Ordering::Relaxed))
     };
     let kept = turns::each(&tasks, jobs, one).map_err(|error| format!("cannot start threads: {error}"))?;
     kept.into_iter().collect::<Result<(), String>>()?;
