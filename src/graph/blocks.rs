@@ -1,7 +1,7 @@
 //! Which trains run between two exchanges: whole trains, up to the next stop, in the order and directions of the traffic.
 
-use super::{Block, Blocks, PassagePlan, Runner};
-use crate::scenario::{Direction, Tamping, Train, Update};
+use super::{Block, Blocks, PassagePlan, Runner, Runs, Tamping, Train, Update};
+use crate::solvers::track::Direction;
 
 /// Parts into which a block of unlike trains is divided when it settles the track: within a part they run one kind after the
 /// other, so that the order of the trains is kept to within a sixteenth of the block.
@@ -28,11 +28,19 @@ impl Blocks {
         std::iter::once((&self.train, &self.passage)).chain(self.others.iter().map(|(train, plan)| (train, plan)))
     }
 
+    /// The tolerance and the cap of the settlement of a block, m, where blocks are as long as their error allows.
+    pub fn adaptive(&self) -> Option<(f64, Option<f64>)> {
+        match self.update {
+            Update::Adaptive { tolerance, cap } if self.share => Some((tolerance, cap)),
+            _ => None,
+        }
+    }
+
     /// A passage of each kind of train in its leading direction.
     pub fn leading(&self) -> Vec<Runner> {
         self.kinds()
             .enumerate()
-            .map(|(kind, (train, _))| Runner { kind, direction: leading_direction(train) })
+            .map(|(kind, (train, _))| Runner { kind, direction: train.leading_direction() })
             .collect()
     }
 
@@ -59,6 +67,9 @@ impl Blocks {
 
     /// Trains that the policy wants to send next, where it knows without a look at forces.
     pub fn wanted(&self, before: u64) -> Option<u64> {
+        if !self.share {
+            return Some(1);
+        }
         let axles = self.update.axles_after(before)?;
         let wanted = self.position(before + axles) - self.position(before);
         Some(wanted.max(1).min(self.trains_left(before)))
@@ -71,11 +82,11 @@ impl Blocks {
         let mut runs = Vec::new();
         for (kind, (train, _)) in self.kinds().enumerate() {
             let (first, end) = (begun[kind], done[kind]);
-            let forward = match train.direction {
-                Direction::Forward => end - first,
-                Direction::Backward => 0,
+            let forward = match train.runs {
+                Runs::Forward => end - first,
+                Runs::Backward => 0,
                 // the first of every two trains goes forward
-                Direction::Both => end.div_ceil(2) - first.div_ceil(2),
+                Runs::BothWays => end.div_ceil(2) - first.div_ceil(2),
             };
             let of = |direction, trains| (Runner { kind, direction }, trains);
             runs.extend([of(Direction::Forward, forward), of(Direction::Backward, end - first - forward)]);
@@ -87,7 +98,7 @@ impl Blocks {
 
     /// The passages over the track after so many axles, where the next block is expected to have so many trains.
     pub fn due(&self, axles: u64, trains: u64) -> Due {
-        let adaptive = matches!(self.update, Update::Adaptive { .. });
+        let adaptive = self.adaptive().is_some();
         let mut passages = if axles == self.total {
             self.leading()
         } else if adaptive && self.tamped_after(axles).next().is_some() {
@@ -165,9 +176,4 @@ impl Block {
     pub fn runners(&self) -> Vec<Runner> {
         self.runs.iter().map(|(runner, _)| *runner).collect()
     }
-}
-
-/// The direction of the passage that shows a state of the track.
-pub(super) fn leading_direction(train: &Train) -> Direction {
-    if train.direction == Direction::Backward { Direction::Backward } else { Direction::Forward }
 }

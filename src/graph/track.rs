@@ -1,116 +1,150 @@
-//! What the track node yields: the track at rest, and what a passage did to it.
+//! The track node as data: rail, pads, sleepers, slabs of one rail. The supports of its sleepers come from another node.
 
-use crate::scenario::Track;
-use crate::scenario::response::Response;
-use crate::solvers::settlement::Peak;
+use crate::solvers::track::{
+    AuxiliaryRail, Foot, Irregularity, RailEnds, RailSection, Seat, Seating, Slab, Spring, TrackLevel, TrackModel,
+};
+use serde::{Deserialize, Serialize};
 
-/// The track without a train.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Unloaded {
-    /// Every rail node, left to right.
-    pub rail: Vec<RailPoint>,
-    pub seats: Vec<UnloadedSeat>,
-    /// The rail as a measuring wheel finds it, left to right; empty where nobody records it.
-    pub profile: Vec<RailPlace>,
+/// The 2D track of one rail; with the vehicles of its schedule it is one coupled system.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TrackNode {
+    /// Left to right, without gaps, one a section.
+    pub rail: Vec<RailSection>,
+    pub sections: Vec<TrackSection>,
+    pub seats: Vec<TrackSeat>,
+    pub slabs: Vec<Slab>,
+    pub auxiliary_rails: Vec<AuxiliaryRail>,
+    pub rail_ends: RailEnds,
+    pub irregularity: Irregularity,
+    pub elements_per_bay: u32,
+    /// m/s^2.
+    pub gravity: f64,
+    /// The shortest distance between two neighbouring seats, m.
+    pub shortest_bay: f64,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RailPoint {
+/// A part of the track of one trackform.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TrackSection {
+    /// The name of its trackform.
+    pub name: String,
+    /// Chainage of its ends, m.
+    pub start: f64,
+    pub end: f64,
+    /// Stiffness of the foundation of its slab, N/m per metre; `None` without one.
+    pub slab_foundation: Option<f64>,
+}
+
+/// A rail seat.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TrackSeat {
+    /// Its number, led by the name of its transition where there are several.
+    pub name: String,
     /// Chainage, m.
     pub x: f64,
-    /// Below the level as built, m.
-    pub deflection: f64,
-    /// Sagging, N m.
-    pub moment: f64,
+    /// Index into [`TrackNode::sections`].
+    pub section: usize,
+    /// Length of track that it carries, m.
+    pub bay: f64,
+    /// N/m and N s/m.
+    pub pad_stiffness: f64,
+    pub pad_damping: f64,
+    pub foot: TrackFoot,
 }
 
-/// A place on the rail where wheels run, four to a bay and one over each seat.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RailPlace {
-    /// Chainage, m.
-    pub x: f64,
-    /// Unloaded, below the level as built, m.
-    pub level: f64,
-    /// Unloaded, sagging, N m.
-    pub moment: f64,
-    /// The mean wheel load of the train over the deflection that it adds standing here, N/m.
-    pub stiffness: f64,
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TrackFoot {
+    /// Half a sleeper, its mass in kg, on a support that can only push.
+    Sleeper { mass: f64 },
+    /// A seat that does not move.
+    Rigid,
+    /// A seat on the slab of its section.
+    Slab,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct UnloadedSeat {
-    /// Permanent downward move of the support, m.
-    pub settlement: f64,
-    /// Sleeper below its level as built, m.
-    pub sleeper_level: f64,
-    /// Gap under the sleeper, m.
-    pub void: f64,
-    /// Sleeper on support, N.
-    pub contact_force: f64,
-    /// Rail on pad, N.
-    pub seat_load: f64,
+/// What the ground answers at every seat.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Responses {
+    /// Grows whenever a response changes: the track is factored anew only then.
+    pub revision: u64,
+    /// Of every seat; `None` without a sleeper.
+    pub seats: Vec<Option<Spring>>,
 }
 
-/// What one passage did to the track.
-#[derive(Debug, Clone, PartialEq)]
-pub struct PassageOutcome {
-    pub seats: Vec<SeatOutcome>,
-    /// For every seat what each wheel of the train does to its support at most.
-    pub peaks: Vec<Vec<Peak>>,
-    /// N.
-    pub max_wheel_force: f64,
-    pub min_wheel_force: f64,
-    /// Sagging, at rail nodes, N m.
-    pub max_rail_moment: f64,
-    /// Smallest and largest sagging moment of every rail node, N m.
-    pub rail_moments: Vec<(f64, f64)>,
-    /// Smallest and largest downward displacement of every rail node from the unloaded state, m.
-    pub rail_displacements: Vec<(f64, f64)>,
-    pub time_steps: u64,
-    pub newton_iterations: u64,
-    /// Histories; empty where the passage is not recorded.
-    pub samples: Vec<Sample>,
+impl TrackSeat {
+    /// Whether a support that can settle carries it.
+    pub fn is_ballasted(&self) -> bool {
+        matches!(self.foot, TrackFoot::Sleeper { .. })
+    }
 }
 
-/// Extremes of one seat over a passage.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct SeatOutcome {
-    /// N.
-    pub max_rail_seat_load: f64,
-    pub max_contact_force: f64,
-    /// From the unloaded state, m.
-    pub max_sleeper_displacement: f64,
-    /// Time without contact of sleeper and support, s.
-    pub contact_loss: f64,
-}
+impl TrackNode {
+    /// Chainage of both ends of the rail, m.
+    pub fn ends(&self) -> [f64; 2] {
+        [self.sections.first().map_or(0.0, |s| s.start), self.sections.last().map_or(0.0, |s| s.end)]
+    }
 
-/// One value of a history.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sample {
-    /// s.
-    pub time: f64,
-    pub quantity: Response,
-    pub target: Target,
-    /// Chainage, m.
-    pub x: f64,
-    /// SI.
-    pub value: f64,
-}
-
-/// Of what a sample is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Target {
-    /// Index into the track's seats.
-    Seat(usize),
-    /// 0 leads.
-    Wheel(usize),
-}
-
-impl Target {
-    pub fn name(self, track: &Track) -> String {
-        match self {
-            Target::Seat(seat) => track.seat_name(&track.seats[seat]),
-            Target::Wheel(wheel) => format!("wheel {}", wheel + 1),
+    /// The model of the solver on supports that answer so. A sleeper without a response has a support without stiffness, which
+    /// the solver refuses.
+    pub fn model(&self, responses: &Responses) -> TrackModel {
+        let seats = self.seats.iter().enumerate();
+        TrackModel {
+            ends: self.ends(),
+            rail: self.rail.clone(),
+            seats: seats.map(|(i, seat)| seat.model(responses.seats.get(i).copied().flatten())).collect(),
+            slabs: self.slabs.clone(),
+            auxiliary_rails: self.auxiliary_rails.clone(),
+            joints: Vec::new(),
+            rail_ends: self.rail_ends,
+            irregularity: self.irregularity.clone(),
+            elements_per_bay: self.elements_per_bay as usize,
+            gravity: self.gravity,
         }
+    }
+
+    /// The settled track: supports where they lie, and the rail ends held at the level of the track there. A clamp that
+    /// stayed at the level as built would grow a second transition at the end of the model.
+    pub fn level(&self, settlement: &[f64], responses: &Responses) -> TrackLevel {
+        let end = |seat: usize| settlement.get(seat).map_or(0.0, |settled| settled + self.sag(seat, responses));
+        let last = self.seats.len().saturating_sub(1);
+        TrackLevel { settlements: settlement.to_vec(), ends: [end(0), end(last)] }
+    }
+
+    /// Deflection of the rail under gravity, m, of a long track that is everywhere as at one seat.
+    fn sag(&self, index: usize, responses: &Responses) -> f64 {
+        let Some(seat) = self.seats.get(index) else { return 0.0 };
+        let Some(rail) = self.rail.get(seat.section) else { return 0.0 };
+        let per_seat = seat.bay * self.gravity;
+        let on_seat = rail.mass * per_seat; // N
+        let above = self.auxiliary_rails.iter().find(|span| (span.start..=span.end).contains(&seat.x));
+        let beside = above.map_or(0.0, |span| span.mass * per_seat);
+        let below = match (seat.foot, self.sections[seat.section].slab_foundation) {
+            (TrackFoot::Sleeper { mass }, _) => {
+                let spring = responses.seats.get(index).copied().flatten();
+                spring.map_or(0.0, |spring| spring.compression(on_seat + beside + mass * self.gravity))
+            }
+            (TrackFoot::Slab, Some(foundation)) => rail.mass * self.gravity / foundation,
+            _ => 0.0,
+        };
+        on_seat / seat.pad_stiffness + below
+    }
+}
+
+impl TrackSeat {
+    fn model(&self, spring: Option<Spring>) -> Seat {
+        let foot = match self.foot {
+            TrackFoot::Sleeper { mass } => Foot::Sleeper {
+                mass,
+                support_stiffness: spring.map_or(0.0, |spring| spring.stiffness),
+                support_damping: spring.map_or(0.0, |spring| spring.damping),
+                seating: spring
+                    .and_then(|spring| spring.seating)
+                    .map(|(stiffness, closure)| Seating { stiffness, closure }),
+            },
+            TrackFoot::Rigid => Foot::Rigid,
+            TrackFoot::Slab => Foot::Slab,
+        };
+        Seat { x: self.x, pad_stiffness: self.pad_stiffness, pad_damping: self.pad_damping, foot }
     }
 }

@@ -12,7 +12,6 @@ mod library;
 mod material;
 mod profile;
 pub mod response;
-mod sequence;
 mod study;
 mod tamping;
 mod track;
@@ -25,17 +24,16 @@ pub use law::{SettlementLaw, law_argument};
 pub use library::{Evidence, LibraryEntry};
 pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soil, Strength, Surface, Surfaces};
 pub use profile::{Cubic, Curve, Piece, Profile, Varying};
-pub use sequence::{Order, Sequence, Share};
 pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spread, Study, Values};
 pub use tamping::Tamping;
 pub use track::{
     ApproachSlab, AuxiliaryRailSpan, AuxiliaryRails, Foot, Groundwork, Pad, Rail, RailEnds, Seat, Seating, Section,
-    Side, Slab, SleeperBody, Spring, Stretch, Support, Track, Transition, Usp,
+    Side, Slab, SleeperBody, Stretch, Support, Track, Transition, Usp,
 };
+pub use crate::solvers::track::{Integrator, Order, Sequence, Share, Spring};
 pub use traffic::{Direction, Force, RigLoad, StaticLoad, Target, Traffic, Train, Vehicle, Wave};
 
 use crate::diag::Span;
-use crate::units::number;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -118,17 +116,6 @@ impl Update {
     }
 }
 
-/// Time integration of the track and vehicle.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum Integrator {
-    /// Spectral radius at infinite frequency, 0 .. 1.
-    GeneralisedAlpha { rho: f64 },
-    /// Hilber, Hughes and Taylor: alpha from 0 to 1/3; a greater one damps high frequencies more.
-    Hht { alpha: f64 },
-    /// Average acceleration (beta 1/4, gamma 1/2): damps nothing.
-    Newmark,
-}
-
 /// Beam theory of the rail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Beam {
@@ -136,17 +123,6 @@ pub enum Beam {
     Euler,
     /// Timoshenko: bends and shears, and its cross-section has a rotary inertia.
     Timoshenko,
-}
-
-/// As a scene spells it.
-impl fmt::Display for Integrator {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Integrator::GeneralisedAlpha { rho } => write!(f, "generalised_alpha({})", number(*rho)),
-            Integrator::Hht { alpha } => write!(f, "hht({})", number(*alpha)),
-            Integrator::Newmark => f.write_str("newmark"),
-        }
-    }
 }
 
 impl fmt::Display for Beam {

@@ -1,6 +1,7 @@
 //! The track at rest: sections side by side, the transitions between them, and every rail seat.
 
 use super::{Bed, Given, Layer, Origin, Profile};
+use crate::solvers::track::Spring;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -219,17 +220,6 @@ pub struct Usp {
     pub thickness: f64,
 }
 
-/// What a sleeper feels under it: plain numbers of one seat.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spring {
-    /// N/m.
-    pub stiffness: f64,
-    /// N s/m.
-    pub damping: f64,
-    /// Stiffness, N/m, of the first compression, and how far that reaches, m.
-    pub seating: Option<(f64, f64)>,
-}
-
 impl Support {
     /// Support and under sleeper pad, where there is one, in series.
     ///
@@ -253,17 +243,6 @@ impl Support {
             stiffness: series(k),
             damping: (c * pad * pad + pad_damping * k * k) / ((k + pad) * (k + pad)),
             seating: seating.map(|(soft, closure)| (series(soft), closure * (1.0 + soft / pad))),
-        }
-    }
-}
-
-impl Spring {
-    /// Compression under a force, m.
-    pub fn compression(&self, force: f64) -> f64 {
-        match self.seating {
-            Some((soft, closure)) if force < soft * closure => force / soft,
-            Some((soft, closure)) => closure + (force - soft * closure) / self.stiffness,
-            None => force / self.stiffness,
         }
     }
 }

@@ -2,16 +2,17 @@
 
 use super::TrackError;
 use super::model::SAME_PLACE;
+use serde::{Deserialize, Serialize};
 
 /// r over x, m below the even surface: cubics side by side, none where the surface is even. Beyond the outer ends it stays as
 /// there, so a surface that does not end level has a kink there.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Irregularity {
     cubics: Vec<Cubic>,
 }
 
 /// r between two chainages, by its values and second derivatives at both.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Cubic {
     /// m, growing.
     pub ends: [f64; 2],

@@ -1,6 +1,7 @@
 //! The track as numbers, before it is meshed, and the checks that a mesh relies on. Everything belongs to one rail.
 
 use super::{Irregularity, Seating, TrackError};
+use serde::{Deserialize, Serialize};
 
 /// What the track of one rail consists of; SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +28,7 @@ pub struct TrackModel {
 }
 
 /// A stretch of rail.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RailSection {
     /// Chainage of its ends, m.
     pub start: f64,
@@ -41,7 +42,7 @@ pub struct RailSection {
 }
 
 /// What Timoshenko's beam has beyond Euler–Bernoulli's.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Shear {
     /// κGA, N.
     pub stiffness: f64,
@@ -50,7 +51,7 @@ pub struct Shear {
 }
 
 /// Further rails on the same sleepers or slab, together as one beam with free ends, on a pad of its own at every seat.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct AuxiliaryRail {
     /// Chainage of its ends, m; the seats between them carry it.
     pub start: f64,
@@ -90,7 +91,7 @@ pub enum Foot {
 
 /// Half a slab: a beam with free ends on a Winkler foundation that acts in both directions. Its level as built is that of the
 /// slab at rest: it lies there before the rail does, so its own weight has moved it already and moves it no further.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Slab {
     /// Chainage of its ends, m.
     pub start: f64,
@@ -106,7 +107,7 @@ pub struct Slab {
 }
 
 /// What holds the rail at both ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RailEnds {
     /// Level given, rotation zero.
     Clamped,

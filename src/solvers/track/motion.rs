@@ -7,9 +7,10 @@
 //! ```
 
 use super::TrackError;
+use serde::{Deserialize, Serialize};
 
 /// The speed of a train, m/s, above 0 whatever its direction.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Motion {
     Constant(f64),
     /// Chainage of the leading wheel (m, growing) and speed; straight in between, constant beyond the outer points.

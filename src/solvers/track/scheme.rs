@@ -15,6 +15,41 @@
 //! Forces that are not linear take the same mean of both ends of the step as the linear ones.
 
 use super::TrackError;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// A method of time integration, without its step.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Integrator {
+    /// Spectral radius at infinite frequency, 0 .. 1.
+    GeneralisedAlpha { rho: f64 },
+    /// Hilber, Hughes and Taylor: alpha from 0 to 1/3; a greater one damps high frequencies more.
+    Hht { alpha: f64 },
+    /// Average acceleration (beta 1/4, gamma 1/2): damps nothing.
+    Newmark,
+}
+
+impl Integrator {
+    /// The method in steps of `time_step` (s).
+    pub fn scheme(self, time_step: f64) -> Result<Scheme, TrackError> {
+        match self {
+            Integrator::GeneralisedAlpha { rho } => Scheme::generalised_alpha(time_step, rho),
+            Integrator::Hht { alpha } => Scheme::hht(time_step, alpha),
+            Integrator::Newmark => Scheme::newmark(time_step),
+        }
+    }
+}
+
+/// The method as a scene spells it.
+impl fmt::Display for Integrator {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Integrator::GeneralisedAlpha { rho } => write!(f, "generalised_alpha({rho})"),
+            Integrator::Hht { alpha } => write!(f, "hht({alpha})"),
+            Integrator::Newmark => f.write_str("newmark"),
+        }
+    }
+}
 
 /// Coefficients of one time step.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -17,6 +17,7 @@
 //! both is strongly monotone, and a time step has exactly one solution.
 
 use super::mesh::Sleeper;
+use serde::{Deserialize, Serialize};
 
 /// Which branch of its graph a support is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -39,6 +40,28 @@ impl SupportPhase {
             SupportPhase::Seating => "seating",
             SupportPhase::Touching => "touching",
             SupportPhase::Open => "open",
+        }
+    }
+}
+
+/// What a sleeper feels under it: plain numbers of one seat.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Spring {
+    /// N/m.
+    pub stiffness: f64,
+    /// N s/m.
+    pub damping: f64,
+    /// Stiffness, N/m, of the first compression, and how far that reaches, m.
+    pub seating: Option<(f64, f64)>,
+}
+
+impl Spring {
+    /// Compression under a force (N), m.
+    pub fn compression(&self, force: f64) -> f64 {
+        match self.seating {
+            Some((soft, closure)) if force < soft * closure => force / soft,
+            Some((soft, closure)) => closure + (force - soft * closure) / self.stiffness,
+            None => force / self.stiffness,
         }
     }
 }

@@ -1,8 +1,10 @@
 //! Vehicles that run together.
 
 use super::{Multibody, TrackError};
+use serde::{Deserialize, Serialize};
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Which way a train runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Direction {
     /// As x grows.
     Forward,

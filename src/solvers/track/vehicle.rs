@@ -3,9 +3,10 @@
 
 use super::{Multibody, Wheel, WheelContact};
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 /// A vehicle on two bogies of two axles each, as carried by **one rail**: half of every mass, inertia and stiffness.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Vehicle {
     /// kg.
     pub car_body_mass: f64,

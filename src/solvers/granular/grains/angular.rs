@@ -11,6 +11,7 @@ use super::Random;
 use super::form::{Box, Solid, extent};
 use super::polyhedron::{Plane, corners, inscribed_radius, rounded};
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::fmt;
 
@@ -30,7 +31,7 @@ const ROUNDS: usize = 30;
 const BODIES: u64 = 20;
 
 /// Which grain is wanted.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Angular {
     /// Shortest over intermediate side of the smallest box.
     pub flatness: f64,

@@ -14,6 +14,7 @@ use super::super::clump::Pebble;
 use super::super::shape::Mesh;
 use super::likeness::on_facets;
 use nalgebra::Vector3;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Points of the surface at which balls are grown.
@@ -30,7 +31,7 @@ const CLOSER: f64 = 2.0 * PI / 180.0;
 const CLOSEST: f64 = 165.0 * PI / 180.0;
 
 /// The rule of bubble-pack.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rule {
     /// Fewest and most pebbles.
     pub pebbles: [usize; 2],

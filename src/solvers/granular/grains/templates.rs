@@ -3,6 +3,7 @@
 use super::super::clump::{Template, TemplateError};
 use super::super::shape::Mesh;
 use super::{Angular, AngularError, Bubbles, Random, Rule, Sample};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::fmt;
 use std::sync::Arc;
@@ -27,14 +28,14 @@ pub fn grains(sample: &Sample, templates: usize, seed: u64) -> Vec<Grain> {
 const TEMPLATES: u64 = 2;
 
 /// The shape of grains: surfaces, and how pebbles fill them.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClumpShape {
     pub surfaces: Surfaces,
     pub rule: Rule,
 }
 
 /// Closed surfaces.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Surfaces {
     /// So many angular grains of equal indices.
     Angular { indices: Angular, count: usize },

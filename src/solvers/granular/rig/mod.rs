@@ -63,7 +63,7 @@ pub struct Sleeper {
 }
 
 /// Force of an actuator, N, positive down.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Load {
     None,
     Constant(f64),

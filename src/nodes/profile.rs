@@ -5,7 +5,7 @@
 //! the assembled matrix with all supports closed; over a void it is lower, as the wheel must close the gap first. Where no wheel runs there is no
 //! profile: near the ends of the model a wheel would feel what holds the rail, not the track.
 
-use super::track::RailPlace;
+use super::RailPlace;
 use crate::solvers::track::{StaticState, Track, TrackError, TrackLevel, standing_deflections};
 use std::ops::RangeInclusive;
 

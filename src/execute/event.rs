@@ -1,0 +1,99 @@
+//! What a run tells, and to whom: one kind of event for every schedule.
+
+use super::Measured;
+use crate::graph::{Block, Clock, Control, Runner};
+use crate::nodes::{NodeError, PassageOutcome, TestState, Tested, Unloaded};
+use crate::solvers::granular::Bed;
+use crate::solvers::granular::packing::{Progress, Recipe};
+use crate::store::FoundBed;
+use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+
+/// Something that has happened. Nothing is computed twice, so who listens must keep what is needed.
+pub enum Event<'a> {
+    /// The track at rest under test loads.
+    Equilibrium(&'a Unloaded),
+    /// The track without a train, at an axle count that is recorded.
+    Rest { axles: u64, state: &'a Unloaded },
+    /// A passage at a recorded count; there is one of each kind of train, the leading one first.
+    Passage { axles: u64, runner: Runner, passage: &'a PassageOutcome },
+    /// A block is done: the passages at its start, and the settlement of every seat before and after it, m. `block` is `None` for
+    /// the passages after the last block.
+    Block {
+        axles: u64,
+        block: Option<(&'a Block, &'a Measured)>,
+        passages: &'a [&'a PassageOutcome],
+        before: &'a [f64],
+        after: &'a [f64],
+    },
+    /// Seats are tamped: the settlement of every seat before and after it, m. What is recorded at that count has been told, and
+    /// shows the track before.
+    Tamped { axles: u64, seats: &'a [usize], before: &'a [f64], after: &'a [f64] },
+    /// Settlement of every seat by each law, the driving one first, m: as built, after each block and after each tamping.
+    Laws { axles: u64, settlement: &'a [Vec<f64>] },
+    /// A bed is being packed.
+    Packing(&'a Progress),
+    /// A bed is there.
+    Packed { recipe: &'a Recipe, found: &'a FoundBed },
+    /// A test is over; the bed is as it ended.
+    Tested { tested: &'a Tested, bed: Bed<f32> },
+    /// Something that only a schedule of another program knows.
+    Custom { clock: Clock, what: &'a serde_json::Value },
+    /// Between two steps of the schedule: the state may be kept here.
+    Between(Between<'a>),
+    /// Steps of the schedule done, and to be done in all; the latter is an estimate that changes while the run goes on.
+    Progress { done: u64, all: u64 },
+}
+
+/// A moment at which a run can be interrupted and taken up again.
+pub struct Between<'a> {
+    /// Whether a block of axles, a cycle or a whole test has just ended.
+    pub at_end: bool,
+    pub(super) state: &'a dyn Fn() -> Result<Checkpoint, NodeError>,
+}
+
+impl Between<'_> {
+    /// The state of now. Of a large bed it takes a moment.
+    pub fn checkpoint(&self) -> Result<Checkpoint, NodeError> {
+        (self.state)()
+    }
+}
+
+/// The state between two steps of a schedule: a run that starts from it gives the same bits as one that never stopped.
+#[derive(Serialize, Deserialize)]
+pub struct Checkpoint {
+    pub clock: Clock,
+    pub state: ScheduleState,
+}
+
+/// What a schedule and its nodes hold.
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ScheduleState {
+    /// Blocks done, what the length of the next one hangs on, and the state of the ground.
+    Blocks { blocks: usize, control: Control, ground: serde_json::Value },
+    /// Tests that are over, and the one under way.
+    Tests { done: Vec<Tested>, running: Option<Box<TestState>> },
+    /// The state of a schedule of another program.
+    Custom(serde_json::Value),
+}
+
+/// Hears what a run tells.
+pub trait Listener {
+    /// Hears an event. A break ends the run; the reason is the listener's own to keep.
+    fn hear(&mut self, event: Event<'_>) -> ControlFlow<()>;
+}
+
+/// Nobody listens.
+impl Listener for () {
+    fn hear(&mut self, _: Event<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+/// A function listens.
+impl<F: FnMut(Event<'_>) -> ControlFlow<()>> Listener for F {
+    fn hear(&mut self, event: Event<'_>) -> ControlFlow<()> {
+        self(event)
+    }
+}

@@ -1,0 +1,33 @@
+//! The one executor: it checks that a graph fits together, builds its nodes, and advances them as the schedule says.
+//!
+//! Whoever wants to know what happens listens: recorders, progress, checkpoints, studies and charts hear the same
+//! [`Event`]s, and each may end the run.
+
+mod blocks;
+mod equilibrium;
+mod event;
+mod exchange;
+mod machine;
+mod oscillation;
+mod step;
+mod tests_of_beds;
+
+pub use event::{Between, Checkpoint, Event, Listener, ScheduleState};
+pub use machine::{Custom, Ending, Executor, RunError};
+pub use step::Measured;
+
+pub use blocks::passage_as_built;
+
+use crate::graph::Graph;
+use rayon::prelude::*;
+
+/// Runs a graph from its beginning with the nodes and schedules of this crate.
+pub fn execute(graph: &Graph, listener: &mut dyn Listener) -> Result<Ending, RunError> {
+    Executor::default().run(graph, listener, None)
+}
+
+/// Runs several graphs at once, each from its beginning, and keeps their order. The results are those of [`execute`], bit for
+/// bit.
+pub fn execute_all<L: Listener + Send>(runs: &mut [(&Graph, L)]) -> Vec<Result<Ending, RunError>> {
+    runs.par_iter_mut().map(|(graph, listener)| execute(graph, listener)).collect()
+}

@@ -1,0 +1,91 @@
+//! The schedule of test rigs: one bed after the other is packed, or taken from where beds are kept, and tested.
+
+use super::machine::{Ending, Machine, RunError};
+use super::{Between, Checkpoint, Event, Listener, ScheduleState};
+use crate::graph::{ActuatorsNode, BedNode, Clock, Tests};
+use crate::nodes::{BedUnderActuators, NodeError, TestState, Tested};
+use crate::solvers::granular::Bed;
+use std::ops::ControlFlow;
+
+pub(super) fn run(
+    machine: &Machine<'_>,
+    tests: &Tests,
+    listener: &mut dyn Listener,
+    from: Option<Checkpoint>,
+) -> Result<Ending, RunError> {
+    let (mut done, mut running) = match from.map(|checkpoint| checkpoint.state) {
+        None => (Vec::new(), None),
+        Some(ScheduleState::Tests { done, running }) => (done, running),
+        Some(_) => return Err(RunError::ForeignCheckpoint),
+    };
+    let none = NodeError::NoBuilder { node: "bed".into(), kind: "bed under actuators".into() };
+    let (bed, actuators) = machine.graph.bed_under_actuators().ok_or_else(|| at(0, none))?;
+    while (done.len() as u64) < u64::from(tests.packings.max(1)) {
+        let mut test = Test { machine, tests, bed, actuators, listener, done: &done };
+        let Some((tested, bed)) = test.run(running.take().map(|state| *state))? else { return Ok(Ending::Stopped) };
+        done.push(tested);
+        let told = listener.hear(Event::Tested { tested: &done[done.len() - 1], bed });
+        let state = || Ok(checkpoint(&done, None));
+        let kept = listener.hear(Event::Between(Between { at_end: true, state: &state }));
+        if told.is_break() || kept.is_break() {
+            return Ok(Ending::Stopped);
+        }
+    }
+    Ok(Ending::Finished)
+}
+
+fn at(cycles: u64, cause: NodeError) -> RunError {
+    RunError::Node { clock: Clock::Cycles(cycles), cause }
+}
+
+fn checkpoint(done: &[Tested], running: Option<(u64, TestState)>) -> Checkpoint {
+    let before: u64 = done.iter().filter_map(|test| test.cycles.last()).map(|cycle| cycle.number).sum();
+    let clock = Clock::Cycles(before + running.as_ref().map_or(0, |(cycles, _)| *cycles));
+    let running = running.map(|(_, state)| Box::new(state));
+    Checkpoint { clock, state: ScheduleState::Tests { done: done.to_vec(), running } }
+}
+
+/// One packing on its way.
+struct Test<'a, 'l> {
+    machine: &'a Machine<'a>,
+    tests: &'a Tests,
+    bed: &'a BedNode,
+    actuators: &'a ActuatorsNode,
+    listener: &'l mut dyn Listener,
+    done: &'a [Tested],
+}
+
+impl Test<'_, '_> {
+    /// Packs and tests, from what was kept of the test on; `None` where a listener ended it.
+    fn run(&mut self, running: Option<TestState>) -> Result<Option<(Tested, Bed<f32>)>, RunError> {
+        let seed = self.bed.bed.seed().wrapping_add(self.done.len() as u64);
+        let recipe = self.bed.bed.recipe(seed).map_err(|cause| at(0, NodeError::Bed(cause)))?;
+        let mut going_on = ControlFlow::Continue(());
+        let found = self.machine.beds().bed(&recipe, |progress| {
+            if going_on.is_continue() {
+                going_on = self.listener.hear(Event::Packing(progress));
+            }
+        });
+        let found = found.map_err(|cause| at(0, NodeError::Packing(cause)))?;
+        if going_on.is_break() || self.listener.hear(Event::Packed { recipe: &recipe, found: &found }).is_break() {
+            return Ok(None);
+        }
+        let top = found.packed.levels.last().copied().unwrap_or_default();
+        let rig = self.bed.rig(self.actuators, &recipe, top, &self.tests.kept);
+        let begun = match running {
+            Some(state) => BedUnderActuators::restore(seed, state, &rig),
+            None => BedUnderActuators::new(seed, found.packed, self.bed.copies, &rig),
+        };
+        let mut test = begun.map_err(|cause| at(0, cause))?;
+        while test.advance().map_err(|cause| at(test_cycles(&cause), cause))? {
+            let (done, all) = test.pieces();
+            let progress = self.listener.hear(Event::Progress { done, all });
+            let state = || Ok(checkpoint(self.done, Some((test.cycles(), test.save()))));
+            let between = Between { at_end: test.at_end_of_cycle(), state: &state };
+            if progress.is_break() || self.listener.hear(Event::Between(between)).is_break() {
+                return Ok(None);
+            }
+        }
+        Ok(Some(test.finish()))
+    }
+}

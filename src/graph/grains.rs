@@ -1,0 +1,227 @@
+//! Nodes of grains: beds to pack, what stands on them, what loads them, and the soil below.
+
+use crate::solvers::granular::clump::Template;
+use crate::solvers::granular::grains::{ClumpShape, TemplatesError};
+use crate::solvers::granular::measure::Region;
+use crate::solvers::granular::packing::{PackingError, Recipe};
+use crate::solvers::granular::probe::Plate;
+use crate::solvers::granular::rig::{Load, Rig, Sensor, Sleeper, Specimen};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// The bed of a section, before it is packed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BedPlan {
+    /// The name of the trackform.
+    pub section: String,
+    /// Complete but for the templates of its layers, which take a tenth of a second to make.
+    blank: Recipe,
+    /// Shapes of the grains of each layer, from the floor upwards; `None` are spheres.
+    shapes: Vec<Option<ClumpShape>>,
+    /// The area by which its stiffness is felt: the footprint of half a sleeper, of a whole one in a bed of both rails.
+    pub plate: Plate,
+    /// Decisions and their reasons, for people.
+    pub notes: Vec<String>,
+}
+
+/// Why a plan gives no recipe.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BedError {
+    /// Pebbles that make no clump of the grains of a layer.
+    Templates { layer: String, cause: TemplatesError },
+    /// A recipe that cannot be packed.
+    Recipe(PackingError),
+}
+
+impl fmt::Display for BedError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            BedError::Templates { layer, cause } => write!(f, "grains of `{layer}`: {cause}"),
+            BedError::Recipe(cause) => cause.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for BedError {}
+
+impl BedPlan {
+    /// A plan from a recipe without templates and the shapes that they are made of, one a layer.
+    pub fn new(section: String, blank: Recipe, shapes: Vec<Option<ClumpShape>>, plate: Plate) -> BedPlan {
+        BedPlan { section, blank, shapes, plate, notes: Vec::new() }
+    }
+
+    /// The numbers of the recipe; its layers lack their templates.
+    pub fn numbers(&self) -> &Recipe {
+        &self.blank
+    }
+
+    /// The recipe of the packing of a seed.
+    pub fn recipe(&self, seed: u64) -> Result<Recipe, BedError> {
+        let mut recipe = Recipe { seed, ..self.blank.clone() };
+        for (layer, shape) in recipe.layers.iter_mut().zip(&self.shapes) {
+            let templates = match shape {
+                None => Template::sphere(0.5).map(|sphere| vec![sphere]).map_err(TemplatesError::Clump),
+                Some(shape) => shape.templates(seed),
+            };
+            layer.templates =
+                templates.map_err(|cause| BedError::Templates { layer: layer.name.clone(), cause })?;
+        }
+        recipe.check().map_err(BedError::Recipe)?;
+        Ok(recipe)
+    }
+
+    /// The seed of the first packing.
+    pub fn seed(&self) -> u64 {
+        self.blank.seed
+    }
+}
+
+/// A bed of grains with sleepers, or a plate, on it: it takes the forces of actuators at every step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct BedNode {
+    pub bed: BedPlan,
+    /// Cells of the bed side by side.
+    pub copies: u32,
+    /// What stands on the bed, from left to right.
+    pub bodies: Vec<StandingBody>,
+    /// Area of a plate over the whole bed in the place of sleepers, m2.
+    pub plate: Option<f64>,
+    /// Pressure on the sides of a specimen, Pa.
+    pub confinement: Option<f64>,
+    /// Whether an actuator gives the velocity of the plate instead of a force.
+    pub driven: bool,
+    /// m/s^2.
+    pub gravity: f64,
+    pub sensors: Vec<SensorNode>,
+    /// Share of the mass of the bed that may be added as inertia for the sake of a longer step.
+    pub added_inertia: f64,
+}
+
+/// A sleeper or a plate on a bed, in the axes of the bed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StandingBody {
+    pub name: String,
+    /// Chainage, m.
+    pub x: f64,
+    /// Its middle along and across the bed, m.
+    pub place: [f64; 2],
+    /// Along, across, height, m.
+    pub size: [f64; 3],
+    /// The mass that the bed under it carries, kg.
+    pub mass: f64,
+}
+
+/// A measurement volume below the top of the bed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SensorNode {
+    pub name: String,
+    /// Chainage, m.
+    pub x: f64,
+    /// Along and across the bed, and below its top, m.
+    pub place: [f64; 3],
+    pub volume: SensorVolume,
+    /// Length and width of the bed, m: the volume is cut there.
+    pub bed: [f64; 2],
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SensorVolume {
+    /// m.
+    Sphere { radius: f64 },
+    /// m; across `None` is the whole bed.
+    Block { along: f64, across: Option<f64>, height: f64 },
+}
+
+/// The actuators of a rig, one for each body on the bed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ActuatorsNode {
+    pub loads: Vec<Load>,
+    /// Length of a cycle, or of the whole history of a force, s.
+    pub period: f64,
+    pub cycles: u64,
+}
+
+/// The grains under a track: a bed for each section with layers of its own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GrainsNode {
+    pub beds: Vec<BedPlan>,
+    /// Chainages between which grains are modelled, m.
+    pub window: Vec<[f64; 2]>,
+    /// Whether soil lies below.
+    pub on_soil: bool,
+}
+
+/// The layers below the grains.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SoilNode {
+    /// From the top downwards.
+    pub layers: Vec<SoilLayer>,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SoilLayer {
+    pub name: String,
+    /// m.
+    pub thickness: f64,
+    /// Pa.
+    pub youngs_modulus: f64,
+    pub poisson_ratio: f64,
+}
+
+impl BedNode {
+    /// Whether its plate is driven.
+    pub fn is_driven(&self) -> bool {
+        self.driven
+    }
+
+    /// The rig that is this bed under actuators, its top at a level (m). Loops of force and depth, and what sensors read, are kept
+    /// of the cycles `kept`.
+    pub fn rig(&self, actuators: &ActuatorsNode, recipe: &Recipe, top: f64, kept: &[u64]) -> Rig {
+        let body = |(body, load): (&StandingBody, &Load)| Sleeper {
+            place: body.place,
+            size: body.size,
+            mass: body.mass,
+            load: load.clone(),
+        };
+        let specimen = self.confinement.zip(recipe.sides());
+        Rig {
+            sleepers: self.bodies.iter().zip(&actuators.loads).map(body).collect(),
+            specimen: specimen.map(|(pressure, sides)| Specimen { floor: recipe.floor(), sides, pressure }),
+            period: actuators.period,
+            cycles: actuators.cycles,
+            gravity: self.gravity,
+            densities: recipe.layers.iter().map(|layer| layer.density).collect(),
+            kept: kept.to_vec(),
+            sensors: self.sensors.iter().filter_map(|sensor| Some(Sensor { region: sensor.region(top)? })).collect(),
+            added: self.added_inertia,
+        }
+    }
+}
+
+impl SensorNode {
+    /// The volume in a bed whose top is at a level (m), cut at the ends and sides of the bed; `None` where nothing is left.
+    fn region(&self, top: f64) -> Option<Region> {
+        let [x, y, depth] = self.place;
+        let [length, width] = self.bed;
+        let z = top - depth;
+        match self.volume {
+            SensorVolume::Sphere { radius } => Region::sphere([x, y, z], radius).ok(),
+            SensorVolume::Block { along, across, height } => {
+                let ends = |middle: f64, size: f64, most: f64| {
+                    [(middle - size / 2.0).max(0.0), (middle + size / 2.0).min(most)]
+                };
+                let [[x0, x1], [y0, y1]] =
+                    [ends(x, along, length), across.map_or([0.0, width], |size| ends(y, size, width))];
+                Region::block([x0, y0, z - height / 2.0], [x1, y1, z + height / 2.0]).ok()
+            }
+        }
+    }
+}
+
+impl ActuatorsNode {
+    /// Whether they give a velocity instead of a force.
+    pub fn drive(&self) -> bool {
+        self.loads.iter().any(|load| matches!(load, Load::Strain(_)))
+    }
+}

@@ -1,0 +1,80 @@
+//! A node as data: its name, the plain parameters of its solver, and its ports, which follow from them.
+
+use super::quantity::*;
+use super::{ActuatorsNode, BedNode, GrainsNode, LawNode, Ports, SoilNode, SpringsNode, TrackNode};
+use serde::{Deserialize, Serialize};
+
+/// A part of the machine that owns a state and advances it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Node {
+    pub name: String,
+    pub model: Model,
+}
+
+/// What a node is.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Model {
+    /// Rail, pads, sleepers and slab with the vehicles on them.
+    Track(Box<TrackNode>),
+    /// Supports that do not settle.
+    Springs(SpringsNode),
+    /// Supports that settle by a law.
+    Law(LawNode),
+    /// A bed of grains with what stands on it, under actuators.
+    Bed(Box<BedNode>),
+    /// The loads of a rig.
+    Actuators(ActuatorsNode),
+    /// The grains under a track.
+    Grains(GrainsNode),
+    /// The ground below the grains.
+    Soil(SoilNode),
+    /// A node of another program: whoever runs the graph says how it is built.
+    Custom(CustomNode),
+}
+
+/// A node that this crate does not know, as data.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CustomNode {
+    /// By which its builder is found.
+    pub kind: String,
+    pub ports: Ports,
+    /// For people, a line each.
+    pub details: Vec<String>,
+    pub parameters: serde_json::Value,
+}
+
+impl Node {
+    /// A node by its name.
+    pub fn new(name: impl Into<String>, model: Model) -> Node {
+        Node { name: name.into(), model }
+    }
+
+    /// The quantities that it gives and takes.
+    pub fn ports(&self) -> Ports {
+        let (gives, takes) = match &self.model {
+            Model::Track(_) => {
+                let forces = vec![WHEEL_FORCES, SLEEPER_FORCE_PEAKS, SLEEPER_FORCES];
+                (forces, vec![SUPPORT_STIFFNESS, SUPPORT_DAMPING, SETTLEMENT])
+            }
+            Model::Springs(_) => (vec![SUPPORT_STIFFNESS, SUPPORT_DAMPING, SETTLEMENT], vec![]),
+            Model::Law(_) => (vec![SUPPORT_STIFFNESS, SUPPORT_DAMPING, SETTLEMENT], vec![SLEEPER_FORCE_PEAKS]),
+            Model::Bed(bed) if bed.is_driven() => (vec![SLEEPER_DISPLACEMENT], vec![ACTUATOR_VELOCITY]),
+            Model::Bed(_) => (vec![SLEEPER_DISPLACEMENT], vec![ACTUATOR_FORCE]),
+            Model::Actuators(actuators) if actuators.drive() => (vec![ACTUATOR_VELOCITY], vec![]),
+            Model::Actuators(_) => (vec![ACTUATOR_FORCE], vec![]),
+            Model::Grains(grains) => {
+                let below = grains.on_soil;
+                let gives = [SUPPORT_STIFFNESS, SUPPORT_DAMPING, SETTLEMENT].into_iter();
+                let takes = std::iter::once(SLEEPER_FORCES);
+                (
+                    gives.chain(below.then_some(GRAIN_FORCE)).collect(),
+                    takes.chain(below.then_some(SOIL_VELOCITY)).collect(),
+                )
+            }
+            Model::Soil(_) => (vec![SOIL_VELOCITY], vec![GRAIN_FORCE]),
+            Model::Custom(node) => return node.ports.clone(),
+        };
+        Ports { gives, takes }
+    }
+}

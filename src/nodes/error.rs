@@ -1,0 +1,56 @@
+//! Why a node could not do what the schedule asked of it.
+
+use crate::graph::BedError;
+use crate::solvers::granular::packing::PackingError;
+use crate::solvers::granular::rig::RigError;
+use crate::solvers::track::TrackError;
+use std::fmt;
+
+/// A failure of a node, by its kind.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NodeError {
+    /// The track or a passage over it.
+    Track(TrackError),
+    /// A bed that has no recipe.
+    Bed(BedError),
+    /// Packing.
+    Packing(PackingError),
+    /// A test.
+    Rig(RigError),
+    /// A state that was kept and is not of this node.
+    Foreign { node: &'static str, why: String },
+    /// A node of the graph for which nobody has a builder.
+    NoBuilder { node: String, kind: String },
+    /// What a node of another program says.
+    Other { node: String, why: String },
+}
+
+impl fmt::Display for NodeError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            NodeError::Track(cause) => cause.fmt(f),
+            NodeError::Bed(cause) => cause.fmt(f),
+            NodeError::Packing(cause) => cause.fmt(f),
+            NodeError::Rig(cause) => cause.fmt(f),
+            NodeError::Foreign { node, why } => write!(f, "the kept state of the {node} cannot be used: {why}"),
+            NodeError::NoBuilder { node, kind } => {
+                write!(f, "node `{node}` is of a kind `{kind}` that this program cannot run")
+            }
+            NodeError::Other { node, why } => write!(f, "node `{node}`: {why}"),
+        }
+    }
+}
+
+impl std::error::Error for NodeError {}
+
+impl From<TrackError> for NodeError {
+    fn from(cause: TrackError) -> NodeError {
+        NodeError::Track(cause)
+    }
+}
+
+impl From<RigError> for NodeError {
+    fn from(cause: RigError) -> NodeError {
+        NodeError::Rig(cause)
+    }
+}

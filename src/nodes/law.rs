@@ -1,0 +1,161 @@
+//! The ground where no grains carry the sleepers: springs that do not settle, or a settlement law under each seat.
+
+use super::{Load, Mark, NodeError, Substructure};
+use crate::graph::{LawNode, NamedLaw, Responses, SupportNode};
+use crate::solvers::settlement::{Law, SupportState};
+use serde::{Deserialize, Serialize};
+
+/// Springs with laws that settle them; without a law nothing settles.
+pub struct LawGround<'a> {
+    /// The driving one first.
+    laws: Vec<&'a Law>,
+    /// Indices of the seats that settle.
+    seats: Vec<usize>,
+    /// Settlement of every seat at the start, m.
+    initial: Vec<f64>,
+    responses: Responses,
+    state: State,
+}
+
+/// By law, then by support.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct State {
+    supports: Vec<Vec<SupportState>>,
+    /// Settlement of every seat from which its law counts, m: that of the start, and what tamping left.
+    level: Vec<Vec<f64>>,
+}
+
+impl<'a> LawGround<'a> {
+    /// Supports that do not settle.
+    pub fn springs(supports: &[SupportNode]) -> LawGround<'a> {
+        LawGround::new(supports, Vec::new())
+    }
+
+    /// Supports under laws, as the scene starts them.
+    pub fn law(node: &'a LawNode) -> LawGround<'a> {
+        let laws = std::iter::once(&node.law).chain(&node.followers).map(|named: &NamedLaw| &named.law).collect();
+        LawGround::new(&node.supports, laws)
+    }
+
+    fn new(supports: &[SupportNode], laws: Vec<&'a Law>) -> LawGround<'a> {
+        let seats: Vec<usize> = (0..supports.len()).filter(|seat| supports[*seat].spring.is_some()).collect();
+        let initial: Vec<f64> = supports.iter().map(|support| support.settlement).collect();
+        let state = State {
+            supports: laws.iter().map(|law| seats.iter().map(|_| law.fresh()).collect()).collect(),
+            level: vec![initial.clone(); laws.len()],
+        };
+        let responses = Responses { revision: 0, seats: supports.iter().map(|support| support.spring).collect() };
+        LawGround { laws, seats, initial, responses, state }
+    }
+
+    fn settlements(&self, state: &State) -> Vec<Vec<f64>> {
+        (0..self.laws.len()).map(|law| self.settlement_of(law, state)).collect()
+    }
+
+    fn settlement_of(&self, law: usize, state: &State) -> Vec<f64> {
+        let mut settlement = state.level[law].clone();
+        for (seat, support) in self.seats.iter().zip(&state.supports[law]) {
+            settlement[*seat] += self.laws[law].settlement(support);
+        }
+        settlement
+    }
+
+    fn load(&self, state: &mut State, laws: usize, loads: &[Load<'_>]) {
+        for load in loads {
+            for (law, supports) in self.laws[..laws].iter().zip(&mut state.supports) {
+                for (seat, support) in self.seats.iter().zip(supports) {
+                    law.load(support, &load.passage.peaks[*seat], load.trains);
+                }
+            }
+        }
+    }
+}
+
+impl Substructure for LawGround<'_> {
+    fn responses(&self) -> &Responses {
+        &self.responses
+    }
+
+    fn settlement(&self) -> Vec<f64> {
+        if self.laws.is_empty() { self.initial.clone() } else { self.settlement_of(0, &self.state) }
+    }
+
+    fn settlement_by_law(&self) -> Vec<Vec<f64>> {
+        self.settlements(&self.state)
+    }
+
+    /// Laws are exact: this is what [`Substructure::advance`] leaves, to the last bit.
+    fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError> {
+        if self.laws.is_empty() {
+            return Ok(self.initial.clone());
+        }
+        // followers change nothing
+        let mut state = State {
+            supports: vec![self.state.supports[0].clone()],
+            level: vec![self.state.level[0].clone()],
+        };
+        self.load(&mut state, 1, loads);
+        Ok(self.settlement_of(0, &state))
+    }
+
+    fn advance(&mut self, loads: &[Load<'_>]) -> Result<(), NodeError> {
+        let mut state = std::mem::replace(&mut self.state, State { supports: Vec::new(), level: Vec::new() });
+        self.load(&mut state, self.laws.len(), loads);
+        self.state = state;
+        Ok(())
+    }
+
+    fn mark(&self) -> Mark {
+        Mark(Box::new(self.state.clone()))
+    }
+
+    fn roll_back(&mut self, mark: Mark) {
+        if let Ok(state) = mark.0.downcast::<State>() {
+            self.state = *state;
+        }
+    }
+
+    /// Tamping loosens the ballast that traffic had packed, so that each law begins afresh there: in the published curves N
+    /// counts from the last tamping, and the fast settlement of the first cycles comes back (Dahlberg 2001; Selig and Waters
+    /// 1994, section 8).
+    fn tamp(&mut self, seats: &[usize], left: f64) -> Result<(), NodeError> {
+        let settled = self.settlements(&self.state);
+        let State { supports, level } = &mut self.state;
+        for (((law, supports), level), settled) in self.laws.iter().zip(supports).zip(level).zip(settled) {
+            let tamped = self.seats.iter().zip(supports).filter(|(seat, _)| seats.binary_search(seat).is_ok());
+            for (seat, support) in tamped {
+                level[*seat] = left * settled[*seat];
+                *support = law.fresh();
+            }
+        }
+        Ok(())
+    }
+
+    fn save(&self) -> Result<serde_json::Value, NodeError> {
+        serde_json::to_value(&self.state).map_err(foreign)
+    }
+
+    fn restore(&mut self, state: &serde_json::Value) -> Result<(), NodeError> {
+        let state: State = serde_json::from_value(state.clone()).map_err(foreign)?;
+        let laws = self.laws.len();
+        let fits = state.supports.len() == laws
+            && state.level.len() == laws
+            && state.supports.iter().all(|supports| supports.len() == self.seats.len())
+            && state.level.iter().all(|level| level.len() == self.initial.len())
+            && self.laws.iter().zip(&state.supports).all(|(law, s)| s.iter().all(|support| is_state_of(law, support)));
+        if !fits {
+            return Err(foreign("it holds other laws or another number of seats"));
+        }
+        self.state = state;
+        Ok(())
+    }
+}
+
+/// Whether a support remembers what this law wants to know.
+fn is_state_of(law: &Law, support: &SupportState) -> bool {
+    std::mem::discriminant(&law.fresh()) == std::mem::discriminant(support)
+}
+
+fn foreign(why: impl ToString) -> NodeError {
+    NodeError::Foreign { node: "settlement laws", why: why.to_string() }
+}

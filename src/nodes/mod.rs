@@ -1,0 +1,118 @@
+//! Solvers behind ports: what a schedule needs of a superstructure and of a substructure, and one adapter a node.
+//!
+//! A node is built from its data in the graph ([`build`]). What passes between two of them is a type of this folder; what
+//! a port is called, its unit and its rate stand in the graph.
+
+mod build;
+mod error;
+mod grains;
+mod law;
+mod outcome;
+mod profile;
+mod sampler;
+mod steps;
+mod track;
+
+pub use build::Builders;
+pub use error::NodeError;
+pub use grains::{BedUnderActuators, TestState, Tested};
+pub use law::LawGround;
+pub use outcome::{PassageOutcome, RailPlace, RailPoint, Sample, SampledPart, SeatForces, SeatOutcome, Unloaded, UnloadedSeat};
+pub use profile::between;
+pub use steps::Steps;
+pub use track::{RUNAWAY, TrackSystem};
+
+use crate::graph::{PointLoad, Responses, Runner};
+use std::any::Any;
+
+/// What a passage keeps beside its outcome.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kept {
+    Nothing,
+    Histories,
+    /// Histories, and the unloaded rail under the mean wheel of the train.
+    Profile,
+}
+
+/// What a substructure needs of the forces of a passage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Forces {
+    /// The peak under each wheel.
+    Peaks,
+    /// Peaks and the whole history at every seat.
+    Histories,
+}
+
+/// A passage to be computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Request<'a> {
+    /// Axles that have passed.
+    pub axles: u64,
+    /// Settlement of every seat, m.
+    pub settlement: &'a [f64],
+    pub runner: Runner,
+    pub kept: Kept,
+    pub forces: Forces,
+}
+
+/// Rails, sleepers and vehicles: settlement and responses of the ground in, states of rest and passages out.
+pub trait Superstructure: Sync {
+    /// Takes the responses of the ground. Costs nothing where their revision is known.
+    fn stand_on(&mut self, responses: &Responses) -> Result<(), NodeError>;
+
+    /// The track at rest under test loads, on the settlement of every seat, m.
+    fn equilibrium(&self, settlement: &[f64], loads: &[PointLoad]) -> Result<Unloaded, NodeError>;
+
+    /// One train over the settled track, and the track at rest before it.
+    fn passage(&self, request: Request<'_>) -> Result<(Unloaded, PassageOutcome), NodeError>;
+}
+
+/// Trains that pass one after the other with the forces of one computed passage.
+#[derive(Debug, Clone, Copy)]
+pub struct Load<'a> {
+    pub passage: &'a PassageOutcome,
+    pub trains: u64,
+}
+
+/// A state to which a substructure can be rolled back.
+pub struct Mark(pub Box<dyn Any + Send>);
+
+/// What carries the sleepers: forces in, responses and settlement out.
+pub trait Substructure: Send + Sync {
+    /// Stiffness, damping and seating of every seat.
+    fn responses(&self) -> &Responses;
+
+    /// Settlement of every seat, m: that of the start and what traffic has added.
+    fn settlement(&self) -> Vec<f64>;
+
+    /// Settlement of every seat by each of the laws that are compared, the driving one first, m; empty where nothing settles by laws.
+    fn settlement_by_law(&self) -> Vec<Vec<f64>> {
+        Vec::new()
+    }
+
+    /// What it needs of a passage.
+    fn forces(&self) -> Forces {
+        Forces::Peaks
+    }
+
+    /// Settlement of every seat (m) that these trains would leave. Changes nothing.
+    fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError>;
+
+    /// Lets trains pass. After an error the state is that of the last mark only once it is rolled back.
+    fn advance(&mut self, loads: &[Load<'_>]) -> Result<(), NodeError>;
+
+    /// The present state, to be rolled back to.
+    fn mark(&self) -> Mark;
+
+    /// Goes back to a state that this substructure has marked.
+    fn roll_back(&mut self, mark: Mark);
+
+    /// Lifts seats, ascending, until only the share `left` of their settlement stays.
+    fn tamp(&mut self, seats: &[usize], left: f64) -> Result<(), NodeError>;
+
+    /// The state as data, to go on from in another process.
+    fn save(&self) -> Result<serde_json::Value, NodeError>;
+
+    /// Takes up a state that was saved; fails where it is of another substructure.
+    fn restore(&mut self, state: &serde_json::Value) -> Result<(), NodeError>;
+}

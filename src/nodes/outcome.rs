@@ -1,0 +1,127 @@
+//! What the track node yields: the track at rest, and what a passage did to it.
+
+use crate::graph::{History, TrackNode};
+use crate::solvers::settlement::Peak;
+
+/// The track without a train.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unloaded {
+    /// Every rail node, left to right.
+    pub rail: Vec<RailPoint>,
+    pub seats: Vec<UnloadedSeat>,
+    /// The rail as a measuring wheel finds it, left to right; empty where nobody records it.
+    pub profile: Vec<RailPlace>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RailPoint {
+    /// Chainage, m.
+    pub x: f64,
+    /// Below the level as built, m.
+    pub deflection: f64,
+    /// Sagging, N m.
+    pub moment: f64,
+}
+
+/// A place on the rail where wheels run, four to a bay and one over each seat.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RailPlace {
+    /// Chainage, m.
+    pub x: f64,
+    /// Unloaded, below the level as built, m.
+    pub level: f64,
+    /// Unloaded, sagging, N m.
+    pub moment: f64,
+    /// The mean wheel load of the train over the deflection that it adds standing here, N/m.
+    pub stiffness: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct UnloadedSeat {
+    /// Permanent downward move of the support, m.
+    pub settlement: f64,
+    /// Sleeper below its level as built, m.
+    pub sleeper_level: f64,
+    /// Gap under the sleeper, m.
+    pub void: f64,
+    /// Sleeper on support, N.
+    pub contact_force: f64,
+    /// Rail on pad, N.
+    pub seat_load: f64,
+}
+
+/// What one passage did to the track.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PassageOutcome {
+    pub seats: Vec<SeatOutcome>,
+    /// For every seat what each wheel of the train does to its support at most.
+    pub peaks: Vec<Vec<Peak>>,
+    /// N.
+    pub max_wheel_force: f64,
+    pub min_wheel_force: f64,
+    /// Sagging, at rail nodes, N m.
+    pub max_rail_moment: f64,
+    /// Smallest and largest sagging moment of every rail node, N m.
+    pub rail_moments: Vec<(f64, f64)>,
+    /// Smallest and largest downward displacement of every rail node from the unloaded state, m.
+    pub rail_displacements: Vec<(f64, f64)>,
+    pub time_steps: u64,
+    pub newton_iterations: u64,
+    /// Histories; empty where the passage is not recorded.
+    pub samples: Vec<Sample>,
+    /// The force of every sleeper on its support over the passage, where the substructure takes it.
+    pub forces: Option<SeatForces>,
+}
+
+/// Forces of sleepers on their supports at equal intervals, R(t).
+#[derive(Debug, Clone, PartialEq)]
+pub struct SeatForces {
+    /// s.
+    pub interval: f64,
+    /// Of every seat, N; empty of a seat without a sleeper.
+    pub seats: Vec<Vec<f64>>,
+}
+
+/// Extremes of one seat over a passage.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SeatOutcome {
+    /// N.
+    pub max_rail_seat_load: f64,
+    pub max_contact_force: f64,
+    /// From the unloaded state, m.
+    pub max_sleeper_displacement: f64,
+    /// Time without contact of sleeper and support, s.
+    pub contact_loss: f64,
+}
+
+/// One value of a history.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// s.
+    pub time: f64,
+    pub quantity: History,
+    pub part: SampledPart,
+    /// Chainage, m.
+    pub x: f64,
+    /// SI.
+    pub value: f64,
+}
+
+/// The part of the track or of the train whose history a sample is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SampledPart {
+    /// Index of a seat.
+    Seat(usize),
+    /// 0 leads.
+    Wheel(usize),
+}
+
+impl SampledPart {
+    /// Its name in tables.
+    pub fn name(self, track: &TrackNode) -> String {
+        match self {
+            SampledPart::Seat(seat) => track.seats[seat].name.clone(),
+            SampledPart::Wheel(wheel) => format!("wheel {}", wheel + 1),
+        }
+    }
+}

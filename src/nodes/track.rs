@@ -1,0 +1,192 @@
+//! The track node at work: its statics and its passages.
+
+use super::sampler::{ForceSampler, Sampler};
+use super::steps::{Steps, steps_of_kinds};
+use super::{
+    Kept, NodeError, PassageOutcome, RailPoint, Request, SeatOutcome, Superstructure, Unloaded, UnloadedSeat, profile,
+};
+use crate::graph::{Blocks, LoadedPart, PointLoad, Record, Responses, Runner, TrackNode, Train};
+use crate::solvers::settlement::Peak;
+use crate::solvers::track::{Envelope, Loads, Run, StaticState, Track, TrackError, TrackLevel, solve_static};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// A track on its ground, meshed, its time steps factored once for all passages.
+pub struct TrackSystem<'a> {
+    node: &'a TrackNode,
+    records: &'a [Record],
+    blocks: Option<&'a Blocks>,
+    built: Option<Built>,
+}
+
+/// What hangs on the responses of the ground.
+struct Built {
+    responses: Responses,
+    track: Arc<Track>,
+    /// Of each kind of train.
+    steps: Vec<Arc<Steps>>,
+}
+
+/// Seats whose mean stands for those near the ends of the model, see [`TrackSystem::complete`].
+const NEIGHBOURS: usize = 10;
+
+/// Wheel forces beyond so many static ones are no answer: rails break long before.
+pub const RUNAWAY: f64 = 10.0;
+
+impl<'a> TrackSystem<'a> {
+    /// A track that stands on nothing yet; `blocks` say which trains run over it, `records` which histories are kept.
+    pub fn new(node: &'a TrackNode, blocks: Option<&'a Blocks>, records: &'a [Record]) -> Self {
+        TrackSystem { node, records, blocks, built: None }
+    }
+
+    fn built(&self) -> Result<&Built, TrackError> {
+        let nothing = TrackError::Model { x: self.node.ends()[0], reason: "the track stands on no ground".into() };
+        self.built.as_ref().ok_or(nothing)
+    }
+
+    fn at_rest(&self, state: &StaticState, settlement: &[f64], track: &Track) -> Unloaded {
+        let nodes = track.nodes().iter().zip(&state.rail_deflection).zip(&state.rail_moment);
+        let rail = nodes.map(|((x, deflection), moment)| RailPoint { x: *x, deflection: *deflection, moment: *moment });
+        let gap = |i: usize| (settlement[i] - state.foot_displacements[i]).max(0.0);
+        let seats = (0..settlement.len()).map(|i| UnloadedSeat {
+            settlement: settlement[i],
+            sleeper_level: state.foot_displacements[i],
+            void: if self.node.seats[i].is_ballasted() { gap(i) } else { 0.0 },
+            contact_force: state.contact_forces[i],
+            seat_load: state.seat_loads[i],
+        });
+        Unloaded { rail: rail.collect(), seats: seats.collect(), profile: Vec::new() }
+    }
+
+    fn run(&self, request: Request<'_>) -> Result<(Unloaded, PassageOutcome), TrackError> {
+        let Request { axles, settlement, runner, kept, forces } = request;
+        let Some(blocks) = self.blocks else {
+            return Err(TrackError::Parameter { name: "trains", value: 0.0, expected: "of 1 or more" });
+        };
+        let Built { responses, track, steps } = self.built()?;
+        let Runner { kind, direction } = runner;
+        let ((train, plan), steps) = (blocks.kind(kind), &steps[kind]);
+        let model = train.model(direction);
+        let (start, finish) = plan.way(train, direction);
+        let level: TrackLevel = self.node.level(settlement, responses);
+        let run = Run { train: &model, start, finish, motion: &train.motion };
+        let mut passage = steps.begin(&level, run)?;
+        let mut unloaded = self.at_rest(passage.unloaded(), settlement, track);
+        let recorded = kept != Kept::Nothing;
+        if kept == Kept::Profile {
+            let load = train.mean_wheel_mass() * self.node.gravity;
+            unloaded.profile = profile::profile(track, &level, passage.unloaded(), load, plan.left..=plan.right)?;
+        }
+        let mut envelope = Envelope::default();
+        let mut sampler = Sampler::new(if recorded { self.records } else { &[] }, axles, plan.sample_every, recorded);
+        let mut force_sampler = ForceSampler::new(forces, settlement.len(), plan.time_step);
+        let counters = passage.run(&mut (&mut envelope, &mut (&mut sampler, &mut force_sampler)))?;
+
+        let (mut outcomes, mut peaks) = at_seats(&envelope, settlement.len());
+        self.complete(plan.passed(train), &mut outcomes, &mut peaks);
+        let largest = |range: &[(f64, f64)]| range.iter().map(|r| r.1).fold(f64::NEG_INFINITY, f64::max);
+        let outcome = PassageOutcome {
+            seats: outcomes,
+            peaks,
+            max_wheel_force: largest(&envelope.wheel_forces),
+            min_wheel_force: envelope.wheel_forces.iter().map(|r| r.0).fold(f64::INFINITY, f64::min),
+            max_rail_moment: largest(&envelope.rail_moments),
+            rail_moments: envelope.rail_moments,
+            rail_displacements: envelope.rail_displacements,
+            time_steps: counters.steps as u64,
+            newton_iterations: counters.iterations as u64,
+            samples: sampler.samples,
+            forces: force_sampler.taken(),
+        };
+        self.bounded(train, &outcome)?;
+        Ok((unloaded, outcome))
+    }
+
+    /// Refuses an outcome that has run away: it would settle the track by forces that no track bears.
+    fn bounded(&self, train: &Train, outcome: &PassageOutcome) -> Result<(), TrackError> {
+        let times = outcome.max_wheel_force / (train.mass() * self.node.gravity / train.axles() as f64);
+        if times <= RUNAWAY {
+            return Ok(());
+        }
+        let load = |i: &usize| outcome.seats[*i].max_rail_seat_load;
+        let worst = (0..outcome.seats.len()).max_by(|a, b| load(a).total_cmp(&load(b))).unwrap_or(0);
+        let x = self.node.seats.get(worst).map_or(0.0, |seat| seat.x);
+        Err(TrackError::RanAway { x, force: outcome.max_wheel_force, times })
+    }
+
+    /// Trains start and stop on the track, so seats near its ends see only some of their wheels. Such a seat takes the mean of
+    /// the nearest ten of its section that every wheel passes, as if trains came from afar: otherwise a false step in the
+    /// settlement would grow where they start. A section of which no seat is passed keeps what it saw.
+    fn complete(&self, passed: Range<f64>, outcomes: &mut [SeatOutcome], peaks: &mut [Vec<Peak>]) {
+        let seats = &self.node.seats;
+        for (i, seat) in seats.iter().enumerate().filter(|(_, s)| !passed.contains(&s.x)) {
+            let whole = |n: &usize| seats[*n].section == seat.section && passed.contains(&seats[*n].x);
+            let from: Vec<usize> = if seat.x < passed.start {
+                (0..seats.len()).filter(whole).take(NEIGHBOURS).collect()
+            } else {
+                (0..seats.len()).rev().filter(whole).take(NEIGHBOURS).collect()
+            };
+            if from.is_empty() {
+                continue;
+            }
+            let mean = |of: &dyn Fn(usize) -> f64| from.iter().map(|n| of(*n)).sum::<f64>() / from.len() as f64;
+            let mean_peak = |wheel: usize| Peak {
+                force: mean(&|n| peaks[n][wheel].force),
+                deflection: mean(&|n| peaks[n][wheel].deflection),
+            };
+            peaks[i] = (0..peaks[i].len()).map(mean_peak).collect();
+            outcomes[i] = SeatOutcome {
+                max_rail_seat_load: mean(&|n| outcomes[n].max_rail_seat_load),
+                max_contact_force: mean(&|n| outcomes[n].max_contact_force),
+                max_sleeper_displacement: mean(&|n| outcomes[n].max_sleeper_displacement),
+                contact_loss: mean(&|n| outcomes[n].contact_loss),
+            };
+        }
+    }
+}
+
+/// Extremes of every seat over a passage, and what each wheel of the train does to its support at most.
+fn at_seats(envelope: &Envelope, seats: usize) -> (Vec<SeatOutcome>, Vec<Vec<Peak>>) {
+    let outcome = |i: usize| SeatOutcome {
+        max_rail_seat_load: envelope.seat_loads[i].1,
+        max_contact_force: envelope.contact_forces[i],
+        max_sleeper_displacement: envelope.foot_displacements[i],
+        contact_loss: envelope.contact_losses[i],
+    };
+    let peaks_of = |seat: usize| {
+        let deflections = envelope.axle_deflections_of(seat);
+        let wheels = envelope.axle_peaks_of(seat).iter().zip(deflections);
+        wheels.map(|(force, deflection)| Peak { force: *force, deflection: *deflection }).collect()
+    };
+    ((0..seats).map(outcome).collect(), (0..seats).map(peaks_of).collect())
+}
+
+impl Superstructure for TrackSystem<'_> {
+    fn stand_on(&mut self, responses: &Responses) -> Result<(), NodeError> {
+        if self.built.as_ref().is_some_and(|built| built.responses.revision == responses.revision) {
+            return Ok(());
+        }
+        let track = Arc::new(Track::new(self.node.model(responses))?);
+        let steps = self.blocks.map(|blocks| steps_of_kinds(blocks, &track)).transpose()?.unwrap_or_default();
+        self.built = Some(Built { responses: responses.clone(), track, steps });
+        Ok(())
+    }
+
+    fn equilibrium(&self, settlement: &[f64], loads: &[PointLoad]) -> Result<Unloaded, NodeError> {
+        let Built { responses, track, .. } = self.built()?;
+        let (mut rail, mut sleepers) = (Vec::new(), Vec::new());
+        for load in loads {
+            match load.on {
+                LoadedPart::Rail { x } => rail.push((x, load.force)),
+                LoadedPart::Sleeper { seat } => sleepers.push((seat, load.force)),
+            }
+        }
+        let loads = Loads { rail: &rail, sleepers: &sleepers, train: None };
+        let state = solve_static(track, &self.node.level(settlement, responses), &loads)?;
+        Ok(self.at_rest(&state, settlement, track))
+    }
+
+    fn passage(&self, request: Request<'_>) -> Result<(Unloaded, PassageOutcome), NodeError> {
+        Ok(self.run(request)?)
+    }
+}
