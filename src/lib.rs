@@ -42,6 +42,7 @@ pub mod lower;
 pub mod results;
 
 pub mod study;
+pub mod trials;
 
 pub mod report;
 

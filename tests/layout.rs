@@ -20,6 +20,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("lint", 7),
     ("results", 8),
     ("study", 9),
+    ("trials", 9),
     ("report", 10),
     ("editor", 10),
     ("cli", 11),

@@ -4,7 +4,7 @@ use super::{Format, Outcome, progress, subject, terminal};
 use crate::report::{self, BedView, Colour, Side};
 use crate::results;
 use crate::solvers::granular::Real;
-use crate::study::grains::{self, Finished, Measured, Pile, PileError, Request, Share};
+use crate::trials::grains::{self, Finished, Measured, Pile, PileError, Request, Share};
 use crate::units::{Dimension, parse_unit};
 use std::fs::File;
 use std::io::BufReader;

@@ -4,8 +4,8 @@ use super::scene::SceneArguments;
 use super::subject::{self, Subject};
 use super::{Format, Outcome, progress, terminal};
 use crate::report;
-use crate::study::chart::{Request, chart};
-use crate::study::{Chart, Outcome as Ended, Sweep, Variant, chart_csv};
+use crate::trials::chart::{Request, chart};
+use crate::trials::{Chart, Outcome as Ended, Sweep, Variant, chart_csv};
 use crate::units::number;
 use std::path::PathBuf;
 
@@ -80,7 +80,7 @@ fn text(chart: &Chart) -> String {
         "  {:<24}{:>9} {:>4}  {:<11}{:>9}{:>10}{:>10}{:>10}{:>10}\n",
         "integrator", "step ms", "el.", "beam", "time s", "wheel", "seat", "loss", "moment"
     );
-    let settled = chart.points.iter().filter(|p| p.level == crate::study::Level::Settled);
+    let settled = chart.points.iter().filter(|p| p.level == crate::trials::Level::Settled);
     for point in settled {
         let v = &point.variant;
         let mark = match (point.default, point.efficient) {

@@ -4,8 +4,8 @@ use super::scene::SceneArguments;
 use super::subject::{self, Subject};
 use super::{Format, Outcome, progress, terminal};
 use crate::report;
-use crate::study::stability::stability;
-use crate::study::{Stability, stability_csv};
+use crate::trials::stability::stability;
+use crate::trials::{Stability, stability_csv};
 use std::path::PathBuf;
 
 /// Map where a passage is stable, and try the scene under stress

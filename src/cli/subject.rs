@@ -8,7 +8,7 @@ use crate::graph::{Blocks, Graph, RunError, Schedule};
 use crate::results;
 use crate::scenario::Scenario;
 use crate::solvers::track::TrackError;
-use crate::study::{self, NotSettled, Settled};
+use crate::trials::{self, NotSettled, Settled};
 use serde::Serialize;
 use std::path::Path;
 
@@ -47,7 +47,7 @@ impl<'a> Subject<'a> {
 
     /// The track after some axles, or after all of them.
     pub fn settled(&self, after: Option<u64>, progress: &mut dyn FnMut(u64, u64)) -> Result<Settled, Outcome> {
-        study::settled(self.graph, after, progress).map_err(|why| match why {
+        trials::settled(self.graph, after, progress).map_err(|why| match why {
             NotSettled::Run(error) => stop(self.compiled, results::diagnose(&error, self.scenario, self.graph)),
             NotSettled::Between { below, above } => {
                 let known: Vec<String> = [below, above].into_iter().flatten().map(|n| n.to_string()).collect();

@@ -3,7 +3,7 @@
 
 use super::number::significant;
 use super::svg::{Anchor, Frame, Svg};
-use crate::study::{Cell, Stability, Stress, Verdict, Void};
+use crate::trials::{Cell, Stability, Stress, Verdict, Void};
 use crate::units::number;
 
 const CELL: f64 = 28.0;

@@ -3,8 +3,8 @@
 use super::number::significant;
 use super::svg::{Anchor, Frame, Svg, text_width};
 use crate::scenario::{Beam, Integrator};
-use crate::study::chart::{QUANTITIES, ReadError};
-use crate::study::{Chart, Level, Outcome, Point, Sweep};
+use crate::trials::chart::{QUANTITIES, ReadError};
+use crate::trials::{Chart, Level, Outcome, Point, Sweep};
 use crate::units::number;
 
 const WIDTH: f64 = 1080.0;

@@ -167,11 +167,11 @@ pub fn chart(
     request: Request,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Chart, TrackError> {
-    let scene = Variant::of(graph, blocks);
+    let scene = Variant::planned(graph, blocks);
     let own = scene.even();
-    let case = Case::of(graph, blocks, settled.settlement.clone());
+    let case = Case::planned(graph, blocks, settled.settlement.clone());
     let seats = &graph.track.track.seats;
-    let fresh = Case::of(graph, blocks, seats.iter().map(|seat| seat.initial_settlement).collect());
+    let fresh = Case::planned(graph, blocks, seats.iter().map(|seat| seat.initial_settlement).collect());
     let plan = plan(own, scene.tolerance, &case, request);
     let coarsest = plan.iter().map(|(_, _, v)| v.time_step).fold(0.0, f64::max);
     let (case, fresh) = (case.aligned(coarsest), fresh.aligned(coarsest));

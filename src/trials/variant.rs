@@ -42,8 +42,8 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// What the plan of a scene says.
-    pub fn of(graph: &Graph, blocks: &Blocks) -> Variant {
+    /// The numerics that the plan of a scene says.
+    pub fn planned(graph: &Graph, blocks: &Blocks) -> Variant {
         Variant {
             method: blocks.passage.integrator,
             time_step: blocks.passage.time_step,
@@ -75,7 +75,7 @@ pub struct Case {
 
 impl Case {
     /// The passage that a run of the scene would make over `settlement`.
-    pub fn of(graph: &Graph, blocks: &Blocks, settlement: Vec<f64>) -> Case {
+    pub fn planned(graph: &Graph, blocks: &Blocks, settlement: Vec<f64>) -> Case {
         Case {
             node: graph.track.clone(),
             train: blocks.train.clone(),

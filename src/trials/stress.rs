@@ -1,7 +1,8 @@
 //! Scenes that are hard for the methods: each is run with the scene's own numerics and again at a quarter of its step.
 
-use super::stability::{Foreseen, Verdict, Void, check, judge, middle, refused};
 use super::variant::{Case, METHODS, Prepared, Variant};
+use super::verdict::{Foreseen, Verdict, check, judge, refused};
+use super::void::{Void, middle};
 use crate::graph::{Blocks, Graph, Schedule};
 use crate::lint::Winkler;
 use crate::scenario::{Foot, Given, Integrator, Loading, RailEnds, Scenario, TimeStep, Track, Train};
@@ -199,12 +200,12 @@ fn passage(hard: &Hard) -> Stress {
     let Some((graph, blocks)) = graph.as_ref().and_then(|g| Some((g, blocks(g)?))) else {
         return row(Verdict::Wrong { why: "the scene has no passage".into() });
     };
-    let mut case = Case::of(graph, blocks, hard.settlement.clone());
+    let mut case = Case::planned(graph, blocks, hard.settlement.clone());
     if let Some(margin) = hard.margin {
         (case.left, case.right) = (case.node.track.start() + margin, case.node.track.end() - margin);
     }
     let case = case.aligned(blocks.passage.time_step);
-    let own = Variant::of(graph, blocks).even();
+    let own = Variant::planned(graph, blocks).even();
     let own = Variant { method: hard.method.unwrap_or(own.method), ..own };
     let run = |time_step: f64| {
         let prepared = Prepared::new(&graph.track, Variant { time_step, ..own }, own.time_step)?;
@@ -231,8 +232,8 @@ fn free_vibration(scenario: &Scenario, method: Integrator, coarser: f64) -> Opti
     let (graph, ..) = check(&scenario);
     let graph = graph?;
     let blocks = blocks(&graph)?;
-    let case = Case::of(&graph, blocks, Void { depth: 1e-3, sleepers: Some(3) }.settlement(&scenario.track));
-    let own = Variant::of(&graph, blocks).even();
+    let case = Case::planned(&graph, blocks, Void { depth: 1e-3, sleepers: Some(3) }.settlement(&scenario.track));
+    let own = Variant::planned(&graph, blocks).even();
     let time_step = coarser * own.time_step;
     scenario.solve.time_step = TimeStep::Fixed(Given::derived(time_step));
     let (_, foreseen, warnings) = check(&scenario);

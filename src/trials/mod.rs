@@ -1,0 +1,25 @@
+//! Trials of numerics: one scene, and many ways to compute it.
+//!
+//! [`chart`] runs one passage over the settled track with many numerics and sets error against time; [`stability`] tries
+//! numerics, contacts and voids that no scene should have, and a list of hard scenes, and says of each how it ends.
+//! [`grains`] measures what steps of a bed of grains cost.
+
+pub mod chart;
+mod clock;
+pub mod grains;
+mod settled;
+pub mod stability;
+mod stress;
+mod tables;
+mod variant;
+mod verdict;
+mod void;
+
+pub use chart::{Chart, Level, Outcome, Point, Request, Sweep};
+pub use settled::{NotSettled, Settled, settled};
+pub use stability::{Cell, Map, Stability};
+pub use stress::Stress;
+pub use tables::{chart_csv, stability_csv};
+pub use variant::{Case, Errors, Failure, METHODS, Measured, Prepared, Variant};
+pub use verdict::{TOLERATED, Verdict};
+pub use void::Void;

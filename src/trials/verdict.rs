@@ -1,0 +1,149 @@
+//! How a trial ended: right, coarse, refused, or wrong without a word, judged against a reference and what diagnostics foresaw.
+
+use super::variant::Measured;
+use crate::diag::Code;
+use crate::graph::{Graph, RUNAWAY, RunError, Schedule};
+use crate::lint::lint;
+use crate::lower::lower;
+use crate::results::diagnose;
+use crate::scenario::Scenario;
+use crate::solvers::track::TrackError;
+use crate::units::number;
+use serde::Serialize;
+
+/// How a trial ended.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "ends")]
+pub enum Verdict {
+    /// Within [`TOLERATED`] of the reference.
+    Stable { error: f64 },
+    /// Further away, and a diagnostic has said so before the run.
+    Coarse { error: f64, code: &'static str },
+    /// Ran away by its numerics, where the reference does not, and a run says so.
+    Unstable { why: String, code: &'static str },
+    /// Refused, before or during the run.
+    Refused { code: &'static str, message: String },
+    /// Neither right nor diagnosed.
+    Wrong { why: String },
+}
+
+impl Verdict {
+    pub fn name(&self) -> &'static str {
+        match self {
+            Verdict::Stable { .. } => "stable",
+            Verdict::Coarse { .. } => "coarse",
+            Verdict::Unstable { .. } => "unstable",
+            Verdict::Refused { .. } => "refused",
+            Verdict::Wrong { .. } => "wrong",
+        }
+    }
+
+    pub fn is_wrong(&self) -> bool {
+        matches!(self, Verdict::Wrong { .. })
+    }
+
+    pub fn error(&self) -> Option<f64> {
+        match self {
+            Verdict::Stable { error } | Verdict::Coarse { error, .. } => Some(*error),
+            _ => None,
+        }
+    }
+
+    pub fn code(&self) -> Option<&'static str> {
+        match self {
+            Verdict::Coarse { code, .. } | Verdict::Unstable { code, .. } | Verdict::Refused { code, .. } => Some(code),
+            _ => None,
+        }
+    }
+
+    /// In a line.
+    pub fn told(&self) -> String {
+        let percent = |error: &f64| number((error * 1e5).round() / 1e3);
+        match self {
+            Verdict::Stable { error } => format!("{} % off", percent(error)),
+            Verdict::Coarse { error, code } => format!("{} % off, {code} warns", percent(error)),
+            Verdict::Unstable { why, code } => format!("{code}: {why}"),
+            Verdict::Refused { code, message } => format!("{code}: {message}"),
+            Verdict::Wrong { why } => why.clone(),
+        }
+    }
+
+    /// What else is to be said.
+    pub fn why(&self) -> &str {
+        match self {
+            Verdict::Unstable { why, .. } | Verdict::Wrong { why } => why,
+            Verdict::Refused { message, .. } => message,
+            _ => "",
+        }
+    }
+}
+
+/// Largest error of a passage that still shows what happens: of the wheel force as a root mean square over the static one,
+/// and of the peak seat loads over the largest of them.
+pub const TOLERATED: f64 = 0.1;
+
+/// What `check` says of a time step before anything runs.
+pub(super) enum Foreseen {
+    Fine,
+    Warned(&'static str),
+    Refused(&'static str, String),
+}
+
+impl Foreseen {
+    pub fn warning(&self) -> Option<&'static str> {
+        if let Foreseen::Warned(code) = self { Some(code) } else { None }
+    }
+}
+
+/// Lowers a scene and says what its diagnostics foresee of its numerics, whatever rules it silences.
+pub(super) fn check(scenario: &Scenario) -> (Option<Graph>, Foreseen, Vec<&'static str>) {
+    let (graph, diagnostics) = lower(scenario);
+    if let Some(error) = diagnostics.iter().find(|d| d.is_error()) {
+        return (None, Foreseen::Refused(error.code.as_str(), error.message.clone()), Vec::new());
+    }
+    let Some(graph) = graph.filter(|g| matches!(g.schedule, Schedule::Blocks(_))) else {
+        return (None, Foreseen::Refused(Code::E0601.as_str(), "nothing runs over the track".into()), Vec::new());
+    };
+    let aloud = Scenario { allow: Vec::new(), deny: Vec::new(), ..scenario.clone() };
+    let mut warnings = lint(&aloud, &graph);
+    warnings.dedup_by_key(|d| d.code);
+    // of the step, and of a speed at which the track answers no longer as at rest
+    let foreseen = match warnings.iter().find(|d| [Code::L1005, Code::L1002].contains(&d.code)) {
+        Some(warning) => Foreseen::Warned(warning.code.as_str()),
+        None => Foreseen::Fine,
+    };
+    (Some(graph), foreseen, warnings.iter().map(|d| d.code.as_str()).collect())
+}
+
+/// The diagnostic that a user would see.
+pub(super) fn refused(cause: &TrackError, scenario: &Scenario, graph: &Graph) -> Verdict {
+    let diagnostic = diagnose(&RunError::Track { axles: 0, cause: cause.clone() }, scenario, graph);
+    Verdict::Refused { code: diagnostic.code.as_str(), message: diagnostic.message }
+}
+
+/// A passage against its reference. `warning` is the code that has spoken of its numerics before.
+pub(super) fn judge(
+    measured: &Measured,
+    reference: &Measured,
+    static_force: f64,
+    warning: Option<&'static str>,
+) -> Verdict {
+    let errors = measured.errors(reference, static_force);
+    let error = errors.wheel_force_rms.max(errors.seat_load);
+    let code = Code::E0703.as_str();
+    if measured.wheel_peak > RUNAWAY * static_force {
+        let message = format!("a wheel force of {:.1} times the static one", measured.wheel_peak / static_force);
+        // of the scene itself, or of its numerics
+        return if reference.wheel_peak > 0.5 * RUNAWAY * static_force {
+            Verdict::Refused { code, message }
+        } else {
+            Verdict::Unstable { why: message, code }
+        };
+    }
+    match warning {
+        _ if !error.is_finite() => Verdict::Wrong { why: "a force is not a number".into() },
+        _ if error <= TOLERATED => Verdict::Stable { error },
+        Some(code) => Verdict::Coarse { error, code },
+        None => Verdict::Wrong { why: format!("{:.0} % from the reference", 100.0 * error) },
+    }
+}
