@@ -2,10 +2,10 @@
 
 use super::scene::{SceneArguments, failed, not_yet, show};
 use super::{Format, Outcome, terminal};
-use crate::Compiled;
 use crate::check::{MeasuredCurve, measured_curve};
+use crate::compile::Compiled;
 use crate::diag::{Code, Diagnostic, FileId, Span, nearest::nearest, or_list, render};
-use crate::graph;
+use crate::execute::passage_as_built;
 use crate::scenario::{Scenario, Seat, SettlementLaw, law_argument};
 use crate::schema;
 use crate::solvers::settlement::fit::{Fit, FitError};
@@ -143,8 +143,8 @@ fn acting(arguments: &Arguments, compiled: &Compiled, scenario: &Scenario) -> Re
         let described = format!("{} kN per seat under every wheel", number(force / 1e3));
         return Ok(Acting { wheels: vec![peak; 4], described });
     }
-    let passage = match &compiled.graph {
-        Some(graph) => graph::passage_as_built(graph).map_err(|e| refused(e.to_string(), "give `--seat-load`"))?,
+    let passage = match compiled.runnable() {
+        Some(graph) => passage_as_built(graph).map_err(|e| refused(e.to_string(), "give `--seat-load`"))?,
         None => None,
     };
     let Some(passage) = passage else {

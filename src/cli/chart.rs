@@ -32,7 +32,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Ok(compiled) => compiled,
         Err(outcome) => return outcome,
     };
-    let subject = match Subject::of(&compiled, "chart") {
+    let subject = match Subject::new(&compiled, "chart") {
         Ok(subject) => subject,
         Err(outcome) => return outcome,
     };
@@ -51,8 +51,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     bar.reset();
     bar.set_message("passages");
     let request = Request { halvings: arguments.halvings };
-    let (graph, blocks) = (subject.graph, subject.blocks);
-    let charted = chart(graph, blocks, &settled, &subject.scenario.title, request, &mut |done, all| {
+    let charted = chart(&subject.planned, &settled, &subject.scenario.title, request, &mut |done, all| {
         progress::at(&bar, done, all);
     });
     bar.finish_and_clear();

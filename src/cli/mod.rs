@@ -17,7 +17,6 @@ mod plan;
 mod progress;
 mod report;
 mod resolve;
-mod rig;
 mod run;
 mod scene;
 mod stability;

@@ -3,9 +3,10 @@
 use super::pack_track::{self, TrackArguments};
 use super::scene::{SceneArguments, failed, show};
 use super::{Format, Outcome, progress, terminal};
-use crate::Compiled;
+use crate::compile::Compiled;
 use crate::diag::{Code, Diagnostic, render};
-use crate::lower::{self, BedPlan};
+use crate::graph::{BedError, BedPlan, BedRecipe};
+use crate::lower::{self, BedUse};
 use crate::report::{BedPage, Side};
 use crate::results::{self, BedReadings, BedSummary, Beds, FoundBed};
 use crate::solvers::granular::packing::{Packed, Progress};
@@ -39,7 +40,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     let Some(compiled) = arguments.scene.compile() else { return Outcome::Usage };
     show(&compiled);
     let Some(scenario) = compiled.scenario.as_ref().filter(|_| !failed(&compiled)) else { return Outcome::Failed };
-    let plan = match lower::beds(scenario).and_then(|plans| chosen(arguments, plans)) {
+    let plan = match lower::beds(scenario, BedUse::Track).and_then(|plans| chosen(arguments, plans)) {
         Ok(plan) => plan,
         Err(mistakes) => return stop(&compiled, &mistakes),
     };
@@ -89,21 +90,29 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
 }
 
 /// The bed that is meant.
-fn chosen(arguments: &Arguments, plans: Vec<BedPlan>) -> Result<BedPlan, Vec<Diagnostic>> {
+fn chosen(arguments: &Arguments, plans: Vec<BedPlan>) -> Result<BedRecipe, Vec<Diagnostic>> {
     let refused = |message: String, help: String| vec![Diagnostic::new(Code::E0610, message).help(help)];
     let names: Vec<String> = plans.iter().map(|plan| format!("`{}`", plan.section)).collect();
     let mut plans = plans.into_iter();
     let Some(name) = &arguments.section else {
-        return plans.next().ok_or_else(|| {
+        let plan = plans.next().ok_or_else(|| {
             let help = "give a trackform `layers` of a `granular` material";
             refused("this scene has no grains to pack".to_owned(), help.to_owned())
-        });
+        })?;
+        return ready(&plan);
     };
-    plans.find(|plan| plan.section == *name).ok_or_else(|| {
+    let plan = plans.find(|plan| plan.section == *name).ok_or_else(|| {
         let help =
             if names.is_empty() { "no section has any".to_owned() } else { format!("there is {}", names.join(", ")) };
         refused(format!("no bed of its own lies under a trackform `{name}`"), help)
-    })
+    })?;
+    ready(&plan)
+}
+
+/// The bed of a plan with its clumps.
+fn ready(plan: &BedPlan) -> Result<BedRecipe, Vec<Diagnostic>> {
+    let refused = |error: BedError| Diagnostic::new(Code::E0610, format!("this bed cannot be packed: {error}"));
+    plan.ready(plan.seed()).map_err(|error| vec![refused(error)])
 }
 
 /// Where beds are kept: where the user says, else where programs of this machine keep what they can build again.
@@ -114,9 +123,12 @@ pub(super) fn beds(given: Option<&Path>) -> Beds {
 }
 
 /// The bed of a plan and whether it was there already; a new one is kept.
-fn kept_or_built(beds: &Beds, plan: &BedPlan) -> Result<(Packed<f32>, bool), Diagnostic> {
+fn kept_or_built(beds: &Beds, plan: &BedRecipe) -> Result<(Packed<f32>, bool), Diagnostic> {
     let mut bar = progress::Patient::new("the bed");
-    let found = beds.bed(&plan.recipe, |progress| at(&mut bar, progress))?;
+    let found = beds.bed(&plan.recipe, |progress| at(&mut bar, progress)).map_err(|error| {
+        Diagnostic::new(Code::E0810, error.to_string())
+            .help("give the `packing` of the material more `local_damping`, or less `pressure`")
+    })?;
     tell_loss(&found);
     Ok((found.packed, found.was_kept))
 }
@@ -134,7 +146,7 @@ pub(super) fn tell_loss(found: &FoundBed) {
 }
 
 /// What is read off the bed, from before where it was kept.
-fn read(cache: Option<&Path>, plan: &BedPlan, packed: &Packed<f32>) -> Result<BedReadings, String> {
+fn read(cache: Option<&Path>, plan: &BedRecipe, packed: &Packed<f32>) -> Result<BedReadings, String> {
     if let Some(kept) = cache.and_then(|cache| results::kept_readings(cache, plan)) {
         return Ok(kept);
     }

@@ -2,7 +2,7 @@
 
 use super::{Format, progress, terminal};
 use crate::diag::{Code, Diagnostic};
-use crate::lower::BedPlan;
+use crate::graph::BedRecipe;
 use crate::results;
 use crate::solvers::granular::packing::{Order, Packed, Recipe, TrackBed, lay};
 use std::num::NonZeroU32;
@@ -21,14 +21,14 @@ pub(super) struct TrackArguments {
 
 impl TrackArguments {
     /// Plans of the further cells: the same but for their seeds.
-    pub fn further(&self, plan: &BedPlan) -> Vec<BedPlan> {
+    pub fn further(&self, plan: &BedRecipe) -> Vec<BedRecipe> {
         let cells = if self.bays.is_some() { u64::from(self.cells.get()) } else { 1 };
-        let with = |seed: u64| BedPlan { recipe: Recipe { seed, ..plan.recipe.clone() }, ..plan.clone() };
+        let with = |seed: u64| BedRecipe { recipe: Recipe { seed, ..plan.recipe.clone() }, ..plan.clone() };
         (1..cells).map(|more| with(plan.recipe.seed.wrapping_add(more))).collect()
     }
 
     /// The bed of the track; `None` where only the cell is wanted.
-    pub fn lay(&self, cells: &[Packed<f32>], plan: &BedPlan) -> Option<Result<TrackBed<f32>, Diagnostic>> {
+    pub fn lay(&self, cells: &[Packed<f32>], plan: &BedRecipe) -> Option<Result<TrackBed<f32>, Diagnostic>> {
         let bays = self.bays?.get() as usize;
         let order = Order::mixed(cells.len(), bays, plan.recipe.seed);
         let mut bar = progress::Patient::new("the bed of the track");

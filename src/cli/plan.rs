@@ -1,8 +1,8 @@
 //! `trackbed plan`: the solver graph, what each pass decided and what the run will take.
 
 use super::scene::{SceneArguments, failed, not_yet, show};
-use super::{Outcome, rig, terminal};
-use crate::{Compiled, lower};
+use super::{Outcome, terminal};
+use crate::compile::Compiled;
 use clap::ValueEnum;
 
 /// Print the solver graph, the passes and the estimate
@@ -24,10 +24,6 @@ enum PlanFormat {
 pub(super) fn run(arguments: &Arguments) -> Outcome {
     let Some(compiled) = arguments.scene.compile().map(Compiled::to_run) else { return Outcome::Usage };
     show(&compiled);
-    let rig = compiled.scenario.as_ref().filter(|scenario| lower::is_rig(scenario) && !failed(&compiled));
-    if let Some(scenario) = rig {
-        return rig::plan(scenario, &compiled, matches!(arguments.format, PlanFormat::Json));
-    }
     let Some(graph) = compiled.graph.as_ref().filter(|_| !failed(&compiled)) else {
         return not_yet(&compiled);
     };

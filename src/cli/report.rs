@@ -1,9 +1,9 @@
 //! `trackbed report`: the page of a run, made again from its directory.
 
 use super::{Outcome, terminal};
-use crate::report::{self, Figure, RigPage};
-use crate::results::{self, ResultsError, RigView};
-use std::path::{Path, PathBuf};
+use crate::report::{self, BedTestsPage, Figure};
+use crate::results::{self, BedTestsView, NamedBytes, ResultsError};
+use std::path::PathBuf;
 
 /// Write the report page of a run, from its directory
 #[derive(clap::Args)]
@@ -17,21 +17,21 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
     let (directory, figures) = (&arguments.directory, arguments.figures);
-    let written = match results::read_rig(directory) {
-        Ok(Some(view)) => write_rig(&view, directory, figures),
+    let pages = match results::read_tests(directory) {
+        Ok(Some(view)) => test_pages(&view, figures),
         Ok(None) => match results::read(directory) {
-            Ok(run) => write(&run, directory, figures),
+            Ok(run) => run_pages(&run, figures),
             Err(error) => return unread(&error),
         },
         Err(error) => return unread(&error),
     };
-    match written {
-        Ok(page) => {
-            terminal::out(&format!("wrote {}\n", page.display()));
+    match results::write_files(&pages, directory) {
+        Ok(()) => {
+            terminal::out(&format!("wrote {}\n", directory.join(PAGE).display()));
             Outcome::Fine
         }
         Err(error) => {
-            terminal::error(&error);
+            terminal::error(&error.to_string());
             Outcome::Failed
         }
     }
@@ -42,23 +42,21 @@ fn unread(error: &ResultsError) -> Outcome {
     Outcome::Usage
 }
 
-/// Writes `report.html`, and the figures where they are wanted.
-pub(super) fn write(run: &results::Run, directory: &Path, figures: bool) -> Result<PathBuf, String> {
-    pages(directory, &report::page(run), &if figures { report::figures(run) } else { Vec::new() })
+/// `report.html` of a run, and the figures where they are wanted.
+pub(super) fn run_pages(run: &results::Run, figures: bool) -> Vec<NamedBytes> {
+    pages(report::page(run), &if figures { report::figures(run) } else { Vec::new() })
 }
 
-/// The same of a test rig.
-pub(super) fn write_rig(view: &RigView, directory: &Path, figures: bool) -> Result<PathBuf, String> {
-    let page = RigPage::of(view);
-    pages(directory, &page.html(), &if figures { page.figures() } else { Vec::new() })
+/// The same of tests.
+pub(super) fn test_pages(view: &BedTestsView, figures: bool) -> Vec<NamedBytes> {
+    let page = BedTestsPage::new(view);
+    pages(page.html(), &if figures { page.figures() } else { Vec::new() })
 }
 
-fn pages(directory: &Path, html: &str, figures: &[Figure]) -> Result<PathBuf, String> {
-    let page = directory.join("report.html");
-    results::write_atomically(&page, html.as_bytes()).map_err(|e| e.to_string())?;
-    for figure in figures {
-        let path = directory.join(format!("{}.svg", figure.id));
-        results::write_atomically(&path, figure.svg.as_bytes()).map_err(|e| e.to_string())?;
-    }
-    Ok(page)
+pub(super) const PAGE: &str = "report.html";
+
+fn pages(html: String, figures: &[Figure]) -> Vec<NamedBytes> {
+    let page = (PAGE.to_owned(), html.into_bytes());
+    let figures = figures.iter().map(|figure| (format!("{}.svg", figure.id), figure.svg.clone().into_bytes()));
+    std::iter::once(page).chain(figures).collect()
 }

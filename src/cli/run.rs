@@ -1,15 +1,17 @@
 //! `trackbed run`: runs a scene into a directory, with checkpoints, a report and the verdict on its expectations.
 
 use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
-use super::{Outcome, pack, progress, report, rig, terminal};
+use super::{Outcome, pack, progress, report, terminal};
+use crate::compile::{Compiled, fingerprint};
 use crate::diag::{Code, Diagnostic, render};
-use crate::graph;
-use crate::lower;
-use crate::results::{self, BlockRow, Run, RunRecorder, Scalar, Store, Verdict, checkpoint};
+use crate::execute::{Both, Ending, Event, Executor, Listener};
+use crate::graph::{Graph, Schedule};
+use crate::lower::Parameter;
+use crate::results::{self, BedTestsView, BlockRow, NamedBytes, Run, RunRecorder, Scalar, Store, Verdict, checkpoint};
 use crate::scenario::Scenario;
 use crate::units::number;
-use crate::{Compiled, fingerprint};
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -38,15 +40,19 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
-    let started = Instant::now();
-    // before anything is done side by side: the pool is made once
-    if let Some(threads) = arguments.threads {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global();
-        if let Err(error) = pool {
+    let Some(threads) = arguments.threads else { return run_here(arguments) };
+    match rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build() {
+        Ok(pool) => pool.install(|| run_here(arguments)),
+        Err(error) => {
             terminal::error(&format!("cannot start {threads} threads: {error}"));
-            return Outcome::Failed;
+            Outcome::Failed
         }
     }
+}
+
+/// Runs in the pool of threads of the caller.
+fn run_here(arguments: &Arguments) -> Outcome {
+    let started = Instant::now();
     let Some(compiled) = arguments.scene.with_seed(&arguments.seed).compile().map(Compiled::to_run) else {
         return Outcome::Usage;
     };
@@ -54,43 +60,38 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     if failed(&compiled) {
         return Outcome::Failed;
     }
-    if let Some(scenario) = compiled.scenario.as_ref().filter(|scenario| lower::is_rig(scenario)) {
-        return run_rig(arguments, &compiled, scenario);
-    }
-    let (Some(scenario), Some(graph)) = (&compiled.scenario, &compiled.graph) else {
+    let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else {
         return not_yet(&compiled);
     };
-    let hash = fingerprint(&compiled.sources);
     if let Err(message) = prepare(arguments) {
-        return stop(
-            &compiled,
-            Diagnostic::new(Code::E0802, message).help("give another `--out`, or `--resume` or `--force`"),
-        );
+        let help = "give another `--out`, or `--resume` or `--force`";
+        return stop(&compiled, Diagnostic::new(Code::E0802, message).help(help));
     }
-    let bar = progress::bar();
+    let hash = fingerprint(&compiled.sources);
     let store = Store { directory: arguments.out.clone(), scene_sha256: hash.clone() };
-    let mut recorder = RunRecorder::new(scenario, Some(store), |done, all| {
-        bar.set_length(all);
-        bar.set_position(done);
-    });
+    let mut recorder = RunRecorder::new(scenario, graph).kept_in(store);
     let from = match arguments.resume.then(|| recorder.resume()).transpose() {
         Ok(from) => from.flatten(),
         Err(error) => {
-            return stop(
-                &compiled,
-                Diagnostic::new(Code::E0803, error.to_string()).help("run without `--resume`, with `--force`"),
-            );
+            let mistake = Diagnostic::new(Code::E0803, error.to_string());
+            return stop(&compiled, mistake.help("run without `--resume`, with `--force`"));
         }
     };
-    let outcome = graph::execute(graph, &mut recorder, from);
-    bar.finish_and_clear();
-    if let Err(error) = outcome {
-        return stop(&compiled, results::diagnose(&error, scenario, graph));
+    let executor = Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
+    let mut shown = Shown::new(graph);
+    let ended = executor.run(graph, &mut Both(&mut recorder, &mut shown), from);
+    drop(shown);
+    match ended {
+        Ok(Ending::Finished) => {}
+        Ok(Ending::Stopped) => {
+            let why = recorder.failure().map_or_else(|| "the run was ended".to_owned(), |error| error.to_string());
+            return stop(&compiled, Diagnostic::new(Code::E0802, why).help("the run can be resumed with `--resume`"));
+        }
+        Err(error) => return stop(&compiled, results::diagnose(&error, graph, &compiled.origins)),
     }
     let computed = started.elapsed().as_secs_f64();
     let run = Run::gather(&recorder, scenario, graph, &compiled.sources, hash);
-    drop(recorder);
-    match write(&run, &arguments.out, computed, &started) {
+    match write(&run, recorder, &arguments.out, computed, &started) {
         Ok(page) => summary(&run, &page, computed),
         Err(message) => return stop(&compiled, Diagnostic::new(Code::E0802, message)),
     }
@@ -98,34 +99,47 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     verdicts(&run.summary.expectations, scenario, &compiled)
 }
 
-/// The rig of a scene, in the directory that the arguments name.
-fn run_rig(arguments: &Arguments, compiled: &Compiled, scenario: &Scenario) -> Outcome {
-    // what cannot be packed is told before a directory is made
-    if let Err(mistakes) = lower::rig(scenario) {
-        terminal::note(&render::human(&mistakes, &compiled.sources, terminal::colour(), terminal::width()));
-        return Outcome::Failed;
+/// Shows how far a run is, on a terminal or in a line a minute.
+struct Shown {
+    bar: progress::Patient,
+    tests: bool,
+}
+
+impl Shown {
+    fn new(graph: &Graph) -> Shown {
+        let tests = matches!(graph.schedule, Schedule::Actuators(_));
+        Shown { bar: progress::Patient::new(if tests { "the bed" } else { "the run" }), tests }
     }
-    if let Err(message) = prepare(arguments) {
-        let help = "give another `--out`, or `--resume` or `--force`";
-        return stop(compiled, Diagnostic::new(Code::E0802, message).help(help));
+}
+
+impl Listener for Shown {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Packing(progress) => pack::at(&mut self.bar, progress),
+            Event::Packed { found, .. } => {
+                pack::tell_loss(found);
+                self.bar = progress::Patient::new("the test");
+            }
+            Event::Tested { .. } if self.tests => self.bar = progress::Patient::new("the bed"),
+            Event::Progress { done, all } => self.bar.at(*done, *all),
+            _ => {}
+        }
+        ControlFlow::Continue(())
     }
-    let beds = pack::beds(arguments.cache.as_deref());
-    let options = rig::Options { out: &arguments.out, beds, resume: arguments.resume };
-    rig::run_rig(compiled, scenario, &options)
 }
 
 /// Says where exchanges of forces and settlement overshot.
 fn warn(run: &Run, compiled: &Compiled) {
     let Some(found) = BlockRow::overshoot(&run.blocks) else { return };
     let diagnostic = Diagnostic::new(Code::E0807, found).help("write `update_every = adaptive`");
-    let diagnostic = match run.scenario.solve.update_span {
+    let diagnostic = match compiled.origins.span(Parameter::Update) {
         Some(span) => diagnostic.at(span, "too long between two exchanges"),
         None => diagnostic,
     };
     terminal::note(&render::human(&[diagnostic], &compiled.sources, terminal::colour(), terminal::width()));
 }
 
-pub(super) fn stop(compiled: &Compiled, diagnostic: Diagnostic) -> Outcome {
+fn stop(compiled: &Compiled, diagnostic: Diagnostic) -> Outcome {
     terminal::note(&render::human(&[diagnostic], &compiled.sources, terminal::colour(), terminal::width()));
     Outcome::Failed
 }
@@ -156,34 +170,49 @@ fn prepare(arguments: &Arguments) -> Result<(), String> {
     Ok(())
 }
 
-fn write(run: &Run, out: &Path, computed: f64, started: &Instant) -> Result<PathBuf, String> {
-    results::write(run, out).map_err(|e| e.to_string())?;
-    let page = report::write(run, out, false)?;
+/// Every file of a finished run, its page among them.
+fn files(run: &Run, mut recorder: RunRecorder<'_>, out: &Path) -> Result<Vec<NamedBytes>, String> {
+    let failure = |error: &dyn std::fmt::Display| format!("cannot write the results: {error}");
+    let view = match &mut recorder.last_bed {
+        Some(bed) => BedTestsView::new(run.clone(), bed).map_err(|error| failure(&error))?,
+        None => None,
+    };
+    match view {
+        Some(view) => {
+            let files = results::test_files(&view, out).map_err(|error| failure(&error))?;
+            Ok([report::test_pages(&view, false), files].concat())
+        }
+        None => {
+            let files = results::files(run, out).map_err(|error| failure(&error))?;
+            Ok([files, report::run_pages(run, false)].concat())
+        }
+    }
+}
+
+fn write(
+    run: &Run,
+    recorder: RunRecorder<'_>,
+    out: &Path,
+    computed: f64,
+    started: &Instant,
+) -> Result<PathBuf, String> {
+    let files = files(run, recorder, out)?;
+    results::write_files(&files, out).map_err(|e| e.to_string())?;
     let timings = BTreeMap::from([
         ("solve_s".to_string(), computed),
         ("total_s".to_string(), started.elapsed().as_secs_f64()),
         ("threads".to_string(), rayon::current_num_threads() as f64),
     ]);
-    results::write_timings(&timings, out).map_err(|e| e.to_string())?;
+    let timings = results::timings_file(&timings, out).map_err(|e| e.to_string())?;
+    results::write_files(&[timings], out).map_err(|e| e.to_string())?;
     checkpoint::remove(out).map_err(|e| e.to_string())?;
-    Ok(page)
+    Ok(out.join(report::PAGE))
 }
 
 /// The few numbers that people ask for first.
 fn summary(run: &Run, page: &Path, seconds: f64) {
     let mut out = format!("{}\n", run.scenario.title);
-    let lines: [(&str, &str, &str, f64); 9] = [
-        ("max_settlement", "largest settlement", "mm", 1e-3),
-        ("max_settlement_x", "  at", "m", 1.0),
-        ("far_field_settlement", "far-field settlement", "mm", 1e-3),
-        ("voided_sleepers", "voided sleepers", "", 1.0),
-        ("max_wheel_force", "largest wheel force", "kN", 1e3),
-        ("dynamic_amplification", "dynamic amplification", "", 1.0),
-        ("max_rail_seat_load", "largest rail seat load", "kN", 1e3),
-        ("max_rail_moment", "largest rail moment", "kN m", 1e3),
-        ("max_rail_displacement", "largest rail displacement", "mm", 1e-3),
-    ];
-    headline(&mut out, &run.summary.scalars, &lines);
+    headline(&mut out, &run.summary.scalars, if run.tests.is_some() { &OF_TESTS } else { &OF_TRACKS });
     if let Some(spread) = run.summary.scalars.get("law_spread") {
         out.push_str(&format!("  {:<26}{}\n", "spread between laws", number((spread.value * 1e2).round() / 1e2)));
     }
@@ -194,8 +223,36 @@ fn summary(run: &Run, page: &Path, seconds: f64) {
     terminal::out(&out);
 }
 
+/// A scalar, how it is called, its unit, and that unit in SI.
+type Line = (&'static str, &'static str, &'static str, f64);
+
+const OF_TRACKS: [Line; 9] = [
+    ("max_settlement", "largest settlement", "mm", 1e-3),
+    ("max_settlement_x", "  at", "m", 1.0),
+    ("far_field_settlement", "far-field settlement", "mm", 1e-3),
+    ("voided_sleepers", "voided sleepers", "", 1.0),
+    ("max_wheel_force", "largest wheel force", "kN", 1e3),
+    ("dynamic_amplification", "dynamic amplification", "", 1.0),
+    ("max_rail_seat_load", "largest rail seat load", "kN", 1e3),
+    ("max_rail_moment", "largest rail moment", "kN m", 1e3),
+    ("max_rail_displacement", "largest rail displacement", "mm", 1e-3),
+];
+
+const OF_TESTS: [Line; 10] = [
+    ("max_settlement", "settlement", "mm", 1e-3),
+    ("first_settlement", "  after one cycle", "mm", 1e-3),
+    ("support_stiffness", "resilient stiffness", "MN/m", 1e6),
+    ("oedometric_modulus", "oedometric modulus", "MPa", 1e6),
+    ("peak_deviator", "largest deviator", "kPa", 1e3),
+    ("peak_friction_angle", "largest angle of friction", "deg", std::f64::consts::PI / 180.0),
+    ("peak_strain", "  at a strain of", "%", 0.01),
+    ("cycles", "cycles", "", 1.0),
+    ("repeats", "packings", "", 1.0),
+    ("grains", "grains", "", 1.0),
+];
+
 /// A line for each scalar that there is, in its unit of so many SI units, with the band of its mean where it has one.
-pub(super) fn headline(out: &mut String, scalars: &BTreeMap<String, Scalar>, lines: &[(&str, &str, &str, f64)]) {
+fn headline(out: &mut String, scalars: &BTreeMap<String, Scalar>, lines: &[Line]) {
     for (name, label, unit, size) in lines {
         let rounded = |value: f64| number((value / size * 1e4).round() / 1e4);
         let Some(scalar) = scalars.get(*name) else { continue };
@@ -206,7 +263,7 @@ pub(super) fn headline(out: &mut String, scalars: &BTreeMap<String, Scalar>, lin
 }
 
 /// Names every expectation that was missed.
-pub(super) fn verdicts(verdicts: &[Verdict], scenario: &Scenario, compiled: &Compiled) -> Outcome {
+fn verdicts(verdicts: &[Verdict], scenario: &Scenario, compiled: &Compiled) -> Outcome {
     let missed: Vec<Diagnostic> = verdicts
         .iter()
         .zip(&scenario.expectations)

@@ -2,8 +2,9 @@
 
 use super::{Outcome, terminal};
 use crate::check::{self, Folder, Modules, Override, Remembered};
-use crate::diag::{self, Sources, render};
-use crate::{Compiled, compile, syntax};
+use crate::compile::{Compiled, compile};
+use crate::diag::{self, render};
+use crate::syntax;
 use std::path::{Path, PathBuf};
 
 /// The scene a command works on.
@@ -65,13 +66,7 @@ impl SceneArguments {
         };
         Some(match syntax::decode(&name, &bytes) {
             Ok(text) => compile(&name, &text, modules, &self.set),
-            Err(mistake) => Compiled {
-                sources: Sources::default(),
-                diagnostics: vec![mistake],
-                scenario: None,
-                graph: None,
-                studies: Vec::new(),
-            },
+            Err(mistake) => Compiled::unread(mistake),
         })
     }
 }

@@ -25,13 +25,13 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Ok(compiled) => compiled,
         Err(outcome) => return outcome,
     };
-    let subject = match Subject::of(&compiled, "stability") {
+    let subject = match Subject::new(&compiled, "stability") {
         Ok(subject) => subject,
         Err(outcome) => return outcome,
     };
     let bar = progress::share();
     bar.set_message("passages");
-    let mapped = stability(subject.scenario, subject.graph, subject.blocks, &mut |done, all| {
+    let mapped = stability(subject.scenario, &subject.planned, &mut |done, all| {
         progress::at(&bar, done, all);
     });
     bar.finish_and_clear();

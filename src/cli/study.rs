@@ -4,13 +4,14 @@ use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
 use super::study_folder::{StudyFolder, Taken};
 use super::{Outcome, pack, progress, terminal};
 use crate::check::{Folder, Remembered};
+use crate::compile::Compiled;
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, has_errors, or_list, render};
-use crate::results::Beds;
+use crate::execute;
+use crate::report;
 use crate::scenario::Study;
 use crate::study::{self, Answer, Plan, PointResult, Repeat, Scene, turns};
 use crate::units::number;
-use crate::{Compiled, lower, report};
 use clap::ValueEnum;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -67,8 +68,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     if failed(&compiled) {
         return Outcome::Failed;
     }
-    let is_rig = compiled.scenario.as_ref().is_some_and(lower::is_rig);
-    if compiled.scenario.is_none() || compiled.graph.is_none() && !is_rig {
+    if compiled.scenario.is_none() || compiled.runnable().is_none() {
         return not_yet(&compiled);
     }
     let study = match chosen(&compiled, arguments.name.as_deref()) {
@@ -135,8 +135,8 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
     let jobs = arguments.jobs.map_or_else(turns::cores, usize::from);
     announce(&plan, jobs);
     let started = Instant::now();
-    let beds = pack::beds(arguments.cache.as_deref());
-    let results = match perform(scene, &plan, &folder, &beds, jobs) {
+    let executor = execute::Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
+    let results = match perform(scene, &plan, &folder, &executor, jobs) {
         Ok(results) => results,
         Err(message) => {
             say(&[Diagnostic::new(Code::E0802, message).help("go on with `--resume`")], compiled);
@@ -204,7 +204,7 @@ fn perform(
     scene: Scene<'_>,
     plan: &Plan,
     folder: &StudyFolder,
-    beds: &Beds,
+    executor: &execute::Executor,
     jobs: usize,
 ) -> Result<Vec<PointResult>, String> {
     let known: Vec<Option<PointResult>> = plan.points.iter().map(|point| folder.known(point)).collect();
@@ -218,7 +218,7 @@ fn perform(
         if broken.load(Ordering::Relaxed) {
             return Ok(());
         }
-        let run = study::perform(scene, &plan.study, &plan.points[*index], *repeat, beds);
+        let run = study::perform(scene, &plan.study, &plan.points[*index], *repeat, executor);
         let taken = work.lock().unwrap_or_else(PoisonError::into_inner).take(*index, *repeat, run, folder);
         taken.inspect_err(|_| broken.store(true, Ordering::Relaxed))
     };

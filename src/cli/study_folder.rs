@@ -1,9 +1,9 @@
 //! The directory of a study: its design, a file for each finished point, and the answer. A study that was killed finds there
 //! what it has.
 
+use crate::compile::{Compiled, fingerprint};
 use crate::results::write_atomically;
 use crate::study::{Answer, Plan, PlannedPoint, PointResult, values};
-use crate::{Compiled, fingerprint};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 

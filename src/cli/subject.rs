@@ -2,13 +2,15 @@
 
 use super::scene::{SceneArguments, failed, not_yet, show};
 use super::{Outcome, terminal};
-use crate::Compiled;
+use crate::compile::Compiled;
 use crate::diag::{Code, Diagnostic, render};
-use crate::graph::{Blocks, Graph, RunError, Schedule};
+use crate::execute::RunError;
+use crate::graph::Clock;
+use crate::nodes::NodeError;
 use crate::results;
 use crate::scenario::Scenario;
 use crate::solvers::track::TrackError;
-use crate::trials::{self, NotSettled, Settled};
+use crate::trials::{self, NotSettled, Planned, Settled};
 use serde::Serialize;
 use std::path::Path;
 
@@ -16,8 +18,7 @@ use std::path::Path;
 pub(super) struct Subject<'a> {
     compiled: &'a Compiled,
     pub scenario: &'a Scenario,
-    pub graph: &'a Graph,
-    pub blocks: &'a Blocks,
+    pub planned: Planned,
 }
 
 /// Compiles the scene of a study.
@@ -28,13 +29,13 @@ pub(super) fn compile(scene: &SceneArguments) -> Result<Compiled, Outcome> {
 }
 
 impl<'a> Subject<'a> {
-    pub fn of(compiled: &'a Compiled, command: &str) -> Result<Subject<'a>, Outcome> {
+    pub fn new(compiled: &'a Compiled, command: &str) -> Result<Subject<'a>, Outcome> {
         let (Some(scenario), Some(graph)) = (&compiled.scenario, &compiled.graph) else {
             return Err(not_yet(compiled));
         };
-        match &graph.schedule {
-            Schedule::Blocks(blocks) => Ok(Subject { compiled, scenario, graph, blocks }),
-            Schedule::Static { .. } => Err(stop(
+        match Planned::new(graph, &compiled.origins) {
+            Some(planned) => Ok(Subject { compiled, scenario, planned }),
+            None => Err(stop(
                 compiled,
                 Diagnostic::new(
                     Code::E0701,
@@ -47,8 +48,10 @@ impl<'a> Subject<'a> {
 
     /// The track after some axles, or after all of them.
     pub fn settled(&self, after: Option<u64>, progress: &mut dyn FnMut(u64, u64)) -> Result<Settled, Outcome> {
-        trials::settled(self.graph, after, progress).map_err(|why| match why {
-            NotSettled::Run(error) => stop(self.compiled, results::diagnose(&error, self.scenario, self.graph)),
+        trials::settled(&self.planned.graph, after, progress).map_err(|why| match why {
+            NotSettled::Run(error) => {
+                stop(self.compiled, results::diagnose(&error, &self.planned.graph, &self.planned.origins))
+            }
             NotSettled::Between { below, above } => {
                 let known: Vec<String> = [below, above].into_iter().flatten().map(|n| n.to_string()).collect();
                 let wanted = after.unwrap_or_default();
@@ -62,8 +65,8 @@ impl<'a> Subject<'a> {
 
     /// A passage that the study needs has failed.
     pub fn failed(&self, cause: TrackError, axles: u64) -> Outcome {
-        let error = RunError::Track { axles, cause };
-        stop(self.compiled, results::diagnose(&error, self.scenario, self.graph))
+        let error = RunError::Node { clock: Clock::Axles(axles), cause: NodeError::Track(cause) };
+        stop(self.compiled, results::diagnose(&error, &self.planned.graph, &self.planned.origins))
     }
 }
 

@@ -102,6 +102,7 @@ codes! {
     E0607 Error "surface that is no closed body"
     E0610 Error "bed that cannot be packed"
     E0611 Error "rig that cannot be run"
+    E0612 Error "plan that does not fit together"
     E0701 Error "study of a scene without trains"
     E0702 Error "axle count between two exchanges"
     E0703 Error "wheel force that has run away"

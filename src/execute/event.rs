@@ -1,10 +1,10 @@
 //! What a run tells, and to whom: one kind of event for every schedule.
 
 use super::Measured;
-use crate::graph::{Block, Clock, Control, Runner};
+use crate::graph::{BedRecipe, Block, Clock, Control, Runner};
 use crate::nodes::{NodeError, PassageOutcome, TestState, Tested, Unloaded};
 use crate::solvers::granular::Bed;
-use crate::solvers::granular::packing::{Progress, Recipe};
+use crate::solvers::granular::packing::Progress;
 use crate::store::FoundBed;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -34,9 +34,9 @@ pub enum Event<'a> {
     /// A bed is being packed.
     Packing(&'a Progress),
     /// A bed is there.
-    Packed { recipe: &'a Recipe, found: &'a FoundBed },
+    Packed { bed: &'a BedRecipe, found: &'a FoundBed },
     /// A test is over; the bed is as it ended.
-    Tested { tested: &'a Tested, bed: Bed<f32> },
+    Tested { tested: &'a Tested, bed: &'a Bed<f32> },
     /// Something that only a schedule of another program knows.
     Custom { clock: Clock, what: &'a serde_json::Value },
     /// Between two steps of the schedule: the state may be kept here.
@@ -81,19 +81,29 @@ pub enum ScheduleState {
 /// Hears what a run tells.
 pub trait Listener {
     /// Hears an event. A break ends the run; the reason is the listener's own to keep.
-    fn hear(&mut self, event: Event<'_>) -> ControlFlow<()>;
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()>;
+}
+
+/// Two listeners hear the same, one after the other; each may end the run.
+pub struct Both<'a>(pub &'a mut dyn Listener, pub &'a mut dyn Listener);
+
+impl Listener for Both<'_> {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        let (first, second) = (self.0.hear(event), self.1.hear(event));
+        if first.is_break() { first } else { second }
+    }
 }
 
 /// Nobody listens.
 impl Listener for () {
-    fn hear(&mut self, _: Event<'_>) -> ControlFlow<()> {
+    fn hear(&mut self, _: &Event<'_>) -> ControlFlow<()> {
         ControlFlow::Continue(())
     }
 }
 
 /// A function listens.
-impl<F: FnMut(Event<'_>) -> ControlFlow<()>> Listener for F {
-    fn hear(&mut self, event: Event<'_>) -> ControlFlow<()> {
+impl<F: FnMut(&Event<'_>) -> ControlFlow<()>> Listener for F {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
         self(event)
     }
 }

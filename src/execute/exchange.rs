@@ -1,17 +1,13 @@
 //! One exchange: the track as it lies after so many axles, and the passages of trains over it, each computed once.
 
-use super::substructure::Substructure;
-use super::system::{Kept, TrackSystem};
-use super::track::{PassageOutcome, Unloaded};
-use super::{Block, Runner};
-use crate::scenario::Direction;
-use crate::solvers::track::TrackError;
+use crate::graph::{Block, Runner};
+use crate::nodes::{Forces, Kept, Load, NodeError, PassageOutcome, Request, Superstructure, Unloaded};
 use rayon::prelude::*;
 
 /// The track at an axle count.
 pub(super) struct Exchange {
     pub axles: u64,
-    /// Of every seat, m.
+    /// Settlement of every seat, m.
     pub settlement: Vec<f64>,
     /// Passages that are recorded, one of each kind of train, the leading one first; empty where nothing is.
     shown: Vec<Runner>,
@@ -26,18 +22,19 @@ impl Exchange {
         Exchange { axles, settlement, shown, unloaded: None, passages: Vec::new() }
     }
 
-    /// Computes the passages that are missing, all at once.
-    pub fn ensure(&mut self, system: &TrackSystem<'_>, runners: &[Runner]) -> Result<(), TrackError> {
-        let missing: Vec<Runner> = runners.iter().copied().filter(|runner| self.of(*runner).is_none()).collect();
+    /// Computes the passages that are missing, all at once, with what the ground needs of their forces.
+    pub fn ensure(&mut self, track: &impl Superstructure, runners: &[Runner], forces: Forces) -> Result<(), NodeError> {
+        let missing: Vec<Runner> = runners.iter().copied().filter(|runner| self.passage(*runner).is_none()).collect();
         let run = |runner: &Runner| {
             let kept = match self.shown.iter().position(|shown| shown == runner) {
                 Some(0) => Kept::Profile,
                 Some(_) => Kept::Histories,
                 None => Kept::Nothing,
             };
-            system.passage(self.axles, &self.settlement, *runner, kept)
+            let (axles, settlement) = (self.axles, self.settlement.as_slice());
+            track.passage(Request { axles, settlement, runner: *runner, kept, forces })
         };
-        let done: Vec<Result<(Unloaded, PassageOutcome), TrackError>> = missing.par_iter().map(run).collect();
+        let done: Vec<Result<(Unloaded, PassageOutcome), NodeError>> = missing.par_iter().map(run).collect();
         for (runner, passage) in missing.into_iter().zip(done) {
             let (unloaded, passage) = passage?;
             // the same for all but the profile: no train stands on it
@@ -46,19 +43,19 @@ impl Exchange {
             }
             self.passages.push((runner, passage));
         }
-        self.passages.sort_by_key(|(runner, _)| (runner.kind, runner.direction == Direction::Backward));
+        self.passages.sort_by_key(|(runner, _)| (runner.kind, runner.direction));
         Ok(())
     }
 
-    /// A passage, where it has been computed.
-    pub fn of(&self, runner: Runner) -> Option<&PassageOutcome> {
-        self.passages.iter().find(|(of, _)| *of == runner).map(|(_, passage)| passage)
+    /// The passage of a runner, where it has been computed.
+    pub fn passage(&self, runner: Runner) -> Option<&PassageOutcome> {
+        self.passages.iter().find(|(other, _)| *other == runner).map(|(_, passage)| passage)
     }
 
     /// The passages that a record shows, with the track before them; `None` where nothing is recorded.
     pub fn recorded(&self) -> Option<(&Unloaded, Vec<(Runner, &PassageOutcome)>)> {
         let shown: Vec<(Runner, &PassageOutcome)> =
-            self.shown.iter().filter_map(|runner| Some((*runner, self.of(*runner)?))).collect();
+            self.shown.iter().filter_map(|runner| Some((*runner, self.passage(*runner)?))).collect();
         Some((self.unloaded.as_ref()?, shown)).filter(|(_, shown)| !shown.is_empty())
     }
 
@@ -75,16 +72,11 @@ impl Exchange {
         self.passages.iter().map(|(_, passage)| passage)
     }
 
-    /// What the substructure becomes when the trains of these blocks pass one after the other with the forces computed here;
-    /// those without a passage settle nothing.
-    pub fn load<'a>(&self, from: &Substructure<'a>, blocks: &[Block]) -> Substructure<'a> {
-        let mut loaded = from.clone();
-        for (runner, count) in blocks.iter().flat_map(|block| &block.runs) {
-            if let Some(passage) = self.of(*runner) {
-                loaded.load(&passage.peaks, *count);
-            }
-        }
-        loaded
+    /// The trains of these blocks, one after the other, as loads of the ground with the forces computed here; those without a
+    /// passage load nothing.
+    pub fn loads(&self, blocks: &[Block]) -> Vec<Load<'_>> {
+        let runs = blocks.iter().flat_map(|block| &block.runs);
+        runs.filter_map(|(runner, trains)| Some(Load { passage: self.passage(*runner)?, trains: *trains })).collect()
     }
 }
 

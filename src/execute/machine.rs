@@ -101,8 +101,7 @@ impl Executor {
             Schedule::Blocks(plan) => blocks::run(&machine, plan, listener, from),
             Schedule::Actuators(tests) => tests_of_beds::run(&machine, tests, listener, from),
             Schedule::Custom { kind, parameters } => {
-                let schedule =
-                    self.schedules.get(kind).ok_or_else(|| RunError::NoSchedule { kind: kind.clone() })?;
+                let schedule = self.schedules.get(kind).ok_or_else(|| RunError::NoSchedule { kind: kind.clone() })?;
                 let from = match from.map(|checkpoint| checkpoint.state) {
                     None => None,
                     Some(super::ScheduleState::Custom(state)) => Some(state),

@@ -12,7 +12,7 @@ mod oscillation;
 mod step;
 mod tests_of_beds;
 
-pub use event::{Between, Checkpoint, Event, Listener, ScheduleState};
+pub use event::{Between, Both, Checkpoint, Event, Listener, ScheduleState};
 pub use machine::{Custom, Ending, Executor, RunError};
 pub use step::Measured;
 

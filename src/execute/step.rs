@@ -1,11 +1,10 @@
 //! One block: as long as the scene prescribes and its exchange stays calm, or as long as its error allows.
 
+use super::blocks::Run;
 use super::exchange::{Exchange, Work};
-use super::execute::{Run, RunError};
+use super::machine::RunError;
 use super::oscillation::{amplification, sawtooth};
-use super::substructure::Substructure;
-use super::{Block, Runner};
-use crate::scenario::Direction;
+use crate::graph::Block;
 
 /// What the exchange of a block was worth, and what it took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -27,11 +26,10 @@ pub struct Measured {
     pub newton_iterations: u64,
 }
 
-/// A block as it was accepted: what it leaves behind, and the exchange at its end where that has been computed.
-pub(super) struct Done<'a> {
+/// A block that has passed, and the exchange at its end where that has been computed.
+pub(super) struct Done {
     pub block: Block,
     pub measured: Measured,
-    pub after: Substructure<'a>,
     pub next: Option<Exchange>,
 }
 
@@ -41,20 +39,21 @@ const CALM: f64 = 0.5;
 /// Amplification from which the second-order step grows disturbances; it never turns their sign.
 const UNSTABLE: f64 = 2.0;
 
-impl<'a> Run<'a> {
+impl Run<'_, '_> {
     /// A block of the length that the scene prescribes, with the forces of its start. Where it overshoots it is done again
     /// in halves until it is far from that, down to one train.
-    pub fn prescribed(&mut self, here: &mut Exchange) -> Result<Done<'a>, RunError> {
+    pub fn prescribed(&mut self, here: &mut Exchange) -> Result<Done, RunError> {
         let wanted = self.blocks.wanted(here.axles).unwrap_or(1);
         let mut measured = Measured::default();
         loop {
             let trains = self.control.bounded(wanted);
             let block = self.blocks.block(here.axles, trains);
             self.ensure(here, &block.runners())?;
-            let after = here.load(&self.substructure, &self.blocks.parts(&block));
-            let next = self.arrive(here.axles + block.axles, &after)?;
-            let settled = difference(&after.settlement(), &here.settlement);
-            let change = self.change(here, &next, &block);
+            let loads = here.loads(&self.blocks.parts(&block));
+            let after = self.predict(here.axles, &loads)?;
+            let settled = difference(&after, &here.settlement);
+            let next = self.arrive(here.axles + block.axles, after)?;
+            let change = self.change(here, &next, &block)?;
             measured.overshoot = change.as_ref().and_then(|change| amplification(&settled, change));
             measured.sawtooth = sawtooth(&self.runs, &settled);
             // the mean of the forces of both ends would settle half the change more
@@ -68,27 +67,21 @@ impl<'a> Run<'a> {
                 continue;
             }
             self.control.lengthen(trains, wanted);
-            return Ok(Done { block, measured, after, next: Some(next) });
+            self.advance(here.axles, &loads)?;
+            return Ok(Done { block, measured, next: Some(next) });
         }
     }
 
     /// How much more the trains of a block from `here` would settle with the forces of `there`, m: those of each kind all in
     /// a direction that was run at both. `None` where none was.
-    fn change(&self, here: &Exchange, there: &Exchange, block: &Block) -> Option<Vec<f64>> {
-        let mut runs: Vec<(Runner, u64)> = Vec::new();
-        for kind in 0..=self.blocks.others.len() {
-            let trains = block.runs.iter().filter(|(runner, _)| runner.kind == kind).map(|(_, trains)| trains).sum();
-            let both = |runner: &Runner| here.of(*runner).is_some() && there.of(*runner).is_some();
-            let directions = [Direction::Forward, Direction::Backward].into_iter();
-            let runner = directions.map(|direction| Runner { kind, direction }).find(both);
-            runs.extend(runner.filter(|_| trains > 0).map(|runner| (runner, trains)));
-        }
+    fn change(&self, here: &Exchange, there: &Exchange, block: &Block) -> Result<Option<Vec<f64>>, RunError> {
+        let runs = self.of_both(here, there, block);
         if runs.is_empty() {
-            return None;
+            return Ok(None);
         }
         let block = [Block { runs, ..block.clone() }];
-        let after = |exchange: &Exchange| exchange.load(&self.substructure, &block).settlement();
-        Some(difference(&after(there), &after(here)))
+        let after = |exchange: &Exchange| self.predict(here.axles, &exchange.loads(&block));
+        Ok(Some(difference(&after(there)?, &after(here)?)))
     }
 
     /// A block as long as its error allows.
@@ -96,38 +89,41 @@ impl<'a> Run<'a> {
     /// It is done in one piece with the forces of its start, and in two halves with forces computed anew between them; the
     /// difference is the error of the first. What is kept is of second order: the first train passes with the forces of the
     /// start, as it truly does, all others with those of the middle. Two trains are therefore exact.
-    pub fn adaptive(&mut self, here: &mut Exchange, tolerance: f64, cap: Option<f64>) -> Result<Done<'a>, RunError> {
+    pub fn adaptive(&mut self, here: &mut Exchange, tolerance: f64, cap: Option<f64>) -> Result<Done, RunError> {
         let mut measured = Measured::default();
         let mut most = self.blocks.trains_left(here.axles);
         let mut middle: Option<Exchange> = None;
         loop {
             let left = self.blocks.trains_left(here.axles);
-            let trains = self.control.choose(most, left, |trains| self.predicted(here, trains));
+            let trains = self.chosen(here, most, left)?;
             let block = self.blocks.block(here.axles, trains);
             self.ensure(here, &block.runners())?;
-            let whole = here.load(&self.substructure, &self.blocks.parts(&block));
-            let settled = difference(&whole.settlement(), &here.settlement);
+            let loads = here.loads(&self.blocks.parts(&block));
+            let whole = self.predict(here.axles, &loads)?;
+            let settled = difference(&whole, &here.settlement);
             if trains == 1 {
                 measured.sawtooth = sawtooth(&self.runs, &settled);
-                return Ok(Done { block, measured, after: whole, next: None });
+                self.advance(here.axles, &loads)?;
+                return Ok(Done { block, measured, next: None });
             }
 
             let half = self.blocks.block(here.axles, trains / 2);
-            let begun = here.load(&self.substructure, &self.blocks.parts(&half));
+            let first_half = here.loads(&self.blocks.parts(&half));
             let axles = half.before + half.axles;
             // a shorter block after a rejected one may have the same middle
-            let mut between = middle
-                .take()
-                .filter(|middle| middle.axles == axles)
-                .unwrap_or_else(|| Exchange::new(axles, begun.settlement(), Vec::new()));
+            let mut between = match middle.take().filter(|middle| middle.axles == axles) {
+                Some(middle) => middle,
+                None => Exchange::new(axles, self.predict(here.axles, &first_half)?, Vec::new()),
+            };
             let known = between.work();
             self.ensure(&mut between, &block.runners())?;
             measured.add(&between, known);
             let rest = self.blocks.block(axles, trains.div_ceil(2));
-            let halves = between.load(&begun, &self.blocks.parts(&rest)).settlement();
-            let error = largest(&difference(&whole.settlement(), &halves));
+            let both_halves = [first_half, between.loads(&self.blocks.parts(&rest))].concat();
+            let halves = self.predict(here.axles, &both_halves)?;
+            let error = largest(&difference(&whole, &halves));
             let moved = difference(&between.settlement, &here.settlement);
-            let change = self.change(here, &between, &block);
+            let change = self.change(here, &between, &block)?;
             measured.overshoot = change.and_then(|change| amplification(&moved, &change));
             self.control.learn(error, largest(&settled), tolerance, cap);
             if trains > 2 && (error > tolerance || measured.overshoot.is_some_and(|a| a > UNSTABLE)) {
@@ -137,20 +133,35 @@ impl<'a> Run<'a> {
                 continue;
             }
             measured.error = if trains > 2 { error } else { 0.0 };
-            let one = self.blocks.block(here.axles, 1);
-            let others = self.blocks.block(here.axles + one.axles, trains - 1);
-            let first = here.load(&self.substructure, &self.blocks.parts(&one));
-            let after = between.load(&first, &self.blocks.parts(&others));
-            measured.sawtooth = sawtooth(&self.runs, &difference(&after.settlement(), &here.settlement));
-            return Ok(Done { block, measured, after, next: None });
+            self.second_order(here, &between, trains)?;
+            measured.sawtooth = sawtooth(&self.runs, &difference(&self.settlement(), &here.settlement));
+            return Ok(Done { block, measured, next: None });
         }
     }
 
-    /// The most that any seat settles under so many trains with the forces of the start, m. Of unlike trains their order
+    /// Lets a block pass: its first train with the forces of the start, the others with those of the middle.
+    fn second_order(&mut self, here: &Exchange, between: &Exchange, trains: u64) -> Result<(), RunError> {
+        let one = self.blocks.block(here.axles, 1);
+        let others = self.blocks.block(here.axles + one.axles, trains - 1);
+        let first = here.loads(&self.blocks.parts(&one));
+        self.advance(here.axles, &[first, between.loads(&self.blocks.parts(&others))].concat())
+    }
+
+    /// Trains of the next block: as many as settle the aim of the control with the forces of the start. Of unlike trains their order
     /// does not matter here.
-    fn predicted(&self, here: &Exchange, trains: u64) -> f64 {
-        let block = [self.blocks.block(here.axles, trains)];
-        largest(&difference(&here.load(&self.substructure, &block).settlement(), &here.settlement))
+    fn chosen(&self, here: &Exchange, most: u64, left: u64) -> Result<u64, RunError> {
+        let mut failure = None;
+        let trains = self.control.choose(most, left, |trains| {
+            let block = [self.blocks.block(here.axles, trains)];
+            match self.predict(here.axles, &here.loads(&block)) {
+                Ok(settlement) => largest(&difference(&settlement, &here.settlement)),
+                Err(error) => {
+                    failure.get_or_insert(error);
+                    f64::INFINITY
+                }
+            }
+        });
+        failure.map_or(Ok(trains), Err)
     }
 }
 

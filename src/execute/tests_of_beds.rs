@@ -24,9 +24,9 @@ pub(super) fn run(
         let mut test = Test { machine, tests, bed, actuators, listener, done: &done };
         let Some((tested, bed)) = test.run(running.take().map(|state| *state))? else { return Ok(Ending::Stopped) };
         done.push(tested);
-        let told = listener.hear(Event::Tested { tested: &done[done.len() - 1], bed });
+        let told = listener.hear(&Event::Tested { tested: &done[done.len() - 1], bed: &bed });
         let state = || Ok(checkpoint(&done, None));
-        let kept = listener.hear(Event::Between(Between { at_end: true, state: &state }));
+        let kept = listener.hear(&Event::Between(Between { at_end: true, state: &state }));
         if told.is_break() || kept.is_break() {
             return Ok(Ending::Stopped);
         }
@@ -59,33 +59,36 @@ impl Test<'_, '_> {
     /// Packs and tests, from what was kept of the test on; `None` where a listener ended it.
     fn run(&mut self, running: Option<TestState>) -> Result<Option<(Tested, Bed<f32>)>, RunError> {
         let seed = self.bed.bed.seed().wrapping_add(self.done.len() as u64);
-        let recipe = self.bed.bed.recipe(seed).map_err(|cause| at(0, NodeError::Bed(cause)))?;
+        let ready = self.bed.bed.ready(seed).map_err(|cause| at(0, NodeError::Bed(cause)))?;
         let mut going_on = ControlFlow::Continue(());
-        let found = self.machine.beds().bed(&recipe, |progress| {
+        let found = self.machine.beds().bed(&ready.recipe, |progress| {
             if going_on.is_continue() {
-                going_on = self.listener.hear(Event::Packing(progress));
+                going_on = self.listener.hear(&Event::Packing(progress));
             }
         });
         let found = found.map_err(|cause| at(0, NodeError::Packing(cause)))?;
-        if going_on.is_break() || self.listener.hear(Event::Packed { recipe: &recipe, found: &found }).is_break() {
+        if going_on.is_break() || self.listener.hear(&Event::Packed { bed: &ready, found: &found }).is_break() {
             return Ok(None);
         }
         let top = found.packed.levels.last().copied().unwrap_or_default();
-        let rig = self.bed.rig(self.actuators, &recipe, top, &self.tests.kept);
+        let rig = self.bed.rig(self.actuators, &ready.recipe, top, &self.tests.kept);
         let begun = match running {
             Some(state) => BedUnderActuators::restore(seed, state, &rig),
             None => BedUnderActuators::new(seed, found.packed, self.bed.copies, &rig),
         };
         let mut test = begun.map_err(|cause| at(0, cause))?;
-        while test.advance().map_err(|cause| at(test_cycles(&cause), cause))? {
+        loop {
+            let advanced = test.advance();
+            if !advanced.map_err(|cause| at(test.cycles(), cause))? {
+                return Ok(Some(test.finish()));
+            }
             let (done, all) = test.pieces();
-            let progress = self.listener.hear(Event::Progress { done, all });
+            let progress = self.listener.hear(&Event::Progress { done, all });
             let state = || Ok(checkpoint(self.done, Some((test.cycles(), test.save()))));
             let between = Between { at_end: test.at_end_of_cycle(), state: &state };
-            if progress.is_break() || self.listener.hear(Event::Between(between)).is_break() {
+            if progress.is_break() || self.listener.hear(&Event::Between(between)).is_break() {
                 return Ok(None);
             }
         }
-        Ok(Some(test.finish()))
     }
 }

@@ -31,9 +31,9 @@ impl Control {
 
     /// Trains of the next block of an adaptive policy, of `most` that may run: those that settle the aim, and two at least where
     /// so many are `left` until the next stop. What is left is divided evenly where it would take two blocks.
-    pub fn choose(&self, most: u64, left: u64, settled: impl Fn(u64) -> f64) -> u64 {
+    pub fn choose(&self, most: u64, left: u64, mut settled: impl FnMut(u64) -> f64) -> u64 {
         let Some(aim) = self.aim else { return left.min(2) };
-        let trains = largest_within(aim, most, settled).max(left.min(2));
+        let trains = largest_within(aim, most, &mut settled).max(left.min(2));
         if trains == left {
             trains
         } else if left < 2 * trains {
@@ -61,7 +61,7 @@ impl Control {
 
 /// The largest count from 1 to `most` for which `value`, which does not fall with the count, stays within `bound`; 1 where
 /// none does.
-fn largest_within(bound: f64, most: u64, value: impl Fn(u64) -> f64) -> u64 {
+fn largest_within(bound: f64, most: u64, mut value: impl FnMut(u64) -> f64) -> u64 {
     if most <= 1 || value(most) <= bound {
         return most.max(1);
     }

@@ -53,7 +53,7 @@ pub struct PassageWork {
 }
 
 /// Tests of packed beds; good to a factor of two.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct TestWork {
     pub grains: f64,
     pub pebbles: f64,

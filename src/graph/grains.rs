@@ -1,6 +1,5 @@
 //! Nodes of grains: beds to pack, what stands on them, what loads them, and the soil below.
 
-use crate::solvers::granular::clump::Template;
 use crate::solvers::granular::grains::{ClumpShape, TemplatesError};
 use crate::solvers::granular::measure::Region;
 use crate::solvers::granular::packing::{PackingError, Recipe};
@@ -14,13 +13,23 @@ use std::fmt;
 pub struct BedPlan {
     /// The name of the trackform.
     pub section: String,
-    /// Complete but for the templates of its layers, which take a tenth of a second to make.
+    /// Complete but for the clumps of its layers, which take a tenth of a second to make: spheres stand in their place.
     blank: Recipe,
     /// Shapes of the grains of each layer, from the floor upwards; `None` are spheres.
     shapes: Vec<Option<ClumpShape>>,
     /// The area by which its stiffness is felt: the footprint of half a sleeper, of a whole one in a bed of both rails.
     pub plate: Plate,
     /// Decisions and their reasons, for people.
+    pub notes: Vec<String>,
+}
+
+/// A bed that can be packed: a [`BedPlan`] with its clumps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BedRecipe {
+    /// The name of the trackform.
+    pub section: String,
+    pub recipe: Recipe,
+    pub plate: Plate,
     pub notes: Vec<String>,
 }
 
@@ -45,29 +54,34 @@ impl fmt::Display for BedError {
 impl std::error::Error for BedError {}
 
 impl BedPlan {
-    /// A plan from a recipe without templates and the shapes that they are made of, one a layer.
+    /// A plan from a recipe of spheres and the shapes of its grains, one a layer.
     pub fn new(section: String, blank: Recipe, shapes: Vec<Option<ClumpShape>>, plate: Plate) -> BedPlan {
         BedPlan { section, blank, shapes, plate, notes: Vec::new() }
     }
 
-    /// The numbers of the recipe; its layers lack their templates.
+    /// Whether another plan packs the same bed.
+    pub fn packs_like(&self, other: &BedPlan) -> bool {
+        self.blank == other.blank && self.shapes == other.shapes
+    }
+
+    /// The numbers of the recipe; spheres stand in the place of its clumps.
     pub fn numbers(&self) -> &Recipe {
         &self.blank
     }
 
-    /// The recipe of the packing of a seed.
-    pub fn recipe(&self, seed: u64) -> Result<Recipe, BedError> {
+    /// All that it takes to pack the bed of a seed.
+    pub fn ready(&self, seed: u64) -> Result<BedRecipe, BedError> {
         let mut recipe = Recipe { seed, ..self.blank.clone() };
         for (layer, shape) in recipe.layers.iter_mut().zip(&self.shapes) {
-            let templates = match shape {
-                None => Template::sphere(0.5).map(|sphere| vec![sphere]).map_err(TemplatesError::Clump),
-                Some(shape) => shape.templates(seed),
-            };
-            layer.templates =
-                templates.map_err(|cause| BedError::Templates { layer: layer.name.clone(), cause })?;
+            if let Some(shape) = shape {
+                let templates = shape.templates(seed);
+                layer.templates =
+                    templates.map_err(|cause| BedError::Templates { layer: layer.name.clone(), cause })?;
+            }
         }
         recipe.check().map_err(BedError::Recipe)?;
-        Ok(recipe)
+        let (section, plate, notes) = (self.section.clone(), self.plate, self.notes.clone());
+        Ok(BedRecipe { section, recipe, plate, notes })
     }
 
     /// The seed of the first packing.

@@ -35,4 +35,6 @@ pub struct SupportNode {
 pub struct NamedLaw {
     pub name: String,
     pub law: Law,
+    /// Its form and parameters in words.
+    pub details: String,
 }

@@ -1,146 +1,150 @@
-//! The graph as a person reads it: text, JSON and DOT.
+//! The graph as a person reads it: text, JSON and DOT, generated from the ports of its nodes and from its edges.
 
-use super::{Blocks, Decision, Estimate, Graph, NamedLaw, Schedule, SubstructureNode};
-use crate::scenario::{Beam, Integrator, Update, law_argument};
-use crate::solvers::settlement::{Form, Logarithm};
+use super::{
+    ActuatorsNode, BedNode, Blocks, Cost, Decision, Edge, GrainsNode, Graph, LawNode, Model, Node, Quantity, Schedule,
+    SoilNode, TestWork, Tests, TrackNode, Update, Work,
+};
+use crate::solvers::granular::rig::Load;
+use crate::solvers::track::Integrator;
 use crate::units::number;
 use serde::Serialize;
 
 /// A graph in names and sentences.
 #[derive(Debug, Clone, Serialize)]
 pub struct Listing {
-    pub nodes: Vec<Node>,
-    pub edges: Vec<Edge>,
+    pub nodes: Vec<ListedNode>,
+    pub edges: Vec<ListedEdge>,
     pub schedule: Vec<String>,
     pub passes: Vec<Decision>,
-    pub estimate: Option<Estimate>,
+    pub cost: Cost,
 }
 
 #[derive(Debug, Clone, Serialize)]
-pub struct Node {
-    pub name: &'static str,
+pub struct ListedNode {
+    pub name: String,
     pub model: String,
     pub details: Vec<String>,
+    pub gives: Vec<Quantity>,
+    pub takes: Vec<Quantity>,
 }
 
-/// One quantity from node to node, once a block.
+/// A quantity from node to node, as the node that gives it declares it.
 #[derive(Debug, Clone, Serialize)]
-pub struct Edge {
-    pub from: &'static str,
-    pub to: &'static str,
-    pub quantity: &'static str,
-    pub symbol: &'static str,
-    pub unit: &'static str,
+pub struct ListedEdge {
+    pub from: String,
+    pub to: String,
+    #[serde(flatten)]
+    pub quantity: Quantity,
 }
-
-const EDGES: [Edge; 3] = [
-    Edge {
-        from: "substructure",
-        to: "track",
-        quantity: "support stiffness and damping",
-        symbol: "k, c",
-        unit: "N/m, N s/m",
-    },
-    Edge { from: "track", to: "substructure", quantity: "sleeper-ballast forces", symbol: "R(t)", unit: "N" },
-    Edge { from: "substructure", to: "track", quantity: "settlement", symbol: "s", unit: "m" },
-];
 
 impl Graph {
+    /// The graph in words.
     pub fn listing(&self) -> Listing {
         Listing {
-            nodes: vec![self.track_node(), self.substructure_node()],
-            edges: match self.substructure {
-                SubstructureNode::Law { .. } => EDGES.to_vec(),
-                SubstructureNode::Fixed => EDGES[..1].to_vec(),
-            },
+            nodes: self.nodes.iter().map(listed).collect(),
+            edges: self.edges.iter().filter_map(|edge| self.listed_edge(edge)).collect(),
             schedule: self.schedule_lines(),
             passes: self.decisions.clone(),
-            estimate: Some(self.estimate),
+            cost: self.cost,
         }
     }
 
-    fn track_node(&self) -> Node {
-        let track = &self.track.track;
-        let mut details = vec![
-            format!(
-                "rail: {}, {} elements a bay, {} m .. {} m",
-                match self.track.beam {
-                    Beam::Euler => "Euler-Bernoulli",
-                    Beam::Timoshenko => "Timoshenko",
-                },
-                self.track.elements_per_bay,
-                number(track.start()),
-                number(track.end())
-            ),
-            format!("seats: {}", track.seats.len()),
-        ];
-        details.extend(track.sections.iter().map(|s| {
-            let seats = track.seats.iter().filter(|seat| track.sections[seat.section].start == s.start).count();
-            let foot = if s.slab.is_some() { "on a slab" } else { "on sleepers" };
-            format!("section {}: {} m, {seats} seats {foot}", s.name, number(s.end - s.start))
-        }));
-        if let Schedule::Blocks(blocks) = &self.schedule {
-            for ((train, plan), share) in blocks.kinds().zip(&blocks.sequence.shares) {
-                let count =
-                    if blocks.others.is_empty() { String::new() } else { format!(", {} of them", share.trains) };
-                details.push(format!(
-                    "train {}: {} vehicles, {} axles, {} km/h{count}",
-                    train.name,
-                    train.vehicles.len(),
-                    train.axles(),
-                    number(*train.speed * 3.6)
-                ));
-                details.push(format!(
-                    "passage: wheels from {} m to {} m, {}, step {} ms{}",
-                    number(plan.left),
-                    number(plan.right),
-                    integrator(plan.integrator),
-                    number(plan.time_step * 1e3),
-                    if plan.adaptive.is_some() { " or shorter" } else { "" }
-                ));
-            }
-        }
-        Node { name: "track", model: "2D finite element track with multibody vehicles, one Newton".into(), details }
-    }
-
-    fn substructure_node(&self) -> Node {
-        match &self.substructure {
-            SubstructureNode::Fixed => Node {
-                name: "substructure",
-                model: "supports as given, without settlement".into(),
-                details: Vec::new(),
-            },
-            SubstructureNode::Law { law, followers } => Node {
-                name: "substructure",
-                model: format!("tier law: {} under each sleeper", law.name),
-                details: std::iter::once(describe(law))
-                    .chain(followers.iter().map(|f| format!("beside it {}, {}", f.name, describe(f))))
-                    .collect(),
-            },
-        }
+    fn listed_edge(&self, edge: &Edge) -> Option<ListedEdge> {
+        let gives = self.node(&edge.from)?.ports().gives;
+        let quantity = gives.into_iter().find(|quantity| quantity.name == edge.quantity)?;
+        Some(ListedEdge { from: edge.from.clone(), to: edge.to.clone(), quantity })
     }
 
     fn schedule_lines(&self) -> Vec<String> {
         match &self.schedule {
             Schedule::Static { .. } => vec!["one static equilibrium under the test loads".to_string()],
-            Schedule::Blocks(b) => {
-                vec![
-                    block_line(b, &self.estimate),
-                    match b.update {
-                        Update::Adaptive { .. } => {
-                            "each block: static state -> passage -> settlement of half of it -> passage -> settlement of the block"
-                        }
-                        _ => "each block: static state -> passage -> settlement of the block",
-                    }
-                    .into(),
-                    format!(
-                        "recorded after {} axles",
-                        b.recorded.iter().map(u64::to_string).collect::<Vec<_>>().join(", ")
-                    ),
-                ]
-            }
+            Schedule::Blocks(blocks) => block_lines(blocks, &self.cost),
+            Schedule::Actuators(tests) => self.bed_under_actuators().map_or(Vec::new(), |(_, a)| test_lines(tests, a)),
+            Schedule::Custom { kind, .. } => vec![format!("a schedule `{kind}` of another program")],
         }
     }
+}
+
+fn listed(node: &Node) -> ListedNode {
+    let ports = node.ports();
+    let (model, details) = match &node.model {
+        Model::Track(track) => ("2D finite element track with multibody vehicles, one Newton".into(), of_track(track)),
+        Model::Springs(_) => ("supports as springs, without settlement".into(), Vec::new()),
+        Model::Law(law) => (format!("tier law: {} under each sleeper", law.law.name), of_law(law)),
+        Model::Bed(bed) => (format!("{} on a packed bed of grains", standing(bed)), of_bed(bed)),
+        Model::Actuators(actuators) => ("loads of a test rig".into(), of_actuators(actuators)),
+        Model::Grains(grains) => ("grains under the sleepers".into(), of_grains(grains)),
+        Model::Soil(soil) => ("soil below the grains".into(), of_soil(soil)),
+        Model::Custom(custom) => (format!("`{}` of another program", custom.kind), custom.details.clone()),
+    };
+    ListedNode { name: node.name.clone(), model, details, gives: ports.gives, takes: ports.takes }
+}
+
+fn of_track(track: &TrackNode) -> Vec<String> {
+    let [start, end] = track.ends();
+    let beam = if track.rail.iter().any(|rail| rail.shear.is_some()) { "Timoshenko" } else { "Euler-Bernoulli" };
+    let mut details = vec![
+        format!("rail: {beam}, {} elements a bay, {} m .. {} m", track.elements_per_bay, number(start), number(end)),
+        format!("seats: {}", track.seats.len()),
+    ];
+    details.extend(track.sections.iter().enumerate().map(|(index, section)| {
+        let seats = track.seats.iter().filter(|seat| seat.section == index).count();
+        let foot = if section.slab_foundation.is_some() { "on a slab" } else { "on sleepers" };
+        format!("section {}: {} m, {seats} seats {foot}", section.name, number(section.end - section.start))
+    }));
+    details
+}
+
+fn of_law(node: &LawNode) -> Vec<String> {
+    let beside = node.followers.iter().map(|law| format!("beside it {}, {}", law.name, law.details));
+    std::iter::once(node.law.details.clone()).chain(beside).collect()
+}
+
+fn standing(bed: &BedNode) -> String {
+    match (bed.confinement, bed.plate, bed.bodies.len()) {
+        (Some(_), ..) => "a plate".to_owned(),
+        (None, Some(_), _) => "a plate".to_owned(),
+        (None, None, 1) => "1 sleeper".to_owned(),
+        (None, None, count) => format!("{count} sleepers"),
+    }
+}
+
+fn of_bed(node: &BedNode) -> Vec<String> {
+    node.bed.notes.clone()
+}
+
+fn of_actuators(actuators: &ActuatorsNode) -> Vec<String> {
+    let mut details: Vec<String> = Vec::new();
+    for load in &actuators.loads {
+        let line = match load {
+            Load::None => "no force".to_owned(),
+            Load::Constant(force) => format!("{} kN, held", number(force / 1e3)),
+            Load::Cyclic { range: [low, high], .. } => {
+                format!("{} .. {} kN, {} Hz", number(low / 1e3), number(high / 1e3), number(1.0 / actuators.period))
+            }
+            Load::History(points) => format!("a force of {} points over {} s", points.len(), number(actuators.period)),
+            Load::Strain(share) => {
+                format!("drives the plate down by {} % in {} s", number(100.0 * share), number(actuators.period))
+            }
+        };
+        if !details.contains(&line) {
+            details.push(line);
+        }
+    }
+    details
+}
+
+fn of_grains(grains: &GrainsNode) -> Vec<String> {
+    let spans = grains.window.iter().map(|[a, b]| format!("grains from {} m to {} m", number(*a), number(*b)));
+    spans.chain(grains.beds.iter().map(|bed| format!("bed of `{}`", bed.section))).collect()
+}
+
+fn of_soil(soil: &SoilNode) -> Vec<String> {
+    let line = |layer: &super::SoilLayer| {
+        let (thickness, modulus) = (number(1e3 * layer.thickness), number(layer.youngs_modulus / 1e6));
+        format!("{}: {thickness} mm, {modulus} MPa", layer.name)
+    };
+    soil.layers.iter().map(line).collect()
 }
 
 fn integrator(integrator: Integrator) -> String {
@@ -151,43 +155,116 @@ fn integrator(integrator: Integrator) -> String {
     }
 }
 
-/// The form of a law with its parameters, SI, of one half sleeper.
-fn describe(named: &NamedLaw) -> String {
-    let mut law = named.law;
-    let name = law.form.name();
-    let parameters = law.form.parameters().into_iter();
-    let parameters: Vec<String> =
-        parameters.map(|(argument, value)| format!("{argument} {}", law_argument(name, argument, *value))).collect();
-    let logarithm = match law.form {
-        Form::Hettler(law) => match law.logarithm {
-            Logarithm::Natural => ", natural logarithm",
-            Logarithm::Decimal => ", decimal logarithm",
-        },
-        _ => "",
+fn block_lines(blocks: &Blocks, cost: &Cost) -> Vec<String> {
+    let mut lines = Vec::new();
+    for ((train, plan), share) in blocks.kinds().zip(&blocks.sequence.shares) {
+        let count = if blocks.others.is_empty() { String::new() } else { format!(", {} of them", share.trains) };
+        lines.push(format!(
+            "train {}: {} vehicles, {} axles, {} km/h{count}",
+            train.name,
+            train.vehicles.len(),
+            train.axles(),
+            number(train.speed * 3.6)
+        ));
+        lines.push(format!(
+            "passage: wheels from {} m to {} m, {}, step {} ms{}",
+            number(plan.left),
+            number(plan.right),
+            integrator(plan.integrator),
+            number(plan.time_step * 1e3),
+            if plan.adaptive.is_some() { " or shorter" } else { "" }
+        ));
+    }
+    lines.push(block_line(blocks, cost));
+    let each = match blocks.adaptive() {
+        Some(_) => {
+            "each block: static state -> passage -> settlement of half of it -> passage -> settlement of the block"
+        }
+        None => "each block: static state -> passage -> settlement of the block",
     };
-    format!("{name}: {}{logarithm}; one cycle per {}", parameters.join(", "), law.cycle_per.name())
+    lines.push(each.into());
+    let recorded: Vec<String> = blocks.recorded.iter().map(u64::to_string).collect();
+    lines.push(format!("recorded after {} axles", recorded.join(", ")));
+    lines
 }
 
 /// `500 axles in 25 blocks, 20 axles each`
-fn block_line(blocks: &Blocks, estimate: &Estimate) -> String {
+fn block_line(blocks: &Blocks, cost: &Cost) -> String {
     let total = blocks.total;
     match blocks.update {
+        _ if !blocks.share => format!("{total} axles, every train a block"),
         Update::Adaptive { tolerance, cap } => {
             let cap = cap.map_or(String::new(), |cap| format!(" and {} mm of settlement", number(cap * 1e3)));
             format!("{total} axles in blocks that err by at most {} mm{cap}", number(tolerance * 1e3))
         }
         Update::Fixed { .. } | Update::Geometric { .. } => {
-            let [shortest, longest] = estimate.block_axles;
+            let [shortest, longest] = cost.passages().block_axles;
             let range = match shortest == longest {
                 true => format!("{longest} axles each"),
                 false => format!("{shortest} to {longest} axles"),
             };
-            format!("{total} axles in {} blocks, {range}", estimate.blocks)
+            format!("{total} axles in {} blocks, {range}", cost.passages().blocks)
         }
     }
 }
 
+fn test_lines(tests: &Tests, actuators: &ActuatorsNode) -> Vec<String> {
+    let cycles = match actuators.cycles {
+        1 => "1 cycle".to_owned(),
+        several => format!("{several} cycles"),
+    };
+    let packings = match tests.packings {
+        0 | 1 => "one packing".to_owned(),
+        several => format!("each of {several} packings"),
+    };
+    let kept: Vec<String> = tests.kept.iter().map(u64::to_string).collect();
+    vec![
+        format!("{packings}: pack the bed, set down what stands on it, {cycles} of {} s", number(actuators.period)),
+        format!("loops and sensors are kept of cycle {}", kept.join(", ")),
+    ]
+}
+
+/// A few digits of a rough number.
+fn rounded(value: f64) -> String {
+    number(format!("{value:.2e}").parse().unwrap_or(value))
+}
+
+/// `40 s`, `12 min`, `3 h`
+fn duration(seconds: f64) -> String {
+    match seconds {
+        seconds if seconds < 120.0 => format!("{} s", seconds.ceil()),
+        seconds if seconds < 7200.0 => format!("{} min", (seconds / 60.0).ceil()),
+        seconds => format!("{} h", (seconds / 3600.0).ceil()),
+    }
+}
+
+fn cost_lines(cost: &Cost) -> String {
+    match cost.work {
+        Work::Passages(work) => format!(
+            "\nestimate: {} unknowns, {} passages, {} steps, about {} s on one core, {} MB\n",
+            work.unknowns,
+            work.passages,
+            work.steps,
+            number((cost.seconds * 10.0).round() / 10.0),
+            cost.bytes.div_ceil(1_000_000)
+        ),
+        Work::Tests(TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings }) => format!(
+            "\nestimate: about {} grains of {} pebbles in all, step {} us\n\
+             estimate: about {} steps to pack the bed, {} to test it{}\n\
+             estimate: about {} on two cores, within a factor of two\n",
+            rounded(grains),
+            rounded(pebbles),
+            number((time_step * 1e7).round() / 10.0),
+            rounded(packing_steps),
+            rounded(test_steps),
+            if packings > 1 { format!(", {packings} times") } else { String::new() },
+            duration(cost.seconds_on_two_cores)
+        ),
+    }
+}
+
 impl Listing {
+    /// The plan for people.
     pub fn text(&self) -> String {
         let mut out = String::new();
         for node in &self.nodes {
@@ -195,36 +272,35 @@ impl Listing {
             node.details.iter().for_each(|d| out.push_str(&format!("  {d}\n")));
         }
         out.push('\n');
-        for e in &self.edges {
-            out.push_str(&format!("edge {} -> {}: {}, {} [{}]\n", e.from, e.to, e.quantity, e.symbol, e.unit));
+        for ListedEdge { from, to, quantity } in &self.edges {
+            out.push_str(&format!("edge {from} -> {to}: {quantity}\n"));
         }
         out.push('\n');
         self.schedule.iter().for_each(|line| out.push_str(&format!("schedule: {line}\n")));
         out.push('\n');
         for pass in &self.passes {
             out.push_str(&format!("pass {}: {}\n  because {}\n", pass.pass, pass.what, pass.why));
+            for other in &pass.rejected {
+                let seconds = other.seconds.map_or(String::new(), |s| format!(", about {} on two cores", duration(s)));
+                out.push_str(&format!("  not {}: {}{seconds}\n", other.what, other.why));
+            }
         }
-        if let Some(e) = &self.estimate {
-            out.push_str(&format!(
-                "\nestimate: {} unknowns, {} passages, {} steps, about {} s on one core, {} MB\n",
-                e.unknowns,
-                e.passages,
-                e.steps,
-                number((e.seconds * 10.0).round() / 10.0),
-                e.bytes.div_ceil(1_000_000)
-            ));
-        }
+        out.push_str(&cost_lines(&self.cost));
         out
     }
 
-    /// For Graphviz.
+    /// The plan for Graphviz.
     pub fn dot(&self) -> String {
+        let quoted = |text: &str| text.replace('"', "'");
         let mut out = String::from("digraph plan {\n  rankdir=LR\n  node [shape=box]\n");
         for node in &self.nodes {
-            out.push_str(&format!("  {} [label=\"{}\\n{}\"]\n", node.name, node.name, node.model.replace('"', "'")));
+            let (name, model) = (quoted(&node.name), quoted(&node.model));
+            out.push_str(&format!("  \"{name}\" [label=\"{name}\\n{model}\"]\n"));
         }
-        for e in &self.edges {
-            out.push_str(&format!("  {} -> {} [label=\"{} [{}]\"]\n", e.from, e.to, e.symbol, e.unit));
+        for ListedEdge { from, to, quantity } in &self.edges {
+            let Quantity { symbol, unit, .. } = quantity;
+            let (from, to) = (quoted(from), quoted(to));
+            out.push_str(&format!("  \"{from}\" -> \"{to}\" [label=\"{symbol} [{unit}]\"]\n"));
         }
         out.push_str("}\n");
         out

@@ -22,7 +22,8 @@ pub use blocks::Due;
 pub use control::Control;
 pub use decision::{Cost, Decision, PassageWork, Rejected, TestWork, Work};
 pub use grains::{
-    ActuatorsNode, BedError, BedNode, BedPlan, GrainsNode, SensorNode, SensorVolume, SoilLayer, SoilNode, StandingBody,
+    ActuatorsNode, BedError, BedNode, BedPlan, BedRecipe, GrainsNode, SensorNode, SensorVolume, SoilLayer, SoilNode,
+    StandingBody,
 };
 pub use ground::{LawNode, NamedLaw, SpringsNode, SupportNode};
 pub use listing::Listing;
@@ -48,6 +49,8 @@ pub struct Graph {
     /// What each pass decided, and why.
     pub decisions: Vec<Decision>,
     pub cost: Cost,
+    /// Whether this version has every node that it takes; one that does not is looked at and not run.
+    pub runs: bool,
 }
 
 impl Graph {
@@ -88,7 +91,8 @@ impl Graph {
 
     /// A bed under actuators, with them.
     pub fn bed_under_actuators(&self) -> Option<(&BedNode, &ActuatorsNode)> {
-        let bed = self.nodes.iter().find_map(|node| if let Model::Bed(bed) = &node.model { Some(&**bed) } else { None });
+        let bed =
+            self.nodes.iter().find_map(|node| if let Model::Bed(bed) = &node.model { Some(&**bed) } else { None });
         let loads = self
             .nodes
             .iter()

@@ -49,13 +49,7 @@ impl Quantity {
         basis: Basis,
         rate: Rate,
     ) -> Quantity {
-        Quantity {
-            name: Cow::Borrowed(name),
-            symbol: Cow::Borrowed(symbol),
-            unit: Cow::Borrowed(unit),
-            basis,
-            rate,
-        }
+        Quantity { name: Cow::Borrowed(name), symbol: Cow::Borrowed(symbol), unit: Cow::Borrowed(unit), basis, rate }
     }
 }
 
@@ -78,8 +72,7 @@ pub const ACTUATOR_FORCE: Quantity = Quantity::new("actuator force", "F", "N", B
 /// The speed with which an actuator drives a plate down.
 pub const ACTUATOR_VELOCITY: Quantity = Quantity::new("actuator velocity", "v", "m/s", Basis::Sleeper, Rate::Step);
 /// The downward move of a sleeper on grains.
-pub const SLEEPER_DISPLACEMENT: Quantity =
-    Quantity::new("sleeper displacement", "u", "m", Basis::Sleeper, Rate::Step);
+pub const SLEEPER_DISPLACEMENT: Quantity = Quantity::new("sleeper displacement", "u", "m", Basis::Sleeper, Rate::Step);
 /// The force of grains on a facet of the soil under them.
 pub const GRAIN_FORCE: Quantity = Quantity::new("forces of grains", "f", "N", Basis::Facet, Rate::Step);
 /// The velocity of the facets of the soil under grains.

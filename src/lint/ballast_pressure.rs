@@ -4,9 +4,10 @@
 //! sleeper's bearing area carries both. 0.5 MPa are usual under concrete sleepers (UIC, unchecked).
 
 use super::dynamic::amplification;
+use super::led;
 use super::winkler::seat_loads;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::Scenario;
 use crate::units::number;
 
@@ -14,10 +15,10 @@ use crate::units::number;
 const LARGEST: f64 = 0.5e6;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
-    let (track, speed) = (&scenario.track, blocks.train.speed);
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
+    let (track, speed) = (&scenario.track, traffic.train.speed);
     let factor = amplification(*speed);
-    let pressed = seat_loads(scenario, blocks).into_iter().filter_map(|load| {
+    let pressed = seat_loads(scenario, traffic).into_iter().filter_map(|load| {
         let seat = track.seats[track.seats_of(load.section)].iter().find(|s| s.is_ballasted())?;
         let share = load.wheel * load.winkler.seat_share(load.spacing);
         let area = track.bearing_area(seat)?;

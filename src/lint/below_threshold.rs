@@ -2,16 +2,20 @@
 //!
 //! The seat load is the static one of a beam on a Winkler foundation; what the passage adds to it is not known before a run.
 
+use super::led;
 use super::winkler::seat_loads;
 use super::{laws, pointed};
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::Scenario;
 use crate::units::number;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
-    let seats = seat_loads(scenario, blocks);
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
+    if graph.laws().next().is_none() {
+        return Vec::new();
+    }
+    let seats = seat_loads(scenario, traffic);
     let Some(most) = seats.iter().max_by(|a, b| a.peak.force.total_cmp(&b.peak.force)) else { return Vec::new() };
     let below = laws(scenario).filter_map(|law| Some((law, law.law.threshold()?)));
     let kilonewtons = |force: f64| number((force / 1e2).round() / 10.0);

@@ -4,8 +4,9 @@
 //! bounce at 1.5 .. 4 Hz, coaches at 0.7 .. 1.5 Hz. A value of one wheel that was meant of a wheelset, or a mass of a vehicle
 //! that was meant of a bogie, shows here.
 
+use super::led;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::Scenario;
 use crate::units::number;
 
@@ -13,10 +14,10 @@ use crate::units::number;
 const SLOWEST: f64 = 0.5;
 const FASTEST: f64 = 5.0;
 
-pub(super) fn check(_: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let mut found = Vec::new();
-    for vehicle in &blocks.train.vehicles {
+    for vehicle in &traffic.train.vehicles {
         let bogie = 1.0 / (1.0 / *vehicle.secondary_stiffness + 0.5 / *vehicle.primary_stiffness);
         let frequency = (2.0 * bogie / *vehicle.car_body_mass).sqrt() / (2.0 * std::f64::consts::PI);
         if (SLOWEST..=FASTEST).contains(&frequency) {

@@ -6,8 +6,9 @@
 
 use super::wheel_on_track::resonance;
 use super::winkler::Winkler;
+use super::{Led, led};
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Blocks, Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::{Given, Scenario};
 use crate::units::number;
 use std::f64::consts::PI;
@@ -15,11 +16,11 @@ use std::f64::consts::PI;
 const SAMPLES_A_PERIOD: f64 = 10.0;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let intervals = scenario.records.iter().filter_map(|record| record.every);
     let mut found: Vec<Diagnostic> = Vec::new();
     for every in intervals {
-        let mistake = too_fine(every, blocks).or_else(|| too_coarse(every, scenario, blocks));
+        let mistake = too_fine(every, traffic).or_else(|| too_coarse(every, scenario, traffic));
         let mistake = mistake.map(|mistake| match every.origin.span() {
             Some(span) => mistake.at(span, "of these histories"),
             None => mistake,
@@ -30,8 +31,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
 }
 
 /// Histories have a value a step at most; those of steps that vary one of the longest.
-fn too_fine(every: Given, blocks: &Blocks) -> Option<Diagnostic> {
-    let step = blocks.passage.time_step;
+fn too_fine(every: Given, traffic: Led<'_>) -> Option<Diagnostic> {
+    let step = traffic.blocks.passage.time_step;
     let message = format!(
         "samples every {} ms are asked for of a passage in steps of {} ms, which gives one a step",
         number(*every * 1e3),
@@ -41,8 +42,8 @@ fn too_fine(every: Given, blocks: &Blocks) -> Option<Diagnostic> {
     (*every < 0.6 * step).then(|| Diagnostic::new(Code::L1025, message).help(help))
 }
 
-fn too_coarse(every: Given, scenario: &Scenario, blocks: &Blocks) -> Option<Diagnostic> {
-    let (what, frequency) = fastest(scenario, blocks)?;
+fn too_coarse(every: Given, scenario: &Scenario, traffic: Led<'_>) -> Option<Diagnostic> {
+    let (what, frequency) = fastest(scenario, traffic)?;
     let samples = 1.0 / (*every * frequency);
     if samples >= SAMPLES_A_PERIOD {
         return None;
@@ -60,10 +61,10 @@ fn too_coarse(every: Given, scenario: &Scenario, blocks: &Blocks) -> Option<Diag
 }
 
 /// What moves fastest of that which every history shows, and its frequency, Hz.
-fn fastest(scenario: &Scenario, blocks: &Blocks) -> Option<(&'static str, f64)> {
-    let (track, speed) = (&scenario.track, *blocks.train.speed);
+fn fastest(scenario: &Scenario, traffic: Led<'_>) -> Option<(&'static str, f64)> {
+    let (track, speed) = (&scenario.track, *traffic.train.speed);
     let sections = (0..track.sections.len()).filter_map(|section| Winkler::of(track, section));
-    let vehicles = &blocks.train.vehicles;
+    let vehicles = &traffic.train.vehicles;
     let wheels = sections.flat_map(|section| vehicles.iter().map(move |v| resonance(&section, v)).collect::<Vec<_>>());
     let axles = vehicles.iter().map(|vehicle| speed / *vehicle.wheelset_spacing);
     let all = wheels.map(|f| ("a wheel on the track", f)).chain(axles.map(|f| ("axles that pass", f)));

@@ -4,8 +4,9 @@
 //! f = sqrt(k / m) / 2 pi, twenty steps a period. Of the contact k = 1.5 C^(2/3) F^(1/3) at the static wheel load, of a
 //! sleeper the sum of pad and support; sleepers pass at f = v / spacing.
 
+use super::{Led, led};
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Blocks, Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::{Foot, Scenario};
 use crate::units::number;
 use std::f64::consts::PI;
@@ -13,16 +14,16 @@ use std::f64::consts::PI;
 const STEPS_A_PERIOD: f64 = 20.0;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let fast = [
-        ("the wheel on its contact spring", contact(scenario, blocks)),
+        ("the wheel on its contact spring", contact(scenario, traffic)),
         ("a sleeper between pad and support", sleeper(scenario)),
-        ("the passage from sleeper to sleeper", passing(scenario, blocks)),
+        ("the passage from sleeper to sleeper", passing(scenario, traffic)),
     ];
     let Some((what, frequency)) = fast.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { return Vec::new() };
     let needed = 1.0 / (STEPS_A_PERIOD * frequency);
-    let step = blocks.passage.time_step;
-    if step <= needed || blocks.passage.adaptive.is_some() {
+    let step = traffic.blocks.passage.time_step;
+    if step <= needed || traffic.blocks.passage.adaptive.is_some() {
         return Vec::new();
     }
     let diagnostic = Diagnostic::new(
@@ -47,13 +48,13 @@ fn rounded_down(value: f64) -> f64 {
     (value * size).floor() / size
 }
 
-fn contact(scenario: &Scenario, blocks: &Blocks) -> f64 {
+fn contact(scenario: &Scenario, traffic: Led<'_>) -> f64 {
     let of_vehicle = |v: &crate::scenario::Vehicle| {
         let load = v.mass() / 4.0 * *scenario.solve.gravity;
         let tangent = 1.5 * v.hertz.powf(2.0 / 3.0) * load.powf(1.0 / 3.0);
         (tangent / *v.wheel_mass).sqrt() / (2.0 * PI)
     };
-    blocks.train.vehicles.iter().map(of_vehicle).fold(0.0, f64::max)
+    traffic.train.vehicles.iter().map(of_vehicle).fold(0.0, f64::max)
 }
 
 fn sleeper(scenario: &Scenario) -> f64 {
@@ -65,7 +66,7 @@ fn sleeper(scenario: &Scenario) -> f64 {
     scenario.track.seats.iter().filter_map(of_seat).fold(0.0, f64::max)
 }
 
-fn passing(scenario: &Scenario, blocks: &Blocks) -> f64 {
+fn passing(scenario: &Scenario, traffic: Led<'_>) -> f64 {
     let shortest = scenario.track.shortest_bay();
-    *blocks.train.speed / shortest
+    *traffic.train.speed / shortest
 }

@@ -1,8 +1,9 @@
 //! L1002: the train comes near the speed of bending waves in the track, (4 k EI / m^2)^(1/4).
 
+use super::led;
 use super::winkler::Winkler;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::Scenario;
 use crate::units::number;
 
@@ -10,11 +11,11 @@ use crate::units::number;
 const LARGEST_SHARE: f64 = 0.6;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let track = &scenario.track;
     let sections = (0..track.sections.len()).filter_map(|i| Some((i, Winkler::of(track, i)?.critical_speed())));
     let Some((section, critical)) = sections.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Vec::new() };
-    let speed = blocks.train.speed;
+    let speed = traffic.train.speed;
     if *speed < LARGEST_SHARE * critical {
         return Vec::new();
     }

@@ -12,9 +12,9 @@ use crate::units::number;
 /// Median grains under the width of a sleeper.
 const FEWEST: f64 = 3.0;
 
-pub(super) fn check(scenario: &Scenario, _: Option<&Graph>) -> Vec<Diagnostic> {
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    for bed in beds(scenario).into_iter().filter(|bed| bed.top) {
+    for bed in beds(scenario, graph).into_iter().filter(|bed| bed.top) {
         let seats = scenario.track.seats[scenario.track.seats_of(bed.index)].iter();
         let Some(width) = seats.filter_map(|seat| seat.sleeper).map(|body| body.base_width).reduce(f64::min) else {
             continue;

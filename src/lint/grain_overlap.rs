@@ -12,9 +12,9 @@ use crate::units::number;
 /// Overlap over radius.
 const LARGEST: f64 = 0.01;
 
-pub(super) fn check(scenario: &Scenario, graph: Option<&Graph>) -> Vec<Diagnostic> {
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let mut found: Vec<Diagnostic> = Vec::new();
-    for bed in beds(scenario) {
+    for bed in beds(scenario, graph) {
         let (pressure, median) = (bed.pressure(scenario, graph), bed.granular.grading.d(50.0));
         let force = contact_force(median, pressure);
         let (overlap, _) = approach(&bed.granular.contact, median, force);

@@ -14,9 +14,9 @@ use std::f64::consts::PI;
 /// Contacts of a grain that count.
 const CONTACTS: f64 = 6.0;
 
-pub(super) fn check(scenario: &Scenario, graph: Option<&Graph>) -> Vec<Diagnostic> {
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Some(step) = scenario.solve.grains.step else { return Vec::new() };
-    let limits = beds(scenario).into_iter().map(|bed| (limit(&bed, bed.pressure(scenario, graph)), bed));
+    let limits = beds(scenario, graph).into_iter().map(|bed| (limit(&bed, bed.pressure(scenario, graph)), bed));
     let Some((limit, bed)) = limits.min_by(|a, b| a.0.total_cmp(&b.0)) else { return Vec::new() };
     if *step <= limit {
         return Vec::new();

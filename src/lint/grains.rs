@@ -1,6 +1,7 @@
 //! What rules of grains share: which layers are modelled as grains, and how hard their grains press on each other.
 
-use crate::graph::{Blocks, Graph, Schedule};
+use super::{Led, led};
+use crate::graph::Graph;
 use crate::lint::dynamic::amplification;
 use crate::lint::winkler::seat_load;
 use crate::scenario::{Contact, Granular, Layer, Loading, Origin, Scenario, Section, Target};
@@ -23,9 +24,9 @@ pub(super) struct Bed<'a> {
     pub top: bool,
 }
 
-/// The granular layers of a scene that a model of grains answers; none where a settlement law does.
-pub(super) fn beds(scenario: &Scenario) -> Vec<Bed<'_>> {
-    if !scenario.solve.grains.tier.has_grains() {
+/// The granular layers of a scene whose plan has grains; none where a settlement law answers.
+pub(super) fn beds<'a>(scenario: &'a Scenario, graph: &Graph) -> Vec<Bed<'a>> {
+    if graph.beds().next().is_none() {
         return Vec::new();
     }
     let sections = scenario.track.sections.iter().enumerate();
@@ -51,10 +52,10 @@ pub(super) fn of_sizes(granular: &Granular) -> Origin {
 
 impl Bed<'_> {
     /// Pressure on the layer, Pa: that of its packing, under the sleepers at least that of a passing wheel, in a rig that of its loads.
-    pub fn pressure(&self, scenario: &Scenario, graph: Option<&Graph>) -> f64 {
+    pub fn pressure(&self, scenario: &Scenario, graph: &Graph) -> f64 {
         let packed = *self.granular.packing.pressure;
-        let loaded = match graph.map(|graph| &graph.schedule) {
-            Some(Schedule::Blocks(blocks)) if self.top => under_sleepers(scenario, blocks, self.index),
+        let loaded = match led(scenario, graph) {
+            Some(traffic) if self.top => under_sleepers(scenario, traffic, self.index),
             None if self.top => under_loads(scenario, self.index),
             _ => 0.0,
         };
@@ -63,11 +64,11 @@ impl Bed<'_> {
 }
 
 /// Pressure under the sleepers of a section as a wheel passes, Pa; 0 where nobody knows their size.
-fn under_sleepers(scenario: &Scenario, blocks: &Blocks, section: usize) -> f64 {
+fn under_sleepers(scenario: &Scenario, traffic: Led<'_>, section: usize) -> f64 {
     let track = &scenario.track;
-    let Some(load) = seat_load(scenario, blocks, section) else { return 0.0 };
+    let Some(load) = seat_load(scenario, traffic, section) else { return 0.0 };
     let area = track.seats[track.seats_of(section)].iter().find_map(|s| track.bearing_area(s));
-    area.map_or(0.0, |area| load.peak.force * amplification(*blocks.train.speed) / area)
+    area.map_or(0.0, |area| load.peak.force * amplification(*traffic.train.speed) / area)
 }
 
 /// Pressure under the sleepers of a rig at the largest force of its loads, Pa; 0 where there are none.

@@ -4,8 +4,9 @@
 //! bottom if 1 / |z''| > R. At a corner that opens upwards by the angle a the wheel bridges the bottom by R a^2 / 8. Crests,
 //! where z'' > 0, every wheel can follow.
 
+use super::led;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::{Curve, Profile, Scenario};
 use crate::units::number;
 
@@ -15,9 +16,9 @@ const BRIDGED: f64 = 1e-5;
 const REACH: f64 = 1e-3;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let Some(profile) = &scenario.track.irregularity else { return Vec::new() };
-    let radius = blocks.train.vehicles.iter().map(|v| v.wheel_radius).fold(0.0, f64::max);
+    let radius = traffic.train.vehicles.iter().map(|v| v.wheel_radius).fold(0.0, f64::max);
     too_sharp(profile, radius).into_iter().collect()
 }
 

@@ -1,18 +1,22 @@
 //! L1004: a settlement law is asked about forces or axle counts that it was not calibrated for.
 
+use super::led;
 use super::winkler::{SeatLoad, seat_loads};
 use super::{laws, pointed};
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::{Scenario, SettlementLaw};
 use crate::units::number;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
-    let seats = seat_loads(scenario, blocks);
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
+    if graph.laws().next().is_none() {
+        return Vec::new();
+    }
+    let seats = seat_loads(scenario, traffic);
     let of_law = |law| {
         let loads = seats.iter().filter_map(move |seat| beyond_loads(scenario, law, seat));
-        beyond_cycles(scenario, law, blocks.total).into_iter().chain(loads)
+        beyond_cycles(scenario, law, traffic.blocks.total).into_iter().chain(loads)
     };
     laws(scenario).flat_map(of_law).collect()
 }

@@ -36,15 +36,13 @@ mod winkler;
 pub use winkler::Winkler;
 
 use crate::diag::{Code, Diagnostic, Severity};
-use crate::graph::{Graph, Schedule};
-use crate::scenario::{Loading, Scenario, SettlementLaw};
+use crate::graph::{Blocks, Graph, Schedule};
+use crate::scenario::{Loading, Scenario, SettlementLaw, Train};
 use std::borrow::Cow;
 
 type Rule = fn(&Scenario, &Graph) -> Vec<Diagnostic>;
-/// A rule that knows what to say where there is no plan: of a test rig.
-type RuleOfRigs = fn(&Scenario, Option<&Graph>) -> Vec<Diagnostic>;
 
-const RULES: [Rule; 18] = [
+const RULES: [Rule; 26] = [
     stiffness_jump::check,
     critical_speed::check,
     track_too_short::check,
@@ -63,9 +61,6 @@ const RULES: [Rule; 18] = [
     overdamped::check,
     coarse_record::check,
     wavelength::check,
-];
-
-const RULES_OF_RIGS: [RuleOfRigs; 8] = [
     thin_layer::check,
     unchecked_values::check,
     narrow_bed::check,
@@ -76,20 +71,25 @@ const RULES_OF_RIGS: [RuleOfRigs; 8] = [
     small_volume::check,
 ];
 
-/// Applies every rule, at the level that the scene gives it. Rules know one train: of a mix each is asked in turn.
+/// Applies every rule, at the level that the scene gives it. A rule speaks where the plan has what it is about. Rules know one
+/// train: of a mix each is asked in turn.
 pub fn lint(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let views = led_by_each(scenario, graph);
-    let each = |rule: &dyn Fn(&Scenario, &Graph) -> Vec<Diagnostic>| {
-        views.iter().flat_map(|(scenario, graph)| rule(scenario, graph)).collect::<Vec<_>>()
-    };
-    let of_tracks = RULES.iter().flat_map(|rule| each(rule));
-    let of_both = RULES_OF_RIGS.iter().flat_map(|rule| each(&|scenario, graph| rule(scenario, Some(graph))));
-    levelled(of_tracks.chain(of_both), scenario)
+    let each = |rule: &Rule| views.iter().flat_map(|(scenario, graph)| rule(scenario, graph)).collect::<Vec<_>>();
+    levelled(RULES.iter().flat_map(each), scenario)
 }
 
-/// Applies the rules that hold for a test rig.
-pub fn lint_rig(scenario: &Scenario) -> Vec<Diagnostic> {
-    levelled(RULES_OF_RIGS.iter().flat_map(|rule| rule(scenario, None)), scenario)
+/// The traffic as a rule sees it: the train that leads, as the scene states it, and the loop over axles.
+#[derive(Clone, Copy)]
+struct Led<'a> {
+    train: &'a Train,
+    blocks: &'a Blocks,
+}
+
+/// The traffic of a scene and its plan; `None` where no train runs.
+fn led<'a>(scenario: &'a Scenario, graph: &'a Graph) -> Option<Led<'a>> {
+    let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
+    Some(Led { train: &traffic.train, blocks: graph.blocks()? })
 }
 
 /// Each once, at the level that the scene gives its rule.
@@ -118,10 +118,7 @@ fn asked_for(scenario: &Scenario, rule: Code) -> bool {
 /// The scene as each of its trains would lead it.
 fn led_by_each<'a>(scenario: &'a Scenario, graph: &'a Graph) -> Vec<(Cow<'a, Scenario>, Cow<'a, Graph>)> {
     let mut views = vec![(Cow::Borrowed(scenario), Cow::Borrowed(graph))];
-    let others = match &graph.schedule {
-        Schedule::Blocks(blocks) => blocks.others.len(),
-        Schedule::Static { .. } => 0,
-    };
+    let others = graph.blocks().map_or(0, |blocks| blocks.others.len());
     for kind in 1..=others {
         let (mut scenario, mut graph) = (scenario.clone(), graph.clone());
         if let Some(Loading::Traffic(traffic)) = &mut scenario.loading {

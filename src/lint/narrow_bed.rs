@@ -14,9 +14,10 @@ const FEWEST: f64 = 6.0;
 /// Bays of the longest periodic cell.
 const BAYS: f64 = 3.0;
 
-pub(super) fn check(scenario: &Scenario, _: Option<&Graph>) -> Vec<Diagnostic> {
-    let coarsest =
-        beds(scenario).into_iter().max_by(|a, b| a.granular.grading.d(90.0).total_cmp(&b.granular.grading.d(90.0)));
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+    let coarsest = beds(scenario, graph)
+        .into_iter()
+        .max_by(|a, b| a.granular.grading.d(90.0).total_cmp(&b.granular.grading.d(90.0)));
     let Some(bed) = coarsest else { return Vec::new() };
     let sides = [across(scenario), along(scenario, &bed)];
     let narrow = sides.into_iter().flatten().filter(|side| side.length < FEWEST * bed.granular.grading.d(90.0));

@@ -4,55 +4,59 @@
 //! x a measured cost. Only what this version runs has one.
 
 use crate::diag::{Code, Diagnostic};
-use crate::graph::Graph;
-use crate::lower;
+use crate::graph::{Cost, Graph, PassageWork, TestWork, Work};
 use crate::scenario::{Given, Scenario};
 use crate::units::number;
 
-pub(super) fn check(scenario: &Scenario, graph: Option<&Graph>) -> Vec<Diagnostic> {
-    match graph {
-        Some(_) if scenario.solve.grains.tier.has_grains() => Vec::new(),
-        Some(graph) => of_a_run(scenario, graph),
-        None => of_a_rig(scenario).into_iter().collect(),
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+    if !graph.runs {
+        return Vec::new();
     }
-}
-
-fn of_a_run(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let grains = &scenario.solve.grains;
-    let (seconds, bytes) = (graph.estimate.seconds, graph.estimate.bytes as f64);
-    let time = grains.budget.filter(|budget| seconds > **budget).map(|budget| {
-        let message = format!(
-            "the run is expected to take {} on one core, its budget is {}: {} passages, {} steps in all",
-            duration(seconds),
-            duration(*budget),
-            graph.estimate.passages,
-            graph.estimate.steps
-        );
-        said(message, budget, "fewer axles, longer blocks, a longer step or fewer elements cost less")
-    });
-    let memory = grains.memory.filter(|memory| bytes > **memory).map(|memory| {
-        let message = format!(
-            "the run is expected to take {} MiB for {} unknowns, it may take {} MiB",
-            number((bytes / MIB).ceil()),
-            graph.estimate.unknowns,
-            number((*memory / MIB).floor())
-        );
-        said(message, memory, "a shorter track or fewer elements take less")
-    });
-    time.into_iter().chain(memory).collect()
+    let found = match graph.cost.work {
+        Work::Passages(work) => {
+            [of_passages(&graph.cost, work, grains.budget), memory(&graph.cost, work, grains.memory)]
+        }
+        Work::Tests(work) => [of_tests(&graph.cost, work, grains.budget), None],
+    };
+    found.into_iter().flatten().collect()
 }
 
-fn of_a_rig(scenario: &Scenario) -> Option<Diagnostic> {
-    let cost = lower::rig_cost(scenario)?;
-    let budget = scenario.solve.grains.budget.filter(|budget| cost.seconds > **budget)?;
+fn of_passages(cost: &Cost, work: PassageWork, budget: Option<Given>) -> Option<Diagnostic> {
+    let budget = budget.filter(|budget| cost.seconds > **budget)?;
+    let message = format!(
+        "the run is expected to take {} on one core, its budget is {}: {} passages, {} steps in all",
+        duration(cost.seconds),
+        duration(*budget),
+        work.passages,
+        work.steps
+    );
+    Some(said(message, budget, "fewer axles, longer blocks, a longer step or fewer elements cost less"))
+}
+
+fn memory(cost: &Cost, work: PassageWork, memory: Option<Given>) -> Option<Diagnostic> {
+    let bytes = cost.bytes as f64;
+    let memory = memory.filter(|memory| bytes > **memory)?;
+    let message = format!(
+        "the run is expected to take {} MiB for {} unknowns, it may take {} MiB",
+        number((bytes / MIB).ceil()),
+        work.unknowns,
+        number((*memory / MIB).floor())
+    );
+    Some(said(message, memory, "a shorter track or fewer elements take less"))
+}
+
+fn of_tests(cost: &Cost, work: TestWork, budget: Option<Given>) -> Option<Diagnostic> {
+    let seconds = cost.seconds_on_two_cores;
+    let budget = budget.filter(|budget| seconds > **budget)?;
     let about = |value: f64| number(format!("{value:.1e}").parse().unwrap_or(value));
     let message = format!(
         "the test is expected to take {} on two cores, its budget is {}: {} grains, {} steps, {}",
-        duration(cost.seconds),
+        duration(seconds),
         duration(*budget),
-        about(cost.grains),
-        about(cost.packing_steps + cost.test_steps),
-        match cost.repeats {
+        about(work.grains),
+        about(work.packing_steps + work.test_steps),
+        match work.packings {
             1 => "one packing".to_owned(),
             several => format!("{several} packings"),
         }

@@ -4,8 +4,9 @@
 //! 0.05 .. 0.5, suspensions 0.01 .. 0.4; above 1 nothing swings. Most often a damping time was written for a damping, or a value of
 //! one wheel for one of a bogie.
 
+use super::led;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::{Foot, Given, Origin, Scenario, Vehicle};
 use crate::units::number;
 
@@ -15,8 +16,8 @@ const LARGEST: f64 = 1.0;
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let sections = 0..scenario.track.sections.len();
     let mut swinging: Vec<Swinging> = sections.filter_map(|section| sleeper(scenario, section)).collect();
-    if let Schedule::Blocks(blocks) = &graph.schedule {
-        swinging.extend(blocks.train.vehicles.iter().flat_map(|v| [bogie(v), car_body(v)]));
+    if let Some(traffic) = led(scenario, graph) {
+        swinging.extend(traffic.train.vehicles.iter().flat_map(|v| [bogie(v), car_body(v)]));
     }
     let mut found = Vec::new();
     for diagnostic in swinging.iter().filter(|s| s.ratio() > LARGEST).map(Swinging::said) {

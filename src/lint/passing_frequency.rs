@@ -2,8 +2,9 @@
 //!
 //! f = v / s against sqrt(2 k1 / m_b) / 2 pi (bounce) and sqrt(2 k1 (w/2)^2 / J_b) / 2 pi (pitch).
 
+use super::led;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::{Scenario, Track};
 use crate::units::number;
 
@@ -11,8 +12,8 @@ use crate::units::number;
 const NEAR: f64 = 0.1;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
-    let speed = blocks.train.speed;
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
+    let speed = traffic.train.speed;
     let mut found = Vec::new();
     for (i, section) in scenario.track.sections.iter().enumerate() {
         let spacing = usual_bay(&scenario.track, i);
@@ -21,7 +22,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             continue;
         }
         let passing = *speed / spacing;
-        for vehicle in &blocks.train.vehicles {
+        for vehicle in &traffic.train.vehicles {
             let stiffness = 2.0 * *vehicle.primary_stiffness;
             let half = *vehicle.wheelset_spacing / 2.0;
             let bounce = (stiffness / *vehicle.bogie_mass).sqrt() / (2.0 * std::f64::consts::PI);

@@ -4,9 +4,10 @@
 //! `M / W` of it. AREMA allows 25 ksi, 172 MPa, in continuously welded rail (unchecked).
 
 use super::dynamic::amplification;
+use super::led;
 use super::winkler::Winkler;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::{Scenario, Vehicle};
 use crate::units::number;
 
@@ -14,9 +15,9 @@ use crate::units::number;
 const LARGEST: f64 = 172e6;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
-    let (track, speed) = (&scenario.track, blocks.train.speed);
-    let heaviest = blocks.train.vehicles.iter().map(Vehicle::mass).fold(0.0, f64::max);
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
+    let (track, speed) = (&scenario.track, traffic.train.speed);
+    let heaviest = traffic.train.vehicles.iter().map(Vehicle::mass).fold(0.0, f64::max);
     let wheel = heaviest / Vehicle::AXLES as f64 * *scenario.solve.gravity;
     let factor = amplification(*speed);
     let stress = |section: usize| {

@@ -12,10 +12,10 @@ use crate::units::number;
 /// Median grains across a volume.
 const FEWEST: f64 = 3.0;
 
-pub(super) fn check(scenario: &Scenario, _: Option<&Graph>) -> Vec<Diagnostic> {
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for record in &scenario.volumes {
-        let Some(bed) = at_depth(scenario, record) else { continue };
+        let Some(bed) = at_depth(scenario, graph, record) else { continue };
         let (median, side) = (bed.granular.grading.d(50.0), least_side(record.volume));
         if side >= FEWEST * median {
             continue;
@@ -48,7 +48,7 @@ fn least_side(volume: Volume) -> f64 {
 }
 
 /// The layer of grains in which a record lies, under its first ballasted seat.
-fn at_depth<'a>(scenario: &'a Scenario, record: &VolumeRecord) -> Option<Bed<'a>> {
+fn at_depth<'a>(scenario: &'a Scenario, graph: &Graph, record: &VolumeRecord) -> Option<Bed<'a>> {
     let sections = record.seats.iter().filter_map(|seat| scenario.track.seats.get(*seat)).map(|seat| seat.section);
     let section = sections.into_iter().find(|section| !scenario.track.sections[*section].layers.is_empty())?;
     let layers = &scenario.track.sections[section].layers;
@@ -58,5 +58,5 @@ fn at_depth<'a>(scenario: &'a Scenario, record: &VolumeRecord) -> Option<Bed<'a>
         bottom += layer.thickness.largest();
         depth <= bottom
     })?;
-    beds(scenario).into_iter().find(|bed| bed.index == section && std::ptr::eq(bed.layer, layer))
+    beds(scenario, graph).into_iter().find(|bed| bed.index == section && std::ptr::eq(bed.layer, layer))
 }

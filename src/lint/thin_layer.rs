@@ -12,9 +12,9 @@ use crate::units::number;
 /// Coarse grains across a layer.
 const FEWEST: f64 = 4.0;
 
-pub(super) fn check(scenario: &Scenario, _: Option<&Graph>) -> Vec<Diagnostic> {
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    for bed in beds(scenario) {
+    for bed in beds(scenario, graph) {
         let (thickness, coarse) = (bed.layer.thickness.smallest(), bed.granular.grading.d(90.0));
         if thickness <= 0.0 || thickness >= FEWEST * coarse * (1.0 - 1e-9) {
             continue;

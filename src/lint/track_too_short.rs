@@ -5,8 +5,9 @@
 //! sleepers that only some wheels pass take the mean of ten that all pass.
 
 use super::winkler::Winkler;
+use super::{Led, led};
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Blocks, Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::{RailEnds, Scenario, Section};
 use crate::units::number;
 
@@ -14,20 +15,23 @@ const LENGTHS: f64 = 3.0;
 const PASSED: usize = 10;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let sections = 0..scenario.track.sections.len();
-    let sparse = sections.filter_map(|section| sparsely_passed(scenario, blocks, section));
-    near_ends(scenario, blocks).into_iter().chain(sparse).collect()
+    let sparse = sections.filter_map(|section| sparsely_passed(scenario, traffic, section));
+    near_ends(scenario, traffic).into_iter().chain(sparse).collect()
 }
 
 /// Ends that wheels come near; free ends have been asked for.
-fn near_ends(scenario: &Scenario, blocks: &Blocks) -> Vec<Diagnostic> {
+fn near_ends(scenario: &Scenario, traffic: Led<'_>) -> Vec<Diagnostic> {
     let track = &scenario.track;
     if track.rail_ends == RailEnds::Free {
         return Vec::new();
     }
     let last = track.sections.len().saturating_sub(1);
-    let ends = [(0, blocks.passage.left - track.start(), "left"), (last, track.end() - blocks.passage.right, "right")];
+    let ends = [
+        (0, traffic.blocks.passage.left - track.start(), "left"),
+        (last, track.end() - traffic.blocks.passage.right, "right"),
+    ];
     let near = ends.into_iter().filter_map(|(section, distance, side)| {
         let needed = LENGTHS / Winkler::of(track, section)?.lambda();
         let form = &track.sections[section];
@@ -46,10 +50,10 @@ fn near_ends(scenario: &Scenario, blocks: &Blocks) -> Vec<Diagnostic> {
 }
 
 /// A ballasted section in which fewer than ten sleepers see every wheel.
-fn sparsely_passed(scenario: &Scenario, blocks: &Blocks, section: usize) -> Option<Diagnostic> {
+fn sparsely_passed(scenario: &Scenario, traffic: Led<'_>, section: usize) -> Option<Diagnostic> {
     let track = &scenario.track;
     let ballasted = || track.seats[track.seats_of(section)].iter().filter(|s| s.is_ballasted());
-    let passed = blocks.passed();
+    let passed = traffic.blocks.passed();
     let seen = ballasted().filter(|s| passed.contains(&s.x)).count();
     if seen >= PASSED || ballasted().next().is_none() {
         return None;

@@ -4,7 +4,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
 use crate::scenario::{Evidence, Scenario};
 
-pub(super) fn check(scenario: &Scenario, _: Option<&Graph>) -> Vec<Diagnostic> {
+pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
     let unchecked = scenario.library.iter().filter(|entry| entry.evidence == Evidence::Unchecked);
     unchecked
         .map(|entry| {

@@ -4,20 +4,21 @@
 //! settlement S at peak force F, and k_eff at most the series of pad and support. A > 1 overshoots, A > 2 may grow. The first
 //! block is the worst: laws harden.
 
+use super::led;
 use super::winkler::seat_loads;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Block, Graph, Schedule, SubstructureNode};
+use crate::graph::{Block, Graph};
 use crate::scenario::Scenario;
 use crate::solvers::settlement::{Law, Peak};
 use crate::units::number;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
-    let Some(wanted) = blocks.wanted(0) else { return Vec::new() };
-    let first = blocks.block(0, wanted);
-    let SubstructureNode::Law { law, .. } = &graph.substructure else { return Vec::new() };
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
+    let Some(wanted) = traffic.blocks.wanted(0) else { return Vec::new() };
+    let first = traffic.blocks.block(0, wanted);
+    let Some(law) = graph.laws().next() else { return Vec::new() };
     let mut worst: Option<(f64, f64)> = None;
-    for seat in seat_loads(scenario, blocks) {
+    for seat in seat_loads(scenario, traffic) {
         let settled = |share: f64| first_block(&law.law, seat.peak.scaled(share), &first);
         // 1 % to either side
         let slope = (settled(1.01) - settled(0.99)) / (0.02 * seat.peak.force);

@@ -6,8 +6,9 @@
 //! 2 pi (EI / (m (2 pi f)^2))^(1/4), of which cubic elements need four: the fourth power of their phase over 720 is 1 % of
 //! its stiffness then.
 
+use super::led;
 use crate::diag::{Code, Diagnostic, Span};
-use crate::graph::{Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::{Cubic, Curve, Piece, Profile, Scenario, Section};
 use crate::units::number;
 use std::f64::consts::PI;
@@ -16,10 +17,10 @@ const STEPS_A_WAVE: f64 = 10.0;
 const ELEMENTS_A_WAVE: f64 = 4.0;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let Some(level) = &scenario.track.irregularity else { return Vec::new() };
     let Some(wave) = wavelength(level) else { return Vec::new() };
-    let speed = *blocks.train.speed;
+    let speed = *traffic.train.speed;
     let told = |message: String, help: String, setting: Option<Span>, what: &str| {
         let diagnostic = Diagnostic::new(Code::L1026, message).help(help);
         let labels = [(level.origin.span(), "these waves"), (setting, what)];
@@ -30,8 +31,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     };
     let mut found = Vec::new();
 
-    let stride = speed * blocks.passage.time_step;
-    if blocks.passage.adaptive.is_none() && wave / stride < STEPS_A_WAVE {
+    let stride = speed * traffic.blocks.passage.time_step;
+    if traffic.blocks.passage.adaptive.is_none() && wave / stride < STEPS_A_WAVE {
         let message = format!(
             "a wheel at {} km/h runs {} mm a step, {} steps to a wave of {} m of the level",
             number((36.0 * speed).round() / 10.0),

@@ -4,9 +4,10 @@
 //! springs at rail level, and `3 m / (2 lambda)` the mass of the bowl `exp(-lambda x) (cos lambda x + sin lambda x)` that moves
 //! with the wheel, of rail and sleepers m a metre.
 
+use super::led;
 use super::winkler::Winkler;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::{Scenario, Vehicle};
 use crate::units::number;
 
@@ -20,13 +21,13 @@ pub(super) fn resonance(track: &Winkler, vehicle: &Vehicle) -> f64 {
 }
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
-    let (track, speed) = (&scenario.track, blocks.train.speed);
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
+    let (track, speed) = (&scenario.track, traffic.train.speed);
     let mut found = Vec::new();
     for (i, section) in track.sections.iter().enumerate() {
         let Some(winkler) = Winkler::of(track, i) else { continue };
         let passing = *speed / *section.spacing;
-        for vehicle in &blocks.train.vehicles {
+        for vehicle in &traffic.train.vehicles {
             let frequency = resonance(&winkler, vehicle);
             if (passing / frequency - 1.0).abs() > NEAR {
                 continue;

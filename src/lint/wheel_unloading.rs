@@ -4,8 +4,9 @@
 //! `z'' > 0`. A stiff track is assumed: a soft one gives way above the resonance of a wheel on it, and the wheel loses less.
 //! Above 0.6 Q a train is near derailing (EN 14363 for quasi-static unloading, unchecked).
 
+use super::led;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Schedule};
+use crate::graph::Graph;
 use crate::scenario::{Scenario, Vehicle};
 use crate::units::number;
 
@@ -13,7 +14,7 @@ use crate::units::number;
 const LARGEST_SHARE: f64 = 0.6;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let Schedule::Blocks(blocks) = &graph.schedule else { return Vec::new() };
+    let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let Some(profile) = &scenario.track.irregularity else { return Vec::new() };
     let curved = profile
         .pieces
@@ -21,7 +22,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         .flat_map(|piece| piece.cubics())
         .flat_map(|c| [0, 1].map(|i| (c.ends[i], c.curvatures[i])));
     let Some((x, sharpest)) = curved.max_by(|a, b| a.1.total_cmp(&b.1)) else { return Vec::new() };
-    let train = &blocks.train;
+    let train = &traffic.train;
     let lost = |v: &Vehicle| {
         let load = v.mass() / Vehicle::AXLES as f64 * *scenario.solve.gravity;
         *v.wheel_mass * *train.speed * *train.speed * sharpest / load

@@ -1,6 +1,6 @@
 //! The track as a beam on a Winkler foundation: the closed forms that several rules need.
 
-use crate::graph::Blocks;
+use super::Led;
 use crate::scenario::{Foot, Scenario, Section, Track, Vehicle};
 use crate::solvers::settlement::Peak;
 
@@ -75,15 +75,15 @@ pub(super) struct SeatLoad {
 }
 
 /// The ballasted sections under the heaviest wheel of the train.
-pub(super) fn seat_loads(scenario: &Scenario, blocks: &Blocks) -> Vec<SeatLoad> {
-    (0..scenario.track.sections.len()).filter_map(|section| seat_load(scenario, blocks, section)).collect()
+pub(super) fn seat_loads(scenario: &Scenario, traffic: Led<'_>) -> Vec<SeatLoad> {
+    (0..scenario.track.sections.len()).filter_map(|section| seat_load(scenario, traffic, section)).collect()
 }
 
 /// A ballasted section under the heaviest wheel of the train: the seat's share of it and its own weight, and the deflection of
 /// its support.
-pub(super) fn seat_load(scenario: &Scenario, blocks: &Blocks, section: usize) -> Option<SeatLoad> {
+pub(super) fn seat_load(scenario: &Scenario, traffic: Led<'_>, section: usize) -> Option<SeatLoad> {
     let (track, gravity) = (&scenario.track, *scenario.solve.gravity);
-    let heaviest = blocks.train.vehicles.iter().map(Vehicle::mass).fold(0.0, f64::max);
+    let heaviest = traffic.train.vehicles.iter().map(Vehicle::mass).fold(0.0, f64::max);
     let wheel = heaviest / Vehicle::AXLES as f64 * gravity;
     let first = track.seats_of(section).find(|seat| track.seats[*seat].is_ballasted())?;
     let winkler = Winkler::of(track, section)?;

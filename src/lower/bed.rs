@@ -1,24 +1,13 @@
-//! The beds of grains that a scene has, as recipes of the packer: one for each section with other layers.
+//! The beds of grains that a scene has, as plans for the packer: one for each section with other layers.
 
-use crate::diag::{Code, Diagnostic};
-use crate::scenario::{BedEnds, Contact, Granular, Layer, Loading, Scenario, Shape};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::graph::BedPlan;
+use crate::scenario::{BedEnds, Contact, Granular, Layer, Loading, Scenario, Section};
 use crate::solvers::granular::clump::Template;
-use crate::solvers::granular::packing::{Layer as Filling, Packing, Recipe, Rest};
+use crate::solvers::granular::packing::{Layer as Filling, Packing, PackingError, Recipe, Rest};
 use crate::solvers::granular::probe::{Outline, Plate, Stillness};
 use crate::solvers::granular::{DashpotMode, Surface};
 use crate::units::number;
-
-/// The bed of a section.
-#[derive(Debug, Clone, PartialEq)]
-pub struct BedPlan {
-    /// The name of the trackform.
-    pub section: String,
-    pub recipe: Recipe,
-    /// What its stiffness is felt with: the footprint of half a sleeper, of a whole one in a bed of both rails.
-    pub plate: Plate,
-    /// What was decided, and why: for people.
-    pub notes: Vec<String>,
-}
 
 /// A cell is this many times as long as the largest grain, at least: then no grain meets itself.
 const CELL: f64 = 3.2;
@@ -27,13 +16,22 @@ const HALF_WIDTH: f64 = 1.2;
 /// Under the plate, Pa: somewhat below half a wheel load of 98 kN (a 20 t axle) on the 0.39 m2 of half a sleeper.
 const PLATE_PRESSURE: f64 = 100e3;
 
+/// What a packed cell becomes part of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BedUse {
+    /// The bed of a track, which held grains close at its ends.
+    Track,
+    /// A rig, whose bed goes on periodically or is a box.
+    Rig,
+}
+
 /// A bed for each section that has grains under its sleepers; none twice.
-pub fn beds(scenario: &Scenario) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
+pub fn beds(scenario: &Scenario, use_of_it: BedUse) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
     let mut found: Vec<BedPlan> = Vec::new();
     let mut wrong = Vec::new();
     for section in 0..scenario.track.sections.len() {
-        match bed(scenario, section) {
-            Ok(Some(plan)) if !found.iter().any(|other| other.recipe == plan.recipe) => found.push(plan),
+        match bed(scenario, section, use_of_it) {
+            Ok(Some(plan)) if !found.iter().any(|other| other.packs_like(&plan)) => found.push(plan),
             Ok(_) => {}
             Err(diagnostic) => wrong.push(diagnostic),
         }
@@ -41,7 +39,7 @@ pub fn beds(scenario: &Scenario) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
     if wrong.is_empty() { Ok(found) } else { Err(wrong) }
 }
 
-fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic> {
+fn bed(scenario: &Scenario, number: usize, use_of_it: BedUse) -> Result<Option<BedPlan>, Diagnostic> {
     let section = &scenario.track.sections[number];
     let middle = 0.5 * (section.start + section.end);
     let seed = scenario.solve.seed;
@@ -49,10 +47,11 @@ fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic
         section.layers.iter().filter_map(|layer| Some((layer, layer.granular()?))).collect();
     let Some((_, top)) = grains.first() else { return Ok(None) };
     let mut notes = Vec::new();
-    let mut layers = Vec::new();
+    let (mut layers, mut shapes) = (Vec::new(), Vec::new());
     // the packer begins at the bottom
     for (layer, granular) in grains.iter().rev() {
-        layers.push(filling(layer, granular, middle, seed)?);
+        layers.push(filling(layer, granular, middle)?);
+        shapes.push(granular.shape.clumps());
     }
     let largest = layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
     let plan = plan(scenario, number, largest);
@@ -94,12 +93,14 @@ fn bed(scenario: &Scenario, number: usize) -> Result<Option<BedPlan>, Diagnostic
         rest: Rest::default(),
         seed,
     };
-    recipe.check().map_err(|error| refused(&error.to_string()))?;
-    if scenario.track.bed.ends == BedEnds::Walls && !boxed {
+    recipe.check().map_err(|error| refused(&error.to_string(), asked_by(&error, section)))?;
+    if use_of_it == BedUse::Track && scenario.track.bed.ends == BedEnds::Walls && !boxed {
         notes.push("The cell is periodic along the track; held grains close the ends of the whole bed.".to_owned());
     }
     let plate = plate(scenario, number, &recipe, &mut notes);
-    Ok(Some(BedPlan { section: section.name.clone(), recipe, plate, notes }))
+    let mut plan = BedPlan::new(section.name.clone(), recipe, shapes, plate);
+    plan.notes = notes;
+    Ok(Some(plan))
 }
 
 /// The footprint of the sleeper on the cell, from the centre line outwards; where the cell is too small for it, or no sleeper is
@@ -126,7 +127,7 @@ fn plate(scenario: &Scenario, section: usize, recipe: &Recipe, notes: &mut Vec<S
     }
 }
 
-/// Of a cell along and across, m: of so many bays that no grain of the largest meets itself; of a box the whole section.
+/// Length and width of a cell, m: of so many bays that no grain of the largest meets itself; of a box the whole section.
 pub(super) fn plan(scenario: &Scenario, number: usize, largest: f64) -> [f64; 2] {
     let section = &scenario.track.sections[number];
     let spacing = *section.spacing;
@@ -143,8 +144,8 @@ pub(super) fn confinement(scenario: &Scenario) -> Option<f64> {
     loads.iter().find_map(|load| load.confinement).map(|pressure| *pressure)
 }
 
-/// Of the bed of one rail, or of both, m: from the centre line to the wall.
-fn width(scenario: &Scenario, section: usize) -> f64 {
+/// Width of the bed of one rail, or of both, m: from the centre line to the wall.
+pub(super) fn width(scenario: &Scenario, section: usize) -> f64 {
     let track = &scenario.track;
     let sleeper = track.seats[track.seats_of(section)].iter().find_map(|seat| seat.sleeper);
     let least = sleeper.map(|sleeper| 0.5 * sleeper.length);
@@ -153,12 +154,13 @@ fn width(scenario: &Scenario, section: usize) -> f64 {
     if scenario.solve.grains.both_rails { 2.0 * half } else { half }
 }
 
-fn filling(layer: &Layer, granular: &Granular, x: f64, seed: u64) -> Result<Filling, Diagnostic> {
+fn filling(layer: &Layer, granular: &Granular, x: f64) -> Result<Filling, Diagnostic> {
     let Contact::Linear { stiffness } = granular.contact else {
-        return Err(refused(&format!(
+        let why = format!(
             "grains of `{}` meet after Hertz, and this version packs grains of a stated contact stiffness",
             layer.name
-        )));
+        );
+        return Err(refused(&why, granular.density.origin.span()));
     };
     // two bodies in series make a contact
     let normal = 2.0 * *stiffness;
@@ -170,11 +172,14 @@ fn filling(layer: &Layer, granular: &Granular, x: f64, seed: u64) -> Result<Fill
         damping: [*granular.viscous_damping; 2],
         mode,
     };
-    let wrong = |error: &dyn std::fmt::Display| refused(&format!("grains of `{}`: {error}", layer.name));
+    let curve = granular.grading.curve();
+    let curve = curve
+        .map_err(|error| refused(&format!("grains of `{}`: {error}", layer.name), granular.density.origin.span()))?;
     Ok(Filling {
         name: layer.name.clone(),
-        curve: granular.grading.curve().map_err(|error| wrong(&error))?,
-        templates: templates(&granular.shape, seed).map_err(|error| wrong(&error))?,
+        curve,
+        // a sphere stands where clumps will: they are made when the bed is packed
+        templates: Template::sphere(0.5).map(|sphere| vec![sphere]).unwrap_or_default(),
         density: *granular.density,
         surface,
         wall_friction: *granular.wall_friction,
@@ -189,19 +194,27 @@ fn filling(layer: &Layer, granular: &Granular, x: f64, seed: u64) -> Result<Fill
     })
 }
 
-/// Shapes of unit size that the grains are copies of.
-fn templates(shape: &Shape, seed: u64) -> Result<Vec<Template>, Box<dyn std::error::Error>> {
-    match shape.clumps() {
-        None => Ok(vec![Template::sphere(0.5)?]),
-        Some(shape) => Ok(shape.templates(seed)?),
-    }
-}
-
 /// A length in mm.
 fn mm(length: f64) -> String {
     number((length * 1e3).round())
 }
 
-fn refused(why: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0610, format!("this bed cannot be packed: {why}"))
+fn refused(why: &str, at: Option<Span>) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0610, format!("this bed cannot be packed: {why}"));
+    match at {
+        Some(span) => diagnostic.at(span, "asked for here"),
+        None => diagnostic,
+    }
+}
+
+/// Where the scene asks for what cannot be packed: the grains of the layer in question, or the length of the section.
+fn asked_by(error: &PackingError, section: &Section) -> Option<Span> {
+    let layer = match error {
+        PackingError::Number { layer, .. } => layer.as_deref(),
+        PackingError::LargeGrain { layer, .. } | PackingError::ThinLayer { layer, .. } => Some(layer.as_str()),
+        _ => None,
+    };
+    let of_layer = section.layers.iter().find(|other| Some(other.name.as_str()) == layer);
+    let grains = of_layer.and_then(|layer| Some(layer.granular()?.density.origin.span())).flatten();
+    grains.or(section.length_origin.span())
 }

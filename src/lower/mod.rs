@@ -1,94 +1,163 @@
 //! From the scenario to the solver graph: passes that choose models, places, steps and blocks, and say why.
 
 mod bed;
-mod estimate;
+mod blocks;
+mod cost;
+mod origins;
 mod outlook;
+mod pass;
 mod passage;
 mod records;
-mod rig;
-mod schedule;
+mod tier;
+mod track;
 
-pub use bed::{BedPlan, beds};
-pub use rig::{RigCost, RigPlan, is_rig, rig, rig_cost, rig_listing};
+pub use bed::{BedUse, beds};
+pub use origins::{Origins, Parameter};
+pub use pass::{Draft, Pass};
+pub use tier::{ExpectedError, Proposal, Tier};
 
 use crate::diag::{Code, Diagnostic, Severity};
-use crate::graph::{Decision, Graph, NamedLaw, Schedule, SubstructureNode, TrackNode};
-use crate::scenario::{Loading, Origin, Scenario, Seat, SettlementLaw};
-use outlook::Outlook;
+use crate::graph::{Graph, faults};
+use crate::scenario::Scenario;
+use tier::ChooseTier;
 
-/// Lowers a scene. Without a graph there is at least one diagnostic, here or of the check: what only grains can run is told
-/// there.
-pub fn lower(scenario: &Scenario) -> (Option<Graph>, Vec<Diagnostic>) {
-    let mut pass = Pass { decisions: Vec::new(), diagnostics: Vec::new() };
-    if !scenario.track.is_sprung() {
-        return (None, rig::refusals(scenario));
+/// What became of a scene.
+pub struct Lowered {
+    /// The plan; `None` where nothing acts on the track, where a mistake stands against it, or where no tier has one.
+    pub graph: Option<Graph>,
+    /// Where the scene says the parameters of the plan.
+    pub origins: Origins,
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+/// The passes and tiers by which scenes are planned.
+pub struct Planner {
+    tiers: Vec<Box<dyn Tier>>,
+    /// Passes of another program, run before the plan is checked.
+    further: Vec<Box<dyn Pass>>,
+    /// Names of passes that are left out.
+    without: Vec<String>,
+}
+
+/// A pass that cannot be left out, or that there is not.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NoSuchPass {
+    pub name: String,
+    /// Those that can be left out.
+    pub optional: Vec<&'static str>,
+}
+
+impl Default for Planner {
+    fn default() -> Planner {
+        Planner {
+            tiers: vec![
+                Box::new(tier::Equilibrium),
+                Box::new(tier::TestRig),
+                Box::new(tier::SettlementLaws),
+                Box::new(tier::Cells),
+                Box::new(tier::Zone),
+                Box::new(tier::Full),
+            ],
+            further: Vec::new(),
+            without: Vec::new(),
+        }
     }
-    let (substructure, schedule) = match &scenario.loading {
-        Some(Loading::Rig(_)) => return (None, pass.diagnostics),
-        None => {
-            pass.diagnostics.push(
-                Diagnostic::new(Code::E0601, "nothing acts on the track: there is neither `traffic` nor `load`")
-                    .severity(Severity::Warning)
-                    .help("add `traffic { trains = ..., total = 500 axles }` to run the scene"),
-            );
-            return (None, pass.diagnostics);
-        }
-        Some(Loading::Static(loads)) => {
-            pass.decide("tier", "no settlement", "test loads act on a track at rest");
-            (SubstructureNode::Fixed, Some(Schedule::Static { loads: loads.clone() }))
-        }
-        Some(Loading::Traffic(traffic)) => {
-            let stated = "the scene gives the stiffness of its supports";
-            let why = if stands_on_layers(scenario) { "the layers give the stiffness of the supports" } else { stated };
-            pass.decide("tier", "a settlement law under each sleeper", why);
-            let law = SubstructureNode::Law {
-                law: named(&scenario.solve.law),
-                followers: scenario.solve.other_laws.iter().map(named).collect(),
-            };
-            (law, schedule::blocks(&mut pass, scenario, traffic).map(|blocks| Schedule::Blocks(Box::new(blocks))))
-        }
-    };
-    let Some(schedule) = schedule.filter(|_| !crate::diag::has_errors(&pass.diagnostics)) else {
-        return (None, pass.diagnostics);
-    };
-    let track = TrackNode {
-        track: scenario.track.clone(),
-        beam: *scenario.solve.beam,
-        elements_per_bay: *scenario.solve.elements_per_bay,
-        gravity: *scenario.solve.gravity,
-    };
-    let outlook = match (&schedule, &substructure) {
-        (Schedule::Blocks(blocks), SubstructureNode::Law { law, .. }) => {
-            let outlook = Outlook::of(&track, &law.law, blocks);
-            schedule::share(&mut pass, blocks, outlook.passages.iter().sum());
-            outlook
-        }
-        _ => Outlook::default(),
-    };
-    let estimate = estimate::estimate(&track, &schedule, &outlook);
-    let records = records::records(&mut pass, scenario);
-    let graph = Graph { track, substructure, schedule, records, decisions: pass.decisions, estimate };
-    (Some(graph), pass.diagnostics)
 }
 
-/// Whether a sleeper stands on layers alone.
-fn stands_on_layers(scenario: &Scenario) -> bool {
-    let derived = |seat: &Seat| seat.support().is_some_and(|support| support.stiffness.origin == Origin::Derived);
-    scenario.track.seats.iter().any(|seat| derived(seat) && seat.onto_subgrade.is_some())
-}
-
-fn named(law: &SettlementLaw) -> NamedLaw {
-    NamedLaw { name: law.name.clone(), law: law.law }
-}
-
-/// What the passes collect on their way.
-struct Pass {
-    decisions: Vec<Decision>,
-    diagnostics: Vec<Diagnostic>,
-}
-
-impl Pass {
-    fn decide(&mut self, pass: &str, what: impl Into<String>, why: impl Into<String>) {
-        self.decisions.push(Decision { pass: pass.into(), what: what.into(), why: why.into() });
+impl Planner {
+    /// With a tier of another program, asked after those of this crate.
+    pub fn with_tier(mut self, tier: Box<dyn Tier>) -> Planner {
+        self.tiers.push(tier);
+        self
     }
+
+    /// With a pass of another program, run after those of this crate.
+    pub fn with_pass(mut self, pass: Box<dyn Pass>) -> Planner {
+        self.further.push(pass);
+        self
+    }
+
+    /// Without a pass, by its name.
+    pub fn without(mut self, name: &str) -> Result<Planner, NoSuchPass> {
+        let optional: Vec<&'static str> =
+            self.passes().iter().filter(|pass| pass.without().is_some()).map(|pass| pass.name()).collect();
+        if !optional.contains(&name) {
+            return Err(NoSuchPass { name: name.to_owned(), optional });
+        }
+        self.without.push(name.to_owned());
+        Ok(self)
+    }
+
+    /// The passes in their order.
+    fn passes(&self) -> Vec<Box<dyn Pass + '_>> {
+        let mut passes: Vec<Box<dyn Pass + '_>> = vec![
+            // trains first: blocks are counted in whole trains, and every tier runs the same passages
+            Box::new(passage::Passages),
+            Box::new(blocks::Cut),
+            // a tier makes the nodes and knows what they cost
+            Box::new(ChooseTier(&self.tiers)),
+            // what follows changes a plan that has a cost
+            Box::new(blocks::Shared),
+            Box::new(records::Records),
+        ];
+        passes.extend(self.further.iter().map(|pass| Box::new(&**pass) as Box<dyn Pass + '_>));
+        passes
+    }
+
+    /// Lowers a scene.
+    pub fn lower(&self, scenario: &Scenario) -> Lowered {
+        let origins = Origins::new(scenario);
+        let mut draft = Draft::new(scenario, &origins);
+        if scenario.loading.is_none() {
+            draft.diagnostics.push(nothing_acts());
+        }
+        for pass in self.passes() {
+            match pass.without().filter(|_| self.without.iter().any(|name| name == pass.name())) {
+                Some(instead) => {
+                    instead(&mut draft);
+                    draft.decide(pass.name(), "left out", "`--without` says so");
+                }
+                None => pass.run(&mut draft),
+            }
+        }
+        let (graph, diagnostics) = finished(draft);
+        Lowered { graph, origins, diagnostics }
+    }
+}
+
+/// A borrowed pass is one.
+impl Pass for &dyn Pass {
+    fn name(&self) -> &'static str {
+        (**self).name()
+    }
+
+    fn run(&self, draft: &mut Draft<'_>) {
+        (**self).run(draft);
+    }
+
+    fn without(&self) -> Option<fn(&mut Draft<'_>)> {
+        (**self).without()
+    }
+}
+
+/// Lowers a scene with the passes and tiers of this crate.
+pub fn lower(scenario: &Scenario) -> Lowered {
+    Planner::default().lower(scenario)
+}
+
+/// The plan of a draft, where nothing stands against it and its nodes fit together.
+fn finished(draft: Draft<'_>) -> (Option<Graph>, Vec<Diagnostic>) {
+    let wrong = draft.is_wrong();
+    let Draft { nodes, edges, schedule, records, cost, decisions, runs, mut diagnostics, .. } = draft;
+    let (Some(schedule), Some(cost)) = (schedule.filter(|_| !wrong), cost) else { return (None, diagnostics) };
+    let graph = Graph { nodes, edges, schedule, records, decisions, cost, runs };
+    let faults = faults(&graph);
+    diagnostics.extend(faults.iter().map(|fault| Diagnostic::new(Code::E0612, fault.to_string())));
+    (faults.is_empty().then_some(graph), diagnostics)
+}
+
+fn nothing_acts() -> Diagnostic {
+    Diagnostic::new(Code::E0601, "nothing acts on the track: there is neither `traffic` nor `load`")
+        .severity(Severity::Warning)
+        .help("add `traffic { trains = ..., total = 500 axles }` to run the scene")
 }

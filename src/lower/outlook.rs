@@ -1,8 +1,7 @@
 //! What a run will do block by block, before it runs. Prescribed blocks are known, but for those that overshoot; adaptive ones
 //! are chosen as the run will choose them, on one seat that stands for the worst.
 
-use crate::graph::{Block, Blocks, Control, Runner, TrackNode};
-use crate::scenario::{Train, Update};
+use crate::graph::{Block, Blocks, Control, Runner, SupportNode, Train};
 use crate::solvers::settlement::{Law, Peak, SupportState};
 
 /// Share of a static wheel load that the worst seat bears: lambda s / 2 of a beam on springs, and a little for what is dynamic.
@@ -24,13 +23,10 @@ pub(super) struct Outlook {
 }
 
 impl Outlook {
-    pub fn of(node: &TrackNode, law: &Law, blocks: &Blocks) -> Outlook {
+    pub fn new(supports: &[SupportNode], gravity: f64, law: &Law, blocks: &Blocks) -> Outlook {
         let kinds = blocks.others.len() + 1;
         let mut outlook = Outlook { blocks: 0, axles: [u64::MAX, 0], passages: vec![0; kinds] };
-        let mut seat = match blocks.update {
-            Update::Adaptive { tolerance, cap } => Some(WorstSeat::new(node, law, blocks, tolerance, cap)),
-            _ => None,
-        };
+        let mut seat = blocks.adaptive().map(|accuracy| WorstSeat::new(supports, gravity, law, blocks, accuracy));
         let mut before = 0;
         while before < blocks.total {
             if seat.is_some() && outlook.blocks == FOLLOWED {
@@ -87,8 +83,14 @@ struct WorstSeat<'a> {
 }
 
 impl<'a> WorstSeat<'a> {
-    fn new(node: &TrackNode, law: &'a Law, blocks: &'a Blocks, tolerance: f64, cap: Option<f64>) -> Self {
-        let stiffness = node.track.seats.iter().find_map(|seat| Some(seat.spring()?.stiffness));
+    fn new(
+        supports: &[SupportNode],
+        gravity: f64,
+        law: &'a Law,
+        blocks: &'a Blocks,
+        (tolerance, cap): (f64, Option<f64>),
+    ) -> Self {
+        let stiffness = supports.iter().find_map(|support| Some(support.spring?.stiffness));
         WorstSeat {
             blocks,
             law,
@@ -96,10 +98,7 @@ impl<'a> WorstSeat<'a> {
             cap,
             stiffness: stiffness.unwrap_or(1.0),
             // without sleepers nothing settles
-            forces: blocks
-                .kinds()
-                .map(|(train, _)| stiffness.map_or(Vec::new(), |_| forces(train, node.gravity)))
-                .collect(),
+            forces: blocks.kinds().map(|(train, _)| stiffness.map_or(Vec::new(), |_| forces(train, gravity))).collect(),
             state: law.fresh(),
             control: Control::default(),
         }
@@ -154,7 +153,7 @@ impl<'a> WorstSeat<'a> {
 /// Static contact forces under the vehicles of a train, N, those that are alike counted together.
 fn forces(train: &Train, gravity: f64) -> Vec<(f64, u64)> {
     let mut forces: Vec<(f64, u64)> = Vec::new();
-    for vehicle in &train.vehicles {
+    for (vehicle, _) in &train.vehicles {
         let force = SEAT_SHARE * vehicle.mass() / 4.0 * gravity;
         match forces.iter_mut().find(|(known, _)| *known == force) {
             Some((_, vehicles)) => *vehicles += 1,

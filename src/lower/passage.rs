@@ -1,9 +1,9 @@
 //! Where a passage starts and ends, and in which steps it is integrated.
 
-use super::Pass;
+use super::{Draft, Pass};
 use crate::diag::{Code, Diagnostic};
 use crate::graph::{AdaptiveSteps, PassagePlan};
-use crate::scenario::{Direction, Given, Scenario, TimeStep, Train};
+use crate::scenario::{Direction, Given, Loading, Scenario, TimeStep, Train};
 use crate::units::number;
 
 /// Distance that wheels keep from the ends of the model where there is room, m: about three decay lengths of the
@@ -19,15 +19,34 @@ const HALVINGS: u32 = 5;
 /// Interval of histories where nothing is said, s.
 const SAMPLE: f64 = 5e-4;
 
+/// Where trains start and stop, and in which steps their passages are integrated.
+pub(super) struct Passages;
+
+impl Pass for Passages {
+    fn name(&self) -> &'static str {
+        "passage"
+    }
+
+    fn run(&self, draft: &mut Draft<'_>) {
+        let Some(Loading::Traffic(traffic)) = &draft.scenario.loading else { return };
+        if !draft.scenario.track.has_rails() {
+            return;
+        }
+        let plans: Vec<Option<PassagePlan>> =
+            traffic.trains().map(|train| plan(draft, train, traffic.is_mixed())).collect();
+        draft.passages = plans.into_iter().collect::<Option<_>>().unwrap_or_default();
+    }
+}
+
 /// The passage of a train; `named` says of which train the decisions are.
-pub(super) fn plan(pass: &mut Pass, scenario: &Scenario, train: &Train, named: bool) -> Option<PassagePlan> {
-    let first = pass.decisions.len();
-    let (left, right) = ends(pass, scenario, train)?;
+fn plan(draft: &mut Draft<'_>, train: &Train, named: bool) -> Option<PassagePlan> {
+    let (first, scenario) = (draft.decisions.len(), draft.scenario);
+    let (left, right) = ends(draft, scenario, train)?;
     let (time_step, adaptive) = match scenario.solve.time_step {
-        TimeStep::Adaptive { tolerance } => varying_steps(pass, scenario, train, *tolerance),
-        _ => (time_step(pass, scenario, train)?, None),
+        TimeStep::Adaptive { tolerance } => varying_steps(draft, scenario, train, *tolerance),
+        _ => (time_step(draft, scenario, train)?, None),
     };
-    for decision in pass.decisions[first..].iter_mut().filter(|_| named) {
+    for decision in draft.decisions[first..].iter_mut().filter(|_| named) {
         decision.what = format!("of `{}`: {}", train.name, decision.what);
     }
     let every = scenario.records.iter().filter_map(|r| r.every).map(|every| *every).reduce(f64::min).unwrap_or(SAMPLE);
@@ -36,7 +55,7 @@ pub(super) fn plan(pass: &mut Pass, scenario: &Scenario, train: &Train, named: b
 }
 
 /// Chainage of the hindmost wheel at the left and of the foremost one at the right.
-fn ends(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<(f64, f64)> {
+fn ends(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Option<(f64, f64)> {
     let track = &scenario.track;
     let (start, end) = (track.start(), track.end());
     let length = end - start;
@@ -57,7 +76,7 @@ fn ends(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<(f64, f64
         if let Some(span) = span {
             mistake = mistake.at(span, "the vehicle's bogies stand here");
         }
-        pass.diagnostics.push(mistake);
+        draft.diagnostics.push(mistake);
         return None;
     }
     let margin = MARGIN.min(room / 4.0);
@@ -89,7 +108,7 @@ fn ends(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<(f64, f64
             if let Some(span) = given.origin.span() {
                 mistake = mistake.at(span, "of the leading wheel");
             }
-            pass.diagnostics.push(mistake);
+            draft.diagnostics.push(mistake);
             return None;
         }
         if left_end { left = hindmost } else { right = foremost }
@@ -104,10 +123,10 @@ fn ends(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<(f64, f64
                 mistake = mistake.at(span, text);
             }
         }
-        pass.diagnostics.push(mistake);
+        draft.diagnostics.push(mistake);
         return None;
     }
-    pass.decide(
+    draft.decide(
         "passage",
         format!("wheels run from {} m to {} m, all on the track from the start", number(left), number(right)),
         format!(
@@ -125,10 +144,15 @@ fn transit(scenario: &Scenario, train: &Train) -> f64 {
 }
 
 /// The longest of the steps that vary, and how they do.
-fn varying_steps(pass: &mut Pass, scenario: &Scenario, train: &Train, tolerance: f64) -> (f64, Option<AdaptiveSteps>) {
+fn varying_steps(
+    draft: &mut Draft<'_>,
+    scenario: &Scenario,
+    train: &Train,
+    tolerance: f64,
+) -> (f64, Option<AdaptiveSteps>) {
     let longest = LONGEST_STEP.min(transit(scenario, train) / 4.0);
     let shortest = longest / f64::from(1u32 << HALVINGS);
-    pass.decide(
+    draft.decide(
         "time step",
         format!("{} to {} ms", number(shortest * 1e3), number(longest * 1e3)),
         "halved where the motion changes within a step, doubled where it is calm",
@@ -136,7 +160,7 @@ fn varying_steps(pass: &mut Pass, scenario: &Scenario, train: &Train, tolerance:
     (longest, Some(AdaptiveSteps { tolerance, halvings: HALVINGS }))
 }
 
-fn time_step(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<f64> {
+fn time_step(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Option<f64> {
     let (speed, transit) = (*train.speed, transit(scenario, train));
     let element = transit * speed;
     if let Some(given) = scenario.solve.time_step.fixed() {
@@ -153,13 +177,13 @@ fn time_step(pass: &mut Pass, scenario: &Scenario, train: &Train) -> Option<f64>
             if let Some(span) = given.origin.span() {
                 mistake = mistake.at(span, "too coarse");
             }
-            pass.diagnostics.push(mistake);
+            draft.diagnostics.push(mistake);
             return None;
         }
         return Some(*given);
     }
     let step = TIME_STEP.min(transit / 10.0);
-    pass.decide(
+    draft.decide(
         "time step",
         format!("{} ms", number(step * 1e3)),
         "a tenth of an element's transit, and at most 0.1 ms for the contact of wheel and rail",

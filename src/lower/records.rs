@@ -1,9 +1,9 @@
 //! Which histories a run keeps where the scene asks for none: those that the report's figures need, at sleepers beside each
 //! transition and in the far field, before the first and after the last axle.
 
-use super::Pass;
-use crate::scenario::response::Response;
-use crate::scenario::{Loading, Record, Scenario, Track};
+use super::{Draft, Pass};
+use crate::graph::{History, Record};
+use crate::scenario::{self, Loading, Track};
 
 /// Seats counted from a transition (paper, 4.1): far field, the dip, its edges, the slab's edge and the slab.
 const SEATS: [i32; 6] = [-13, -5, -3, -1, 1, 7];
@@ -12,36 +12,56 @@ const NEAR: f64 = 12.0;
 /// Transitions that get them; of the same form they show the same.
 const TRANSITIONS: usize = 2;
 
-const QUANTITIES: [Response; 6] = [
-    Response::RailDisplacement,
-    Response::RailMoment,
-    Response::RailSeatLoad,
-    Response::ContactForce,
-    Response::SleeperVelocity,
-    Response::SleeperAcceleration,
+const QUANTITIES: [History; 6] = [
+    History::RailDisplacement,
+    History::RailMoment,
+    History::RailSeatLoad,
+    History::ContactForce,
+    History::SleeperVelocity,
+    History::SleeperAcceleration,
 ];
 
-pub(super) fn records(pass: &mut Pass, scenario: &Scenario) -> Vec<Record> {
-    let Some(Loading::Traffic(traffic)) = &scenario.loading else { return scenario.records.clone() };
-    let seats = telling_seats(&scenario.track);
-    if !scenario.records.is_empty() || seats.is_empty() {
-        return scenario.records.clone();
+/// Takes over what the scene records; where it records nothing, adds what the report shows.
+pub(super) struct Records;
+
+impl Pass for Records {
+    fn name(&self) -> &'static str {
+        "record"
     }
-    let track = &scenario.track;
-    let names: Vec<String> = seats.iter().map(|seat| track.seat_name(&track.seats[*seat])).collect();
-    pass.decide(
-        "record",
-        format!("histories at seats {} before the first and after the last axle", names.join(", ")),
-        "the scene has no `record`, and its report shows them",
-    );
-    vec![Record {
-        quantities: QUANTITIES.to_vec(),
-        seats,
-        after: vec![0, *traffic.total],
-        every: None,
-        near: Some(NEAR),
-        states: false,
-    }]
+
+    fn run(&self, draft: &mut Draft<'_>) {
+        only_asked_for(draft);
+        let Some(Loading::Traffic(traffic)) = &draft.scenario.loading else { return };
+        let track = &draft.scenario.track;
+        let seats = telling_seats(track);
+        if !draft.scenario.records.is_empty() || seats.is_empty() {
+            return;
+        }
+        let names: Vec<String> = seats.iter().map(|seat| track.seat_name(&track.seats[*seat])).collect();
+        let what = format!("histories at seats {} before the first and after the last axle", names.join(", "));
+        let after = vec![0, *traffic.total];
+        draft.records = vec![Record { quantities: QUANTITIES.to_vec(), seats, after, near: Some(NEAR) }];
+        draft.decide(self.name(), what, "the scene has no `record`, and its report shows them");
+    }
+
+    fn without(&self) -> Option<fn(&mut Draft<'_>)> {
+        Some(only_asked_for)
+    }
+}
+
+/// Records of the scene and no other.
+fn only_asked_for(draft: &mut Draft<'_>) {
+    draft.records = draft.scenario.records.iter().map(record).collect();
+}
+
+/// Of its quantities those that vary during a passage; the others stand in tables.
+fn record(record: &scenario::Record) -> Record {
+    Record {
+        quantities: record.quantities.iter().filter_map(|quantity| History::named(quantity.name())).collect(),
+        seats: record.seats.clone(),
+        after: record.after.clone(),
+        near: record.near,
+    }
 }
 
 /// Indices of the seats, those that exist; the middle one of a track without transitions.

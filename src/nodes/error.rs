@@ -1,9 +1,9 @@
 //! Why a node could not do what the schedule asked of it.
 
 use crate::graph::BedError;
-use crate::solvers::granular::packing::PackingError;
 use crate::solvers::granular::rig::RigError;
 use crate::solvers::track::TrackError;
+use crate::store::BedsError;
 use std::fmt;
 
 /// A failure of a node, by its kind.
@@ -13,8 +13,8 @@ pub enum NodeError {
     Track(TrackError),
     /// A bed that has no recipe.
     Bed(BedError),
-    /// Packing.
-    Packing(PackingError),
+    /// Packing, or a kept bed that does not come back.
+    Packing(BedsError),
     /// A test.
     Rig(RigError),
     /// A state that was kept and is not of this node.

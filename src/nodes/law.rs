@@ -90,10 +90,8 @@ impl Substructure for LawGround<'_> {
             return Ok(self.initial.clone());
         }
         // followers change nothing
-        let mut state = State {
-            supports: vec![self.state.supports[0].clone()],
-            level: vec![self.state.level[0].clone()],
-        };
+        let mut state =
+            State { supports: vec![self.state.supports[0].clone()], level: vec![self.state.level[0].clone()] };
         self.load(&mut state, 1, loads);
         Ok(self.settlement_of(0, &state))
     }

@@ -17,7 +17,9 @@ pub use build::Builders;
 pub use error::NodeError;
 pub use grains::{BedUnderActuators, TestState, Tested};
 pub use law::LawGround;
-pub use outcome::{PassageOutcome, RailPlace, RailPoint, Sample, SampledPart, SeatForces, SeatOutcome, Unloaded, UnloadedSeat};
+pub use outcome::{
+    PassageOutcome, RailPlace, RailPoint, Sample, SampledPart, SeatForces, SeatOutcome, Unloaded, UnloadedSeat,
+};
 pub use profile::between;
 pub use steps::Steps;
 pub use track::{RUNAWAY, TrackSystem};

@@ -77,7 +77,9 @@ pub(super) struct ForceSampler(Option<SeatForces>);
 impl ForceSampler {
     /// Takes them where `forces` asks for histories, at intervals of `step` (s).
     pub fn new(forces: Forces, seats: usize, step: f64) -> ForceSampler {
-        ForceSampler((forces == Forces::Histories).then(|| SeatForces { interval: step, seats: vec![Vec::new(); seats] }))
+        ForceSampler(
+            (forces == Forces::Histories).then(|| SeatForces { interval: step, seats: vec![Vec::new(); seats] }),
+        )
     }
 
     pub fn taken(self) -> Option<SeatForces> {

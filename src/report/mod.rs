@@ -6,6 +6,7 @@
 
 mod along;
 mod bed;
+mod bed_tests;
 mod blocks;
 mod chart;
 mod colour_map;
@@ -31,7 +32,6 @@ mod panels;
 mod pebbles;
 mod pressure;
 mod reference;
-mod rig;
 mod scene;
 mod seat_clock;
 mod stability;
@@ -46,12 +46,12 @@ mod wheels;
 mod work_precision;
 
 pub use bed::{BedView, Colour, Side, bed_svg};
+pub use bed_tests::BedTestsPage;
 pub use drawing::drawing_svg;
 pub use packed::BedPage;
 pub use page::page;
 pub use pebbles::{PebbleRow, grain_pebbles_svg};
 pub use reference::reference;
-pub use rig::RigPage;
 pub use scene::scene_svg;
 pub use stability::stability_svg;
 pub use study::study_page;

@@ -1,7 +1,7 @@
 //! What people read off a packed bed.
 
 use super::{BedReadings, bed_hash};
-use crate::lower::BedPlan;
+use crate::graph::BedRecipe;
 use crate::solvers::granular::packing::{Packed, Recipe, Stage};
 use serde::{Deserialize, Serialize};
 
@@ -48,7 +48,7 @@ pub struct BedLayer {
 const MISSED: f64 = 0.05;
 
 /// Sums up a bed of a plan, with what was read off it.
-pub fn bed_summary(title: &str, plan: &BedPlan, packed: &Packed<f32>, readings: Option<BedReadings>) -> BedSummary {
+pub fn bed_summary(title: &str, plan: &BedRecipe, packed: &Packed<f32>, readings: Option<BedReadings>) -> BedSummary {
     let recipe = &plan.recipe;
     let layers: Vec<BedLayer> = (0..recipe.layers.len()).map(|number| bed_layer(recipe, packed, number)).collect();
     let read = readings.iter().flat_map(|readings| &readings.notes).cloned();

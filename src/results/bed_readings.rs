@@ -1,7 +1,7 @@
 //! What is measured in a packed bed: over its height, in its contacts, and under a plate.
 
 use super::{ResultsError, beds, checkpoint};
-use crate::lower::BedPlan;
+use crate::graph::BedRecipe;
 use crate::solvers::granular::measure::{Fabric, ForceSpread, Reading, Region, Rose, Survey};
 use crate::solvers::granular::packing::{Layer, Packed};
 use crate::solvers::granular::probe::{FULL, Outline, Plate, Point, Stiffness, probe};
@@ -66,7 +66,11 @@ pub struct PlateTest {
 }
 
 /// Measures a bed. `tell` hears how many steps of the plate are done, of all.
-pub fn read_bed(plan: &BedPlan, packed: &Packed<f32>, tell: impl FnMut(usize, usize)) -> Result<BedReadings, Failure> {
+pub fn read_bed(
+    plan: &BedRecipe,
+    packed: &Packed<f32>,
+    tell: impl FnMut(usize, usize),
+) -> Result<BedReadings, Failure> {
     let slabs = slabs(plan, packed);
     let survey = packed.survey(&mut packed.bed.clone())?;
     let forces = ForceSpread::of(survey.pushes());
@@ -84,24 +88,24 @@ pub fn read_bed(plan: &BedPlan, packed: &Packed<f32>, tell: impl FnMut(usize, us
 }
 
 /// Readings of a bed that was kept; `None` where there are none that can be used.
-pub fn kept_readings(cache: &Path, plan: &BedPlan) -> Option<BedReadings> {
+pub fn kept_readings(cache: &Path, plan: &BedRecipe) -> Option<BedReadings> {
     let hash = readings_hash(plan);
     checkpoint::read(&cache.join(&hash), &hash).ok()?
 }
 
 /// Keeps the readings of a bed.
-pub fn keep_readings(cache: &Path, plan: &BedPlan, readings: &BedReadings) -> Result<(), ResultsError> {
+pub fn keep_readings(cache: &Path, plan: &BedRecipe, readings: &BedReadings) -> Result<(), ResultsError> {
     let hash = readings_hash(plan);
     checkpoint::write(&cache.join(&hash), &hash, readings)
 }
 
 /// Names what made the bed and what it is measured with.
-fn readings_hash(plan: &BedPlan) -> String {
+fn readings_hash(plan: &BedRecipe) -> String {
     beds::hash_of(&(&plan.recipe, &plan.plate))
 }
 
 /// Levels between which a bed is measured, layer by layer.
-fn slabs(plan: &BedPlan, packed: &Packed<f32>) -> Vec<[f64; 2]> {
+fn slabs(plan: &BedRecipe, packed: &Packed<f32>) -> Vec<[f64; 2]> {
     let layer = |(number, layer): (usize, &Layer)| {
         let [low, high] = packed.between(number);
         let count = ((high - low) / (SLAB * layer.curve.ends()[1])).floor().clamp(1.0, SLABS) as usize;
@@ -134,7 +138,7 @@ impl Directions {
 }
 
 fn press(
-    plan: &BedPlan,
+    plan: &BedRecipe,
     packed: &Packed<f32>,
     slabs: &[[f64; 2]],
     mut tell: impl FnMut(usize, usize),

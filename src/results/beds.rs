@@ -1,8 +1,8 @@
 //! Packed beds that were built before, by what made them: a folder with one folder for each recipe.
 
 use super::{ResultsError, checkpoint};
-use crate::diag::{Code, Diagnostic};
-use crate::solvers::granular::packing::{METHOD, Packed, Progress, Recipe, Stored, pack};
+use crate::solvers::granular::RestoreError;
+use crate::solvers::granular::packing::{METHOD, Packed, PackingError, Progress, Recipe, Stored, pack};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
@@ -29,6 +29,25 @@ pub struct Beds {
     changed: Condvar,
 }
 
+/// Why there is no bed.
+#[derive(Debug, Clone, PartialEq)]
+pub enum BedsError {
+    Packing(PackingError),
+    /// What was packed does not come back from what is kept of it.
+    Restore(RestoreError),
+}
+
+impl std::fmt::Display for BedsError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            BedsError::Packing(error) => error.fmt(f),
+            BedsError::Restore(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for BedsError {}
+
 /// A bed, and how it came about.
 pub struct FoundBed {
     pub packed: Packed<f32>,
@@ -54,7 +73,7 @@ impl Beds {
     }
 
     /// The bed of a recipe: as it was kept, or packed and kept. `tell` hears how far packing is.
-    pub fn bed(&self, recipe: &Recipe, tell: impl FnMut(&Progress)) -> Result<FoundBed, Diagnostic> {
+    pub fn bed(&self, recipe: &Recipe, tell: impl FnMut(&Progress)) -> Result<FoundBed, BedsError> {
         let Some(folder) = &self.folder else { return packed(recipe, tell, |_| None) };
         let _turn = self.turn(bed_hash(recipe));
         match kept(folder, recipe) {
@@ -91,13 +110,10 @@ fn packed(
     recipe: &Recipe,
     tell: impl FnMut(&Progress),
     keep: impl FnOnce(&Packed<f32>) -> Option<ResultsError>,
-) -> Result<FoundBed, Diagnostic> {
-    let refused = |why: String| Diagnostic::new(Code::E0810, why);
-    let packed = pack::<f32>(recipe, tell).map_err(|error| {
-        refused(error.to_string()).help("give the `packing` of the material more `local_damping`, or less `pressure`")
-    })?;
+) -> Result<FoundBed, BedsError> {
+    let packed = pack::<f32>(recipe, tell).map_err(BedsError::Packing)?;
     let loss = keep(&packed);
-    let packed = Packed::restore(packed.store()).map_err(|error| refused(error.to_string()))?;
+    let packed = Packed::restore(packed.store()).map_err(BedsError::Restore)?;
     Ok(FoundBed { packed, was_kept: false, loss })
 }
 

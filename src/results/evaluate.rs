@@ -3,8 +3,8 @@
 //! A seat's response is the one value that `sleepers.csv` holds for it (the peak of the passage where it varies in
 //! time); velocities and accelerations come from histories, as do the wheels' and the rail's responses.
 
-use super::{BlockRow, HistoryRow, RailRow, Scalar, SleeperRow, Verdict};
-use crate::graph::{Graph, Schedule};
+use super::{BlockRow, HistoryRow, MeanCycleRow, RailRow, Scalar, SleeperRow, Verdict};
+use crate::graph::{Graph, Record, Schedule};
 use crate::scenario::response::{Expectation, Expression, Function, Measure, Place, Reduction, Response};
 use crate::scenario::{Scenario, Track};
 use crate::syntax::tree::{BinaryOp, Comparison};
@@ -16,7 +16,7 @@ const PLACE_TOLERANCE: f64 = 1e-6;
 /// What an expression can be about.
 #[derive(Debug, Clone, Copy)]
 pub struct Tables<'a> {
-    pub sleepers: &'a [SleeperRow],
+    pub sleepers: SleeperTable<'a>,
     pub blocks: &'a [BlockRow],
     pub rail: &'a [RailRow],
     pub histories: &'a [HistoryRow],
@@ -24,18 +24,50 @@ pub struct Tables<'a> {
     pub track: &'a Track,
 }
 
-/// Chainage and largest contact pressure of each row whose sleeper lies on a known area, m and Pa.
-pub fn contact_pressures<'a>(track: &Track, rows: impl Iterator<Item = &'a SleeperRow>) -> Vec<(f64, f64)> {
-    let area = |seat| Some((track.seat_name(seat), track.bearing_area(seat)?));
-    let areas: HashMap<String, f64> = track.seats.iter().filter_map(area).collect();
-    rows.filter_map(|row| Some((row.x_m, row.max_contact_force_N / areas.get(&row.sleeper)?))).collect()
+/// Rows of sleepers, with the columns of what was run.
+#[derive(Debug, Clone, Copy)]
+pub enum SleeperTable<'a> {
+    /// Sleepers of a track at recorded axle counts.
+    Axles(&'a [SleeperRow]),
+    /// Sleepers of a test rig after each cycle, in means over its packings.
+    Cycles(&'a [MeanCycleRow]),
 }
 
-/// Chainage and largest pressure on the lowest layer of each row whose layers are known, m and Pa.
-pub fn subgrade_pressures<'a>(track: &Track, rows: impl Iterator<Item = &'a SleeperRow>) -> Vec<(f64, f64)> {
+/// A value of a sleeper: the count of axles or cycles, its name, its chainage, m, and the value, SI.
+type Reading<'a> = (u64, &'a str, f64, f64);
+
+impl<'a> SleeperTable<'a> {
+    /// The column of a response; `None` where the table has none.
+    fn column(self, response: Response) -> Option<Vec<Reading<'a>>> {
+        Some(match self {
+            SleeperTable::Axles(rows) => {
+                let column = sleeper_column(response)?;
+                rows.iter().map(|row| (row.axles, row.sleeper.as_str(), row.x_m, column(row))).collect()
+            }
+            SleeperTable::Cycles(rows) => {
+                let column = cycle_column(response)?;
+                rows.iter().map(|row| (row.cycle, row.sleeper.as_str(), row.x_m, column(row))).collect()
+            }
+        })
+    }
+}
+
+/// Chainage and largest contact pressure of each row whose sleeper lies on a known area, m and Pa.
+pub fn contact_pressures<'a>(track: &Track, rows: impl Iterator<Item = &'a SleeperRow>) -> Vec<(f64, f64)> {
+    pressures_on_areas(track, rows.map(|row| (row.axles, row.sleeper.as_str(), row.x_m, row.max_contact_force_N)))
+}
+
+fn pressures_on_areas<'a>(track: &Track, forces: impl Iterator<Item = Reading<'a>>) -> Vec<(f64, f64)> {
+    let area = |seat| Some((track.seat_name(seat), track.bearing_area(seat)?));
+    let areas: HashMap<String, f64> = track.seats.iter().filter_map(area).collect();
+    forces.filter_map(|(_, sleeper, x, force)| Some((x, force / areas.get(sleeper)?))).collect()
+}
+
+/// Chainage and largest pressure on the lowest layer under each force where the layers are known, m and Pa.
+fn subgrade_pressures<'a>(track: &Track, forces: impl Iterator<Item = Reading<'a>>) -> Vec<(f64, f64)> {
     let known = |seat| Some((track.seat_name(seat), seat.onto_subgrade?));
     let by_name: HashMap<String, f64> = track.seats.iter().filter_map(known).collect();
-    rows.filter_map(|row| Some((row.x_m, row.max_contact_force_N * by_name.get(&row.sleeper)?))).collect()
+    forces.filter_map(|(_, sleeper, x, force)| Some((x, force * by_name.get(sleeper)?))).collect()
 }
 
 /// The value of an expression in SI units, or why it has none. The value is finite.
@@ -217,7 +249,10 @@ pub fn not_kept(expression: &Expression, kept: &dyn Fn(&Measure) -> bool) -> Opt
 }
 
 /// Whether tables, peaks or histories of a run of a graph hold a response.
-pub fn kept_by_graph(measure: &Measure, graph: &Graph) -> bool {
+pub fn is_kept(measure: &Measure, graph: &Graph) -> bool {
+    if let Schedule::Actuators(_) = graph.schedule {
+        return is_kept_by_tests(measure, graph);
+    }
     let response = measure.response;
     match response.place() {
         Place::Scene | Place::Wheel => true,
@@ -226,13 +261,29 @@ pub fn kept_by_graph(measure: &Measure, graph: &Graph) -> bool {
         // passages say all of the rail, a static check all but what needs a wheel
         Place::Rail => {
             let by_loads = matches!(response, Response::RailDisplacement | Response::RailMoment);
-            by_loads || matches!(graph.schedule, Schedule::Blocks(_))
+            by_loads || graph.blocks().is_some()
         }
         Place::Seat if response == Response::SubgradePressure => {
-            graph.track.track.seats.iter().any(|seat| seat.onto_subgrade.is_some())
+            graph.supports().iter().any(|support| support.onto_subgrade.is_some())
         }
         Place::Seat if response == Response::ContactPressure || sleeper_column(response).is_some() => true,
-        Place::Seat => graph.records.iter().any(|record| record.quantities.contains(&response)),
+        Place::Seat => {
+            let named = |record: &Record| record.quantities.iter().any(|history| history.name() == response.name());
+            graph.records.iter().any(named)
+        }
+    }
+}
+
+/// Whether tests under actuators answer to a measure.
+fn is_kept_by_tests(measure: &Measure, graph: &Graph) -> bool {
+    let Some((bed, _)) = graph.bed_under_actuators() else { return false };
+    match measure.response {
+        Response::SleeperVelocity => true,
+        Response::ContactPressure => bed.plate.is_none(),
+        Response::BallastStress | Response::BallastVelocity | Response::CoordinationNumber | Response::Porosity => {
+            !bed.sensors.is_empty()
+        }
+        response => cycle_column(response).is_some(),
     }
 }
 
@@ -253,17 +304,15 @@ fn values(measure: &Measure, tables: Tables<'_>) -> Result<Vec<(f64, f64)>, Stri
         Some((a, b)) => x >= a.min(b) - PLACE_TOLERANCE && x <= a.max(b) + PLACE_TOLERANCE,
         None => true,
     };
-    if let Some(column) = sleeper_column(measure.response) {
-        let axles = measure.after.or_else(|| tables.sleepers.iter().map(|row| row.axles).max());
-        let rows = tables.sleepers.iter().filter(|row| Some(row.axles) == axles && inside(row.x_m));
-        return Ok(rows.map(|row| (row.x_m, column(row))).collect());
+    if let Some(column) = tables.sleepers.column(measure.response) {
+        return Ok(covered(column, measure, inside).map(|(_, _, x, value)| (x, value)).collect());
     }
     if matches!(measure.response, Response::ContactPressure | Response::SubgradePressure) {
-        let axles = measure.after.or_else(|| tables.sleepers.iter().map(|row| row.axles).max());
-        let rows = tables.sleepers.iter().filter(|row| Some(row.axles) == axles && inside(row.x_m));
+        let forces = tables.sleepers.column(Response::ContactForce).unwrap_or_default();
+        let forces = covered(forces, measure, inside);
         return Ok(match measure.response {
-            Response::ContactPressure => contact_pressures(tables.track, rows),
-            _ => subgrade_pressures(tables.track, rows),
+            Response::ContactPressure => pressures_on_areas(tables.track, forces),
+            _ => subgrade_pressures(tables.track, forces),
         });
     }
     // a static check has its rail in the histories
@@ -280,6 +329,16 @@ fn values(measure: &Measure, tables: Tables<'_>) -> Result<Vec<(f64, f64)>, Stri
     Ok(rows.map(|row| (row.x_m, row.value)).collect())
 }
 
+/// The readings at the count of a measure, the last one where it names none, that lie inside of its span.
+fn covered<'a>(
+    column: Vec<Reading<'a>>,
+    measure: &Measure,
+    inside: impl Fn(f64) -> bool,
+) -> impl Iterator<Item = Reading<'a>> {
+    let count = measure.after.or_else(|| column.iter().map(|(count, ..)| *count).max());
+    column.into_iter().filter(move |(other, _, x, _)| Some(*other) == count && inside(*x))
+}
+
 /// The column of `rail.csv` that holds a response along the rail: what varies in a passage by its largest value, for a minimum
 /// by its smallest.
 fn rail_column(measure: &Measure) -> Option<fn(&RailRow) -> f64> {
@@ -293,6 +352,17 @@ fn rail_column(measure: &Measure) -> Option<fn(&RailRow) -> f64> {
         Response::RailDisplacement => |row| row.max_displacement_m,
         _ => return None,
     })
+}
+
+/// The column of a rig's sleepers that holds a response.
+fn cycle_column(response: Response) -> Option<fn(&MeanCycleRow) -> f64> {
+    match response {
+        Response::ContactForce => Some(|row| row.max_contact_force),
+        Response::Settlement => Some(|row| row.settlement),
+        Response::SleeperDisplacement => Some(|row| row.deepest),
+        Response::SupportStiffness => Some(|row| row.stiffness),
+        _ => None,
+    }
 }
 
 /// The column of `sleepers.csv` that holds a seat's response.
@@ -323,7 +393,7 @@ mod tests {
     fn reductions_over_place_and_count() {
         let run = example::transition();
         let tables = Tables {
-            sleepers: &run.sleepers,
+            sleepers: SleeperTable::Axles(&run.sleepers),
             blocks: &run.blocks,
             rail: &run.rail,
             histories: &run.histories,
@@ -350,7 +420,7 @@ mod tests {
     fn values_are_held_against_measured_ones() {
         let run = example::transition();
         let tables = Tables {
-            sleepers: &run.sleepers,
+            sleepers: SleeperTable::Axles(&run.sleepers),
             blocks: &run.blocks,
             rail: &run.rail,
             histories: &run.histories,
@@ -377,7 +447,7 @@ mod tests {
     fn the_rail_is_known_along_its_table() {
         let run = example::transition();
         let tables = Tables {
-            sleepers: &run.sleepers,
+            sleepers: SleeperTable::Axles(&run.sleepers),
             blocks: &run.blocks,
             rail: &run.rail,
             histories: &run.histories,
@@ -398,7 +468,14 @@ mod tests {
     fn arithmetic_and_division_by_zero() {
         let scalars = BTreeMap::new();
         let track = example::bench().scenario.track;
-        let tables = Tables { sleepers: &[], blocks: &[], rail: &[], histories: &[], scalars: &scalars, track: &track };
+        let tables = Tables {
+            sleepers: SleeperTable::Axles(&[]),
+            blocks: &[],
+            rail: &[],
+            histories: &[],
+            scalars: &scalars,
+            track: &track,
+        };
         let number = |value| Box::new(Expression::Number(value));
         let binary = |a, operator, b| evaluate(&Expression::Binary(number(a), operator, number(b)), tables);
         assert_eq!(binary(2.0, BinaryOp::Power, 3.0), Ok(8.0));

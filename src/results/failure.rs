@@ -1,29 +1,56 @@
 //! A run that stopped, said to a person: which block of the scene is responsible, and what to write there instead.
 
 use crate::diag::{Code, Diagnostic, Span};
-use crate::graph::{Graph, RunError, Schedule};
-use crate::scenario::{Loading, Scenario, Section, Traffic};
+use crate::execute::RunError;
+use crate::graph::{Clock, Graph, Schedule, TrackSection, Train, Update};
+use crate::lower::{Origins, Parameter};
+use crate::nodes::NodeError;
+use crate::solvers::granular::rig::RigError;
 use crate::solvers::track::TrackError;
 use crate::units::number;
 
 /// The diagnostic of a run's failure, with the declaration that it is about.
-pub fn diagnose(error: &RunError, scenario: &Scenario, graph: &Graph) -> Diagnostic {
-    let (axles, cause) = match error {
-        RunError::Recorder(message) => {
-            return Diagnostic::new(Code::E0802, message.clone()).help("the run can be resumed with `--resume`");
+pub fn diagnose(error: &RunError, graph: &Graph, origins: &Origins) -> Diagnostic {
+    let said = |code: Code| Diagnostic::new(code, error.to_string());
+    match error {
+        RunError::Faults(_) => said(Code::E0612),
+        RunError::ForeignCheckpoint => said(Code::E0803).help("run without `--resume`, with `--force`"),
+        RunError::NoSchedule { .. } => said(Code::E0604),
+        RunError::Node { clock, cause } => of_node(*clock, cause, graph, origins),
+    }
+}
+
+fn of_node(clock: Clock, cause: &NodeError, graph: &Graph, origins: &Origins) -> Diagnostic {
+    let said = |code: Code| Diagnostic::new(code, cause.to_string());
+    match cause {
+        NodeError::Track(cause) => of_track(clock, cause, graph, origins),
+        NodeError::Bed(_) => said(Code::E0610),
+        NodeError::Packing(_) => {
+            said(Code::E0810).help("give the `packing` of the material more `local_damping`, or less `pressure`")
         }
-        RunError::Track { axles, cause } => (*axles, cause),
-    };
-    let scene = Scene { scenario, graph };
+        NodeError::Rig(RigError::Restless { .. }) => {
+            said(Code::E0811).help("give the `packing` of the material more `pressure`, or its grains more `friction`")
+        }
+        NodeError::Rig(_) => said(Code::E0812).help("is the `force` meant `per sleeper` or `per seat`?"),
+        NodeError::Foreign { .. } => said(Code::E0803).help("run with `--force`"),
+        NodeError::NoBuilder { .. } => said(Code::E0604),
+        NodeError::Other { .. } => said(Code::E0801),
+    }
+}
+
+fn of_track(clock: Clock, cause: &TrackError, graph: &Graph, origins: &Origins) -> Diagnostic {
+    let scene = Scene { graph, origins };
+    let axles = if let Clock::Axles(axles) = clock { axles } else { 0 };
     let (labels, help) = scene.blame(axles, cause);
     let labels = labels.into_iter().filter_map(|(span, text)| Some((span?, text)));
     let code = if matches!(cause, TrackError::RanAway { .. }) { Code::E0703 } else { Code::E0801 };
-    labels.fold(Diagnostic::new(code, error.to_string()).help(help), |d, (span, text)| d.at(span, text))
+    let message = format!("after {axles} axles: {cause}");
+    labels.fold(Diagnostic::new(code, message).help(help), |d, (span, text)| d.at(span, text))
 }
 
 struct Scene<'a> {
-    scenario: &'a Scenario,
     graph: &'a Graph,
+    origins: &'a Origins,
 }
 
 type Labels = Vec<(Option<Span>, String)>;
@@ -35,7 +62,7 @@ impl Scene<'_> {
                 (vec![self.time_step(), self.contact(), self.place(*x)], self.half_a_step())
             }
             TrackError::NoEquilibrium { x, .. } if axles > 0 => {
-                (vec![(self.scenario.solve.update_span, "too long here".into()), self.place(*x)], self.half_a_block())
+                (vec![(self.at(Parameter::Update), "too long here".into()), self.place(*x)], self.half_a_block())
             }
             TrackError::NoEquilibrium { x, .. } => (
                 vec![self.place(*x), self.support(*x)],
@@ -47,10 +74,9 @@ impl Scene<'_> {
                 "let something hold it: `rail_ends = clamped`, or more seats in `sections`".into(),
             ),
             TrackError::OffTrack { x, start, end } => {
-                let solve = &self.scenario.solve;
-                let given = [(solve.start, "starts here"), (solve.finish, "ends here")];
+                let given = [(Parameter::Start, "starts here"), (Parameter::Finish, "ends here")];
                 let mut labels: Labels =
-                    given.iter().map(|(g, text)| (g.and_then(|g| g.origin.span()), (*text).into())).collect();
+                    given.iter().map(|(parameter, text)| (self.at(*parameter), (*text).into())).collect();
                 labels.push(self.place(x.clamp(*start, *end)));
                 let help = format!(
                     "keep every wheel and load between {} m and {} m, or lengthen a section by {} m",
@@ -61,12 +87,12 @@ impl Scene<'_> {
                 (labels, help)
             }
             TrackError::RanAway { x, .. } => {
-                let speed = self.traffic().map(|t| t.train.speed);
+                let speed = self.train().map(|train| train.speed);
                 let help = format!(
                     "the linear track cannot follow: write a lower `speed`{}, a stiffer support, or a smaller step in settlement",
-                    speed.map_or(String::new(), |v| format!(", {} km/h", number((*v * 1.8).round())))
+                    speed.map_or(String::new(), |v| format!(", {} km/h", number((v * 1.8).round())))
                 );
-                let fast = (speed.and_then(|v| v.origin.span()), "at this speed".into());
+                let fast = (self.at(Parameter::Speed(0)), "at this speed".into());
                 (vec![self.place(*x), self.support(*x), fast], help)
             }
             TrackError::Model { x, .. } => {
@@ -78,23 +104,27 @@ impl Scene<'_> {
         }
     }
 
-    fn traffic(&self) -> Option<&Traffic> {
-        match &self.scenario.loading {
-            Some(Loading::Traffic(traffic)) => Some(traffic),
-            _ => None,
-        }
+    fn at(&self, parameter: Parameter) -> Option<Span> {
+        self.origins.span(parameter)
     }
 
-    fn section(&self, x: f64) -> Option<&Section> {
-        let sections = &self.scenario.track.sections;
-        sections.iter().find(|s| x <= s.end).or(sections.last())
+    /// The train that leads the traffic.
+    fn train(&self) -> Option<&Train> {
+        self.graph.blocks().map(|blocks| &blocks.train)
+    }
+
+    fn section(&self, x: f64) -> Option<(usize, &TrackSection)> {
+        let sections = &self.graph.track()?.sections;
+        let index = sections.iter().position(|s| x <= s.end).or(sections.len().checked_sub(1))?;
+        Some((index, &sections[index]))
     }
 
     /// The section at a place.
     fn place(&self, x: f64) -> (Option<Span>, String) {
         match self.section(x) {
-            Some(s) => {
-                (s.length_origin.span(), format!("x = {} m lies in `{}`", number((x * 1e3).round() / 1e3), s.name))
+            Some((index, section)) => {
+                let place = number((x * 1e3).round() / 1e3);
+                (self.at(Parameter::Section(index)), format!("x = {place} m lies in `{}`", section.name))
             }
             None => (None, String::new()),
         }
@@ -102,19 +132,18 @@ impl Scene<'_> {
 
     /// The support nearest to a place.
     fn support(&self, x: f64) -> (Option<Span>, String) {
-        let distance = |seat: &&crate::scenario::Seat| (seat.x - x).abs();
-        let nearest = self.scenario.track.seats.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let span = nearest.and_then(|seat| seat.support()?.stiffness.origin.span());
-        (span, "the nearest support".into())
+        let seats = self.graph.track().map_or(&[][..], |track| &track.seats);
+        let distance = |seat: usize| (seats[seat].x - x).abs();
+        let nearest = (0..seats.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
+        (nearest.and_then(|seat| self.at(Parameter::Support(seat))), "the nearest support".into())
     }
 
     fn time_step(&self) -> (Option<Span>, String) {
-        (self.scenario.solve.time_step.span(), "too coarse here".into())
+        (self.at(Parameter::TimeStep), "too coarse here".into())
     }
 
     fn contact(&self) -> (Option<Span>, String) {
-        let vehicle = self.traffic().and_then(|t| t.train.vehicles.first());
-        (vehicle.and_then(|v| v.hertz.origin.span()), "the contact of wheel and rail".into())
+        (self.at(Parameter::Contact(0)), "the contact of wheel and rail".into())
     }
 
     fn half_a_step(&self) -> String {
@@ -122,18 +151,19 @@ impl Scene<'_> {
             Schedule::Blocks(blocks) => {
                 format!("write `time_step = {} s` in `solve`", number(blocks.passage.shortest_step() / 2.0))
             }
-            Schedule::Static { .. } => "change the loads".into(),
+            _ => "change the loads".into(),
         }
     }
 
     /// Half the present interval, in whole trains.
     fn half_a_block(&self) -> String {
-        let trains = self.traffic().map_or(1, |t| t.train.axles());
-        let present = match self.scenario.solve.update {
-            crate::scenario::Update::Fixed { axles } => axles,
-            crate::scenario::Update::Geometric { first, .. } => first,
+        let Some(blocks) = self.graph.blocks() else { return "change the loads".into() };
+        let trains = blocks.train.axles();
+        let present = match blocks.update {
+            Update::Fixed { axles } => axles,
+            Update::Geometric { first, .. } => first,
             // the shortest is one train already
-            crate::scenario::Update::Adaptive { .. } => {
+            Update::Adaptive { .. } => {
                 return "let the supports settle less at once: check the settlement law".into();
             }
         };
@@ -142,14 +172,13 @@ impl Scene<'_> {
     }
 
     fn parameter(&self, name: &str) -> (Option<Span>, String) {
-        let (solve, train) = (&self.scenario.solve, self.traffic().map(|t| &t.train));
         let span = match name {
-            "speed" => train.and_then(|t| t.speed.origin.span()),
-            "time step" => solve.time_step.span(),
-            "gravity" => solve.gravity.origin.span(),
-            "elements per bay" => solve.elements_per_bay.origin.span(),
-            "distance" => solve.finish.or(solve.start).and_then(|f| f.origin.span()),
-            "vehicle" => train.and_then(|t| t.vehicles.first()?.wheel_mass.origin.span()),
+            "speed" => self.at(Parameter::Speed(0)),
+            "time step" => self.at(Parameter::TimeStep),
+            "gravity" => self.at(Parameter::Gravity),
+            "elements per bay" => self.at(Parameter::ElementsPerBay),
+            "distance" => self.at(Parameter::Finish).or(self.at(Parameter::Start)),
+            "vehicle" => self.at(Parameter::WheelMass(0)),
             _ => None,
         };
         (span, "given here".into())

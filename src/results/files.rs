@@ -16,30 +16,48 @@ const SCENARIO: &str = "scenario.json";
 const SUMMARY: &str = "summary.json";
 const TIMINGS: &str = "timings.json";
 
-/// Writes every file of `run` into `directory`, which is made where it does not exist.
-pub fn write(run: &Run, directory: &Path) -> Result<(), ResultsError> {
-    let files = [
+/// A file of a result directory: its path in there, and its bytes.
+pub type NamedBytes = (String, Vec<u8>);
+
+/// Every file of `run`; `directory` stands in messages only. The summary comes last.
+pub fn files(run: &Run, directory: &Path) -> Result<Vec<NamedBytes>, ResultsError> {
+    let mut files = vec![
         (SCENARIO, scenario_json(run, directory)?),
         (super::SleeperRow::FILE, table(&run.sleepers, directory)?),
         (super::BlockRow::FILE, table(&run.blocks, directory)?),
-        (super::LawRow::FILE, table(&run.laws, directory)?),
         (super::RailRow::FILE, table(&run.rail, directory)?),
-        (super::TrainRow::FILE, table(&run.trains, directory)?),
-        (super::TampingRow::FILE, table(&run.tampings, directory)?),
-        (HISTORIES, histories::encode(&run.histories, directory)?),
-        (SUMMARY, summary_json(run, directory)?), // last: a directory with a summary is complete
     ];
-    fs::create_dir_all(directory).map_err(|cause| ResultsError::io(directory, "create", cause))?;
     // these are there only where there are several laws, several trains, or tamping
-    let empty = [
-        (super::LawRow::FILE, run.laws.is_empty()),
-        (super::TrainRow::FILE, run.trains.is_empty()),
-        (super::TampingRow::FILE, run.tampings.is_empty()),
-    ];
-    let skipped = |name: &str| empty.contains(&(name, true));
-    let written = files.iter().filter(|(name, _)| !skipped(name));
-    super::states::write(run, directory)?;
-    written.into_iter().try_for_each(|(name, bytes)| atomic::write(&directory.join(name), bytes))
+    if !run.laws.is_empty() {
+        files.push((super::LawRow::FILE, table(&run.laws, directory)?));
+    }
+    if !run.trains.is_empty() {
+        files.push((super::TrainRow::FILE, table(&run.trains, directory)?));
+    }
+    if !run.tampings.is_empty() {
+        files.push((super::TampingRow::FILE, table(&run.tampings, directory)?));
+    }
+    files.push((HISTORIES, histories::encode(&run.histories, directory)?));
+    let named = files.into_iter().map(|(name, bytes)| (name.to_owned(), bytes));
+    let states = super::states::files(run, directory)?;
+    let summary = (SUMMARY.to_owned(), summary_json(run, directory)?);
+    Ok(named.chain(states).chain([summary]).collect())
+}
+
+/// Writes every file of `run` into `directory`, which is made where it does not exist.
+pub fn write(run: &Run, directory: &Path) -> Result<(), ResultsError> {
+    write_files(&files(run, directory)?, directory)
+}
+
+/// Writes files into `directory`, each at once, in their order.
+pub fn write_files(files: &[NamedBytes], directory: &Path) -> Result<(), ResultsError> {
+    for (name, bytes) in files {
+        let path = directory.join(name);
+        let folder = path.parent().unwrap_or(directory);
+        fs::create_dir_all(folder).map_err(|cause| ResultsError::io(folder, "create", cause))?;
+        atomic::write(&path, bytes)?;
+    }
+    Ok(())
 }
 
 /// Reads a run back from its directory.
@@ -54,17 +72,16 @@ pub fn read(directory: &Path) -> Result<Run, ResultsError> {
         trains: read_table_if_any(directory)?,
         tampings: read_table_if_any(directory)?,
         histories: histories::decode(&directory.join(HISTORIES))?,
+        tests: None,
     })
 }
 
-/// Writes `timings.json`: seconds, rates and whatever else differs between two equal runs.
-pub fn write_timings(timings: &BTreeMap<String, f64>, directory: &Path) -> Result<(), ResultsError> {
+/// `timings.json`: seconds, rates and whatever else differs between two equal runs.
+pub fn timings_file(timings: &BTreeMap<String, f64>, directory: &Path) -> Result<NamedBytes, ResultsError> {
     for (row, (name, value)) in timings.iter().enumerate() {
         check_finite(TIMINGS, name, row + 1, *value)?;
     }
-    fs::create_dir_all(directory).map_err(|cause| ResultsError::io(directory, "create", cause))?;
-    let path = directory.join(TIMINGS);
-    atomic::write(&path, &json(timings, &path)?)
+    Ok((TIMINGS.to_owned(), json(timings, &directory.join(TIMINGS))?))
 }
 
 /// Reads `timings.json`; empty where there is none.
@@ -264,7 +281,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         assert!(read_timings(directory.path()).unwrap().is_empty());
         let timings = BTreeMap::from([("wall_s".to_owned(), 12.5)]);
-        write_timings(&timings, directory.path()).unwrap();
+        write_files(&[timings_file(&timings, directory.path()).unwrap()], directory.path()).unwrap();
         assert_eq!(read_timings(directory.path()).unwrap(), timings);
     }
 }

@@ -1,6 +1,6 @@
 //! Everything that a finished run says, from its recorder.
 
-use super::{Provenance, Run, RunRecorder, Summary, law_rows, summarise, summarise_laws, verdicts};
+use super::{Provenance, Run, RunRecorder, Summary, TestTables, law_rows, summarise, summarise_laws, verdicts};
 use crate::diag::Sources;
 use crate::graph::Graph;
 use crate::scenario::Scenario;
@@ -15,17 +15,21 @@ impl Run {
         sources: &Sources,
         sha256: String,
     ) -> Run {
+        let provenance = Provenance::new(sources, sha256, scenario.solve.seed, graph.listing().text());
         let tables = &recorder.tables;
+        if let Some(tests) = &tables.tests {
+            let means = TestTables::new(tests);
+            let expectations = verdicts(scenario, means.view(&scenario.track));
+            let summary = Summary { scalars: means.scalars, expectations, provenance };
+            return Run { tests: Some(tests.clone()), ..Run::empty(scenario, summary) };
+        }
         let histories = recorder.all_histories();
         let laws = law_rows(scenario, &tables.laws);
         let mut scalars = summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
         scalars.extend(summarise_laws(scenario, &laws));
         let view = tables.view(&histories, &scalars, &scenario.track);
         let expectations = verdicts(scenario, view);
-        let provenance = Provenance::of(sources, sha256, scenario.solve.seed, graph.listing().text());
         Run {
-            scenario: scenario.clone(),
-            summary: Summary { scalars, expectations, provenance },
             sleepers: tables.sleepers.clone(),
             blocks: tables.blocks.clone(),
             laws,
@@ -33,16 +37,28 @@ impl Run {
             trains: tables.trains.clone(),
             tampings: tables.tampings.clone(),
             histories,
+            ..Run::empty(scenario, Summary { scalars, expectations, provenance })
+        }
+    }
+
+    /// A run without a row.
+    fn empty(scenario: &Scenario, summary: Summary) -> Run {
+        Run {
+            scenario: scenario.clone(),
+            summary,
+            sleepers: Vec::new(),
+            blocks: Vec::new(),
+            laws: Vec::new(),
+            rail: Vec::new(),
+            trains: Vec::new(),
+            tampings: Vec::new(),
+            histories: Vec::new(),
+            tests: None,
         }
     }
 
     /// A scalar of `summary.json` by its name, such as `max_settlement`, in SI.
     pub fn scalar(&self, name: &str) -> Option<f64> {
         self.summary.scalars.get(name).map(|scalar| scalar.value)
-    }
-
-    /// Whether every `expect` of the scene is met.
-    pub fn meets_expectations(&self) -> bool {
-        self.summary.expectations.iter().all(|verdict| verdict.met)
     }
 }

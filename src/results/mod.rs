@@ -6,6 +6,7 @@
 mod atomic;
 mod bed;
 mod bed_readings;
+mod bed_tests;
 mod beds;
 pub mod checkpoint;
 mod error;
@@ -18,7 +19,6 @@ mod histories;
 mod laws;
 mod level;
 mod recorder;
-mod rig;
 mod states;
 mod summarise;
 mod summary;
@@ -31,21 +31,21 @@ pub(crate) mod example;
 pub use atomic::write as write_atomically;
 pub use bed::{BedLayer, BedSummary, bed_summary};
 pub use bed_readings::{BedReadings, Directions, PlateTest, ProfileRow, keep_readings, kept_readings, read_bed};
-pub use beds::{Beds, FoundBed, bed_hash};
+pub use bed_tests::{
+    BedTest, BedTests, BedTestsView, CycleRow, LoopRow, MeanCycleRow, SensorRow, SpecimenRow, TestTables, VolumeRow,
+    read_tests, test_files,
+};
+pub use beds::{Beds, BedsError, FoundBed, bed_hash};
 pub use error::ResultsError;
 pub use evaluate::{
-    Tables, contact_pressures, evaluate, holds, kept_by_graph, known, not_kept, subgrade_pressures, verdict, verdicts,
+    SleeperTable, Tables, contact_pressures, evaluate, holds, is_kept, known, not_kept, verdict, verdicts,
 };
 pub use failure::diagnose;
-pub use files::{read, read_timings, write, write_timings};
+pub use files::{NamedBytes, files, read, read_timings, timings_file, write, write_files};
 pub use grains::{Grain, Link, grains, links, places};
 pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};
 pub use level::{LongitudinalLevel, longitudinal_level};
 pub use recorder::{RunRecorder, RunTables, Store};
-pub use rig::{
-    CycleRow, Follow, LoopRow, Performed, RigRun, RigTables, RigView, SensorRow, SpecimenRow, Tested, Unfinished,
-    VolumeRow, kept_by_rig, perform_rig, read_rig, write_rig,
-};
 pub use states::remove as remove_states;
 pub use summarise::{RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise};
 pub use summary::{Provenance, Scalar, Summary, Verdict};
@@ -70,6 +70,8 @@ pub struct Run {
     /// Sleepers that were tamped; empty without tamping.
     pub tampings: Vec<TampingRow>,
     pub histories: Vec<HistoryRow>,
+    /// Tests of packed beds; a track has none.
+    pub tests: Option<BedTests>,
 }
 
 impl Run {

@@ -3,15 +3,20 @@
 
 use super::histories::HISTORIES;
 use super::{
-    BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Scalar, SleeperRow, Tables, TampingRow,
-    TrainRow, atomic, checkpoint, histories,
+    BedSummary, BedTest, BedTests, BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Scalar,
+    SleeperRow, SleeperTable, Tables, TampingRow, TrainRow, atomic, bed_summary, checkpoint, histories,
 };
-use crate::graph::{self, Block, Measured, PassageOutcome, Recorder, Runner, Unloaded};
+use crate::execute::{Between, Checkpoint, Event, Listener, Measured};
+use crate::graph::{Block, Graph, Runner, TrackNode};
+use crate::nodes::{self, PassageOutcome, RailPoint, SeatOutcome, Tested, Unloaded};
 use crate::scenario::response::Response;
 use crate::scenario::{Loading, Scenario, Track, Traffic};
+use crate::solvers::granular::Bed;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::time::{Duration, Instant};
 
 /// Where a run keeps what it needs to be resumed.
 pub struct Store {
@@ -38,6 +43,8 @@ pub struct RunTables {
     pub max_rail_displacement: Option<f64>,
     /// Largest tension in the rail's foot of the last recorded passage, Pa.
     pub max_foot_stress: Option<f64>,
+    /// Tests of packed beds; of a track none.
+    pub tests: Option<BedTests>,
 }
 
 impl RunTables {
@@ -49,45 +56,66 @@ impl RunTables {
         track: &'a Track,
     ) -> Tables<'a> {
         let RunTables { sleepers, blocks, rail, .. } = self;
-        Tables { sleepers, blocks, rail, histories, scalars, track }
+        Tables { sleepers: SleeperTable::Axles(sleepers), blocks, rail, histories, scalars, track }
     }
 }
 
 /// What a checkpoint holds.
 #[derive(Serialize, Deserialize)]
 struct Saved {
-    checkpoint: graph::Checkpoint,
+    checkpoint: Checkpoint,
     tables: RunTables,
 }
 
 /// Makes the tables of a run.
 pub struct RunRecorder<'a> {
     scenario: &'a Scenario,
+    track: Option<&'a TrackNode>,
     store: Option<Store>,
-    progress: Box<dyn FnMut(u64, u64) + Send + 'a>,
+    /// When a checkpoint was written last.
+    kept: Option<Instant>,
     pub tables: RunTables,
     pub histories: Vec<HistoryRow>,
     /// Rows of `histories` that are in their file already.
     written: usize,
     unloaded: Option<Unloaded>,
+    /// The bed under test, before its test is over.
+    bed: Option<BedSummary>,
+    /// The bed of the last test, as it ended.
+    pub last_bed: Option<Bed<f32>>,
+    /// Why nothing more could be kept: it has ended the run.
+    failure: Option<ResultsError>,
 }
 
+/// Time between two checkpoints.
+const KEEP: Duration = Duration::from_secs(2);
+
 impl<'a> RunRecorder<'a> {
-    /// Without a store nothing is written while the run goes on.
-    pub fn new(scenario: &'a Scenario, store: Option<Store>, progress: impl FnMut(u64, u64) + Send + 'a) -> Self {
+    /// A recorder that writes nothing while the run goes on.
+    pub fn new(scenario: &'a Scenario, graph: &'a Graph) -> Self {
+        let tests = graph.bed_under_actuators().map(|(bed, _)| BedTests::new(bed));
         RunRecorder {
             scenario,
-            store,
-            progress: Box::new(progress),
-            tables: RunTables::default(),
+            track: graph.track(),
+            store: None,
+            kept: None,
+            tables: RunTables { tests, ..RunTables::default() },
             histories: Vec::new(),
             written: 0,
             unloaded: None,
+            bed: None,
+            last_bed: None,
+            failure: None,
         }
     }
 
+    /// The same, that keeps what a run needs to be resumed.
+    pub fn kept_in(self, store: Store) -> Self {
+        RunRecorder { store: Some(store), ..self }
+    }
+
     /// Takes up what an interrupted run has left; `None` where it left nothing.
-    pub fn resume(&mut self) -> Result<Option<graph::Checkpoint>, ResultsError> {
+    pub fn resume(&mut self) -> Result<Option<Checkpoint>, ResultsError> {
         let Some(store) = &self.store else { return Ok(None) };
         let Some(saved) = checkpoint::read::<Saved>(&store.directory, &store.scene_sha256)? else { return Ok(None) };
         // a passage recorded after the checkpoint will be computed again
@@ -97,6 +125,30 @@ impl<'a> RunRecorder<'a> {
         self.written = self.histories.len();
         self.tables = saved.tables;
         Ok(Some(saved.checkpoint))
+    }
+
+    /// Why the recorder has ended the run, where it has.
+    pub fn failure(&mut self) -> Option<ResultsError> {
+        self.failure.take()
+    }
+
+    /// Keeps the state of now, where it is time.
+    fn keep(&mut self, between: &Between<'_>) -> Result<(), ResultsError> {
+        let Some(store) = &self.store else { return Ok(()) };
+        if !between.at_end && self.kept.is_some_and(|kept| kept.elapsed() < KEEP) {
+            return Ok(());
+        }
+        if self.written < self.histories.len() {
+            let bytes = histories::encode(&self.histories, &store.directory)?;
+            atomic::write(&store.directory.join(HISTORIES), &bytes)?;
+        }
+        let path = store.directory.join("checkpoint.json");
+        let checkpoint = between.checkpoint().map_err(|cause| ResultsError::unwritable(&path, cause))?;
+        let saved = Saved { checkpoint, tables: self.tables.clone() };
+        checkpoint::write(&store.directory, &store.scene_sha256, &saved)?;
+        self.written = self.histories.len();
+        self.kept = Some(Instant::now());
+        Ok(())
     }
 
     /// Every history: of the recorded passages, and the settlement of every block.
@@ -211,7 +263,7 @@ impl<'a> RunRecorder<'a> {
     fn keep_train(&mut self, axles: u64, runner: Runner, passage: &PassageOutcome) {
         let Some(traffic) = self.traffic().filter(|traffic| traffic.is_mixed()) else { return };
         let sequence = traffic.sequence();
-        let largest = |of: fn(&graph::SeatOutcome) -> f64| passage.seats.iter().map(of).fold(0.0, f64::max);
+        let largest = |of: fn(&SeatOutcome) -> f64| passage.seats.iter().map(of).fold(0.0, f64::max);
         self.tables.trains.push(TrainRow {
             axles,
             train: self.train_name(runner),
@@ -244,24 +296,60 @@ impl<'a> RunRecorder<'a> {
 
 /// An extreme of the rail at a place, of those at the nodes of the mesh; linear between them.
 fn between(nodes: &[f64], x: f64, extremes: &[(f64, f64)], of: fn(&(f64, f64)) -> f64) -> f64 {
-    let (left, share) = graph::between(nodes, x);
+    let (left, share) = nodes::between(nodes, x);
     let (a, b) = (of(&extremes[left]), of(&extremes[left + 1]));
     a + share * (b - a)
 }
 
-impl Recorder for RunRecorder<'_> {
+impl Listener for RunRecorder<'_> {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Equilibrium(state) => self.equilibrium(state),
+            Event::Rest { axles, state } => self.unloaded(*axles, state),
+            Event::Passage { axles, runner, passage } => self.passage(*axles, *runner, passage),
+            Event::Block { axles, block, passages, before, after } => {
+                self.block(*axles, *block, passages, before, after);
+            }
+            Event::Tamped { axles, seats, before, after } => self.tamped(*axles, seats, before, after),
+            Event::Laws { axles, settlement } => self.laws(*axles, settlement),
+            Event::Packed { bed, found } => {
+                self.bed = Some(bed_summary(&self.scenario.title, bed, &found.packed, None));
+            }
+            Event::Tested { tested, bed } => self.tested(tested, bed),
+            Event::Between(between) => {
+                if let Err(error) = self.keep(between) {
+                    self.failure = Some(error);
+                    return ControlFlow::Break(());
+                }
+            }
+            Event::Packing(_) | Event::Custom { .. } | Event::Progress { .. } => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+impl RunRecorder<'_> {
+    /// A test is over: its answer stands beside what its bed was.
+    fn tested(&mut self, tested: &Tested, bed: &Bed<f32>) {
+        if let (Some(tests), Some(summary)) = (&mut self.tables.tests, self.bed.take()) {
+            tests.tests.push(BedTest { bed: summary, answer: tested.clone() });
+        }
+        self.last_bed = Some(bed.clone());
+    }
+
     fn unloaded(&mut self, axles: u64, state: &Unloaded) {
         self.keep_rail(axles, Response::RailLevel, state.rail.iter().map(|p| (p.x, p.deflection)));
         self.unloaded = Some(state.clone());
     }
 
     fn passage(&mut self, axles: u64, runner: Runner, passage: &PassageOutcome) {
-        let (track, train) = (self.track(), self.train_name(runner));
+        let train = self.train_name(runner);
+        let Some(node) = self.track else { return };
         let rows = passage.samples.iter().map(|s| HistoryRow {
             axles,
             time_s: s.time,
             quantity: s.quantity.name().into(),
-            id: s.target.name(track),
+            id: s.part.name(node),
             x_m: s.x,
             value: s.value,
             train: train.clone(),
@@ -296,7 +384,7 @@ impl Recorder for RunRecorder<'_> {
         let measured = block.map_or_else(last, |(_, measured)| *measured);
         let block = block.map(|(block, _)| block);
         let largest = |of: fn(&PassageOutcome) -> f64| passages.iter().map(|p| of(p)).fold(f64::NEG_INFINITY, f64::max);
-        let seats = |p: &PassageOutcome, of: fn(&graph::SeatOutcome) -> f64| p.seats.iter().map(of).fold(0.0, f64::max);
+        let seats = |p: &PassageOutcome, of: fn(&SeatOutcome) -> f64| p.seats.iter().map(of).fold(0.0, f64::max);
         let steps = before.iter().zip(after).map(|(b, a)| a - b).fold(0.0, f64::max);
         self.tables.blocks.push(BlockRow {
             axles,
@@ -347,25 +435,6 @@ impl Recorder for RunRecorder<'_> {
         }
     }
 
-    fn checkpoint(&mut self, checkpoint: &graph::Checkpoint) -> Result<(), String> {
-        let Some(store) = &self.store else { return Ok(()) };
-        let saved = || -> Result<(), ResultsError> {
-            if self.written < self.histories.len() {
-                let bytes = histories::encode(&self.histories, &store.directory)?;
-                atomic::write(&store.directory.join(HISTORIES), &bytes)?;
-            }
-            let saved = Saved { checkpoint: checkpoint.clone(), tables: self.tables.clone() };
-            checkpoint::write(&store.directory, &store.scene_sha256, &saved)
-        };
-        saved().map_err(|e| e.to_string())?;
-        self.written = self.histories.len();
-        Ok(())
-    }
-
-    fn progress(&mut self, done: u64, all: u64) {
-        (self.progress)(done, all);
-    }
-
     fn equilibrium(&mut self, state: &Unloaded) {
         let track = self.track();
         self.keep_rail(0, Response::RailDisplacement, state.rail.iter().map(|p| (p.x, p.deflection)));
@@ -386,7 +455,7 @@ impl Recorder for RunRecorder<'_> {
                 contact_loss_s: 0.0,
             });
         }
-        let largest = |of: fn(&graph::RailPoint) -> f64| state.rail.iter().map(of).reduce(f64::max);
+        let largest = |of: fn(&RailPoint) -> f64| state.rail.iter().map(of).reduce(f64::max);
         self.tables.max_rail_moment = largest(|p| p.moment);
         self.tables.max_rail_displacement = largest(|p| p.deflection);
     }

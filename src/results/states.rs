@@ -5,7 +5,7 @@
 //! traffic does stands beside as data: warp by `displacement` to see the rail under the passage.
 
 use super::vtk::File;
-use super::{RailRow, ResultsError, Run, SleeperRow, atomic};
+use super::{NamedBytes, RailRow, ResultsError, Run, SleeperRow};
 use crate::scenario::{Scenario, SleeperBody};
 use std::fs;
 use std::io;
@@ -17,37 +17,34 @@ const GAUGE: f64 = 1.5;
 /// The corners of the six sides of a box, seen from outside; bit 0 of a corner is x, bit 1 y, bit 2 z.
 const SIDES: [[usize; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 
-/// Writes the states that the scene's records ask for; nothing where none does.
-pub(super) fn write(run: &Run, directory: &Path) -> Result<(), ResultsError> {
+/// The states that the scene's records ask for; none where none does.
+pub(super) fn files(run: &Run, directory: &Path) -> Result<Vec<NamedBytes>, ResultsError> {
     let mut counts: Vec<u64> =
         run.scenario.records.iter().filter(|r| r.states).flat_map(|r| r.after.iter().copied()).collect();
     counts.sort_unstable();
     counts.dedup();
+    let mut files = Vec::new();
     if counts.is_empty() {
-        return Ok(());
+        return Ok(files);
     }
-    let folder = directory.join(FOLDER);
-    fs::create_dir_all(&folder).map_err(|cause| ResultsError::io(&folder, "create", cause))?;
     let mut listed = String::new();
     for axles in counts {
         let rail: Vec<&RailRow> = run.rail.iter().filter(|row| row.axles == axles).collect();
         let sleepers: Vec<&SleeperRow> = run.sleepers.iter().filter(|row| row.axles == axles).collect();
-        for (part, (name, bytes)) in
-            [("rail", rail_vtk(&run.scenario, &rail)), ("sleepers", sleepers_vtk(&run.scenario, &sleepers))]
-                .into_iter()
-                .enumerate()
-        {
+        let parts = [("rail", rail_vtk(&run.scenario, &rail)), ("sleepers", sleepers_vtk(&run.scenario, &sleepers))];
+        for (part, (name, bytes)) in parts.into_iter().enumerate() {
             let file = format!("{name}_{axles:06}.vtp");
-            let path = folder.join(&file);
-            let bytes = bytes.map_err(|cause| ResultsError::unwritable(&path, cause))?;
-            atomic::write(&path, &bytes)?;
+            let path = format!("{FOLDER}/{file}");
+            let bytes = bytes.map_err(|cause| ResultsError::unwritable(&directory.join(&path), cause))?;
+            files.push((path, bytes));
             listed += &format!("<DataSet timestep=\"{axles}\" part=\"{part}\" file=\"{file}\"/>\n");
         }
     }
     let collection = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n{listed}</Collection>\n</VTKFile>\n"
     );
-    atomic::write(&folder.join("states.pvd"), collection.as_bytes())
+    files.push((format!("{FOLDER}/states.pvd"), collection.into_bytes()));
+    Ok(files)
 }
 
 /// Takes away the states of another run, and nothing else.

@@ -55,8 +55,8 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// Of a run of `sources`, the main file first, with the hash of all that made it and its plan.
-    pub fn of(sources: &Sources, sha256: String, seed: u64, plan: String) -> Provenance {
+    /// What made a run of `sources`, the main file first, with the hash of all that made it and its plan.
+    pub fn new(sources: &Sources, sha256: String, seed: u64, plan: String) -> Provenance {
         // the name alone: equal scenes give equal files wherever they lie
         let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_string();
         let main = sources.iter().next().map(|(_, s)| (name(&s.name), s.text.clone())).unwrap_or_default();

@@ -17,6 +17,7 @@ mod tamping;
 mod track;
 mod traffic;
 
+pub use crate::solvers::track::{Integrator, Order, Sequence, Share, Spring};
 pub use bed::{Base, Bed, BedEnds, Grains, Tier, Volume, VolumeRecord};
 pub use given::{Given, Origin};
 pub use grading::{Grading, Passing};
@@ -30,7 +31,6 @@ pub use track::{
     ApproachSlab, AuxiliaryRailSpan, AuxiliaryRails, Foot, Groundwork, Pad, Rail, RailEnds, Seat, Seating, Section,
     Side, Slab, SleeperBody, Stretch, Support, Track, Transition, Usp,
 };
-pub use crate::solvers::track::{Integrator, Order, Sequence, Share, Spring};
 pub use traffic::{Direction, Force, RigLoad, StaticLoad, Target, Traffic, Train, Vehicle, Wave};
 
 use crate::diag::Span;

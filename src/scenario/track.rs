@@ -318,7 +318,12 @@ impl Track {
     /// Whether rails, pads and supports of known stiffness carry a wheel all along it.
     pub fn is_sprung(&self) -> bool {
         let held = |seat: &Seat| seat.pad.is_some() && (!seat.is_ballasted() || seat.support().is_some());
-        self.sections.iter().all(|section| section.rail.is_some()) && self.seats.iter().all(held)
+        self.has_rails() && self.seats.iter().all(held)
+    }
+
+    /// Whether rails lie all along it.
+    pub fn has_rails(&self) -> bool {
+        self.sections.iter().all(|section| section.rail.is_some())
     }
 
     /// The rail at a chainage.

@@ -2,11 +2,10 @@
 
 use super::plan::{PlannedPoint, Scene};
 use crate::diag::Diagnostic;
-use crate::graph;
-use crate::lower;
-use crate::results::{self, Beds, RigTables, RunRecorder, Tables, Unfinished, Verdict};
+use crate::execute::Executor;
+use crate::results::{self, RunRecorder, Tables, TestTables, Verdict};
+use crate::scenario::Study;
 use crate::scenario::response::Expectation;
-use crate::scenario::{Scenario, Study};
 use crate::syntax::tree::Comparison;
 use serde::{Deserialize, Serialize};
 
@@ -38,9 +37,9 @@ pub enum PointOutcome {
 #[derive(Debug, Clone)]
 pub struct Repeat(Result<OneRun, PointOutcome>);
 
-/// Runs one repeat of a point. `beds` are those of test rigs: points that pack alike share one.
-pub fn perform(scene: Scene<'_>, study: &Study, point: &PlannedPoint, repeat: u32, beds: &Beds) -> Repeat {
-    Repeat(run(scene, study, point, repeat, beds))
+/// Runs one repeat of a point. The beds of the executor are shared: of points that pack alike one packs.
+pub fn perform(scene: Scene<'_>, study: &Study, point: &PlannedPoint, repeat: u32, executor: &Executor) -> Repeat {
+    Repeat(run(scene, study, point, repeat, executor))
 }
 
 impl PointResult {
@@ -69,7 +68,7 @@ fn run(
     study: &Study,
     point: &PlannedPoint,
     repeat: u32,
-    beds: &Beds,
+    executor: &Executor,
 ) -> Result<OneRun, PointOutcome> {
     let compiled = scene.compile(&point.overrides_of(repeat));
     if let Some(mistake) = compiled.diagnostics.iter().find(|d| d.is_error()) {
@@ -79,21 +78,17 @@ fn run(
     // places and counts of the point's own track
     let own = compiled.studies.iter().find(|s| s.name == study.name).ok_or_else(nothing)?;
     let scenario = compiled.scenario.as_ref().ok_or_else(nothing)?;
-    if lower::is_rig(scenario) {
-        return rig(scenario, own, beds);
+    let graph = compiled.runnable().ok_or_else(nothing)?;
+    let mut recorder = RunRecorder::new(scenario, graph);
+    let ended = executor.run(graph, &mut recorder, None);
+    ended.map_err(|error| failed(&results::diagnose(&error, graph, &compiled.origins)))?;
+    let tables = &recorder.tables;
+    if let Some(tests) = &tables.tests {
+        return answered(own, TestTables::new(tests).view(&scenario.track));
     }
-    let graph = compiled.graph.as_ref().ok_or_else(nothing)?;
-    let mut recorder = RunRecorder::new(scenario, None, |_, _| {});
-    graph::execute(graph, &mut recorder, None).map_err(|error| failed(&results::diagnose(&error, scenario, graph)))?;
-    let (tables, histories) = (&recorder.tables, recorder.all_histories());
+    let histories = recorder.all_histories();
     let scalars = results::summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
     answered(own, tables.view(&histories, &scalars, &scenario.track))
-}
-
-fn rig(scenario: &Scenario, study: &Study, beds: &Beds) -> Result<OneRun, PointOutcome> {
-    let performed = results::perform_rig(scenario, beds, Unfinished::default(), &mut ());
-    let performed = performed.map_err(|mistakes| mistakes.first().map_or_else(|| fail("the rig failed"), failed))?;
-    answered(study, RigTables::of(&performed).view(&scenario.track))
 }
 
 /// What a study asks of the tables of a run.

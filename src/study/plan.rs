@@ -4,14 +4,13 @@
 use super::design::{Level, design};
 use super::perform::condition;
 use crate::check::{Modules, Override};
+use crate::compile::{Compiled, compile};
 use crate::diag::{Code, Diagnostic, FileId, Label, Severity, Sources, Span};
 use crate::graph::Graph;
-use crate::lower;
 use crate::results;
 use crate::scenario::response::Measure;
-use crate::scenario::{Scenario, Study, Values};
+use crate::scenario::{Study, Values};
 use crate::units::number;
-use crate::{Compiled, compile};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -132,18 +131,15 @@ fn check(scene: Scene<'_>, base: &Compiled, study: &Study, levels: &[Level], ove
     let places = Places { base: &base.sources, own: &compiled.sources, given: scene.set.len(), study, levels };
     let placed = |d: &Diagnostic| (d.clone(), places.of(d));
     let mut errors: Vec<_> = compiled.diagnostics.iter().filter(|d| d.is_error()).map(placed).collect();
-    let run = Run::of(&compiled);
-    errors.extend(own.zip(run).and_then(|(own, run)| run.leaves_open(own)).map(|d| (d, None)));
-    if let (Some(Run::Rig(scenario)), true) = (run, errors.is_empty()) {
-        errors.extend(lower::rig(scenario).err().iter().flatten().map(placed));
-    }
+    let run = compiled.runnable();
+    errors.extend(own.zip(run).and_then(|(own, run)| leaves_open(run, own)).map(|d| (d, None)));
     match (&compiled.scenario, run) {
         (Some(scenario), Some(run)) if errors.is_empty() => {
             // an edited line may leave what it stood for unused
             let new =
                 |d: &&Diagnostic| d.code != Code::E0412 && !base.diagnostics.iter().any(|known| known.code == d.code);
             let remarks = compiled.diagnostics.iter().filter(new).map(placed).collect();
-            Checked::Legal { seconds: run.seconds(), seed: scenario.solve.seed, remarks }
+            Checked::Legal { seconds: run.cost.seconds, seed: scenario.solve.seed, remarks }
         }
         _ if errors.is_empty() => {
             // a hole of the scene itself is told there
@@ -154,39 +150,14 @@ fn check(scene: Scene<'_>, base: &Compiled, study: &Study, levels: &[Level], ove
     }
 }
 
-/// What runs at a point.
-#[derive(Clone, Copy)]
-enum Run<'a> {
-    Track(&'a Graph),
-    Rig(&'a Scenario),
-}
-
-impl<'a> Run<'a> {
-    fn of(compiled: &'a Compiled) -> Option<Run<'a>> {
-        let rig = || compiled.scenario.as_ref().filter(|scenario| lower::is_rig(scenario)).map(Run::Rig);
-        compiled.graph.as_ref().map(Run::Track).or_else(rig)
-    }
-
-    /// On one core, estimated.
-    fn seconds(&self) -> f64 {
-        match self {
-            Run::Track(graph) => graph.estimate.seconds,
-            Run::Rig(scenario) => lower::rig_cost(scenario).map_or(0.0, |cost| cost.seconds_on_one_core()),
-        }
-    }
-
-    /// A study that asks for what no run keeps would learn so after the first one.
-    fn leaves_open(&self, study: &Study) -> Option<Diagnostic> {
-        let kept = |measure: &Measure| match self {
-            Run::Track(graph) => results::kept_by_graph(measure, graph),
-            Run::Rig(scenario) => results::kept_by_rig(measure, scenario),
-        };
-        let measured = study.measured();
-        let compared = study.constraints.iter().flat_map(|c| &c.operands);
-        let why = measured.iter().map(|m| &m.expression).chain(compared).find_map(|e| results::not_kept(e, &kept))?;
-        let help = "ask for what the tables hold (see section 6 of the guide), or `record` it at the seats of interest";
-        Some(Diagnostic::new(Code::E0705, why).help(help))
-    }
+/// A study that asks for what no run keeps would learn so after the first one.
+fn leaves_open(graph: &Graph, study: &Study) -> Option<Diagnostic> {
+    let kept = |measure: &Measure| results::is_kept(measure, graph);
+    let measured = study.measured();
+    let compared = study.constraints.iter().flat_map(|c| &c.operands);
+    let why = measured.iter().map(|m| &m.expression).chain(compared).find_map(|e| results::not_kept(e, &kept))?;
+    let help = "ask for what the tables hold (see section 6 of the guide), or `record` it at the seats of interest";
+    Some(Diagnostic::new(Code::E0705, why).help(help))
 }
 
 /// Budget, and whether anything is left.

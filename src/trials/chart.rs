@@ -8,9 +8,10 @@
 //! which begin quasi-statically and in which sleepers lift and strike. The differences d of neighbouring steps give
 //! log2(d(2 dt) / d(dt)).
 
+use super::planned::Planned;
 use super::settled::Settled;
 use super::variant::{Case, Errors, METHODS, Measured, Prepared, Variant};
-use crate::graph::{Blocks, Graph, RUNAWAY};
+use crate::nodes::RUNAWAY;
 use crate::scenario::{Beam, Integrator};
 use crate::solvers::track::TrackError;
 use serde::Serialize;
@@ -160,18 +161,16 @@ pub const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
 /// Compares; fails where the references do.
 pub fn chart(
-    graph: &Graph,
-    blocks: &Blocks,
+    planned: &Planned,
     settled: &Settled,
     title: &str,
     request: Request,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Chart, TrackError> {
-    let scene = Variant::planned(graph, blocks);
+    let scene = Variant::planned(planned);
     let own = scene.even();
-    let case = Case::planned(graph, blocks, settled.settlement.clone());
-    let seats = &graph.track.track.seats;
-    let fresh = Case::planned(graph, blocks, seats.iter().map(|seat| seat.initial_settlement).collect());
+    let case = Case::planned(planned, settled.settlement.clone());
+    let fresh = Case::planned(planned, planned.initial_settlement());
     let plan = plan(own, scene.tolerance, &case, request);
     let coarsest = plan.iter().map(|(_, _, v)| v.time_step).fold(0.0, f64::max);
     let (case, fresh) = (case.aligned(coarsest), fresh.aligned(coarsest));
@@ -294,7 +293,7 @@ impl Bench {
     }
 
     fn point(&mut self, case: &Case, level: Level, sweep: Sweep, variant: Variant) -> Result<(), TrackError> {
-        let prepared = Prepared::new(&case.node, variant, self.own.time_step)?;
+        let prepared = Prepared::new(&case.node, &case.responses, variant, self.own.time_step)?;
         let mut result = prepared.run(case);
         if sweep == Sweep::Reference {
             let measured = result.clone().map_err(|failure| failure.cause)?;
@@ -369,7 +368,7 @@ fn released(case: &Case, variant: Variant) -> Option<f64> {
     let ring = |halvings: u32| {
         let steps = 2usize.pow(halvings);
         let variant = Variant { time_step: variant.time_step / steps as f64, ..variant };
-        let prepared = Prepared::new(&case.node, variant, variant.time_step).ok()?;
+        let prepared = Prepared::new(&case.node, &case.responses, variant, variant.time_step).ok()?;
         prepared.ring(case, SMALL * case.static_wheel_force(), steps, INSTANTS).ok()
     };
     let (coarse, middle, fine) = (ring(1)?, ring(2)?, ring(3)?);

@@ -7,6 +7,7 @@
 pub mod chart;
 mod clock;
 pub mod grains;
+mod planned;
 mod settled;
 pub mod stability;
 mod stress;
@@ -16,6 +17,7 @@ mod verdict;
 mod void;
 
 pub use chart::{Chart, Level, Outcome, Point, Request, Sweep};
+pub use planned::Planned;
 pub use settled::{NotSettled, Settled, settled};
 pub use stability::{Cell, Map, Stability};
 pub use stress::Stress;

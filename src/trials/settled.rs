@@ -1,12 +1,14 @@
 //! The track as a run of the scene leaves it: the state over which variants are compared.
 
-use crate::graph::{self, Block, Checkpoint, Graph, Measured, PassageOutcome, Recorder, RunError, Runner, Unloaded};
+use crate::execute::{Event, Listener, RunError, execute};
+use crate::graph::Graph;
+use std::ops::ControlFlow;
 
 /// Settlement after some axles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settled {
     pub axles: u64,
-    /// Of every seat, m.
+    /// Settlement of every seat, m.
     pub settlement: Vec<f64>,
 }
 
@@ -24,12 +26,11 @@ pub enum NotSettled {
 /// Runs the scene with its own numerics until `after` axles, or to its end.
 pub fn settled(graph: &Graph, after: Option<u64>, progress: &mut dyn FnMut(u64, u64)) -> Result<Settled, NotSettled> {
     let mut keeper = Keeper { after, last: None, above: None, progress };
-    let ended = graph::execute(graph, &mut keeper, None);
+    execute(graph, &mut keeper).map_err(NotSettled::Run)?;
     let Keeper { last, above, .. } = keeper;
-    match (last, ended) {
-        (_, Err(error @ RunError::Track { .. })) => Err(NotSettled::Run(error)),
-        (Some(state), _) if after.is_none_or(|after| after == state.axles) => Ok(state),
-        (last, _) => Err(NotSettled::Between { below: last.map(|s| s.axles), above }),
+    match last {
+        Some(state) if after.is_none_or(|after| after == state.axles) => Ok(state),
+        last => Err(NotSettled::Between { below: last.map(|s| s.axles), above }),
     }
 }
 
@@ -41,35 +42,34 @@ struct Keeper<'a> {
     progress: &'a mut dyn FnMut(u64, u64),
 }
 
-impl Recorder for Keeper<'_> {
-    fn unloaded(&mut self, _: u64, _: &Unloaded) {}
-    fn passage(&mut self, _: u64, _: Runner, _: &PassageOutcome) {}
-    fn equilibrium(&mut self, _: &Unloaded) {}
-
-    fn block(
-        &mut self,
-        axles: u64,
-        block: Option<(&Block, &Measured)>,
-        _: &[&PassageOutcome],
-        before: &[f64],
-        after: &[f64],
-    ) {
-        let ends = block.map(|(block, _)| (axles + block.axles, after));
-        for (count, settlement) in [(axles, before)].into_iter().chain(ends) {
-            if self.after.is_none_or(|after| count <= after) {
-                self.last = Some(Settled { axles: count, settlement: settlement.to_vec() });
-            } else {
-                self.above.get_or_insert(count);
-            }
+impl Keeper<'_> {
+    fn keep(&mut self, count: u64, settlement: &[f64]) {
+        if self.after.is_none_or(|after| count <= after) {
+            self.last = Some(Settled { axles: count, settlement: settlement.to_vec() });
+        } else {
+            self.above.get_or_insert(count);
         }
     }
+}
 
-    fn checkpoint(&mut self, _: &Checkpoint) -> Result<(), String> {
-        let reached = self.after.is_some() && self.last.as_ref().map(|s| s.axles) == self.after;
-        if reached || self.above.is_some() { Err("far enough".into()) } else { Ok(()) }
-    }
-
-    fn progress(&mut self, done: u64, all: u64) {
-        (self.progress)(done, all);
+impl Listener for Keeper<'_> {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Block { axles, block, before, after, .. } => {
+                self.keep(*axles, before);
+                if let Some((block, _)) = block {
+                    self.keep(axles + block.axles, after);
+                }
+            }
+            Event::Progress { done, all } => (self.progress)(*done, *all),
+            Event::Between(_) => {
+                let reached = self.after.is_some() && self.last.as_ref().map(|s| s.axles) == self.after;
+                if reached || self.above.is_some() {
+                    return ControlFlow::Break(());
+                }
+            }
+            _ => {}
+        }
+        ControlFlow::Continue(())
     }
 }

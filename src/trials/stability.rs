@@ -4,12 +4,13 @@
 //! track, contact and void at a sixteenth of the scene's step. A cell that is far from it, that has run away or holds what is
 //! no number, and of which nothing has warned, is **wrong**: the one end that must not be.
 
+use super::planned::Planned;
 use super::stress::{Stress, stresses};
 use super::variant::{Case, METHODS, Prepared, Variant};
 use super::verdict::{Foreseen, Verdict, check, judge, refused};
 use super::void::{Void, middle};
-use crate::graph::{Blocks, Graph};
 use crate::scenario::{Given, Integrator, Loading, Scenario, TimeStep};
+use crate::solvers::track::Direction;
 use crate::solvers::track::TrackError;
 use serde::Serialize;
 
@@ -62,8 +63,7 @@ const APPROACH: f64 = 5.0;
 /// Maps a scene and tries it under stress. Fails where the scene itself cannot be prepared.
 pub fn stability(
     scenario: &Scenario,
-    graph: &Graph,
-    blocks: &Blocks,
+    planned: &Planned,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Stability, TrackError> {
     let trials = Void::ALL.len() * CONTACTS.len() * (METHODS.len() + 2) + 40;
@@ -72,15 +72,15 @@ pub fn stability(
         done += 1;
         progress(done.min(trials as u64), trials as u64);
     };
-    let map = map(scenario, graph, blocks, &mut tick)?;
+    let map = map(scenario, planned, &mut tick)?;
     let stresses = stresses(scenario, &mut tick);
-    Ok(Stability { title: scenario.title.clone(), time_step: blocks.passage.usual_step(), map, stresses })
+    Ok(Stability { title: scenario.title.clone(), time_step: planned.blocks.passage.usual_step(), map, stresses })
 }
 
-fn map(scenario: &Scenario, graph: &Graph, blocks: &Blocks, tick: &mut dyn FnMut()) -> Result<Map, TrackError> {
-    let own = Variant::planned(graph, blocks).even();
+fn map(scenario: &Scenario, planned: &Planned, tick: &mut dyn FnMut()) -> Result<Map, TrackError> {
+    let own = Variant::planned(planned).even();
     let time_steps: Vec<f64> = STEPS.iter().map(|s| s * own.time_step).collect();
-    let prepare = |variant| Prepared::new(&graph.track, variant, own.time_step);
+    let prepare = |variant| Prepared::new(&planned.node, &planned.responses, variant, own.time_step);
     let reference = prepare(Variant { time_step: REFERENCE_STEP * own.time_step, ..own })?;
     let mut prepared = Vec::new();
     for method in METHODS {
@@ -94,15 +94,16 @@ fn map(scenario: &Scenario, graph: &Graph, blocks: &Blocks, tick: &mut dyn FnMut
     for contact in CONTACTS {
         let warnings: Vec<Foreseen> = time_steps.iter().map(|step| foreseen(scenario, *step, contact)).collect();
         for void in &voids {
-            let case = bogie(graph, blocks, contact, void.settlement(&scenario.track)).aligned(time_steps[0]);
+            let case = bogie(planned, middle(&scenario.track), contact, void.settlement(&scenario.track))
+                .aligned(time_steps[0]);
             let reference = reference.run(&case);
             tick();
             for (i, (method, time_step, prepared)) in prepared.iter().enumerate() {
                 let verdict = match (&warnings[i % STEPS.len()], prepared) {
                     (Foreseen::Refused(code, message), _) => Verdict::Refused { code, message: message.clone() },
-                    (_, Err(cause)) => refused(cause, scenario, graph),
+                    (_, Err(cause)) => refused(cause, planned),
                     (foreseen, Ok(prepared)) => match (prepared.run(&case), &reference) {
-                        (Err(failure), _) => refused(&failure.cause, scenario, graph),
+                        (Err(failure), _) => refused(&failure.cause, planned),
                         (Ok(_), Err(failure)) => {
                             Verdict::Wrong { why: format!("the reference fails: {}", failure.cause) }
                         }
@@ -121,19 +122,16 @@ fn map(scenario: &Scenario, graph: &Graph, blocks: &Blocks, tick: &mut dyn FnMut
     Ok(Map { methods: METHODS.to_vec(), time_steps, contacts: CONTACTS.to_vec(), voids, cells })
 }
 
-/// The first bogie of the train over the transition.
-fn bogie(graph: &Graph, blocks: &Blocks, contact: f64, settlement: Vec<f64>) -> Case {
-    let mut case = Case::planned(graph, blocks, settlement);
-    let (x, base) = (middle(&case.node.track), case.train.wheel_base());
+/// The first bogie of the train over the transition at x (m).
+fn bogie(planned: &Planned, x: f64, contact: f64, settlement: Vec<f64>) -> Case {
+    let mut case = Case::planned(planned, settlement);
+    let base = case.train.wheel_base();
     // the leading wheel runs at the right end of a train that goes right
-    let (behind, ahead) = if case.direction == crate::scenario::Direction::Backward {
-        (APPROACH, base + APPROACH)
-    } else {
-        (base + APPROACH, APPROACH)
-    };
+    let (behind, ahead) =
+        if case.direction == Direction::Backward { (APPROACH, base + APPROACH) } else { (base + APPROACH, APPROACH) };
     (case.left, case.right) = (case.left.max(x - behind), case.right.min(x + ahead));
-    for vehicle in &mut case.train.vehicles {
-        vehicle.hertz.value *= contact;
+    for (vehicle, _) in &mut case.train.vehicles {
+        vehicle.hertz *= contact;
     }
     case
 }

@@ -3,9 +3,9 @@
 use super::variant::{Case, METHODS, Prepared, Variant};
 use super::verdict::{Foreseen, Verdict, check, judge, refused};
 use super::void::{Void, middle};
-use crate::graph::{Blocks, Graph, Schedule};
+use crate::graph::Train;
 use crate::lint::Winkler;
-use crate::scenario::{Foot, Given, Integrator, Loading, RailEnds, Scenario, TimeStep, Track, Train};
+use crate::scenario::{self, Foot, Given, Integrator, Loading, RailEnds, Scenario, TimeStep, Track};
 use crate::units::number;
 use serde::Serialize;
 
@@ -136,7 +136,7 @@ fn list(scenario: &Scenario) -> Vec<Hard> {
     list
 }
 
-fn of_train(scenario: &mut Scenario, change: impl Fn(&mut Train)) {
+fn of_train(scenario: &mut Scenario, change: impl Fn(&mut scenario::Train)) {
     if let Some(Loading::Traffic(traffic)) = &mut scenario.loading {
         change(&mut traffic.train);
     }
@@ -177,15 +177,8 @@ fn coarsest(scenario: &mut Scenario, transits: f64) {
     scenario.solve.time_step = TimeStep::Fixed(Given::derived(transit * transits * (1.0 - 1e-9)));
 }
 
-fn blocks(graph: &Graph) -> Option<&Blocks> {
-    match &graph.schedule {
-        Schedule::Blocks(blocks) => Some(blocks),
-        Schedule::Static { .. } => None,
-    }
-}
-
 fn passage(hard: &Hard) -> Stress {
-    let (graph, foreseen, warnings) = check(&hard.scenario);
+    let (planned, foreseen, warnings) = check(&hard.scenario);
     let row = |verdict| Stress {
         name: hard.name.clone(),
         verdict,
@@ -197,22 +190,22 @@ fn passage(hard: &Hard) -> Stress {
     if let Foreseen::Refused(code, message) = foreseen {
         return row(Verdict::Refused { code, message });
     }
-    let Some((graph, blocks)) = graph.as_ref().and_then(|g| Some((g, blocks(g)?))) else {
+    let Some(planned) = &planned else {
         return row(Verdict::Wrong { why: "the scene has no passage".into() });
     };
-    let mut case = Case::planned(graph, blocks, hard.settlement.clone());
+    let mut case = Case::planned(planned, hard.settlement.clone());
     if let Some(margin) = hard.margin {
-        (case.left, case.right) = (case.node.track.start() + margin, case.node.track.end() - margin);
+        (case.left, case.right) = (case.node.ends()[0] + margin, case.node.ends()[1] - margin);
     }
-    let case = case.aligned(blocks.passage.time_step);
-    let own = Variant::planned(graph, blocks).even();
+    let case = case.aligned(planned.blocks.passage.time_step);
+    let own = Variant::planned(planned).even();
     let own = Variant { method: hard.method.unwrap_or(own.method), ..own };
     let run = |time_step: f64| {
-        let prepared = Prepared::new(&graph.track, Variant { time_step, ..own }, own.time_step)?;
+        let prepared = Prepared::new(&planned.node, &planned.responses, Variant { time_step, ..own }, own.time_step)?;
         prepared.run(&case).map_err(|failure| failure.cause)
     };
     match (run(own.time_step), run(own.time_step / 4.0)) {
-        (Err(cause), _) => row(refused(&cause, &hard.scenario, graph)),
+        (Err(cause), _) => row(refused(&cause, planned)),
         (Ok(_), Err(cause)) => row(Verdict::Wrong { why: format!("stops at a quarter of the step: {cause}") }),
         (Ok(measured), Ok(fine)) => {
             let weight = case.static_wheel_force();
@@ -229,26 +222,26 @@ fn passage(hard: &Hard) -> Stress {
 fn free_vibration(scenario: &Scenario, method: Integrator, coarser: f64) -> Option<Stress> {
     let mut scenario = scenario.clone();
     undamp(&mut scenario);
-    let (graph, ..) = check(&scenario);
-    let graph = graph?;
-    let blocks = blocks(&graph)?;
-    let case = Case::planned(&graph, blocks, Void { depth: 1e-3, sleepers: Some(3) }.settlement(&scenario.track));
-    let own = Variant::planned(&graph, blocks).even();
+    let (planned, ..) = check(&scenario);
+    let planned = &planned?;
+    let case = Case::planned(planned, Void { depth: 1e-3, sleepers: Some(3) }.settlement(&scenario.track));
+    let own = Variant::planned(planned).even();
     let time_step = coarser * own.time_step;
     scenario.solve.time_step = TimeStep::Fixed(Given::derived(time_step));
     let (_, foreseen, warnings) = check(&scenario);
     let wheels = wheels_at(&scenario.track, &case.train);
     let pressed: Vec<(f64, f64)> = wheels.into_iter().map(|x| (x, case.static_wheel_force())).collect();
-    let verdict = match Prepared::new(&graph.track, Variant { method, time_step, ..own }, time_step)
-        .and_then(|prepared| prepared.free_vibration(&case, &pressed, FREE_STEPS))
-    {
-        Err(cause) => refused(&cause, &scenario, &graph),
-        Ok(ratio) if ratio <= 1.0 + ENERGY => Verdict::Stable { error: (ratio - 1.0).max(0.0) },
-        Ok(ratio) => match foreseen.warning() {
-            Some(code) => Verdict::Coarse { error: ratio - 1.0, code },
-            None => Verdict::Wrong { why: format!("the energy grows to {ratio:.2} times that of the start") },
-        },
-    };
+    let verdict =
+        match Prepared::new(&planned.node, &planned.responses, Variant { method, time_step, ..own }, time_step)
+            .and_then(|prepared| prepared.free_vibration(&case, &pressed, FREE_STEPS))
+        {
+            Err(cause) => refused(&cause, planned),
+            Ok(ratio) if ratio <= 1.0 + ENERGY => Verdict::Stable { error: (ratio - 1.0).max(0.0) },
+            Ok(ratio) => match foreseen.warning() {
+                Some(code) => Verdict::Coarse { error: ratio - 1.0, code },
+                None => Verdict::Wrong { why: format!("the energy grows to {ratio:.2} times that of the start") },
+            },
+        };
     let name = format!("let go without damping: {method}, {} ms", number(time_step * 1e3));
     Some(Stress { name, verdict, wheel_force: None, losing_contact: None, warnings, energy: true })
 }
@@ -256,7 +249,6 @@ fn free_vibration(scenario: &Scenario, method: Integrator, coarser: f64) -> Opti
 /// Wheels of a train that stands over the transition, those that fit on the track.
 fn wheels_at(track: &Track, train: &Train) -> Vec<f64> {
     let leading = middle(track) + 1.0;
-    let vehicles = train.vehicles.iter().zip(train.vehicle_offsets());
-    let wheels = vehicles.flat_map(|(v, offset)| v.wheel_offsets().map(|wheel| leading - offset - wheel));
+    let wheels = train.vehicles.iter().flat_map(|(v, offset)| v.wheel_offsets().map(|wheel| leading - offset - wheel));
     wheels.filter(|x| (track.start()..track.end()).contains(x)).collect()
 }

@@ -4,11 +4,13 @@
 //! a variant factored for a track; it runs any case on that track and says what came out and what it cost.
 
 use super::clock::Clock;
-use crate::graph::model::{level, model, motion, scheme, train};
-use crate::graph::{Blocks, Graph, Steps, TrackNode};
-use crate::scenario::{Beam, Direction, Integrator, Train};
+use super::planned::Planned;
+use crate::graph::{Responses, TrackNode, Train};
+use crate::nodes::Steps;
+use crate::scenario::{Beam, Integrator};
 use crate::solvers::track::{
-    Counters, Envelope, Ladder, Passage, Run, Shear, StepView, Stepper, Track, TrackError, TrackLevel, TrackModel,
+    Counters, Direction, Envelope, Ladder, Passage, Run, Shear, StepView, Stepper, Track, TrackError, TrackLevel,
+    TrackModel,
 };
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -43,13 +45,15 @@ pub struct Variant {
 
 impl Variant {
     /// The numerics that the plan of a scene says.
-    pub fn planned(graph: &Graph, blocks: &Blocks) -> Variant {
+    pub fn planned(planned: &Planned) -> Variant {
+        let Planned { node, blocks, .. } = planned;
+        let shears = node.rail.iter().any(|rail| rail.shear.is_some());
         Variant {
             method: blocks.passage.integrator,
             time_step: blocks.passage.time_step,
             tolerance: blocks.passage.adaptive.map(|steps| steps.tolerance),
-            elements_per_bay: graph.track.elements_per_bay,
-            beam: graph.track.beam,
+            elements_per_bay: node.elements_per_bay,
+            beam: if shears { Beam::Timoshenko } else { Beam::Euler },
         }
     }
 
@@ -64,6 +68,7 @@ impl Variant {
 #[derive(Debug, Clone)]
 pub struct Case {
     pub node: TrackNode,
+    pub responses: Responses,
     pub train: Train,
     pub direction: Direction,
     /// Chainage of the hindmost wheel at the left and of the foremost at the right, m.
@@ -75,9 +80,11 @@ pub struct Case {
 
 impl Case {
     /// The passage that a run of the scene would make over `settlement`.
-    pub fn planned(graph: &Graph, blocks: &Blocks, settlement: Vec<f64>) -> Case {
+    pub fn planned(planned: &Planned, settlement: Vec<f64>) -> Case {
+        let Planned { node, responses, blocks, .. } = planned;
         Case {
-            node: graph.track.clone(),
+            node: node.clone(),
+            responses: responses.clone(),
             train: blocks.train.clone(),
             direction: blocks.leading_direction(),
             left: blocks.passage.left,
@@ -89,7 +96,7 @@ impl Case {
     /// The same, ended where a whole number of steps of `time` (s) has passed, so that all steps that divide it end there.
     pub fn aligned(mut self, time: f64) -> Case {
         let run = self.right - self.left - self.train.wheel_base();
-        let step = *self.train.speed * time;
+        let step = self.train.speed * time;
         let lost = run - (run / step + 1e-9).floor() * step;
         if lost > 0.0 && run > step {
             if self.direction == Direction::Backward { self.left += lost } else { self.right -= lost }
@@ -99,14 +106,12 @@ impl Case {
 
     /// Static force of a wheel, N: the mean over the train.
     pub fn static_wheel_force(&self) -> f64 {
-        let mass: f64 = self.train.vehicles.iter().map(|v| v.mass()).sum();
-        mass * self.node.gravity / self.train.axles() as f64
+        self.train.mass() * self.node.gravity / self.train.axles() as f64
     }
 
     /// Time in which a wheel crosses one element, s.
     pub fn transit(&self, elements_per_bay: u32) -> f64 {
-        let spacing = self.node.track.shortest_bay();
-        spacing / f64::from(elements_per_bay) / *self.train.speed
+        self.node.shortest_bay / f64::from(elements_per_bay) / self.train.speed
     }
 }
 
@@ -156,14 +161,19 @@ pub struct Prepared {
 
 impl Prepared {
     /// Meshes and factors. Wheel forces are kept every `interval` (s), or every step where steps are longer.
-    pub fn new(node: &TrackNode, variant: Variant, interval: f64) -> Result<Prepared, TrackError> {
+    pub fn new(
+        node: &TrackNode,
+        responses: &Responses,
+        variant: Variant,
+        interval: f64,
+    ) -> Result<Prepared, TrackError> {
         let started = Clock::start();
         let mut node = node.clone();
         node.elements_per_bay = variant.elements_per_bay;
-        let mut model = model(&node);
+        let mut model = node.model(responses);
         set_beam(&mut model, variant.beam);
         let track = Arc::new(Track::new(model)?);
-        let scheme = scheme(variant.method, variant.time_step)?;
+        let scheme = variant.method.scheme(variant.time_step)?;
         let steps = match variant.tolerance {
             None => Steps::Even(Stepper::new(track, scheme)?),
             Some(tolerance) => Steps::Chosen { ladder: Ladder::new(&track, scheme, HALVINGS)?, tolerance },
@@ -175,16 +185,15 @@ impl Prepared {
     pub fn run(&self, case: &Case) -> Result<Measured, Failure> {
         let started = Clock::start();
         let failed = |cause| Failure { cause, seconds: started.seconds() };
-        let train = train(&case.train, case.direction);
+        let train = case.train.model(case.direction);
         let base = case.train.wheel_base();
         let (start, finish) = if case.direction == Direction::Backward {
             (case.right - base, case.left)
         } else {
             (case.left + base, case.right)
         };
-        let level = level(&case.node, &case.settlement);
-        let motion = motion(&case.train);
-        let run = Run { train: &train, start, finish, motion: &motion };
+        let level = case.node.level(&case.settlement, &case.responses);
+        let run = Run { train: &train, start, finish, motion: &case.train.motion };
         let mut passage = self.steps.begin(&level, run).map_err(failed)?;
         let setup_s = self.setup_s + started.seconds();
 
@@ -220,8 +229,8 @@ impl Prepared {
     /// Deflection of the middle of the rail (m) after every interval of `steps` steps while the track springs back from a
     /// force spread there (N), `count` times.
     pub fn ring(&self, case: &Case, force: f64, steps: usize, count: usize) -> Result<Vec<f64>, TrackError> {
-        let level: TrackLevel = level(&case.node, &case.settlement);
-        let node = self.track().seat_node(case.node.track.seats.len() / 2);
+        let level: TrackLevel = case.node.level(&case.settlement, &case.responses);
+        let node = self.track().seat_node(case.node.seats.len() / 2);
         let nodes = self.track().nodes();
         let bell = |x: f64| (0.5 * std::f64::consts::PI * ((x - nodes[node]) / BELL).clamp(-1.0, 1.0)).cos().powi(2);
         let whole: f64 = nodes.iter().map(|x| bell(*x)).sum();
@@ -242,7 +251,7 @@ impl Prepared {
     /// The largest energy of the track in free vibration over its energy at the start, above that of the track at rest;
     /// `pressed` names rail loads (m, N) that hold it down before it is let go.
     pub fn free_vibration(&self, case: &Case, pressed: &[(f64, f64)], steps: usize) -> Result<f64, TrackError> {
-        let level: TrackLevel = level(&case.node, &case.settlement);
+        let level: TrackLevel = case.node.level(&case.settlement, &case.responses);
         let held = crate::solvers::track::Loads { rail: pressed, ..Default::default() };
         let state = crate::solvers::track::solve_static(self.track(), &level, &held)?;
         let rest = crate::solvers::track::solve_static(self.track(), &level, &Default::default())?;

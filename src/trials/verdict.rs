@@ -1,10 +1,13 @@
 //! How a trial ended: right, coarse, refused, or wrong without a word, judged against a reference and what diagnostics foresaw.
 
+use super::planned::Planned;
 use super::variant::Measured;
 use crate::diag::Code;
-use crate::graph::{Graph, RUNAWAY, RunError, Schedule};
+use crate::execute::RunError;
+use crate::graph::Clock;
 use crate::lint::lint;
-use crate::lower::lower;
+use crate::lower::{Lowered, lower};
+use crate::nodes::{NodeError, RUNAWAY};
 use crate::results::diagnose;
 use crate::scenario::Scenario;
 use crate::solvers::track::TrackError;
@@ -96,28 +99,29 @@ impl Foreseen {
 }
 
 /// Lowers a scene and says what its diagnostics foresee of its numerics, whatever rules it silences.
-pub(super) fn check(scenario: &Scenario) -> (Option<Graph>, Foreseen, Vec<&'static str>) {
-    let (graph, diagnostics) = lower(scenario);
+pub(super) fn check(scenario: &Scenario) -> (Option<Planned>, Foreseen, Vec<&'static str>) {
+    let Lowered { graph, origins, diagnostics } = lower(scenario);
     if let Some(error) = diagnostics.iter().find(|d| d.is_error()) {
         return (None, Foreseen::Refused(error.code.as_str(), error.message.clone()), Vec::new());
     }
-    let Some(graph) = graph.filter(|g| matches!(g.schedule, Schedule::Blocks(_))) else {
+    let Some(planned) = graph.and_then(|graph| Planned::new(&graph, &origins)) else {
         return (None, Foreseen::Refused(Code::E0601.as_str(), "nothing runs over the track".into()), Vec::new());
     };
     let aloud = Scenario { allow: Vec::new(), deny: Vec::new(), ..scenario.clone() };
-    let mut warnings = lint(&aloud, &graph);
+    let mut warnings = lint(&aloud, &planned.graph);
     warnings.dedup_by_key(|d| d.code);
     // of the step, and of a speed at which the track answers no longer as at rest
     let foreseen = match warnings.iter().find(|d| [Code::L1005, Code::L1002].contains(&d.code)) {
         Some(warning) => Foreseen::Warned(warning.code.as_str()),
         None => Foreseen::Fine,
     };
-    (Some(graph), foreseen, warnings.iter().map(|d| d.code.as_str()).collect())
+    (Some(planned), foreseen, warnings.iter().map(|d| d.code.as_str()).collect())
 }
 
 /// The diagnostic that a user would see.
-pub(super) fn refused(cause: &TrackError, scenario: &Scenario, graph: &Graph) -> Verdict {
-    let diagnostic = diagnose(&RunError::Track { axles: 0, cause: cause.clone() }, scenario, graph);
+pub(super) fn refused(cause: &TrackError, planned: &Planned) -> Verdict {
+    let error = RunError::Node { clock: Clock::Axles(0), cause: NodeError::Track(cause.clone()) };
+    let diagnostic = diagnose(&error, &planned.graph, &planned.origins);
     Verdict::Refused { code: diagnostic.code.as_str(), message: diagnostic.message }
 }
 

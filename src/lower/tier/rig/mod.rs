@@ -1,19 +1,15 @@
-//! A scene of test loads on sleepers over grains, as a bed to pack and a rig to run.
+//! A test rig: sleepers, or a plate, on a packed bed under actuators.
 
-mod cost;
-mod listing;
+pub(super) mod cost;
 mod refusals;
 
-pub use cost::{RigCost, rig_cost};
-pub use listing::rig_listing;
-pub(super) use refusals::refusals;
-
-use super::bed::{BedPlan, beds, confinement};
-use crate::diag::Diagnostic;
+use super::{ExpectedError, Proposal, Tier, edges};
+use crate::graph::{ActuatorsNode, BedNode, Model, Node, Schedule, SensorNode, SensorVolume, StandingBody, Tests};
+use crate::lower::Draft;
+use crate::lower::bed::{BedUse, beds, confinement};
 use crate::scenario::{Foot, Force, Given, Loading, RigLoad, Scenario, Seat, Section, SleeperBody, Target, Volume};
-use crate::solvers::granular::measure::Region;
-use crate::solvers::granular::packing::Layer;
-use crate::solvers::granular::rig::{ADDED, Load, Rig, Sensor, Sleeper, Specimen};
+use crate::solvers::granular::packing::{Layer, Recipe};
+use crate::solvers::granular::rig::{ADDED, Load};
 use crate::units::number;
 use std::f64::consts::PI;
 
@@ -28,39 +24,85 @@ const INERTIAL: f64 = 1e-3;
 /// A constant force grows and is held for this long, s.
 const HELD: f64 = 0.5;
 
-/// A rig, before its bed is packed.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RigPlan {
-    pub bed: BedPlan,
-    /// Cells of the bed side by side.
-    pub copies: u32,
-    /// Area of a plate in the place of sleepers, m2.
-    pub plate: Option<f64>,
-    /// On the sides of a specimen, Pa.
-    pub confinement: Option<f64>,
-    /// Names and chainages of the sleepers or of the plate, m.
-    pub sleepers: Vec<(String, f64)>,
-    /// Names and chainages of the sensors, m.
-    pub sensors: Vec<(String, f64)>,
-    /// With sensors at depths below the top of the bed.
-    rig: Rig,
-    places: Vec<Place>,
+pub struct TestRig;
+
+impl Tier for TestRig {
+    fn name(&self) -> &'static str {
+        "rig"
+    }
+
+    /// A bed under actuators is the same in every tier of grains.
+    fn answers(&self, word: &str) -> bool {
+        ["cells", "zone", "full"].contains(&word)
+    }
+
+    fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
+        let scenario = draft.scenario;
+        if !stands_on_its_bed(scenario) {
+            return Err("no loads act on sleepers or a bed without rails".into());
+        }
+        let mut refusals = refusals::refusals(scenario);
+        let found = if refusals.is_empty() { beds(scenario, BedUse::Rig) } else { Ok(Vec::new()) };
+        let mut nodes = Vec::new();
+        match found.map(|beds| beds.into_iter().next()) {
+            Ok(Some(plan)) => nodes = self.nodes(scenario, plan),
+            Ok(None) => {}
+            Err(more) => refusals.extend(more),
+        }
+        let tests = Tests { packings: scenario.solve.grains.repeats, kept: kept(scenario, cycles(&loads(scenario))) };
+        Ok(Proposal {
+            edges: edges(&nodes),
+            nodes,
+            schedule: Schedule::Actuators(tests),
+            cost: cost::of_rig(scenario),
+            what: "a bed of grains under actuators".into(),
+            why: "loads act on sleepers or a bed, and there are no rails".into(),
+            error: ExpectedError { share: None, evidence: "scatter between packings; `repeats` shows it".into() },
+            runs: refusals.is_empty(),
+            refusals,
+        })
+    }
 }
 
-/// Where a sensor is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Place {
-    /// Along and across the bed, below the sleeper, m.
-    at: [f64; 3],
-    volume: Volume,
-    /// Of the bed, m.
-    length: f64,
-    width: f64,
+impl TestRig {
+    fn nodes(&self, scenario: &Scenario, mut bed: crate::graph::BedPlan) -> Vec<Node> {
+        let confinement = confinement(scenario);
+        bed.notes.push(match confinement {
+            Some(pressure) => format!("Its four sides give way under {} kPa.", number(pressure / 1e3)),
+            None => "The bed goes on periodically along the track; nothing lies beside or between the sleepers.".into(),
+        });
+        let loads = loads(scenario);
+        let rest = rest_time(rests(bed.numbers(), confinement));
+        bed.notes.extend(driven(&loads, rest));
+        let section = &scenario.track.sections[0];
+        let [cell, across] = bed.numbers().plan;
+        let copies = ((section.end - section.start) / cell - 1e-9).ceil().max(1.0) as u32;
+        let length = cell * f64::from(copies);
+        let pressed = loads.iter().find(|load| load.on == Target::Bed);
+        let (bodies, forces): (Vec<StandingBody>, Vec<Load>) = match pressed {
+            Some(load) => vec![plate(scenario, load, [length, across])].into_iter().unzip(),
+            None => scenario.track.seats.iter().filter_map(|seat| sleeper(scenario, seat, &loads, across)).unzip(),
+        };
+        let node = BedNode {
+            bed,
+            copies,
+            bodies,
+            plate: pressed.map(|_| length * across),
+            confinement,
+            driven: forces.iter().any(|load| matches!(load, Load::Strain(_))),
+            gravity: *scenario.solve.gravity,
+            sensors: sensors(scenario, length, across),
+            added_inertia: ADDED,
+        };
+        let actuators = ActuatorsNode { loads: forces, period: period(&loads, rest), cycles: cycles(&loads) };
+        vec![Node::new("actuators", Model::Actuators(actuators)), Node::new("bed", Model::Bed(Box::new(node)))]
+    }
 }
 
-/// Whether a scene is a test rig that this version runs: loads on sleepers or on the bed, grains under them, no rails, no trains.
-pub fn is_rig(scenario: &Scenario) -> bool {
-    stands_on_its_bed(scenario) && scenario.track.sections.iter().all(has_grains)
+/// Mean volume, density and pressure of each layer.
+fn rests(recipe: &Recipe, confinement: Option<f64>) -> impl Iterator<Item = [f64; 3]> {
+    let of = move |layer: &Layer| [layer.curve.mean_volume(), layer.density, confinement.unwrap_or(layer.pressure)];
+    recipe.layers.iter().map(of)
 }
 
 /// Whether loads act on sleepers or a bed, without rails.
@@ -75,87 +117,6 @@ fn stands_on_its_bed(scenario: &Scenario) -> bool {
 
 fn has_grains(section: &Section) -> bool {
     section.layers.iter().any(|layer| layer.granular().is_some())
-}
-
-/// The rig of a scene; what cannot be packed or run is told.
-pub fn rig(scenario: &Scenario) -> Result<RigPlan, Vec<Diagnostic>> {
-    let refused = refusals(scenario);
-    if !refused.is_empty() {
-        return Err(refused);
-    }
-    let mut bed = beds(scenario)?.remove(0);
-    bed.notes.retain(|note| !note.starts_with("The cell is periodic"));
-    let confinement = confinement(scenario);
-    bed.notes.push(match confinement {
-        Some(pressure) => format!("Its four sides give way under {} kPa.", number(pressure / 1e3)),
-        None => "The bed goes on periodically along the track; nothing lies beside or between the sleepers.".to_owned(),
-    });
-    let section = &scenario.track.sections[0];
-    let [cell, across] = bed.recipe.plan;
-    let copies = ((section.end - section.start) / cell - 1e-9).ceil().max(1.0) as u32;
-    let loads = loads(scenario);
-    let seats = &scenario.track.seats;
-    let length = cell * f64::from(copies);
-    let pressed = loads.iter().find(|load| load.on == Target::Bed);
-    let (names, sleepers) = match pressed {
-        Some(load) => {
-            (vec![(PLATE.to_owned(), section.start + length / 2.0)], vec![plate(scenario, load, [length, across])])
-        }
-        None => (
-            seats.iter().map(|seat| (scenario.track.seat_name(seat), seat.x)).collect(),
-            seats.iter().filter_map(|seat| sleeper(scenario, seat, &loads, across)).collect(),
-        ),
-    };
-    let densities = bed.recipe.layers.iter().map(|layer| layer.density).collect();
-    let (sensors, places) = sensors(scenario, length, across);
-    let of = |layer: &Layer| [layer.curve.mean_volume(), layer.density, confinement.unwrap_or(layer.pressure)];
-    let rest = rest_time(bed.recipe.layers.iter().map(of));
-    bed.notes.extend(driven(&loads, rest));
-    let specimen = confinement.zip(bed.recipe.sides());
-    let rig = Rig {
-        sleepers,
-        specimen: specimen.map(|(pressure, sides)| Specimen { floor: bed.recipe.floor(), sides, pressure }),
-        period: period(&loads, rest),
-        cycles: cycles(&loads),
-        gravity: *scenario.solve.gravity,
-        densities,
-        kept: kept(scenario, cycles(&loads)),
-        sensors: Vec::new(),
-        added: ADDED,
-    };
-    let plate = pressed.map(|_| length * across);
-    Ok(RigPlan { bed, copies, plate, confinement, sleepers: names, sensors, rig, places })
-}
-
-impl RigPlan {
-    /// The rig on a bed whose top is at a level, m.
-    pub fn on(&self, top: f64) -> Rig {
-        let sensors = self.places.iter().filter_map(|place| Some(Sensor { region: place.region(top)? })).collect();
-        Rig { sensors, ..self.rig.clone() }
-    }
-
-    pub fn cycles(&self) -> u64 {
-        self.rig.cycles
-    }
-}
-
-impl Place {
-    /// Cut at the ends and sides of the bed; `None` where nothing is left.
-    fn region(&self, top: f64) -> Option<Region> {
-        let [x, y, depth] = self.at;
-        let z = top - depth;
-        match self.volume {
-            Volume::Sphere { radius } => Region::sphere([x, y, z], radius).ok(),
-            Volume::Box { along, across, height } => {
-                let ends = |middle: f64, size: f64, most: f64| {
-                    [(middle - size / 2.0).max(0.0), (middle + size / 2.0).min(most)]
-                };
-                let [[x0, x1], [y0, y1]] =
-                    [ends(x, along, self.length), across.map_or([0.0, self.width], |size| ends(y, size, self.width))];
-                Region::block([x0, y0, z - height / 2.0], [x1, y1, z + height / 2.0]).ok()
-            }
-        }
-    }
 }
 
 /// All loads, those that stay as they are among them.
@@ -230,31 +191,35 @@ fn acts_on(load: &RigLoad, seat: &Seat) -> bool {
 }
 
 /// A sleeper, and the force of its actuator, of one rail or of both.
-fn sleeper(scenario: &Scenario, seat: &Seat, loads: &[RigLoad], across: f64) -> Option<Sleeper> {
+fn sleeper(scenario: &Scenario, seat: &Seat, loads: &[RigLoad], across: f64) -> Option<(StandingBody, Load)> {
     let Foot::Sleeper { mass, .. } = &seat.foot else { return None };
     let SleeperBody { length, base_width, height, base_area, .. } = seat.sleeper?;
     let (share, y) = if scenario.solve.grains.both_rails { (2.0, across / 2.0) } else { (1.0, 0.0) };
     let load = load_at(seat, loads).map_or(Load::None, |load| force(load, share, seat.x - load.x));
     let start = scenario.track.sections[0].start;
-    Some(Sleeper {
+    let body = StandingBody {
+        name: scenario.track.seat_name(seat),
+        x: seat.x,
         place: [seat.x - start, y],
         // what bears is as wide as the sleeper, and no longer than it
         size: [base_width, (base_area / base_width).min(length), height],
         mass: share * **mass,
-        load,
-    })
+    };
+    Some((body, load))
 }
 
 /// A plate over the whole bed.
-fn plate(scenario: &Scenario, load: &RigLoad, [length, across]: [f64; 2]) -> Sleeper {
+fn plate(scenario: &Scenario, load: &RigLoad, [length, across]: [f64; 2]) -> (StandingBody, Load) {
     let share = if scenario.solve.grains.both_rails { 2.0 } else { 1.0 };
     let wider = if load.confinement.is_some() { WIDER } else { 1.0 };
-    Sleeper {
+    let body = StandingBody {
+        name: PLATE.to_owned(),
+        x: scenario.track.sections[0].start + length / 2.0,
         place: [length / 2.0, across / 2.0],
         size: [wider * length, wider * across, PLATE_HEIGHT],
         mass: PLATE_MASS * length * across,
-        load: force(load, share, 0.0),
-    }
+    };
+    (body, force(load, share, 0.0))
 }
 
 /// Of an actuator, of one rail or of a share of it, `away` m behind the place of its load.
@@ -270,25 +235,30 @@ fn force(load: &RigLoad, share: f64, away: f64) -> Load {
     }
 }
 
-/// Names and chainages of the sensors, and where they are: under the rail seat, or across the whole bed.
-fn sensors(scenario: &Scenario, length: f64, width: f64) -> (Vec<(String, f64)>, Vec<Place>) {
+/// Sensors under the rail seat, or across the whole bed.
+fn sensors(scenario: &Scenario, length: f64, width: f64) -> Vec<SensorNode> {
     let track = &scenario.track;
     let top = track.sections[0].layers.first().map_or(0.0, |layer| layer.thickness.at(track.sections[0].start));
-    let (mut names, mut places) = (Vec::new(), Vec::new());
+    let mut sensors = Vec::new();
     for record in &scenario.volumes {
         for seat in record.seats.iter().map(|seat| &track.seats[*seat]) {
             let depth = record.depth.unwrap_or(top / 2.0);
             let half = seat.sleeper.map_or(0.0, |sleeper| sleeper.seat_distance / 2.0);
             let y = if scenario.solve.grains.both_rails { width / 2.0 + half } else { half };
-            let reach = match record.volume {
-                Volume::Sphere { radius } => radius,
-                Volume::Box { .. } => 0.0,
+            let (reach, volume) = match record.volume {
+                Volume::Sphere { radius } => (radius, SensorVolume::Sphere { radius }),
+                Volume::Box { along, across, height } => (0.0, SensorVolume::Block { along, across, height }),
             };
             let y = y.min(width - reach).max(reach.min(width / 2.0));
             let x = seat.x - track.sections[0].start;
-            names.push((format!("{} at {} mm", track.seat_name(seat), (depth * 1e3).round()), seat.x));
-            places.push(Place { at: [x, y, depth], volume: record.volume, length, width });
+            sensors.push(SensorNode {
+                name: format!("{} at {} mm", track.seat_name(seat), (depth * 1e3).round()),
+                x: seat.x,
+                place: [x, y, depth],
+                volume,
+                bed: [length, width],
+            });
         }
     }
-    (names, places)
+    sensors
 }

@@ -1,49 +1,38 @@
-//! What a test rig leaves behind: cycles, loops, what sensors read, a summary, and the files that hold them.
+//! What tests of packed beds leave behind: cycles, loops, what sensors read, a summary, and the files that hold them.
 
 mod files;
-mod perform;
 mod summarise;
 mod view;
 
-pub use files::write_rig;
-pub use perform::{Follow, Performed, Unfinished, perform_rig};
-pub use summarise::{RigTables, kept_by_rig};
-pub use view::{RigView, read_rig};
+pub use files::test_files;
+pub use summarise::{MeanCycleRow, TestTables};
+pub use view::{BedTestsView, read_tests};
 
-use super::{BedSummary, Provenance, Row, Summary, verdicts};
-use crate::diag::Sources;
-use crate::lower::{RigPlan, rig_listing};
-use crate::scenario::Scenario;
-use crate::solvers::granular::Bed;
+use super::{BedSummary, Row};
+use crate::graph::BedNode;
+use crate::nodes::Tested;
 use crate::solvers::granular::rig::{Cycle, Reading, Sample, SpecimenState};
 use serde::{Deserialize, Serialize};
 
-/// One packing under test, as it ended.
+/// One packing, and its test as it ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Tested {
-    pub seed: u64,
+pub struct BedTest {
     pub bed: BedSummary,
-    pub cycles: Vec<Cycle>,
-    pub samples: Vec<Sample>,
-    pub readings: Vec<Reading>,
-    /// Of a specimen with sides that give way.
-    pub specimen: Vec<SpecimenState>,
-    /// Time steps of the test.
-    pub steps: u64,
+    #[serde(flatten)]
+    pub answer: Tested,
 }
 
-/// Everything that the directory of a rig says, as data.
+/// Tests of beds under actuators.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RigRun {
-    pub scenario: Scenario,
-    pub summary: Summary,
-    /// Names and chainages, m.
+pub struct BedTests {
+    /// Names and chainages of what stands on the bed, m.
     pub sleepers: Vec<(String, f64)>,
+    /// Names and chainages of the sensors, m.
     pub sensors: Vec<(String, f64)>,
     /// Area of a plate over the whole bed in the place of sleepers, m2.
     pub plate: Option<f64>,
     /// One for each seed.
-    pub tests: Vec<Tested>,
+    pub tests: Vec<BedTest>,
 }
 
 /// A sleeper over one cycle (`cycles.csv`). Forces are on what the bed models: of one rail, or of both.
@@ -164,27 +153,25 @@ impl Row for SpecimenRow {
     ];
 }
 
-impl RigRun {
-    /// Takes together what was tested, and gives the last bed beside it. `sources` are the texts that made it, the main file first,
-    /// and `sha256` is their hash.
-    pub fn gather(scenario: &Scenario, performed: Performed, sources: &Sources, sha256: String) -> (RigRun, Bed<f32>) {
-        let provenance = Provenance::of(sources, sha256, scenario.solve.seed, rig_listing(scenario));
-        let tables = RigTables::of(&performed);
-        let expectations = verdicts(scenario, tables.view(&scenario.track));
-        let summary = Summary { scalars: tables.scalars, expectations, provenance };
-        let Performed { plan, tests, bed } = performed;
-        let RigPlan { sleepers, sensors, plate, .. } = plan;
-        (RigRun { scenario: scenario.clone(), summary, sleepers, sensors, plate, tests }, bed)
+impl BedTests {
+    /// Tests of a bed; none yet.
+    pub fn new(bed: &BedNode) -> BedTests {
+        BedTests {
+            sleepers: bed.bodies.iter().map(|body| (body.name.clone(), body.x)).collect(),
+            sensors: bed.sensors.iter().map(|sensor| (sensor.name.clone(), sensor.x)).collect(),
+            plate: bed.plate,
+            tests: Vec::new(),
+        }
     }
 
     /// Height of the bed of a test as it was packed, m.
-    pub fn height(test: &Tested) -> f64 {
+    pub fn height(test: &BedTest) -> f64 {
         test.bed.layers.iter().map(|layer| layer.thickness_m).sum()
     }
 
     pub fn cycles(&self) -> Vec<CycleRow> {
-        let row = |test: &Tested, cycle: &Cycle| CycleRow {
-            seed: test.seed,
+        let row = |test: &BedTest, cycle: &Cycle| CycleRow {
+            seed: test.answer.seed,
             sleeper: self.sleepers[cycle.sleeper].0.clone(),
             cycle: cycle.number,
             settlement_m: cycle.settlement,
@@ -194,12 +181,12 @@ impl RigRun {
             work_J: cycle.work,
             steps: cycle.steps,
         };
-        self.tests.iter().flat_map(|test| test.cycles.iter().map(move |cycle| row(test, cycle))).collect()
+        self.tests.iter().flat_map(|test| test.answer.cycles.iter().map(move |cycle| row(test, cycle))).collect()
     }
 
     pub fn loops(&self) -> Vec<LoopRow> {
-        let row = |test: &Tested, sample: &Sample| LoopRow {
-            seed: test.seed,
+        let row = |test: &BedTest, sample: &Sample| LoopRow {
+            seed: test.answer.seed,
             sleeper: self.sleepers[sample.sleeper].0.clone(),
             cycle: sample.cycle,
             phase: sample.phase,
@@ -208,12 +195,12 @@ impl RigRun {
             depth_m: sample.depth,
             velocity_m_per_s: sample.velocity,
         };
-        self.tests.iter().flat_map(|test| test.samples.iter().map(move |sample| row(test, sample))).collect()
+        self.tests.iter().flat_map(|test| test.answer.samples.iter().map(move |sample| row(test, sample))).collect()
     }
 
     pub fn readings(&self) -> Vec<SensorRow> {
-        let row = |test: &Tested, reading: &Reading| SensorRow {
-            seed: test.seed,
+        let row = |test: &BedTest, reading: &Reading| SensorRow {
+            seed: test.answer.seed,
             sensor: self.sensors[reading.sensor].0.clone(),
             cycle: reading.cycle,
             phase: reading.phase,
@@ -221,12 +208,12 @@ impl RigRun {
             velocity_m_per_s: reading.velocity,
             coordination_number: reading.coordination,
         };
-        self.tests.iter().flat_map(|test| test.readings.iter().map(move |reading| row(test, reading))).collect()
+        self.tests.iter().flat_map(|test| test.answer.readings.iter().map(move |reading| row(test, reading))).collect()
     }
 
     pub fn specimen(&self) -> Vec<SpecimenRow> {
-        let row = |test: &Tested, state: &SpecimenState| SpecimenRow {
-            seed: test.seed,
+        let row = |test: &BedTest, state: &SpecimenState| SpecimenRow {
+            seed: test.answer.seed,
             cycle: state.cycle,
             phase: state.phase,
             axial_strain: state.axial_strain,
@@ -235,18 +222,18 @@ impl RigRun {
             lateral_stress_Pa: state.lateral_stress,
             deviator_Pa: state.deviator(),
         };
-        self.tests.iter().flat_map(|test| test.specimen.iter().map(move |state| row(test, state))).collect()
+        self.tests.iter().flat_map(|test| test.answer.specimen.iter().map(move |state| row(test, state))).collect()
     }
 
     pub fn volumes(&self) -> Vec<VolumeRow> {
         let mut rows = Vec::new();
         for test in &self.tests {
-            for end in &test.readings {
+            for end in &test.answer.readings {
                 let Some(porosity) = end.porosity else { continue };
-                let same = test.readings.iter().filter(|r| (r.sensor, r.cycle) == (end.sensor, end.cycle));
+                let same = test.answer.readings.iter().filter(|r| (r.sensor, r.cycle) == (end.sensor, end.cycle));
                 let stresses = same.map(|reading| reading.stress);
                 rows.push(VolumeRow {
-                    seed: test.seed,
+                    seed: test.answer.seed,
                     sensor: self.sensors[end.sensor].0.clone(),
                     cycle: end.cycle,
                     porosity,

@@ -7,7 +7,7 @@ use super::number::{significant, whole};
 use super::page::{expectations, opening, picture, provenance, subtitle};
 use super::scene::WIDTH;
 use super::svg::{Frame, Svg, escape};
-use crate::results::{RigRun, RigView, Tested};
+use crate::results::{BedTest, BedTests, BedTestsView, Run};
 use crate::solvers::granular::rig::{Cycle, Reading, Sample, SpecimenState};
 use std::fmt::Write;
 
@@ -16,14 +16,16 @@ const HEIGHT: f64 = 320.0;
 const LOOPS: usize = 4;
 
 /// The page of a rig.
-pub struct RigPage<'a> {
-    run: &'a RigRun,
-    view: &'a RigView,
+pub struct BedTestsPage<'a> {
+    run: &'a Run,
+    tests: &'a BedTests,
+    view: &'a BedTestsView,
 }
 
-impl<'a> RigPage<'a> {
-    pub fn of(view: &'a RigView) -> RigPage<'a> {
-        RigPage { run: &view.run, view }
+impl<'a> BedTestsPage<'a> {
+    /// The page of a view.
+    pub fn new(view: &'a BedTestsView) -> BedTestsPage<'a> {
+        BedTestsPage { run: &view.run, tests: &view.tests, view }
     }
 
     /// The whole page, which needs nothing from elsewhere.
@@ -64,11 +66,11 @@ impl<'a> RigPage<'a> {
             1 => "One cycle".to_owned(),
             n => format!("{} cycles", whole(n)),
         };
-        let counts = match self.run.tests.iter().any(|test| !test.specimen.is_empty()) {
+        let counts = match self.tests.tests.iter().any(|test| !test.answer.specimen.is_empty()) {
             true => "Settlement and strains count from the end of consolidation",
             false => "Settlement counts from rest under the sleeper's or plate's own weight",
         };
-        let packings = match self.run.tests.len() {
+        let packings = match self.tests.tests.len() {
             1 => "one packing".to_owned(),
             n => format!("{n} packings, with the 95 % interval of their mean"),
         };
@@ -93,7 +95,7 @@ impl<'a> RigPage<'a> {
         figures.extend(self.deviator());
         figures.extend(self.volume());
         // a bed that is shortened once has nothing to show against cycles
-        if self.run.tests.iter().any(|test| test.cycles.iter().any(|cycle| cycle.number > 1)) {
+        if self.tests.tests.iter().any(|test| test.answer.cycles.iter().any(|cycle| cycle.number > 1)) {
             figures.extend([self.against_cycles(false), self.against_cycles(true), self.stiffness()]);
         }
         figures.push(self.loops());
@@ -108,15 +110,15 @@ impl<'a> RigPage<'a> {
     /// Cycles of each packing and sleeper, with their name.
     fn series(&self, of: impl Fn(&Cycle) -> f64) -> Vec<Series> {
         let mut found = Vec::new();
-        for (number, test) in self.run.tests.iter().enumerate() {
-            for (index, (name, _)) in self.run.sleepers.iter().enumerate() {
-                let cycles = test.cycles.iter().filter(|cycle| cycle.sleeper == index);
+        for (number, test) in self.tests.tests.iter().enumerate() {
+            for (index, (name, _)) in self.tests.sleepers.iter().enumerate() {
+                let cycles = test.answer.cycles.iter().filter(|cycle| cycle.sleeper == index);
                 let points: Vec<(f64, f64)> = cycles.map(|cycle| (cycle.number as f64, of(cycle))).collect();
-                let name = if self.run.plate.is_some() { name.clone() } else { format!("sleeper {name}") };
-                let (name, class) = match (self.run.tests.len(), self.run.sleepers.len()) {
+                let name = if self.tests.plate.is_some() { name.clone() } else { format!("sleeper {name}") };
+                let (name, class) = match (self.tests.tests.len(), self.tests.sleepers.len()) {
                     (1, _) => (name, index),
-                    (_, 1) => (format!("seed {}", test.seed), number),
-                    _ => (format!("{name}, seed {}", test.seed), index),
+                    (_, 1) => (format!("seed {}", test.answer.seed), number),
+                    _ => (format!("{name}, seed {}", test.answer.seed), index),
                 };
                 let mark = if points.len() > 40 { Mark::Line } else { Mark::Dots };
                 found.push(Series::new(&name, &class_of(class), mark, points));
@@ -157,9 +159,10 @@ impl<'a> RigPage<'a> {
     fn loops(&self) -> Figure {
         let x = Axis { from_zero: true, ..Axis::new("Depth", ("mm", 1e-3)) };
         let mut chart = Chart::new(x, Axis { from_zero: true, ..Axis::new("Force of the actuator", ("kN", 1e3)) });
-        let test = &self.run.tests[0];
-        let worst = test.cycles.iter().max_by(|a, b| a.settlement.total_cmp(&b.settlement)).map_or(0, |c| c.sleeper);
-        let samples: Vec<&Sample> = test.samples.iter().filter(|sample| sample.sleeper == worst).collect();
+        let test = &self.tests.tests[0];
+        let worst =
+            test.answer.cycles.iter().max_by(|a, b| a.settlement.total_cmp(&b.settlement)).map_or(0, |c| c.sleeper);
+        let samples: Vec<&Sample> = test.answer.samples.iter().filter(|sample| sample.sleeper == worst).collect();
         for (number, cycle) in some(kept(&samples, |sample| sample.cycle), LOOPS).into_iter().enumerate() {
             let of = samples.iter().filter(|sample| sample.cycle == cycle);
             let points = of.map(|sample| (sample.depth, sample.force)).collect();
@@ -167,8 +170,8 @@ impl<'a> RigPage<'a> {
         }
         let caption = format!(
             "Sleeper {}, seed {}: what a loop encloses is work that the bed keeps.",
-            self.run.sleepers.get(worst).map_or("", |(name, _)| name),
-            test.seed
+            self.tests.sleepers.get(worst).map_or("", |(name, _)| name),
+            test.answer.seed
         );
         figure(chart, "loops", "Force against depth", &caption)
     }
@@ -198,11 +201,11 @@ impl<'a> RigPage<'a> {
     ) -> Option<Figure> {
         let x = Axis { from_zero: true, ..Axis::new("Axial strain", ("%", 0.01)) };
         let mut chart = Chart::new(x, y);
-        let tests = &self.run.tests;
-        let cycles = some(kept(&tests[0].specimen, |state| state.cycle), LOOPS);
+        let tests = &self.tests.tests;
+        let cycles = some(kept(&tests[0].answer.specimen, |state| state.cycle), LOOPS);
         let point = |state: &SpecimenState| (state.axial_strain, of(state));
-        let mut line = |name: String, test: &Tested, cycle: u64, class: usize| {
-            let points: Vec<_> = test.specimen.iter().filter(|state| state.cycle == cycle).map(point).collect();
+        let mut line = |name: String, test: &BedTest, cycle: u64, class: usize| {
+            let points: Vec<_> = test.answer.specimen.iter().filter(|state| state.cycle == cycle).map(point).collect();
             chart.series.push(Series::new(&name, &class_of(class), Mark::Line, points));
         };
         match cycles[..] {
@@ -210,7 +213,7 @@ impl<'a> RigPage<'a> {
             [cycle] => tests
                 .iter()
                 .enumerate()
-                .for_each(|(number, test)| line(format!("seed {}", test.seed), test, cycle, number)),
+                .for_each(|(number, test)| line(format!("seed {}", test.answer.seed), test, cycle, number)),
             _ => cycles
                 .iter()
                 .enumerate()
@@ -221,13 +224,13 @@ impl<'a> RigPage<'a> {
 
     /// Stress against strain under a plate, first packing.
     fn strain(&self) -> Option<Figure> {
-        let area = self.run.plate.filter(|_| self.run.tests[0].specimen.is_empty())?;
-        let test = &self.run.tests[0];
-        let height = RigRun::height(test);
+        let area = self.tests.plate.filter(|_| self.tests.tests[0].answer.specimen.is_empty())?;
+        let test = &self.tests.tests[0];
+        let height = BedTests::height(test);
         let x = Axis { from_zero: true, ..Axis::new("Vertical strain", ("%", 0.01)) };
         let mut chart = Chart::new(x, Axis { from_zero: true, ..Axis::new("Vertical stress", ("kPa", 1e3)) });
-        for (number, cycle) in some(kept(&test.samples, |sample| sample.cycle), LOOPS).into_iter().enumerate() {
-            let of = test.samples.iter().filter(|sample| sample.cycle == cycle);
+        for (number, cycle) in some(kept(&test.answer.samples, |sample| sample.cycle), LOOPS).into_iter().enumerate() {
+            let of = test.answer.samples.iter().filter(|sample| sample.cycle == cycle);
             let points = of.map(|sample| (sample.depth / height, sample.force / area)).collect();
             chart.series.push(Series::new(&format!("cycle {cycle}"), &class_of(number), Mark::Line, points));
         }
@@ -249,10 +252,10 @@ impl<'a> RigPage<'a> {
 
     /// What sensors of the first packing read over the last cycle that is kept.
     fn at_sensors(&self, y: Axis, of: fn(&Reading) -> f64, id: &str, title: &str, caption: &str) -> Option<Figure> {
-        let readings = &self.run.tests[0].readings;
+        let readings = &self.tests.tests[0].answer.readings;
         let last = readings.iter().map(|reading| reading.cycle).max()?;
         let mut chart = Chart::new(Axis { range: Some((0.0, 1.0)), ..Axis::new("Share of the cycle", ("%", 0.01)) }, y);
-        for (index, (name, _)) in self.run.sensors.iter().enumerate() {
+        for (index, (name, _)) in self.tests.sensors.iter().enumerate() {
             let over = |cycle: u64| readings.iter().filter(move |r| (r.sensor, r.cycle) == (index, cycle));
             let line = |cycle| over(cycle).map(|reading| (reading.phase, of(reading))).collect::<Vec<_>>();
             chart.series.push(Series::new("", &class_of(index), Mark::Faint, line(1)));
@@ -277,7 +280,7 @@ impl<'a> RigPage<'a> {
 
     fn beds(&self, html: &mut String) {
         *html += "<section class=\"long\" id=\"beds\"><h2>Beds</h2>";
-        for test in &self.run.tests {
+        for test in &self.tests.tests {
             let bed = &test.bed;
             let layers = bed.layers.iter().rev().map(|layer| {
                 format!(
@@ -290,9 +293,9 @@ impl<'a> RigPage<'a> {
                 )
             });
             let layers = layers.collect::<Vec<_>>().join("; ");
-            let _ = writeln!(html, "<p class=\"note\">Seed {}: {}.</p>", test.seed, escape(&layers));
+            let _ = writeln!(html, "<p class=\"note\">Seed {}: {}.</p>", test.answer.seed, escape(&layers));
         }
-        for note in self.run.tests.first().map_or(&[][..], |test| &test.bed.notes) {
+        for note in self.tests.tests.first().map_or(&[][..], |test| &test.bed.notes) {
             let _ = writeln!(html, "<p class=\"note\">{}</p>", escape(note));
         }
         *html += "</section>\n";

@@ -1,15 +1,12 @@
 //! What no rig can be made of, told before anything is packed.
 
-use super::{acts_on, has_grains, loads, stands_on_its_bed};
+use super::{acts_on, has_grains, loads};
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{Foot, Force, RigLoad, Scenario, Target};
 use crate::units::number;
 
-/// Every mistake of a rig; none of a scene that is no rig.
-pub(in crate::lower) fn refusals(scenario: &Scenario) -> Vec<Diagnostic> {
-    if !stands_on_its_bed(scenario) {
-        return Vec::new();
-    }
+/// Every mistake of a rig.
+pub(super) fn refusals(scenario: &Scenario) -> Vec<Diagnostic> {
     if let Some(section) = scenario.track.sections.iter().find(|section| !has_grains(section)) {
         let message = format!("a rig stands on grains, and `{}` has no layer of them", section.name);
         return vec![refused(message, "give its trackform `layers` with a `granular` on top")];

@@ -1,9 +1,9 @@
 //! The few numbers of a test, over its packings, and what the scene expects of it.
 
-use super::super::{HistoryRow, Scalar, SleeperRow, Tables};
-use super::{Performed, RigRun, Tested};
-use crate::scenario::response::{Measure, Response};
-use crate::scenario::{Scenario, Track};
+use super::super::{HistoryRow, Scalar, SleeperTable, Tables};
+use super::{BedTest, BedTests};
+use crate::scenario::Track;
+use crate::scenario::response::Response;
 use crate::solvers::granular::rig::Cycle;
 use std::collections::BTreeMap;
 
@@ -26,14 +26,14 @@ pub(super) fn mean_and_confidence(values: &[f64]) -> (f64, Option<f64>) {
 }
 
 /// Of the sleeper that settles most in each packing: mean over packings, and its confidence where there are several.
-fn scalars(tests: &[Tested], plate: Option<f64>) -> BTreeMap<String, Scalar> {
+fn scalars(tests: &[BedTest], plate: Option<f64>) -> BTreeMap<String, Scalar> {
     let mut scalars = BTreeMap::new();
-    let last = tests.iter().flat_map(|test| &test.cycles).map(|cycle| cycle.number).max().unwrap_or(0);
-    let worst = |test: &Tested, number: u64| -> Option<Cycle> {
-        let of = test.cycles.iter().filter(|cycle| cycle.number == number);
+    let last = tests.iter().flat_map(|test| &test.answer.cycles).map(|cycle| cycle.number).max().unwrap_or(0);
+    let worst = |test: &BedTest, number: u64| -> Option<Cycle> {
+        let of = test.answer.cycles.iter().filter(|cycle| cycle.number == number);
         of.copied().max_by(|a, b| a.settlement.total_cmp(&b.settlement))
     };
-    let mut put = |name: &str, unit: &str, of: &dyn Fn(&Tested) -> Option<f64>| {
+    let mut put = |name: &str, unit: &str, of: &dyn Fn(&BedTest) -> Option<f64>| {
         let values: Vec<f64> = tests.iter().filter_map(of).collect();
         if values.is_empty() {
             return;
@@ -51,30 +51,35 @@ fn scalars(tests: &[Tested], plate: Option<f64>) -> BTreeMap<String, Scalar> {
     put("support_stiffness", "N/m", &|test| stiffness(worst(test, last)?));
     put("first_support_stiffness", "N/m", &|test| stiffness(worst(test, 1)?));
     // of a specimen: the largest deviator of all that is kept, what it mobilises, and the secant to half of it
-    let peak = |test: &Tested| test.specimen.iter().copied().max_by(|a, b| a.deviator().total_cmp(&b.deviator()));
+    let peak =
+        |test: &BedTest| test.answer.specimen.iter().copied().max_by(|a, b| a.deviator().total_cmp(&b.deviator()));
     put("peak_deviator", "Pa", &|test| Some(peak(test)?.deviator()));
     put("peak_friction_angle", "rad", &|test| Some(peak(test)?.mobilised_friction()));
     put("peak_strain", "1", &|test| Some(peak(test)?.axial_strain));
     put("secant_modulus", "Pa", &|test| {
         let half = 0.5 * peak(test)?.deviator();
-        let state = test.specimen.iter().find(|state| state.deviator() >= half)?;
+        let state = test.answer.specimen.iter().find(|state| state.deviator() >= half)?;
         Some(state.deviator() / state.axial_strain)
     });
-    put("least_volume_strain", "1", &|test| test.specimen.iter().map(|state| state.volume_strain).reduce(f64::min));
-    put("greatest_volume_strain", "1", &|test| test.specimen.iter().map(|state| state.volume_strain).reduce(f64::max));
+    put("least_volume_strain", "1", &|test| {
+        test.answer.specimen.iter().map(|state| state.volume_strain).reduce(f64::min)
+    });
+    put("greatest_volume_strain", "1", &|test| {
+        test.answer.specimen.iter().map(|state| state.volume_strain).reduce(f64::max)
+    });
     // of a plate: E = (F / A) / (u / h), and that of the virgin loading from its first to its deepest place
-    if let Some(area) = plate.filter(|_| tests.iter().all(|test| test.specimen.is_empty())) {
-        let modulus = |test: &Tested, stiffness: f64| stiffness * RigRun::height(test) / area;
+    if let Some(area) = plate.filter(|_| tests.iter().all(|test| test.answer.specimen.is_empty())) {
+        let modulus = |test: &BedTest, stiffness: f64| stiffness * BedTests::height(test) / area;
         put("oedometric_modulus", "Pa", &|test| Some(modulus(test, stiffness(worst(test, last)?)?)));
         put("first_oedometric_modulus", "Pa", &|test| {
-            let samples = || test.samples.iter().filter(|sample| sample.cycle == 1);
+            let samples = || test.answer.samples.iter().filter(|sample| sample.cycle == 1);
             let deepest = samples().max_by(|a, b| a.depth.total_cmp(&b.depth))?;
             let first = samples().next()?;
             Some(modulus(test, (deepest.force - first.force) / (deepest.depth - first.depth)))
         });
     }
-    put("max_contact_force", "N", &|test| test.cycles.iter().map(|cycle| cycle.contact_force).reduce(f64::max));
-    put("steps", "1", &|test| Some(test.steps as f64));
+    put("max_contact_force", "N", &|test| test.answer.cycles.iter().map(|cycle| cycle.contact_force).reduce(f64::max));
+    put("steps", "1", &|test| Some(test.answer.steps as f64));
     put("grains", "1", &|test| Some(test.bed.bodies as f64));
     put("porosity", "1", &|test| Some(test.bed.layers.last()?.inner_porosity));
     put("coordination_number", "1", &|test| Some(test.bed.layers.last()?.coordination));
@@ -84,83 +89,78 @@ fn scalars(tests: &[Tested], plate: Option<f64>) -> BTreeMap<String, Scalar> {
 }
 
 /// What expressions can be about, in means over packings.
-pub struct RigTables {
-    sleepers: Vec<SleeperRow>,
+pub struct TestTables {
+    sleepers: Vec<MeanCycleRow>,
     histories: Vec<HistoryRow>,
-    pub(super) scalars: BTreeMap<String, Scalar>,
+    pub scalars: BTreeMap<String, Scalar>,
 }
 
-impl RigTables {
-    pub fn of(performed: &Performed) -> RigTables {
-        let Performed { plan, tests, .. } = performed;
-        RigTables {
-            sleepers: sleeper_rows(&plan.sleepers, tests),
-            histories: histories(&plan.sensors, &plan.sleepers, tests),
-            scalars: scalars(tests, plan.plate),
+/// A sleeper after a cycle: means over packings, SI, of what [`Cycle`] holds.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeanCycleRow {
+    pub cycle: u64,
+    pub sleeper: String,
+    /// Chainage, m.
+    pub x_m: f64,
+    /// m.
+    pub settlement: f64,
+    pub deepest: f64,
+    /// N/m.
+    pub stiffness: f64,
+    /// N.
+    pub max_contact_force: f64,
+}
+
+impl TestTables {
+    /// The tables of all tests.
+    pub fn new(of: &BedTests) -> TestTables {
+        let BedTests { sleepers, sensors, plate, tests } = of;
+        TestTables {
+            sleepers: mean_cycles(sleepers, tests),
+            histories: histories(sensors, sleepers, tests),
+            scalars: scalars(tests, *plate),
         }
     }
 
+    /// What expressions are about.
     pub fn view<'a>(&'a self, track: &'a Track) -> Tables<'a> {
-        let RigTables { sleepers, histories, scalars } = self;
-        Tables { sleepers, blocks: &[], rail: &[], histories, scalars, track }
+        let TestTables { sleepers, histories, scalars } = self;
+        Tables { sleepers: SleeperTable::Cycles(sleepers), blocks: &[], rail: &[], histories, scalars, track }
     }
 }
 
-/// Whether a rig of this scene answers to a measure.
-pub fn kept_by_rig(measure: &Measure, scenario: &Scenario) -> bool {
-    match measure.response {
-        Response::Settlement
-        | Response::SupportStiffness
-        | Response::SleeperDisplacement
-        | Response::SleeperVelocity
-        | Response::ContactForce => true,
-        Response::ContactPressure => {
-            scenario.track.seats.iter().any(|seat| scenario.track.bearing_area(seat).is_some())
-        }
-        Response::BallastStress | Response::BallastVelocity | Response::CoordinationNumber | Response::Porosity => {
-            !scenario.volumes.is_empty()
-        }
-        _ => false,
-    }
-}
-
-/// A row for each sleeper and cycle, as expectations read them: counts are cycles. What a rig does not know is no number, and an
-/// expectation of it is missed with its reason.
-fn sleeper_rows(sleepers: &[(String, f64)], tests: &[Tested]) -> Vec<SleeperRow> {
+/// A row for each sleeper and cycle.
+fn mean_cycles(sleepers: &[(String, f64)], tests: &[BedTest]) -> Vec<MeanCycleRow> {
     let Some(first) = tests.first() else { return Vec::new() };
     let row = |(index, cycle): (usize, &Cycle)| {
         // packings of one scene end their cycles in the same order
         let mean = |of: fn(&Cycle) -> f64| {
-            let values: Vec<f64> = tests.iter().filter_map(|test| test.cycles.get(index)).map(of).collect();
+            let values: Vec<f64> = tests.iter().filter_map(|test| test.answer.cycles.get(index)).map(of).collect();
             mean_and_confidence(&values).0
         };
         let (name, x) = &sleepers[cycle.sleeper];
-        SleeperRow {
-            axles: cycle.number,
+        MeanCycleRow {
+            cycle: cycle.number,
             sleeper: name.clone(),
             x_m: *x,
-            settlement_m: mean(|c| c.settlement),
-            void_m: f64::NAN,
-            gravity_contact_force_N: f64::NAN,
-            max_contact_force_N: mean(|c| c.contact_force),
-            max_rail_seat_load_N: f64::NAN,
-            max_sleeper_displacement_m: mean(|c| c.deepest),
-            support_stiffness_N_per_m: mean(|c| c.stiffness),
-            contact_loss_s: f64::NAN,
+            settlement: mean(|c| c.settlement),
+            deepest: mean(|c| c.deepest),
+            stiffness: mean(|c| c.stiffness),
+            max_contact_force: mean(|c| c.contact_force),
         }
     };
-    first.cycles.iter().enumerate().map(row).collect()
+    first.answer.cycles.iter().enumerate().map(row).collect()
 }
 
 /// What sensors and sleepers did in the cycles that are kept, of all packings.
-fn histories(sensors: &[(String, f64)], sleepers: &[(String, f64)], tests: &[Tested]) -> Vec<HistoryRow> {
+fn histories(sensors: &[(String, f64)], sleepers: &[(String, f64)], tests: &[BedTest]) -> Vec<HistoryRow> {
     let mut rows = Vec::new();
     let mut put = |cycle: u64, phase: f64, quantity: Response, (id, x): &(String, f64), value: f64| {
         let (quantity, id) = (quantity.name().to_owned(), id.clone());
         rows.push(HistoryRow { axles: cycle, time_s: phase, quantity, id, x_m: *x, value, train: String::new() });
     };
     for test in tests {
-        for reading in &test.readings {
+        for reading in &test.answer.readings {
             let at = &sensors[reading.sensor];
             put(reading.cycle, reading.phase, Response::BallastStress, at, reading.stress);
             put(reading.cycle, reading.phase, Response::BallastVelocity, at, reading.velocity);
@@ -169,7 +169,7 @@ fn histories(sensors: &[(String, f64)], sleepers: &[(String, f64)], tests: &[Tes
                 put(reading.cycle, reading.phase, Response::Porosity, at, porosity);
             }
         }
-        for sample in &test.samples {
+        for sample in &test.answer.samples {
             put(sample.cycle, sample.phase, Response::SleeperVelocity, &sleepers[sample.sleeper], sample.velocity);
         }
     }

@@ -1,0 +1,97 @@
+//! From a text to a compiled scene, in memory: check, lower, lint.
+
+use crate::check::{self, Modules, Override};
+use crate::diag::{self, Code, Diagnostic, Severity, Sources};
+use crate::graph::Graph;
+use crate::lint::lint;
+use crate::lower::{Lowered, Origins, Planner};
+use crate::scenario::{Scenario, Study};
+use sha2::{Digest, Sha256};
+
+/// What became of a text: every diagnostic, and the scene and its plan where they could be made.
+#[derive(Debug)]
+pub struct Compiled {
+    pub sources: Sources,
+    /// Down the file; errors among them stop a run.
+    pub diagnostics: Vec<Diagnostic>,
+    pub scenario: Option<Scenario>,
+    /// `None` where nothing acts on the track. One that this version cannot run is there to be looked at, see [`Graph::runs`].
+    pub graph: Option<Graph>,
+    /// Where the scene says the parameters of the graph.
+    pub origins: Origins,
+    /// The studies of the file that have no mistake of their own.
+    pub studies: Vec<Study>,
+}
+
+impl Compiled {
+    /// A text of which nothing could be made.
+    pub fn unread(mistake: Diagnostic) -> Compiled {
+        Compiled {
+            sources: Sources::default(),
+            diagnostics: vec![mistake],
+            scenario: None,
+            graph: None,
+            origins: Origins::default(),
+            studies: Vec::new(),
+        }
+    }
+
+    /// The same for a run: what a scene needs and this version cannot do is an error there, and a warning to a check.
+    pub fn to_run(mut self) -> Compiled {
+        for diagnostic in self.diagnostics.iter_mut().filter(|d| d.code == Code::E0604) {
+            diagnostic.severity = Severity::Error;
+        }
+        diag::sort(&mut self.diagnostics);
+        self
+    }
+
+    /// The plan, where this version can run it.
+    pub fn runnable(&self) -> Option<&Graph> {
+        self.graph.as_ref().filter(|graph| graph.runs)
+    }
+}
+
+/// Checks a text that a person calls `name`, lowers it and applies the physics rules. Costs milliseconds.
+pub fn compile(name: &str, text: &str, modules: &dyn Modules, overrides: &[Override]) -> Compiled {
+    compile_with(&Planner::default(), name, text, modules, overrides)
+}
+
+/// The same with a planner of one's own.
+pub fn compile_with(
+    planner: &Planner,
+    name: &str,
+    text: &str,
+    modules: &dyn Modules,
+    overrides: &[Override],
+) -> Compiled {
+    let checked = check::check(name, text, modules, overrides);
+    let mut diagnostics = checked.diagnostics;
+    let (mut graph, mut origins) = (None, Origins::default());
+    if let Some(scenario) = &checked.scenario {
+        let lowered: Lowered = planner.lower(scenario);
+        // beside errors of the text, only further errors are worth a word
+        diagnostics.extend(lowered.diagnostics.into_iter().filter(|d| checked.sound || d.is_error()));
+        graph = lowered.graph.filter(|_| checked.sound);
+        origins = lowered.origins;
+        diagnostics.extend(graph.iter().flat_map(|graph| lint(scenario, graph)));
+    }
+    diag::sort(&mut diagnostics);
+    Compiled {
+        sources: checked.sources,
+        diagnostics,
+        scenario: checked.scenario.filter(|_| checked.sound),
+        graph,
+        origins,
+        studies: checked.studies,
+    }
+}
+
+/// SHA-256 over every text that a scene is made of, overrides included, in hexadecimal.
+pub fn fingerprint(sources: &Sources) -> String {
+    let mut hash = Sha256::new();
+    for (_, source) in sources.iter() {
+        hash.update((source.text.len() as u64).to_le_bytes());
+        hash.update(source.text.as_bytes());
+    }
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}

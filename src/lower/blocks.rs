@@ -1,0 +1,215 @@
+//! Divides the axles of a run into blocks, between which forces and settlement are exchanged.
+
+use super::{Draft, Pass, track};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::graph::{Blocks, Cost, PassagePlan, Rejected, Schedule, Tamping, Train, Update, Work};
+use crate::scenario::{self, Loading, Order, Share, Traffic};
+use crate::units::number;
+
+/// Cuts the axles into blocks, at the counts where something is recorded or done to the track.
+pub(super) struct Cut;
+
+impl Pass for Cut {
+    fn name(&self) -> &'static str {
+        "blocks"
+    }
+
+    fn run(&self, draft: &mut Draft<'_>) {
+        let Some(Loading::Traffic(traffic)) = &draft.scenario.loading else { return };
+        draft.blocks = blocks(draft, traffic);
+        let Some(blocks) = &draft.blocks else { return };
+        let tampings: Vec<(String, String)> = blocks.tampings.iter().map(told).collect();
+        let mixed = traffic.is_mixed().then(|| mix(blocks));
+        tampings.into_iter().for_each(|(what, why)| draft.decide("tamping", what, why));
+        mixed.into_iter().for_each(|(what, why)| draft.decide("mix", what, why));
+    }
+}
+
+fn blocks(draft: &mut Draft<'_>, traffic: &Traffic) -> Option<Blocks> {
+    let scenario = draft.scenario;
+    let total = *traffic.total;
+    let mut update = update(scenario.solve.update);
+    // counts of a mix have gone to the nearest train
+    let mut sound = traffic.is_mixed() || whole_trains(draft, traffic, &mut update);
+    let mut recorded: Vec<u64> =
+        scenario.records.iter().flat_map(|r| r.after.iter().copied()).chain([0, total]).collect();
+    recorded.sort_unstable();
+    recorded.dedup();
+    if !traffic.is_mixed() {
+        sound &= between_trains(draft, &recorded, total, &traffic.train);
+    }
+    if !sound || !few_enough(draft, update, total) {
+        return None;
+    }
+    let sequence = traffic.sequence();
+    let turns = sequence.turns().into_iter().map(|position| sequence.axles(position));
+    let tamped = scenario.tampings.iter().flat_map(|tamping| tamping.after.iter().copied());
+    let mut stops: Vec<u64> = recorded.iter().copied().chain(turns).chain(tamped).collect();
+    stops.sort_unstable();
+    stops.dedup();
+    let mut passages = draft.passages.iter().copied();
+    let (train, passage) = (track::train(&traffic.train), passages.next()?);
+    let others = traffic.others.iter().map(track::train).zip(passages).collect();
+    let tampings = scenario.tampings.iter().map(tamping).collect();
+    Some(Blocks { train, passage, others, sequence, update, cure: true, share: true, recorded, tampings, stops, total })
+}
+
+fn update(update: scenario::Update) -> Update {
+    match update {
+        scenario::Update::Fixed { axles } => Update::Fixed { axles },
+        scenario::Update::Geometric { first, ratio } => Update::Geometric { first, ratio },
+        scenario::Update::Adaptive { tolerance, cap } => Update::Adaptive { tolerance, cap },
+    }
+}
+
+fn tamping(tamping: &scenario::Tamping) -> Tamping {
+    let scenario::Tamping { name, after, seats, left } = tamping.clone();
+    Tamping { name, after, seats, left }
+}
+
+fn told(tamping: &Tamping) -> (String, String) {
+    let after: Vec<String> = tamping.after.iter().map(u64::to_string).collect();
+    let what = format!("{} sleepers after {} axles", tamping.seats.len(), after.join(", "));
+    let left = number(100.0 * tamping.left);
+    (what, format!("`{}` leaves {left} % of their settlement; their law begins afresh", tamping.name))
+}
+
+/// Blocks of a run at most: each is a passage of every kind of train.
+const MOST_BLOCKS: u64 = 20_000;
+
+/// Whether the policy cuts the run into as many blocks as anybody could wait for.
+fn few_enough(draft: &mut Draft<'_>, update: Update, total: u64) -> bool {
+    let (mut before, mut blocks) = (0, 0);
+    while before < total && blocks <= MOST_BLOCKS {
+        let Some(axles) = update.axles_after(before) else { return true };
+        before += axles.max(1);
+        blocks += 1;
+    }
+    if blocks <= MOST_BLOCKS {
+        return true;
+    }
+    let message =
+        format!("{total} axles make more than {MOST_BLOCKS} blocks between two exchanges of forces and settlement");
+    let mut mistake = Diagnostic::new(Code::E0103, message)
+        .help("let them grow with the axles, `update_every = adaptive(0.003 mm)` or `geometric(4 axles, ratio = 0.2)`");
+    if let Some(span) = draft.scenario.solve.update_span {
+        mistake = mistake.at(span, "too short");
+    }
+    draft.diagnostics.push(mistake);
+    false
+}
+
+/// Whether total and blocks of traffic of one kind are whole trains.
+fn whole_trains(draft: &mut Draft<'_>, traffic: &Traffic, update: &mut Update) -> bool {
+    let (train, span) = (&traffic.train, draft.scenario.solve.update_span);
+    let sound = divides(draft, *traffic.total, train, "the run", traffic.total.origin.span());
+    let blocks = match update {
+        // nobody chose the default for this train
+        Update::Geometric { first, .. } if span.is_none() => {
+            *first = first.div_ceil(train.axles()) * train.axles();
+            true
+        }
+        Update::Geometric { first, .. } => divides(draft, *first, train, "the first block", span),
+        Update::Fixed { axles } => divides(draft, *axles, train, "an update interval", span),
+        Update::Adaptive { .. } => true,
+    };
+    sound && blocks
+}
+
+/// Whether everything that is recorded is recorded between two trains of one kind.
+fn between_trains(draft: &mut Draft<'_>, recorded: &[u64], total: u64, train: &scenario::Train) -> bool {
+    let axles = train.axles();
+    let within: Vec<u64> = recorded.iter().copied().filter(|count| count % axles != 0 && *count != total).collect();
+    for count in &within {
+        draft.diagnostics.push(
+            Diagnostic::new(
+                Code::E0602,
+                format!("{count} recorded axles are no whole number of trains of {axles} axles"),
+            )
+            .help(format!("record after {} axles", (count / axles).max(1) * axles)),
+        );
+    }
+    within.is_empty()
+}
+
+/// What a mix has become in whole trains, and why.
+fn mix(blocks: &Blocks) -> (String, String) {
+    let share = |((train, _), share): ((&Train, &PassagePlan), &Share)| {
+        let axles = 100.0 * (share.trains * share.axles) as f64 / blocks.total as f64;
+        format!("{} of `{}` ({} % of the axles)", share.trains, train.name, number((axles * 100.0).round() / 100.0))
+    };
+    let shares: Vec<String> = blocks.kinds().zip(&blocks.sequence.shares).map(share).collect();
+    let why = match blocks.sequence.order {
+        Order::Interleaved => "shares go to the nearest whole train; trains are spread evenly over the run",
+        Order::InTurn => "shares go to the nearest whole train; one kind runs after the other",
+    };
+    (format!("{}, {} axles in all", shares.join(", "), blocks.total), why.to_owned())
+}
+
+/// Lets one passage stand for all equal trains of a block.
+pub(super) struct Shared;
+
+impl Pass for Shared {
+    fn name(&self) -> &'static str {
+        "share"
+    }
+
+    fn run(&self, draft: &mut Draft<'_>) {
+        let (Some(Schedule::Blocks(blocks)), Some(cost)) = (&draft.schedule, &draft.cost) else { return };
+        let trains = blocks.sequence.trains();
+        if trains < 2 {
+            return;
+        }
+        let why =
+            "trains of one kind and block run over the same settled track, so one passage gives the forces of all";
+        let work = cost.passages();
+        let about = if blocks.adaptive().is_some() { "about " } else { "" };
+        let what = format!("{about}{} passages stand for {trains} trains", work.passages);
+        let each = cost.seconds_on_two_cores / work.passages.max(1) as f64;
+        let rejected = Rejected {
+            what: "a passage of every train".into(),
+            why: "nothing is gained but the error of blocks, which the run measures".into(),
+            seconds: Some(each * trains as f64),
+        };
+        draft.decide_against(self.name(), what, why, vec![rejected]);
+    }
+
+    fn without(&self) -> Option<fn(&mut Draft<'_>)> {
+        Some(every_train)
+    }
+}
+
+/// Every train is a block and runs its own passage.
+fn every_train(draft: &mut Draft<'_>) {
+    let Some(Schedule::Blocks(blocks)) = &mut draft.schedule else { return };
+    blocks.share = false;
+    let trains = blocks.sequence.trains();
+    if let Some(Cost { seconds, seconds_on_two_cores, work: Work::Passages(work), .. }) = &mut draft.cost {
+        let times = trains as f64 / work.passages.max(1) as f64;
+        *seconds *= times;
+        *seconds_on_two_cores *= times;
+        work.steps = (work.steps as f64 * times) as u64;
+        (work.blocks, work.passages) = (trains, trains + 1);
+    }
+}
+
+/// Whether a count is a whole number of trains.
+fn divides(draft: &mut Draft<'_>, count: u64, train: &scenario::Train, what: &str, span: Option<Span>) -> bool {
+    let axles = train.axles();
+    if count.is_multiple_of(axles) && count > 0 {
+        return true;
+    }
+    let below = (count / axles).max(1) * axles;
+    let mut mistake =
+        Diagnostic::new(Code::E0602, format!("{what} of {count} axles is no whole number of trains of {axles} axles"))
+            .help(if count < axles {
+                format!("write `{axles} axles`")
+            } else {
+                format!("write `{below} axles` or `{} axles`", below + axles)
+            });
+    if let Some(span) = span {
+        mistake = mistake.at(span, "does not divide");
+    }
+    draft.diagnostics.push(mistake);
+    false
+}

@@ -1,0 +1,76 @@
+//! Tier `law`: a settlement law under each sleeper, published or fitted.
+
+use super::{ExpectedError, Proposal, Tier, edges};
+use crate::graph::{LawNode, Model, NamedLaw, Node, Schedule};
+use crate::lower::outlook::Outlook;
+use crate::lower::{Draft, cost, track};
+use crate::scenario::{Loading, Origin, Scenario, Seat, SettlementLaw, law_argument};
+use crate::solvers::settlement::{Form, Logarithm};
+
+pub struct SettlementLaws;
+
+impl Tier for SettlementLaws {
+    fn name(&self) -> &'static str {
+        "law"
+    }
+
+    fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
+        let scenario = draft.scenario;
+        if !matches!(scenario.loading, Some(Loading::Traffic(_))) {
+            return Err("no train runs, and a law settles by trains".into());
+        }
+        if !scenario.track.is_sprung() {
+            return Err("rails, pads or supports of known stiffness are missing".into());
+        }
+        let Some(blocks) = &draft.blocks else { return Err("the traffic cannot be cut into blocks".into()) };
+        let node = track::track(scenario);
+        let law = LawNode {
+            supports: track::supports(&scenario.track),
+            law: named(&scenario.solve.law),
+            followers: scenario.solve.other_laws.iter().map(named).collect(),
+        };
+        let outlook = Outlook::new(&law.supports, node.gravity, &law.law.law, blocks);
+        let cost = cost::of_blocks(&node, blocks, &outlook);
+        let nodes = vec![Node::new("track", Model::Track(Box::new(node))), Node::new("substructure", Model::Law(law))];
+        let stated = "the scene gives the stiffness of its supports";
+        let why = if stands_on_layers(scenario) { "the layers give the stiffness of the supports" } else { stated };
+        Ok(Proposal {
+            edges: edges(&nodes),
+            nodes,
+            schedule: Schedule::Blocks(Box::new(blocks.clone())),
+            cost,
+            what: "a settlement law under each sleeper".into(),
+            why: why.into(),
+            error: ExpectedError { share: None, evidence: "published laws differ by a factor of ten and more".into() },
+            runs: true,
+            refusals: Vec::new(),
+        })
+    }
+}
+
+/// Whether a sleeper stands on layers alone.
+fn stands_on_layers(scenario: &Scenario) -> bool {
+    let derived = |seat: &Seat| seat.support().is_some_and(|support| support.stiffness.origin == Origin::Derived);
+    scenario.track.seats.iter().any(|seat| derived(seat) && seat.onto_subgrade.is_some())
+}
+
+fn named(law: &SettlementLaw) -> NamedLaw {
+    NamedLaw { name: law.name.clone(), law: law.law, details: describe(law) }
+}
+
+/// The form of a law with its parameters as the language writes them, of one half sleeper.
+fn describe(named: &SettlementLaw) -> String {
+    let mut law = named.law;
+    let name = law.form.name();
+    let parameters = law.form.parameters().into_iter();
+    let parameters: Vec<String> =
+        parameters.map(|(argument, value)| format!("{argument} {}", law_argument(name, argument, *value))).collect();
+    let logarithm = match law.form {
+        Form::Hettler(law) => match law.logarithm {
+            Logarithm::Natural => ", natural logarithm",
+            Logarithm::Decimal => ", decimal logarithm",
+        },
+        _ => "",
+    };
+    format!("{name}: {}{logarithm}; one cycle per {}", parameters.join(", "), law.cycle_per.name())
+}

@@ -1,0 +1,138 @@
+//! What a rig costs, without packing it: grains from gradings, steps from the lightest grain.
+
+use super::{cycles, loads, period, rest_time};
+use crate::graph::{Cost, TestWork, Work};
+use crate::lower::Draft;
+use crate::lower::bed::{confinement, plan, width};
+use crate::scenario::{Contact, Granular, Scenario, Section, Shape};
+use crate::solvers::granular::grains::Curve;
+use crate::solvers::granular::packing::lifts_that_fit;
+use std::f64::consts::PI;
+
+/// Share of the volume that grains fill in a packed bed.
+const SOLID: f64 = 0.6;
+/// Over sqrt(m / k) of the lightest grain, the step of a test and that of packing, which holds light grains back.
+const STEP: f64 = 0.1;
+const PACKING_STEP: f64 = 0.25;
+/// Time, s, that a stage of packing takes, and stages beside those of lifts; and the setting down of sleepers, at twice the step.
+const STAGE: f64 = 0.45;
+const LAST_STAGES: u32 = 3;
+const SET_DOWN: f64 = 0.15;
+/// Steps of a pebble a second on two cores, of clumps of three, while it is packed and tested (`docs/validation.md`).
+const PEBBLE_STEPS: [f64; 2] = [10e6, 20e6];
+/// Time on one core over that on two.
+const SECOND_CORE: f64 = 1.7;
+
+/// Bytes of a pebble with its contacts and their histories.
+const BYTES: f64 = 2_000.0;
+
+/// The grains of a plan area of a section.
+struct Filling {
+    grains: f64,
+    pebbles: f64,
+    lifts: u32,
+    /// sqrt(m / k) of the lightest grain on one contact, s.
+    light: f64,
+    /// See [`rest_time`], s.
+    rest: f64,
+}
+
+/// What fills `area` (m2) of a section; layers whose grading is no curve are left out.
+fn filling(scenario: &Scenario, section: &Section, area: f64) -> Filling {
+    let materials: Vec<(f64, &Granular, Curve)> = section
+        .layers
+        .iter()
+        .filter_map(|layer| {
+            let granular = layer.granular()?;
+            Some((layer.thickness.at(section.start), granular, granular.grading.curve().ok()?))
+        })
+        .collect();
+    let pressure = |granular: &Granular| confinement(scenario).unwrap_or(*granular.packing.pressure);
+    let of =
+        |(_, granular, curve): &(f64, &Granular, Curve)| [curve.mean_volume(), *granular.density, pressure(granular)];
+    let rest = rest_time(materials.iter().map(of));
+    let mut filling = Filling { grains: 0.0, pebbles: 0.0, lifts: 0, light: f64::INFINITY, rest };
+    for (thickness, granular, curve) in &materials {
+        let count = SOLID * area * thickness / curve.mean_volume();
+        filling.grains += count;
+        filling.pebbles += count * pebbles_of(&granular.shape);
+        filling.lifts += lifts_that_fit(granular.packing.lifts, *thickness, curve);
+        filling.light = filling.light.min(lightest(granular, curve));
+    }
+    filling
+}
+
+/// The largest grain of a section, m.
+fn largest(section: &Section) -> f64 {
+    let curves = section.layers.iter().filter_map(|layer| layer.granular()?.grading.curve().ok());
+    curves.map(|curve| curve.ends()[1]).fold(0.0, f64::max)
+}
+
+/// The estimate for a rig: good to a factor of two.
+pub(super) fn of_rig(scenario: &Scenario) -> Cost {
+    let section = &scenario.track.sections[0];
+    let [length, width] = plan(scenario, 0, largest(section));
+    let copies = ((section.end - section.start) / length - 1e-9).ceil().max(1.0);
+    let Filling { grains, pebbles, lifts, light, rest } = filling(scenario, section, length * width);
+    let step = STEP * light;
+    let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
+    let loads = loads(scenario);
+    let test_steps = (SET_DOWN + (0.5 + cycles(&loads) as f64) * period(&loads, rest)) / step;
+    let packings = scenario.solve.grains.repeats;
+    // while a bed is packed half of it is there on average
+    let [packing, testing] = [0.5 * packing_steps, copies * test_steps];
+    let seconds = f64::from(packings) * pebbles * (packing / PEBBLE_STEPS[0] + testing / PEBBLE_STEPS[1]);
+    let (grains, pebbles) = (copies * grains, copies * pebbles);
+    let work = TestWork { grains, pebbles, time_step: step, packing_steps, test_steps, packings };
+    cost(seconds, work)
+}
+
+fn cost(seconds: f64, work: TestWork) -> Cost {
+    Cost {
+        seconds: SECOND_CORE * seconds,
+        seconds_on_two_cores: seconds,
+        bytes: (BYTES * work.pebbles) as u64,
+        work: Work::Tests(work),
+    }
+}
+
+/// The estimate for grains under so many metres of a track: every train runs over them, in their own time step. Good to an order
+/// of magnitude: nothing of it has been run.
+pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, length: f64) -> Cost {
+    let scenario = draft.scenario;
+    let sections = scenario.track.sections.iter().enumerate().filter(|(_, section)| super::has_grains(section));
+    let Some((number, section)) = sections.max_by(|(_, a), (_, b)| (a.end - a.start).total_cmp(&(b.end - b.start)))
+    else {
+        return cost(0.0, TestWork::default());
+    };
+    let Filling { grains, pebbles, lifts, light, .. } = filling(scenario, section, length * width(scenario, number));
+    let time_step = STEP * light;
+    let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
+    let run = |(train, plan): (&crate::graph::Train, &crate::graph::PassagePlan), trains: u64| {
+        trains as f64 * (plan.right - plan.left - train.wheel_base()) / train.speed
+    };
+    let time: f64 = draft.blocks.as_ref().map_or(0.0, |blocks| {
+        blocks.kinds().zip(&blocks.sequence.shares).map(|(kind, share)| run(kind, share.trains)).sum()
+    });
+    let test_steps = time / time_step;
+    let seconds = pebbles * (0.5 * packing_steps / PEBBLE_STEPS[0] + test_steps / PEBBLE_STEPS[1]);
+    cost(seconds, TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings: 1 })
+}
+
+fn pebbles_of(shape: &Shape) -> f64 {
+    match shape {
+        Shape::Clumps { pebbles: [fewest, most], .. } => f64::from(fewest + most) / 2.0,
+        _ => 1.0,
+    }
+}
+
+/// sqrt(m / k) of the lightest grain on one contact, s.
+fn lightest(granular: &Granular, curve: &Curve) -> f64 {
+    let mass = *granular.density * PI / 6.0 * curve.ends()[0].powi(3);
+    let stiffness = match granular.contact {
+        Contact::Linear { stiffness } => *stiffness * granular.shear_ratio.max(1.0),
+        // beds of such grains are refused before anything runs
+        Contact::Hertz { .. } => return f64::INFINITY,
+    };
+    (mass / stiffness).sqrt()
+}

@@ -1,0 +1,2 @@
+//! Beds by their recipe.
+pub use crate::results::{Beds, BedsError, FoundBed};
