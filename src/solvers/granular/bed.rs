@@ -1,22 +1,24 @@
 //! A bed of grains: what there is, and how to make it.
 
 use super::body::{Body, BodyId, Clump, SPHERE};
-use super::build::Build;
 use super::clump::Template;
 use super::contacts::Contacts;
 use super::domain::Domain;
 use super::energy::Ledger;
+use super::failure::Limits;
 use super::gravity::Gravity;
 use super::integrate::{Incidence, Tally, rotate, rotate_back};
 use super::lanes::Real;
 use super::law::{Law, Laws};
+use super::lists::Lists;
 use super::motion::{Felt, Motion, Pose};
 use super::record::Record;
 use super::rotation;
 use super::shape::Shape;
-use super::step::Timings;
+use super::timings::Timings;
 use super::vector::{Vec3, add, cross};
 use super::walls::{Wall, WallContacts, WallId};
+use super::watch::memory::Watch;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Spheres and clumps, the walls round them, and their state.
@@ -48,7 +50,7 @@ pub struct Bed<R: Real = f32> {
     pub(super) contacts: Contacts<R>,
     pub(super) wall_contacts: WallContacts<R>,
     pub(super) incidence: Incidence,
-    pub(super) build: Build,
+    pub(super) lists: Lists,
     pub(super) tally: Tally,
     pub(super) ledger: Ledger,
     pub(super) time: f64,
@@ -57,8 +59,8 @@ pub struct Bed<R: Real = f32> {
     pub(super) fresh: bool,
     /// Whether something was added or set that nobody has checked.
     pub(super) unchecked: bool,
-    pub(super) limits: super::watch::Limits,
-    pub(super) watch: super::watch::Watch,
+    pub(super) limits: Limits,
+    pub(super) watch: Watch,
     pub(super) timings: Timings,
 }
 
@@ -132,15 +134,15 @@ impl<R: Real> Bed<R> {
             contacts: Contacts::default(),
             wall_contacts: WallContacts::default(),
             incidence: Incidence::default(),
-            build: Build::default(),
+            lists: Lists::default(),
             tally: Tally::default(),
             ledger: Ledger::default(),
             time: 0.0,
             steps: 0,
             fresh: true,
             unchecked: true,
-            limits: super::watch::Limits::default(),
-            watch: super::watch::Watch::default(),
+            limits: Limits::default(),
+            watch: Watch::default(),
             timings: Timings::default(),
         }
     }
@@ -214,7 +216,7 @@ impl<R: Real> Bed<R> {
         self.owner.resize(self.records.len(), place);
         self.bodies.push(body);
         self.index.push(place);
-        self.build.outdated = true;
+        self.lists.outdated = true;
         self.unchecked = true;
         BodyId(body.id)
     }
@@ -233,7 +235,7 @@ impl<R: Real> Bed<R> {
             felt: Felt::default(),
             moment: [0.0; 3],
         });
-        self.build.outdated = true;
+        self.lists.outdated = true;
         let id = WallId(self.walls.len() as u32 - 1);
         self.set_motion(id, motion);
         id
@@ -265,7 +267,7 @@ impl<R: Real> Bed<R> {
         let (cell, position) = self.domain.split(place);
         let wall = &mut self.walls[wall.0 as usize];
         (wall.cell, wall.pose.position) = (cell, position.into());
-        self.build.outdated = true;
+        self.lists.outdated = true;
     }
 
     /// Sets velocity \[m/s\] and angular velocity \[rad/s\] of a body.

@@ -4,14 +4,16 @@
 //! Velocities belong to a whole step, from `time` to `time + dt`, as a leapfrog scheme takes them: x += v dt. For given
 //! motions they are the mean over the step, so that the wall stands where it should after every step, whatever dt is.
 
+mod error;
 mod push;
 
+pub use error::MotionError;
 pub use push::Push;
 
+use error::require;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-use std::fmt;
 
 /// Where a wall stands and how it is turned against its own frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -88,14 +90,6 @@ pub enum Motion {
         damping: f64,
         push: Push,
     },
-}
-
-/// A number of a motion that is out of its range.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MotionError {
-    pub name: &'static str,
-    pub value: f64,
-    pub expected: &'static str,
 }
 
 fn usual_gain() -> f64 {
@@ -212,10 +206,6 @@ fn check_table(times: &[f64], velocities: &[Vector3<f64>]) -> Result<(), MotionE
     velocities.iter().try_for_each(|v| finite("velocities of a table", v))
 }
 
-fn require(fine: bool, name: &'static str, value: f64, expected: &'static str) -> Result<(), MotionError> {
-    if fine { Ok(()) } else { Err(MotionError { name, value, expected }) }
-}
-
 fn finite(name: &'static str, vector: &Vector3<f64>) -> Result<(), MotionError> {
     vector.iter().try_for_each(|value| require(value.is_finite(), name, *value, "finite numbers"))
 }
@@ -290,14 +280,6 @@ fn turn([w, x, y, z]: [f64; 4], v: &Vector3<f64>) -> Vector3<f64> {
     let t = 2.0 * q.cross(v);
     v + w * t + q.cross(&t)
 }
-
-impl fmt::Display for MotionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "expected {} {}, found {}", self.name, self.expected, self.value)
-    }
-}
-
-impl std::error::Error for MotionError {}
 
 #[cfg(test)]
 mod tests;

@@ -2,11 +2,11 @@
 //! dashpots) have some inertia added, and no weight; how much there may be of it in all is a choice.
 
 use super::bed::{Bed, BodyState};
+use super::failure::Failure;
 use super::lanes::Real;
 use super::law::Law;
 use super::motion::Motion;
 use super::walls::WallId;
-use super::watch::Failure;
 
 /// Share of the stable step that is taken.
 const SAFE: f64 = 0.8;

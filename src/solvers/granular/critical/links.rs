@@ -3,12 +3,12 @@
 use super::super::bed::Bed;
 use super::super::body::{Body, SPHERE};
 use super::super::domain::mirrored;
+use super::super::failure::Failure;
 use super::super::force::Tangent;
 use super::super::lanes::{BLOCK, Real};
 use super::super::record::Record;
 use super::super::rotation;
 use super::super::vector::{Vec3, add, cross, dot, norm, scale, sub};
-use super::super::watch::Failure;
 use nalgebra::{Matrix3, Vector3};
 
 /// Instead of a second body: a wall.
@@ -164,13 +164,13 @@ impl<R: Real> Bed<R> {
     fn reach(&mut self, gap: f64) -> Result<(), Failure> {
         self.refresh()?;
         // lists are good for their skin less what was gone since
-        if gap + self.build.travel <= self.build.skin {
+        if gap + self.lists.travel <= self.lists.skin {
             return Ok(());
         }
-        let fixed = self.build.fixed_skin.replace((gap + self.build.travel).max(self.build.skin));
-        self.build.outdated = true;
+        let fixed = self.lists.fixed_skin.replace((gap + self.lists.travel).max(self.lists.skin));
+        self.lists.outdated = true;
         let made = self.refresh();
-        self.build.fixed_skin = fixed;
+        self.lists.fixed_skin = fixed;
         made
     }
 

@@ -30,10 +30,10 @@ pub(super) use network::Network;
 
 use super::bed::Bed;
 use super::body::BodyId;
+use super::failure::Failure;
 use super::force::Tangent;
 use super::lanes::{BLOCK, Real};
 use super::record::Record;
-use super::watch::Failure;
 
 /// Where a limit comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]

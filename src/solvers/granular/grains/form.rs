@@ -6,7 +6,8 @@
 
 use super::super::clump::Template;
 use super::super::shape::Mesh;
-use super::Random;
+use super::points::outside;
+use super::random::Random;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 
@@ -43,7 +44,7 @@ impl Form {
     pub fn of_clump(clump: &Template) -> Self {
         let pebbles = &clump.pebbles;
         let reach = |n: &Vector3<f64>| pebbles.iter().map(|p| p.centre.dot(n) + p.radius).fold(f64::MIN, f64::max);
-        let points = super::likeness::outside(pebbles, 4000);
+        let points = outside(pebbles, 4000);
         let Box { sides, axes } = Box::round(|n| reach(n) + reach(&-n));
         Self { sides, axes, volume: clump.volume, area: points.iter().map(|point| point.area).sum() }
     }

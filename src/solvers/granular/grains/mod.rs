@@ -22,6 +22,7 @@ mod bubble;
 mod form;
 mod grading;
 mod likeness;
+mod points;
 mod polyhedron;
 mod random;
 pub mod stl;

@@ -2,6 +2,7 @@
 
 use super::bed::Bed;
 use super::body::BodyId;
+use super::failure::Failure;
 use super::lanes::Real;
 use super::law::LawError;
 use super::motion::MotionError;
@@ -9,7 +10,6 @@ use super::record::Record;
 use super::shape::{Shape, ShapeError};
 use super::vector::{Vec3, add, norm, scale, sub};
 use super::walls::WallId;
-use super::watch::Failure;
 use std::fmt;
 
 /// Something that a run should not start with.

@@ -1,6 +1,6 @@
 //! A force that an actuator applies, as it goes in time.
 
-use super::{MotionError, require};
+use super::error::{MotionError, require};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 

@@ -2,10 +2,10 @@
 
 use super::super::bed::Bed;
 use super::super::body::BodyId;
+use super::super::failure::Failure;
 use super::super::lanes::Real;
 use super::super::measure::{Ball, Coordination, Region, Survey, neighbours};
 use super::super::snapshot::Snapshot;
-use super::super::watch::Failure;
 use super::Packed;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! Why there is no bed.
 
+use super::super::failure::Failure;
 use super::super::grains::GradingError;
-use super::super::watch::Failure;
 use super::{Layer, Recipe};
 use std::fmt;
 

@@ -2,8 +2,8 @@
 //! forces at rest do not know inertia.
 
 use super::super::bed::{Bed, BodyState};
+use super::super::failure::Failure;
 use super::super::lanes::Real;
-use super::super::watch::Failure;
 use super::Recipe;
 
 /// The step over sqrt(m / k) of a mean grain.

@@ -9,11 +9,11 @@
 
 use super::super::bed::Bed;
 use super::super::body::BodyId;
+use super::super::failure::Failure;
 use super::super::grains::Random;
 use super::super::lanes::Real;
 use super::super::measure::unbalance;
 use super::super::snapshot::Snapshot;
-use super::super::watch::Failure;
 use super::pace::Pace;
 use super::{Packed, PackingError, Progress, Recipe};
 use serde::{Deserialize, Serialize};

@@ -1,6 +1,6 @@
 //! Why a test has no answer.
 
-use super::super::watch::Failure;
+use super::super::failure::Failure;
 use std::fmt;
 
 #[derive(Debug, Clone, PartialEq)]

@@ -1,13 +1,13 @@
 //! Sleepers are set down on a bed, and come to rest under their own weight.
 
 use super::super::bed::Bed;
+use super::super::failure::Failure;
 use super::super::lanes::Real;
 use super::super::measure::unbalance;
 use super::super::motion::{Motion, Pose, Push};
 use super::super::shape::Shape;
 use super::super::stride::Stride;
 use super::super::walls::WallId;
-use super::super::watch::Failure;
 use super::{Rig, RigError, Sleeper};
 use nalgebra::Vector3;
 

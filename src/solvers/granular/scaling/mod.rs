@@ -10,10 +10,10 @@
 use super::bed::{Bed, BodyState};
 use super::body::{BodyId, SPHERE};
 use super::critical::{Around, Network, Weight, pencil};
+use super::failure::Failure;
 use super::lanes::Real;
 use super::record::Record;
 use super::vector::scale;
-use super::watch::Failure;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
