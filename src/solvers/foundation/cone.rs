@@ -12,7 +12,7 @@
 //! Vibration 270 (2004) 673-683, take one layer of ballast on springs. Their formula takes the mean width in the part that
 //! is shared where the integral is exact here (0.3 % of the stiffness of their own example).
 
-use super::{Bearing, Below, Layer, Support};
+use super::layers::{Bearing, Below, Layer, Support};
 use std::f64::consts::PI;
 
 /// The rectangle on which the load acts at some depth.

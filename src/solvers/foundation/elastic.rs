@@ -12,9 +12,9 @@
 //! than the mean of a uniform pressure: by 7 % on a half-space, nothing on a thin layer.
 
 use super::kernel::Kernel;
+use super::layers::{Bearing, Below, Layer, Support};
 use super::rectangle::mean_settlement;
 use super::sine::{LANES, sine};
-use super::{Bearing, Below, Layer, Support};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::iter;
 

@@ -13,7 +13,7 @@
 //! compliance `(u, w) = C (t, s)` of all that lies below is carried along. It says what comes up for what goes down; only
 //! decaying exponentials appear, so that no layer is too thick.
 
-use super::{Below, Layer};
+use super::layers::{Below, Layer};
 use nalgebra::{Matrix2, Vector2};
 
 type Pair = Matrix2<f64>;

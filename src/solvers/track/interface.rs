@@ -22,6 +22,7 @@ use super::mesh::RailPoint;
 use super::reach::Reach;
 use super::support::{SupportLines, SupportPhase};
 use crate::linalg::skyline::Skyline;
+use crate::linalg::vector::add_scaled;
 use nalgebra::DMatrix;
 
 /// The contacts of a passage: their state after the last step and scratch for the next.
@@ -388,13 +389,5 @@ impl Interface {
             }
         }
         moved
-    }
-}
-
-/// `y += factor x` over the length of x.
-#[inline]
-pub(super) fn add_scaled(y: &mut [f64], x: &[f64], factor: f64) {
-    for (y, x) in y.iter_mut().zip(x) {
-        *y += factor * x;
     }
 }

@@ -1,7 +1,6 @@
 //! The unevenness of the rail's running surface: a wheel sees the rail at w(x) + r(x).
 
 use super::TrackError;
-use super::model::SAME_PLACE;
 
 /// r over x, m below the even surface: cubics side by side, none where the surface is even. Beyond the outer ends it stays as
 /// there, so a surface that does not end level has a kink there.
@@ -66,13 +65,13 @@ impl Irregularity {
         s * cubic.values[0] + t * cubic.values[1] + length * length / 6.0 * bend
     }
 
-    /// The first chainage at which the cubics are not numbers or do not stand side by side.
-    pub(super) fn flaw(&self) -> Option<f64> {
+    /// The first chainage at which the cubics are not numbers, or stand farther apart than `gap`, m.
+    pub(super) fn flaw(&self, gap: f64) -> Option<f64> {
         let broken = |cubic: &&Cubic| {
             let numbers = cubic.ends.iter().chain(&cubic.values).chain(&cubic.curvatures).all(|v| v.is_finite());
             !numbers || cubic.ends[1] <= cubic.ends[0]
         };
-        let apart = |pair: &&[Cubic]| (pair[1].ends[0] - pair[0].ends[1]).abs() > SAME_PLACE;
+        let apart = |pair: &&[Cubic]| (pair[1].ends[0] - pair[0].ends[1]).abs() > gap;
         let in_one = self.cubics.iter().find(broken).map(|cubic| cubic.ends[0]);
         in_one.or_else(|| self.cubics.windows(2).find(apart).map(|pair| pair[0].ends[1]))
     }

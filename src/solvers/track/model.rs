@@ -1,6 +1,8 @@
 //! The track as numbers, before it is meshed, and the checks that a mesh relies on. Everything belongs to one rail.
 
-use super::{Irregularity, Seating, TrackError};
+use super::error::TrackError;
+use super::irregularity::Irregularity;
+use super::support::Seating;
 
 /// What the track of one rail consists of; SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -175,7 +177,7 @@ impl TrackModel {
         self.check_slabs()?;
         self.check_seats()?;
         self.check_auxiliary_rails()?;
-        match self.irregularity.flaw() {
+        match self.irregularity.flaw(SAME_PLACE) {
             Some(x) => fail(x, "the irregularity is not a number or has a gap"),
             None => Ok(()),
         }
@@ -286,5 +288,12 @@ impl TrackModel {
     /// Index of the slab under x, the right one where two meet.
     pub(super) fn slab_under(&self, x: f64) -> Option<usize> {
         self.slabs.iter().rposition(|s| s.start - SAME_PLACE <= x && x <= s.end + SAME_PLACE)
+    }
+
+    /// The median distance of neighbouring seats, m; the length of the track where there are none.
+    pub(super) fn usual_bay(&self) -> f64 {
+        let mut bays: Vec<f64> = self.seats.windows(2).map(|pair| pair[1].x - pair[0].x).collect();
+        bays.sort_by(f64::total_cmp);
+        bays.get(bays.len() / 2).copied().unwrap_or(self.ends[1] - self.ends[0])
     }
 }

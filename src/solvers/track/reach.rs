@@ -5,9 +5,9 @@
 //! the square of it.
 
 use super::influence::Stepper;
-use super::interface::add_scaled;
 use super::mesh::RailPoint;
 use crate::linalg::skyline::Skyline;
+use crate::linalg::vector::add_scaled;
 use nalgebra::DMatrix;
 
 /// The compliances of the wheels at their present points. Lists run over ranks.

@@ -16,8 +16,6 @@
 //! The rest of the step answers forces by a positive definite compliance, and so do the wheels with monotone laws: the sum of
 //! both is strongly monotone, and a time step has exactly one solution.
 
-use super::mesh::Sleeper;
-
 /// Which branch of its graph a support is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SupportPhase {
@@ -50,6 +48,16 @@ pub struct Seating {
     pub stiffness: f64,
     /// Displacement over which the seating acts alone, m, above 0.
     pub closure: f64,
+}
+
+/// A sleeper of the mesh, and the support that it stands on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Sleeper {
+    pub seat: usize,
+    pub unknown: usize,
+    pub support_stiffness: f64,
+    pub support_damping: f64,
+    pub seating: Option<Seating>,
 }
 
 /// Gaps below this are none, m.

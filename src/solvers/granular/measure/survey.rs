@@ -88,11 +88,6 @@ impl Reading {
         [-self.stress[0][0], -self.stress[1][1]]
     }
 
-    /// Mean pressure p, Pa.
-    pub fn mean_pressure(&self) -> f64 {
-        -(0..3).map(|k| self.stress[k][k]).sum::<f64>() / 3.0
-    }
-
     /// Deviator q of the symmetric part, `√(3/2 s : s)`, Pa.
     pub fn deviator(&self) -> f64 {
         let symmetric = [0, 1, 2].map(|i| [0, 1, 2].map(|j| 0.5 * (self.stress[i][j] + self.stress[j][i])));

@@ -1,7 +1,6 @@
 //! Faults of a mesh, all of them at once, each with its count, the first few places and a way out.
 
-use super::MeshKind;
-use super::inside::winding;
+use super::triangles::{MeshKind, area_vector, half_edges, volume, winding};
 use nalgebra::Vector3;
 use std::fmt;
 
@@ -60,46 +59,6 @@ pub struct Place {
     pub number: u32,
     /// m.
     pub at: Vector3<f64>,
-}
-
-/// Area times the unit normal, m2.
-pub(super) fn area_vector(vertices: &[Vector3<f64>], corners: &[u32; 3]) -> Vector3<f64> {
-    let [a, b, c] = corners.map(|v| vertices[v as usize]);
-    (b - a).cross(&(c - a)) / 2.0
-}
-
-/// Sum of tetrahedra over the facets, m3, with their tip at a corner of the mesh: far from the origin it stays exact.
-pub(super) fn volume<'a>(vertices: &[Vector3<f64>], mut facets: impl Iterator<Item = &'a [u32; 3]>) -> f64 {
-    let Some(first) = facets.next() else { return 0.0 };
-    let tip = vertices[first[0] as usize];
-    let tetrahedron = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|v| vertices[v as usize] - tip);
-        a.dot(&b.cross(&c)) / 6.0
-    };
-    facets.map(tetrahedron).sum()
-}
-
-/// An edge as one facet sees it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct HalfEdge {
-    /// The lower vertex first.
-    pub ends: [u32; 2],
-    pub facet: u32,
-    pub slot: usize,
-    /// Whether the facet runs from the lower vertex to the higher.
-    pub forward: bool,
-}
-
-/// All sides of all triangles, those of one edge side by side.
-pub(super) fn half_edges(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
-    let side = |facet: usize, corners: &[u32; 3], slot: usize| {
-        let (a, b) = (corners[slot], corners[(slot + 1) % 3]);
-        HalfEdge { ends: [a.min(b), a.max(b)], facet: facet as u32, slot, forward: a < b }
-    };
-    let mut sides: Vec<_> =
-        triangles.iter().enumerate().flat_map(|(f, t)| [0, 1, 2].map(|slot| side(f, t, slot))).collect();
-    sides.sort_unstable_by_key(|s| (s.ends, s.facet, s.slot));
-    sides
 }
 
 /// Faults of triangles as given; `places` names the first vertex at the place of each.

@@ -4,8 +4,10 @@
 //! corner where (c - q).u <= 0 along all edges that leave it. Each test has a slack above round-off, so that no place falls
 //! between two of them; what two of them find is one contact, the face before the edge before the corner.
 
+use super::mesh::Mesh;
 use super::topology::{Facet, NONE};
-use super::{Mesh, MeshKind, Touch};
+use super::touch::Touch;
+use super::triangles::MeshKind;
 use nalgebra::Vector3;
 
 /// Slack of a test, as a part of the largest coordinate.

@@ -1,6 +1,8 @@
 //! Meshes of simple bodies, solid, round the origin.
 
-use super::{FaultKind, Mesh, MeshError, MeshKind};
+use super::check::{FaultKind, MeshError};
+use super::mesh::Mesh;
+use super::triangles::MeshKind;
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;

@@ -14,7 +14,9 @@ mod inside;
 mod mesh;
 mod plane;
 mod topology;
+mod touch;
 mod tree;
+mod triangles;
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
@@ -23,7 +25,9 @@ use std::fmt;
 pub use check::{Fault, FaultKind, MeshError, Place};
 pub use distance::Nearest;
 pub use history::inherit;
-pub use mesh::{Mesh, MeshKind};
+pub use mesh::Mesh;
+pub use touch::Touch;
+pub use triangles::MeshKind;
 
 #[cfg(test)]
 mod tests;
@@ -37,18 +41,6 @@ pub enum Shape {
     Block { half: Vector3<f64> },
     /// Triangles: a solid, a container, or an open sheet.
     Mesh(Mesh),
-}
-
-/// One contact of a sphere with a surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
-    /// Unit, from the surface to the sphere's centre; out of the solid where the centre lies inside it.
-    pub normal: Vector3<f64>,
-    /// From the surface to the centre along the normal, m; negative where the centre lies behind the surface. A sphere of
-    /// radius r overlaps by r - distance.
-    pub distance: f64,
-    /// The face, edge or corner that is touched: the same number for the same place of the same shape.
-    pub feature: u32,
 }
 
 /// A plane or a block whose numbers describe none.

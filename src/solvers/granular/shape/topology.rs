@@ -1,6 +1,6 @@
 //! Facets, edges and corners of a surface: who lies beside whom, and the directions that decide which of them is touched.
 
-use super::check::{area_vector, half_edges};
+use super::triangles::{area_vector, half_edges};
 use nalgebra::Vector3;
 
 /// No facet beyond the border of a sheet.

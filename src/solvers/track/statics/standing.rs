@@ -8,7 +8,8 @@
 //! w is the rail under the wheel without the train and C its compliance there. Linearised, `δ = rest + F/F'`, the system is
 //! symmetric and quasi-definite; vehicle by vehicle it is a skyline as wide as the wheels that feel each other.
 
-use super::{Inertia, subtract_stiffness};
+use super::loads::Inertia;
+use super::stiffness::subtract_stiffness;
 use crate::linalg::banded::BandedFactor;
 use crate::linalg::skyline::Skyline;
 use crate::solvers::track::contact::WheelLaw;
