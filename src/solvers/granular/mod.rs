@@ -57,6 +57,7 @@ mod prefetch;
 pub mod probe;
 mod record;
 mod replicate;
+mod rest;
 pub mod rig;
 pub mod rotation;
 mod scaling;

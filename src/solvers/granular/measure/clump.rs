@@ -25,7 +25,7 @@ impl Region {
 }
 
 /// Volume of a union of balls inside a region, m³.
-fn union_in(shape: &Shape, balls: &[Ball]) -> f64 {
+pub(super) fn union_in(shape: &Shape, balls: &[Ball]) -> f64 {
     // Places about the first pebble, in units of the largest: fluxes are then no differences of large numbers.
     let unit = balls.iter().map(|b| b.1).fold(0.0, f64::max);
     let origin = balls[0].0;

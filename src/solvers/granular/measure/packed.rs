@@ -6,6 +6,7 @@ use crate::solvers::granular::grains::Curve;
 use crate::solvers::granular::packing::{Layer, Packed, Packing, Recipe, Rest, pack};
 use crate::solvers::granular::probe::{FULL, Outline, Plate, Stillness, probe};
 use crate::solvers::granular::{Bed, DashpotMode, Domain, Gravity, Laws, Party, Sphere, Surface, WallId};
+use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 const DENSITY: f64 = 2700.0;

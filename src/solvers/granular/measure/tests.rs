@@ -4,6 +4,7 @@ use super::*;
 use crate::solvers::granular::clump::{Pebble, Template};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
+use std::f64::consts::PI;
 
 /// Porosity of a lattice of spheres (m) in one cell, wherever the cell begins: spheres at `sites` and their images.
 fn lattice(cell: [f64; 3], sites: &[[f64; 3]], radius: f64, start: [f64; 3]) -> f64 {

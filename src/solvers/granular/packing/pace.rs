@@ -4,7 +4,7 @@
 use super::super::bed::{Bed, BodyState};
 use super::super::failure::Failure;
 use super::super::lanes::Real;
-use super::Recipe;
+use super::recipe::Recipe;
 
 /// The step over sqrt(m / k) of a mean grain.
 const PACE: f64 = 0.6;

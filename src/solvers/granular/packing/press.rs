@@ -1,15 +1,19 @@
 //! The plate that presses a bed, and the stages that it goes through.
 
-use super::super::bed::Bed;
-use super::super::grains::Grain;
+use super::super::bed::{Bed, Placed};
+use super::super::failure::Failure;
+use super::super::grains::{Grain, Random};
 use super::super::lanes::Real;
-use super::super::measure::unbalance;
 use super::super::motion::{Motion, Pose};
+use super::super::rest::{Criterion, Look, Waiting, until_rest};
 use super::super::shape::Shape;
 use super::super::walls::WallId;
+use super::describe::{Stage, State};
+use super::error::PackingError;
 use super::pace::{Pace, SAFE};
-use super::place::{Room, set_loose};
-use super::{PackingError, Progress, Recipe, Stage, State, chance, put};
+use super::place::{Loose, Room, set_loose};
+use super::progress::Progress;
+use super::recipe::{Layer, Recipe};
 use nalgebra::Vector3;
 
 /// Steps between looks at forces and at the time step.
@@ -131,7 +135,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         // the springs under it give way long before it is a grain's size away
         let clear = level + self.recipe.layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
         while self.pressure() > GONE * pressure && self.height() < clear {
-            self.advance(LIFTED)?;
+            self.advance(LOOK).map_err(|failure| failed(LIFTED, failure))?;
         }
         self.away();
         Ok(())
@@ -167,52 +171,35 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         self.bed.set_motion(self.plate, Motion::Servo { axis, force: pressure * self.area, speed_limit, gain: GAIN });
     }
 
-    /// Some steps, each as long as it may be.
-    fn advance(&mut self, stage: &str) -> Result<(), PackingError> {
-        let failed = |failure| PackingError::Failure { stage: stage.to_owned(), failure };
+    /// Does some steps, each as long as it may be.
+    fn advance(&mut self, steps: u64) -> Result<(), Failure> {
         if let Some(pace) = &mut self.pace {
-            return pace.run(&mut self.bed, LOOK).map_err(failed);
+            return pace.run(&mut self.bed, steps);
         }
-        let step = self.bed.bound_time_step(0.0).map_err(failed)?;
+        let step = self.bed.bound_time_step(0.0)?;
         self.bed.set_time_step(SAFE * step.min(self.recipe.mean_step()));
-        self.bed.run(LOOK).map_err(failed)
+        self.bed.run(steps)
     }
 
     /// Runs until forces are in balance and the plate presses as it should.
     fn until_rest(&mut self, stage: &str, goal: Goal, top: f64) -> Result<(), PackingError> {
-        let start = self.bed.time();
         // loose grains need their time to fall, and grains under a lower pressure more time to find their places
         let slower = goal.pressure.map_or(1.0, |pressure| (USUAL / pressure).sqrt().max(1.0));
-        let longest = slower * self.recipe.rest.longest + top / FALL;
-        let (mut calm, mut bears) = (0, false);
-        loop {
-            self.advance(stage)?;
-            let pressure = self.pressure();
-            if let Some(target) = goal.pressure.filter(|target| !bears && pressure > BEARS * target) {
-                bears = true;
-                self.drive(target, SLOW);
-            }
-            let missed = goal.pressure.map_or(0.0, |target| (pressure / target - 1.0).abs());
-            let snapshot =
-                self.bed.snapshot().map_err(|failure| PackingError::Failure { stage: stage.to_owned(), failure })?;
-            let unbalance = unbalance(&self.bed, &snapshot);
-            calm = if unbalance <= goal.unbalance && missed <= self.recipe.rest.pressure { calm + 1 } else { 0 };
-            let took = self.bed.time() - start;
-            self.say(stage, (took / longest).min(1.0));
-            if calm >= CALM {
-                let state = State::of(&self.bed, &snapshot, unbalance);
-                let level = goal.pressure.map(|_| self.height());
-                self.stages.push(Stage { name: stage.to_owned(), time: took, pressure, level, state });
-                return Ok(());
-            }
-            if took > longest {
-                let stage = stage.to_owned();
-                return Err(match goal.pressure.filter(|_| missed > self.recipe.rest.pressure) {
-                    Some(target) => PackingError::Pressure { stage, reached: pressure, target, time: took },
-                    None => PackingError::Restless { stage, unbalance, limit: goal.unbalance, time: took },
-                });
-            }
-        }
+        let criterion = Criterion {
+            unbalance: goal.unbalance,
+            missed: self.recipe.rest.pressure,
+            every: LOOK,
+            looks: CALM,
+            longest: slower * self.recipe.rest.longest + top / FALL,
+            look_first: false,
+        };
+        let longest = criterion.longest;
+        let start = self.bed.time();
+        let look = until_rest(&mut Pressing { press: self, stage, goal, longest, bears: false }, &criterion, start)?;
+        let state = State::of(&self.bed, &look.snapshot, look.unbalance);
+        let (pressure, level) = (self.pressure(), goal.pressure.map(|_| self.height()));
+        self.stages.push(Stage { name: stage.to_owned(), time: look.time, pressure, level, state });
+        Ok(())
     }
 
     fn say(&mut self, stage: &str, share: f64) {
@@ -220,4 +207,77 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         let progress = Progress { stage: stage.to_owned(), share, bodies: self.bed.len(), steps: self.bed.steps() };
         (self.tell)(&progress);
     }
+}
+
+/// A stage under way.
+struct Pressing<'p, 'a, R: Real, T> {
+    press: &'p mut Press<'a, R, T>,
+    stage: &'p str,
+    goal: Goal,
+    /// Time that it may take, s.
+    longest: f64,
+    /// Whether the plate bears already, and goes slowly.
+    bears: bool,
+}
+
+impl<R: Real, T: FnMut(&Progress)> Waiting<R> for Pressing<'_, '_, R, T> {
+    type Error = PackingError;
+
+    fn bed(&mut self) -> &mut Bed<R> {
+        &mut self.press.bed
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+        self.press.advance(steps)?;
+        let pressure = self.press.pressure();
+        if let Some(target) = self.goal.pressure.filter(|target| !self.bears && pressure > BEARS * target) {
+            self.bears = true;
+            self.press.drive(target, SLOW);
+        }
+        Ok(())
+    }
+
+    fn missed(&self) -> f64 {
+        self.goal.pressure.map_or(0.0, |target| (self.press.pressure() / target - 1.0).abs())
+    }
+
+    fn hear(&mut self, look: &Look) {
+        self.press.say(self.stage, (look.time / self.longest).min(1.0));
+    }
+
+    fn restless(&self, look: &Look) -> PackingError {
+        let (stage, time) = (self.stage.to_owned(), look.time);
+        match self.goal.pressure.filter(|_| look.missed > self.press.recipe.rest.pressure) {
+            Some(target) => PackingError::Pressure { stage, reached: self.press.pressure(), target, time },
+            None => PackingError::Restless { stage, unbalance: look.unbalance, limit: self.goal.unbalance, time },
+        }
+    }
+
+    fn failed(&self, failure: Failure) -> PackingError {
+        failed(self.stage, failure)
+    }
+}
+
+fn failed(stage: &str, failure: Failure) -> PackingError {
+    PackingError::Failure { stage: stage.to_owned(), failure }
+}
+
+/// Puts grains into a bed, falling.
+fn put<R: Real>(bed: &mut Bed<R>, loose: &[Loose], layer: &Layer, surface: u16, fall: f64) {
+    for grain in loose {
+        let placed = Placed {
+            template: &grain.template,
+            centre: grain.centre,
+            attitude: grain.attitude,
+            density: layer.density,
+            surface,
+        };
+        let body = bed.add_clump(&placed);
+        bed.set_velocity(body, [0.0, 0.0, -fall], [0.0; 3]);
+    }
+}
+
+/// Numbers by chance of one lift.
+fn chance(recipe: &Recipe, layer: usize, lift: u32) -> Random {
+    Random::new(recipe.seed, 1 << 48 | (layer as u64) << 32 | u64::from(lift))
 }

@@ -1,9 +1,11 @@
 //! A finished bed as data.
 
+use super::super::bed::Bed;
 use super::super::checkpoint::{Checkpoint, RestoreError};
 use super::super::grains::Sample;
 use super::super::lanes::Real;
-use super::{Bed, Packed, Stage};
+use super::describe::Stage;
+use super::packed::Packed;
 use serde::{Deserialize, Serialize};
 
 /// What [`Packed`] holds, to be kept. A bed that comes back goes on bit by bit as the one that was kept.

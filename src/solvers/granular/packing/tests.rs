@@ -1,6 +1,9 @@
 //! Beds that are packed, and what refuses to be one.
 
-use super::super::law::DashpotMode;
+use super::super::bed::Bed;
+use super::super::clump::Template;
+use super::super::grains::{Curve, Random, grains};
+use super::super::law::{DashpotMode, Surface};
 use super::*;
 
 /// Spheres of 32 to 50 mm in a small cell.

@@ -10,9 +10,10 @@ mod tests;
 pub use error::ProbeError;
 
 use super::bed::Bed;
+use super::failure::Failure;
 use super::lanes::Real;
-use super::measure::unbalance;
 use super::motion::{Motion, Pose};
+use super::rest::{Criterion, Look, Waiting, until_rest};
 use super::shape::{Mesh, Shape};
 use super::stride::Stride;
 use super::vector::Vec3;
@@ -265,30 +266,57 @@ impl<'a, R: Real> Test<'a, R> {
 
     /// Presses with `target` (Pa) until forces are in balance.
     fn until_rest(&mut self, target: f64, seat: Option<f64>) -> Result<Point, ProbeError> {
-        let Stillness { unbalance: limit, pressure: share, longest, deepest } = self.plate.rest;
+        let Stillness { unbalance, pressure: missed, longest, .. } = self.plate.rest;
+        let criterion = Criterion { unbalance, missed, every: LOOK, looks: CALM, longest, look_first: false };
         let axis = Vector3::new(0.0, 0.0, 1.0);
         let force = target * self.plate.outline.area();
         self.bed.set_motion(self.wall, Motion::Servo { axis, force, speed_limit: SPEED, gain: GAIN });
         let (start, from) = (self.bed.time(), seat.unwrap_or(self.seat));
-        let mut calm = 0;
-        loop {
-            self.stride.run_steps(&mut self.bed, &[], LOOK).map_err(ProbeError::Failure)?;
-            let snapshot = self.bed.snapshot().map_err(ProbeError::Failure)?;
-            let (pressure, settlement) = (self.pressure(), from - self.level());
-            let missed = (pressure - target).abs() / self.plate.pressure;
-            let out = unbalance(&self.bed, &snapshot);
-            calm = if out <= limit && missed <= share { calm + 1 } else { 0 };
-            if calm >= CALM {
-                return Ok(Point { pressure, settlement: if seat.is_some() { settlement } else { 0.0 } });
-            }
-            if settlement > deepest {
-                return Err(ProbeError::Sunk { pressure, settlement, target: self.plate.pressure });
-            }
-            if self.bed.time() - start > longest {
-                let target = self.plate.pressure;
-                return Err(ProbeError::Restless { pressure, target, unbalance: out, limit, time: longest });
-            }
+        until_rest(&mut Step { test: self, target, from }, &criterion, start)?;
+        let settlement = if seat.is_some() { from - self.level() } else { 0.0 };
+        Ok(Point { pressure: self.pressure(), settlement })
+    }
+}
+
+/// A step of the pressure under way.
+struct Step<'s, 'a, R: Real> {
+    test: &'s mut Test<'a, R>,
+    /// Pa.
+    target: f64,
+    /// Level from which settlement counts, m.
+    from: f64,
+}
+
+impl<R: Real> Waiting<R> for Step<'_, '_, R> {
+    type Error = ProbeError;
+
+    fn bed(&mut self) -> &mut Bed<R> {
+        &mut self.test.bed
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+        self.test.stride.run_steps(&mut self.test.bed, &[], steps)
+    }
+
+    fn missed(&self) -> f64 {
+        (self.test.pressure() - self.target).abs() / self.test.plate.pressure
+    }
+
+    fn worth_waiting(&self, _: &Look) -> Result<(), ProbeError> {
+        let (pressure, settlement) = (self.test.pressure(), self.from - self.test.level());
+        if settlement > self.test.plate.rest.deepest {
+            return Err(ProbeError::Sunk { pressure, settlement, target: self.test.plate.pressure });
         }
+        Ok(())
+    }
+
+    fn restless(&self, look: &Look) -> ProbeError {
+        let Plate { pressure: target, rest: Stillness { unbalance: limit, longest: time, .. }, .. } = *self.test.plate;
+        ProbeError::Restless { pressure: self.test.pressure(), target, unbalance: look.unbalance, limit, time }
+    }
+
+    fn failed(&self, failure: Failure) -> ProbeError {
+        ProbeError::Failure(failure)
     }
 }
 

@@ -44,3 +44,8 @@ impl fmt::Display for RigError {
 }
 
 impl std::error::Error for RigError {}
+
+/// A failure in a cycle.
+pub(super) fn in_cycle(cycle: u64) -> impl Fn(Failure) -> RigError {
+    move |failure| RigError::Failure { cycle, failure }
+}

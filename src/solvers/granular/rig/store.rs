@@ -1,10 +1,10 @@
 //! A test as data, to go on with later.
 
+use super::super::bed::Bed;
 use super::super::checkpoint::{Checkpoint, RestoreError};
 use super::super::lanes::Real;
-use super::trial::State;
-use super::{Rig, Trial};
-use crate::solvers::granular::Bed;
+use super::description::Rig;
+use super::trial::{State, Trial};
 use serde::{Deserialize, Serialize};
 
 /// What [`Trial`] holds. A test that comes back goes on bit by bit as the one that was stored.

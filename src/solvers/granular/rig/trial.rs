@@ -5,9 +5,13 @@ use super::super::lanes::Real;
 use super::super::motion::{Motion, Push};
 use super::super::stride::Stride;
 use super::super::walls::WallId;
-use super::set_down::{DAMPING, in_cycle, motion, place, until_rest};
-use super::specimen::{Size, State as SpecimenState};
-use super::{Cycle, Load, Reading, Rig, RigError, Sample};
+use super::answer::{Cycle, Sample};
+use super::calm::DAMPING;
+use super::description::{Load, Rig};
+use super::error::{RigError, in_cycle};
+use super::sensor::Reading;
+use super::set_down::{motion, place, until_rest};
+use super::specimen::{Size, SpecimenState};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
