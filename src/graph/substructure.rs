@@ -60,22 +60,22 @@ impl<'a> Substructure<'a> {
     /// Settlement of every seat by each law, m.
     pub fn settlement_by_law(&self) -> Vec<Vec<f64>> {
         let SubstructureState::Law { supports, level } = &self.state else { return Vec::new() };
-        let of_law = |((law, supports), level): ((&&Law, &Vec<SupportState>), &Vec<f64>)| {
+        let of_law = |(supports, level): (&Vec<SupportState>, &Vec<f64>)| {
             let mut settlement = level.clone();
             for (seat, support) in self.seats.iter().zip(supports) {
-                settlement[*seat] += law.settlement(support);
+                settlement[*seat] += support.settlement();
             }
             settlement
         };
-        self.laws.iter().zip(supports).zip(level).map(of_law).collect()
+        supports.iter().zip(level).map(of_law).collect()
     }
 
     /// Lets `trains` trains pass: `peaks` holds for every seat the peak of each wheel of one train.
     pub fn load(&mut self, peaks: &[Vec<Peak>], trains: u64) {
         let SubstructureState::Law { supports, .. } = &mut self.state else { return };
-        for (law, supports) in self.laws.iter().zip(supports) {
+        for supports in supports {
             for (seat, support) in self.seats.iter().zip(supports) {
-                law.load(support, &peaks[*seat], trains);
+                support.load(&peaks[*seat], trains);
             }
         }
     }
