@@ -143,7 +143,7 @@ fn fallen(pebbles: u32, seed: u64) -> Option<Bed<f64>> {
     });
     let domain = Domain::open().periodic(0, SIDE).periodic(1, SIDE);
     let mut bed: Bed<f64> = Bed::new(domain, Laws::single(law));
-    let template = Template::of(&ellipsoid(pebbles.max(1))).ok()?;
+    let template = Template::from_pebbles(&ellipsoid(pebbles.max(1))).ok()?;
     for grain in 0..GRAINS {
         let (layer, cell) = (grain / 16, grain % 16);
         let mut around = |x: f64| x + 0.004 * (random.next() - 0.5);

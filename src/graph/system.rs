@@ -9,7 +9,8 @@ use super::{AdaptiveSteps, Blocks, Graph, Runner, Schedule, TrackNode};
 use crate::scenario::{Direction, Record, StaticLoad, Target, Train};
 use crate::solvers::settlement::Peak;
 use crate::solvers::track::{
-    Envelope, Ladder, Loads, Passage, Run, Scheme, StaticState, Stepper, Track, TrackError, TrackLevel, solve_static,
+    Envelope, Ladder, Loads, Parameter, Passage, Run, Scheme, StaticState, Stepper, Track, TrackError, TrackLevel,
+    solve_static,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -125,7 +126,11 @@ impl<'a> TrackSystem<'a> {
         kept: Kept,
     ) -> Result<(Unloaded, PassageOutcome), TrackError> {
         let Some((blocks, steps)) = &self.traffic else {
-            return Err(TrackError::Parameter { name: "trains", value: 0.0, expected: "of 1 or more" });
+            return Err(TrackError::Parameter {
+                name: Parameter::Train("trains"),
+                value: 0.0,
+                expected: "of 1 or more",
+            });
         };
         let ((kind, plan), steps, direction) = (blocks.kind(runner.kind), &steps[runner.kind], runner.direction);
         let train = train(kind, direction);

@@ -69,7 +69,7 @@ pub struct PlateTest {
 pub fn read_bed(plan: &BedPlan, packed: &Packed<f32>, tell: impl FnMut(usize, usize)) -> Result<BedReadings, Failure> {
     let slabs = slabs(plan, packed);
     let survey = packed.survey(&mut packed.bed.clone())?;
-    let forces = ForceSpread::of(survey.pushes());
+    let forces = ForceSpread::from_pushes(survey.pushes());
     let row = |slab: &[f64; 2]| Some(profile_row(slab, &survey.slab(*slab, packed.area())?));
     let mut notes = Vec::new();
     let plate = press(plan, packed, &slabs, tell).map_err(|why| notes.push(format!("No stiffness: {why}."))).ok();
@@ -127,8 +127,8 @@ fn profile_row([from, to]: &[f64; 2], reading: &Reading) -> ProfileRow {
 impl Directions {
     /// Of the contacts with more than `least` N.
     fn of(survey: &Survey, least: f64) -> Directions {
-        let fabric = Fabric::of(survey.normals(least));
-        let rose = Rose::of(survey.normals(least));
+        let fabric = Fabric::from_normals(survey.normals(least));
+        let rose = Rose::from_normals(survey.normals(least));
         Directions { fabric, deviator: fabric.deviator(), anisotropy: fabric.anisotropy(), rose }
     }
 }

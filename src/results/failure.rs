@@ -3,7 +3,7 @@
 use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::{Graph, RunError, Schedule};
 use crate::scenario::{Loading, Scenario, Section, Traffic};
-use crate::solvers::track::TrackError;
+use crate::solvers::track::{Parameter, TrackError};
 use crate::units::number;
 
 /// The diagnostic of a run's failure, with the declaration that it is about.
@@ -73,7 +73,7 @@ impl Scene<'_> {
                 (vec![self.place(*x)], "change the value that the message names, in that section".into())
             }
             TrackError::Parameter { name, expected, .. } => {
-                (vec![self.parameter(name)], format!("write a {name} {expected}"))
+                (vec![self.parameter(*name)], format!("write a {name} {expected}"))
             }
         }
     }
@@ -141,15 +141,15 @@ impl Scene<'_> {
         format!("exchange more often: write `update_every = {half} axles` in `solve`, or check the settlement law")
     }
 
-    fn parameter(&self, name: &str) -> (Option<Span>, String) {
+    fn parameter(&self, name: Parameter) -> (Option<Span>, String) {
         let (solve, train) = (&self.scenario.solve, self.traffic().map(|t| &t.train));
         let span = match name {
-            "speed" => train.and_then(|t| t.speed.origin.span()),
-            "time step" => solve.time_step.span(),
-            "gravity" => solve.gravity.origin.span(),
-            "elements per bay" => solve.elements_per_bay.origin.span(),
-            "distance" => solve.finish.or(solve.start).and_then(|f| f.origin.span()),
-            "vehicle" => train.and_then(|t| t.vehicles.first()?.wheel_mass.origin.span()),
+            Parameter::Speed => train.and_then(|t| t.speed.origin.span()),
+            Parameter::TimeStep => solve.time_step.span(),
+            Parameter::Gravity => solve.gravity.origin.span(),
+            Parameter::ElementsPerBay => solve.elements_per_bay.origin.span(),
+            Parameter::Distance => solve.finish.or(solve.start).and_then(|f| f.origin.span()),
+            Parameter::Vehicle(_) => train.and_then(|t| t.vehicles.first()?.wheel_mass.origin.span()),
             _ => None,
         };
         (span, "given here".into())

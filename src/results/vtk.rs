@@ -180,7 +180,7 @@ pub(super) mod tests {
         bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
         bed.add_sphere(&Sphere { centre: [0.98, 0.0, 0.0999], radius: 0.1, density: 2700.0, surface: 0 });
         let pebble = |x: f64| clump::Pebble { centre: [x, 0.0, 0.0].into(), radius: 0.1 };
-        let template = clump::Template::of(&[pebble(-0.05), pebble(0.05)]).unwrap();
+        let template = clump::Template::from_pebbles(&[pebble(-0.05), pebble(0.05)]).unwrap();
         let attitude = template.axes;
         let centre = [0.2299, 0.0, 0.0999];
         bed.add_clump(&Placed { template: &template, centre, attitude, density: 2700.0, surface: 0 });

@@ -42,7 +42,7 @@ pub fn bed<R: Real>(seed: u64) -> Bed<R> {
     let template = |shape: &[(f64, f64, f64)]| {
         let pebbles: Vec<Pebble> =
             shape.iter().map(|&(x, y, radius)| Pebble { centre: Vector3::new(x, y, 0.0), radius }).collect();
-        Template::of(&pebbles).unwrap()
+        Template::from_pebbles(&pebbles).unwrap()
     };
     let templates = [template(&dumbbell), template(&bent)];
     for layer in 0..6 {

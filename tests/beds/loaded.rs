@@ -139,5 +139,5 @@ fn pushes_that_cannot_be_are_refused() {
         Motion::Loaded { axis: -Vector3::z(), mass: 0.0, weight: 0.0, damping: 0.0, push: Push::Constant(1.0) };
     assert!(massless.check().unwrap_err().to_string().contains("mass of a wall"));
     let push = table(&[1.0, 2.0], &[10.0, 30.0]);
-    assert_eq!([0.0, 1.0, 1.5, 2.0, 9.0].map(|t| push.at(t)), [10.0, 10.0, 20.0, 30.0, 30.0]);
+    assert_eq!([0.0, 1.0, 1.5, 2.0, 9.0].map(|t| push.force_at(t)), [10.0, 10.0, 20.0, 30.0, 30.0]);
 }

@@ -40,7 +40,7 @@ fn scene() -> Scene {
 }
 
 fn bed<R: Real>(scene: &Scene) -> Bed<R> {
-    let mut bed = Bed::new(Domain::open(), Laws::of(&surfaces()));
+    let mut bed = Bed::new(Domain::open(), Laws::from_surfaces(&surfaces()));
     bed.set_time_step(DT);
     bed.set_gravity(Gravity::Constant(GRAVITY));
     bed.set_damping(DAMPING);

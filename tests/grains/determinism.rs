@@ -21,7 +21,7 @@ fn bed<R: Real>() -> Bed<R> {
     bed.set_damping(0.1);
     let (spheres, side) = packed();
     let pebble = |x: f64| Pebble { centre: Vector3::new(x, 0.0, 0.0), radius: 0.7 };
-    let template = Template::of(&[pebble(-0.3), pebble(0.3)]).unwrap();
+    let template = Template::from_pebbles(&[pebble(-0.3), pebble(0.3)]).unwrap();
     let mut seed = 1;
     for tile in 0..9 {
         let shift = [side * f64::from(tile % 3), side * f64::from(tile / 3), 0.0];

@@ -116,7 +116,7 @@ fn pairs_inherit_from_their_surfaces() {
         mode: DashpotMode::NoTensionRestInSlip,
     };
     let surfaces = [surface(1.3e7, 0.7, 0.3), surface(5e6, 0.5, 0.1), surface(1e9, 0.2, 0.0)];
-    let laws = Laws::of(&surfaces);
+    let laws = Laws::from_surfaces(&surfaces);
     close(in_series(1.3e7, 5e6), 1.3e7 * 5e6 / 1.8e7, 1e-15, "in series");
     for (a, first) in surfaces.iter().enumerate() {
         for (b, second) in surfaces.iter().enumerate() {

@@ -31,7 +31,7 @@ fn a_plane_that_turns_meets_far_spheres() {
 /// A sphere and a clump, both in free fall onto others, that are told how to move.
 fn bodies(bed: &mut Bed<f64>) -> [BodyId; 2] {
     let pebble = |x: f64| Pebble { centre: Vector3::new(x, 0.0, 0.0), radius: RADIUS };
-    let template = &Template::of(&[pebble(-0.01), pebble(0.01)]).unwrap();
+    let template = &Template::from_pebbles(&[pebble(-0.01), pebble(0.01)]).unwrap();
     let attitude = UnitQuaternion::from_euler_angles(0.3, -0.2, 0.5);
     let centre = [0.3, 0.0, 0.0];
     let clump = bed.add_clump(&Placed { template, centre, attitude, density: 2700.0, surface: 0 });

@@ -20,13 +20,13 @@ fn pebble(x: f64, y: f64, z: f64) -> Pebble {
 
 /// Two spheres that touch each other, along x.
 fn dumbbell() -> Template {
-    Template::of(&[pebble(-RADIUS, 0.0, 0.0), pebble(RADIUS, 0.0, 0.0)]).unwrap()
+    Template::from_pebbles(&[pebble(-RADIUS, 0.0, 0.0), pebble(RADIUS, 0.0, 0.0)]).unwrap()
 }
 
 /// Three overlapping pebbles of three sizes: no two moments alike.
 fn stone() -> Template {
     let ball = |x, y, radius| Pebble { centre: V::new(x, y, 0.0), radius };
-    Template::of(&[ball(0.0, 0.0, 0.02), ball(0.03, 0.0, 0.018), ball(0.01, 0.02, 0.015)]).unwrap()
+    Template::from_pebbles(&[ball(0.0, 0.0, 0.02), ball(0.03, 0.0, 0.018), ball(0.01, 0.02, 0.015)]).unwrap()
 }
 
 fn add(bed: &mut Bed<f64>, template: &Template, centre: V, attitude: UnitQuaternion<f64>) -> BodyId {
@@ -340,7 +340,8 @@ fn a_moment_spins_a_clump_up() {
 
 #[test]
 fn a_clump_at_rest_on_three_pebbles_carries_its_weight() {
-    let template = Template::of(&[pebble(0.0, 0.0, 0.0), pebble(0.035, 0.0, 0.0), pebble(0.01, 0.03, 0.0)]).unwrap();
+    let template =
+        Template::from_pebbles(&[pebble(0.0, 0.0, 0.0), pebble(0.035, 0.0, 0.0), pebble(0.01, 0.03, 0.0)]).unwrap();
     let mut bed = bed(Law::Linear(damped(1e7, 0.5, 0.3)), 5e-6);
     bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
     bed.set_gravity(Gravity::EARTH);

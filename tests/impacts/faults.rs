@@ -90,7 +90,7 @@ fn spheres_that_cannot_be_are_told() {
 #[test]
 fn clumps_that_cannot_be_are_told() {
     let pebble = |x: f64| Pebble { centre: Vector3::new(x, 0.0, 0.0), radius: 0.02 };
-    let template = Template::of(&[pebble(0.0), pebble(0.02)]).unwrap();
+    let template = Template::from_pebbles(&[pebble(0.0), pebble(0.02)]).unwrap();
     let add = |template: &Template, attitude: UnitQuaternion<f64>, density: f64| {
         fault(|bed| {
             bed.add_clump(&Placed { template, centre: [0.5; 3], attitude, density, surface: 0 });

@@ -42,7 +42,7 @@ impl Slice {
 struct Limits([f64; 4]);
 
 impl Limits {
-    fn of(bearing: &Bearing) -> Limits {
+    fn new(bearing: &Bearing) -> Limits {
         let [left, right] = bearing.spacings;
         let inner = bearing.to_centre.map_or(f64::INFINITY, |gap| 0.5 * bearing.length + gap);
         Limits([0.5 * left, 0.5 * right, inner, f64::INFINITY])
@@ -69,7 +69,7 @@ impl Limits {
 }
 
 pub(super) fn support(bearing: &Bearing, layers: &[Layer], below: Below) -> Support {
-    let limits = Limits::of(bearing);
+    let limits = Limits::new(bearing);
     let mut slice = Slice { along: [0.5 * bearing.width; 2], across: [0.5 * bearing.length; 2] };
     let mut pressures = vec![1.0 / slice.area()];
     let (mut compliance, mut masses) = (0.0, Vec::with_capacity(layers.len()));

@@ -42,7 +42,7 @@ impl Footing {
     /// The same as [`support`] gives.
     ///
     /// # Errors
-    /// As there.
+    /// The same as there.
     pub fn support(&mut self, layers: &[Layer], below: Below) -> Result<Support, FoundationError> {
         let Footing { bearing, method, waves } = self;
         error::check(bearing, layers, below, *method)?;

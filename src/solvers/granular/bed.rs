@@ -36,7 +36,7 @@ pub struct Bed<R: Real = f32> {
     pub(super) dt: f64,
     /// Sorted by place, where the contacts are up to date.
     pub(super) bodies: Vec<Body>,
-    /// Of the pebbles, body by body; two that touch nothing stand behind.
+    /// Records of the pebbles, body by body; two that touch nothing stand behind.
     pub(super) records: Vec<R::Record>,
     /// Body of each pebble.
     pub(super) owner: Vec<u32>,
@@ -78,7 +78,7 @@ pub struct Sphere {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Placed<'a> {
     pub template: &'a Template,
-    /// Of the centroid \[m\].
+    /// Place of the centroid \[m\].
     pub centre: [f64; 3],
     /// Principal frame of the template to world.
     pub attitude: UnitQuaternion<f64>,
@@ -91,11 +91,11 @@ pub struct Placed<'a> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyState {
     pub id: BodyId,
-    /// Of the centroid, not wrapped into the period \[m\].
+    /// Place of the centroid, not wrapped into the period \[m\].
     pub place: [f64; 3],
-    /// Of the last half step \[m/s\].
+    /// Velocity of the last half step \[m/s\].
     pub velocity: [f64; 3],
-    /// Of the last half step \[rad/s\].
+    /// Angular velocity of the last half step \[rad/s\].
     pub spin: [f64; 3],
     /// Unit quaternion w, x, y, z; the identity for a sphere, whose turning does not show.
     pub attitude: [f64; 4],
@@ -278,7 +278,7 @@ impl<R: Real> Bed<R> {
         let range = body.first as usize..body.first as usize + usize::from(body.pebbles);
         if body.clump == SPHERE {
             body.spin = spin;
-            self.records[range.start].move_with(velocity.map(R::of), spin.map(R::of));
+            self.records[range.start].move_with(velocity.map(R::from_f64), spin.map(R::from_f64));
             return;
         }
         let clump = &mut self.clumps[body.clump as usize];
@@ -291,7 +291,7 @@ impl<R: Real> Bed<R> {
         clump.turning = spin;
         for (record, arm) in self.records[range].iter_mut().zip(&self.arms[clump.arms as usize..]) {
             let velocity = add(velocity, cross(spin, rotate(&matrix, *arm)));
-            record.move_with(velocity.map(R::of), spin.map(R::of));
+            record.move_with(velocity.map(R::from_f64), spin.map(R::from_f64));
         }
     }
 

@@ -223,7 +223,7 @@ impl<R: Real> Bed<R> {
             let first = self.records[body.first as usize].position();
             self.domain.place(self.domain.wrap(body.cell), first)
         };
-        let strips = Strips::of(self.bodies.iter().map(place));
+        let strips = Strips::through(self.bodies.iter().map(place));
         let key = |(index, body)| (strips.key(place(body)), index as u32);
         let mut order: Vec<(u64, u32)> = self.bodies.iter().enumerate().map(key).collect();
         order.sort_unstable_by_key(|&(key, index)| (key, self.bodies[index as usize].id));
@@ -312,7 +312,7 @@ impl<R: Real> Bed<R> {
             }
             let (a, b) = (self.name(contacts.first[place]), self.name(contacts.second[place]));
             let Some(carried) = histories.find(a.min(b), a.max(b)) else { continue };
-            let sign = if a < b { R::of(1.0) } else { R::of(-1.0) };
+            let sign = if a < b { R::from_f64(1.0) } else { R::from_f64(-1.0) };
             let (block, lane) = (place / BLOCK, place % BLOCK);
             for c in 0..3 {
                 contacts.shear[block][c][lane] = sign * carried.shear[c];

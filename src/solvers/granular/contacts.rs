@@ -162,7 +162,7 @@ impl<R: Real> Pass<'_, R> {
             let places = block * BLOCK + at..block * BLOCK + at + L::WIDTH;
             let a = lanes.gather(self.around.records, &self.first[places.clone()]);
             let b = lanes.gather(self.around.records, &self.second[places.clone()]);
-            let meeting = Meeting::of(lanes, &a, &b, self.shift(lanes, places.clone()));
+            let meeting = Meeting::between(lanes, &a, &b, self.shift(lanes, places.clone()));
             let shear = &mut self.shear[block];
             let contact = rule.force(lanes, &meeting, Vector::load(lanes, shear, at));
             contact.shear.store(shear, at);

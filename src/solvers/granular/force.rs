@@ -12,7 +12,7 @@ pub struct Meeting<L: Lanes> {
     pub normal: Vector<L>,
     /// From the centres to the contact point, mid way in the overlap \[m\].
     pub arms: [Num<L>; 2],
-    /// Of the first against the second, at the contact point \[m/s\].
+    /// Velocity of the first against the second, at the contact point \[m/s\].
     pub velocity: Vector<L>,
     /// Mean spin about the normal \[rad/s\].
     pub twist: Num<L>,
@@ -42,7 +42,7 @@ impl<L: Lanes> Meeting<L> {
     /// Swapping the two swaps signs and changes no bit else. The distance is an `f64`: a root in the contact's precision
     /// and one step of Newton's iteration.
     #[inline(always)]
-    pub fn of(lanes: L, a: &Columns<L>, b: &Columns<L>, image: Option<[Fine<L>; 3]>) -> Self {
+    pub fn between(lanes: L, a: &Columns<L>, b: &Columns<L>, image: Option<[Fine<L>; 3]>) -> Self {
         let ([ax, ay, az], [bx, by, bz]) = (a.position, b.position);
         let (mut x, mut y, mut z) = (ax - bx, ay - by, az - bz);
         if let Some([sx, sy, sz]) = image {
@@ -258,7 +258,7 @@ pub struct Tangent {
 
 impl Tangent {
     /// At `overlap` \[m\] between bodies of effective `mass` \[kg\] and curvature `radius` \[m\].
-    pub fn of(law: &Law, overlap: f64, mass: f64, radius: f64) -> Tangent {
+    pub fn from_law(law: &Law, overlap: f64, mass: f64, radius: f64) -> Tangent {
         match law {
             Law::Linear(law) => {
                 let (normal, shear) = (law.normal_stiffness, law.shear_stiffness);

@@ -16,7 +16,7 @@ pub enum Law {
 /// Linear springs, Coulomb friction and dashpots in parallel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Linear {
-    /// Of the contact, not of a body \[N/m\]; see [`in_series`].
+    /// Stiffness of the contact, not of a body \[N/m\]; see [`in_series`].
     pub normal_stiffness: f64,
     /// \[N/m\]
     pub shear_stiffness: f64,
@@ -147,7 +147,7 @@ fn ratio_without_tension(lost: f64, below: f64) -> f64 {
 /// What bodies of one surface are made of; a pair's law follows from two of them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Surface {
-    /// Of the body; two in series make a contact \[N/m\].
+    /// Stiffness of the body; two in series make a contact \[N/m\].
     pub normal_stiffness: f64,
     /// \[N/m\]
     pub shear_stiffness: f64,
@@ -243,7 +243,7 @@ impl Laws {
     }
 
     /// Laws of all pairs, by inheritance.
-    pub fn of(surfaces: &[Surface]) -> Laws {
+    pub fn from_surfaces(surfaces: &[Surface]) -> Laws {
         let pairs = surfaces.iter().flat_map(|a| surfaces.iter().map(|b| a.meet(b))).collect();
         Laws { surfaces: surfaces.len(), pairs }
     }

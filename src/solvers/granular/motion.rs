@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 /// Where a wall stands and how it is turned against its own frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// Of the frame's origin, m.
+    /// Place of the frame's origin, m.
     pub position: Vector3<f64>,
     /// Unit quaternion w, x, y, z that turns the frame's axes into those of space.
     pub orientation: [f64; 4],
@@ -33,7 +33,7 @@ pub struct Felt {
     pub stiffness: f64,
     /// Sum of their normal dashpots, N s/m.
     pub dashpot: f64,
-    /// Of the wall in the step before, which the dashpots have felt, m/s.
+    /// Velocity of the wall in the step before, which the dashpots have felt, m/s.
     pub velocity: Vector3<f64>,
     /// How many there are.
     pub contacts: usize,
@@ -161,7 +161,7 @@ impl Motion {
             }
             Motion::Loaded { axis, mass, weight, damping, push } => {
                 let before = felt.velocity.dot(axis);
-                let drive = felt.force.dot(axis) + weight + push.at(time);
+                let drive = felt.force.dot(axis) + weight + push.force_at(time);
                 let braked = drive - damping * drive.abs() * if before == 0.0 { 0.0 } else { before.signum() };
                 axis * (before + braked * dt / mass)
             }
@@ -178,13 +178,13 @@ fn mean_of_table(times: &[f64], velocities: &[Vector3<f64>], time: f64, dt: f64)
     let mut way = Vector3::zeros();
     let mut from = time;
     for to in inner.chain([end]) {
-        way += (at(times, velocities, from) + at(times, velocities, to)) * ((to - from) / 2.0);
+        way += (value_at(times, velocities, from) + value_at(times, velocities, to)) * ((to - from) / 2.0);
         from = to;
     }
     way / (end - time)
 }
 
-fn at(times: &[f64], velocities: &[Vector3<f64>], time: f64) -> Vector3<f64> {
+fn value_at(times: &[f64], velocities: &[Vector3<f64>], time: f64) -> Vector3<f64> {
     let right = times.partition_point(|t| *t <= time);
     if right == 0 {
         return velocities[0];

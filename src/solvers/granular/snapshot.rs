@@ -117,7 +117,7 @@ impl<R: Real> Bed<R> {
         let drive = Drive {
             kick: if self.fresh { 0.0 } else { 0.5 * self.dt },
             dt: 0.0,
-            gravity: self.gravity.at(self.time),
+            gravity: self.gravity.value_at(self.time),
             damping: self.damping,
             watched: true,
         };

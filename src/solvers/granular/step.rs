@@ -35,7 +35,7 @@ impl<R: Real> Bed<R> {
         let drive = Drive {
             kick: if self.fresh { 0.5 * self.dt } else { self.dt },
             dt: self.dt,
-            gravity: self.gravity.at(self.time),
+            gravity: self.gravity.value_at(self.time),
             damping: self.damping,
             watched: self.ledger.watched,
         };

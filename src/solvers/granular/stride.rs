@@ -10,7 +10,7 @@ use super::walls::WallId;
 
 /// Share of the stable step that is taken.
 const SAFE: f64 = 0.8;
-/// Of sqrt(m / k), that a body bears for contacts still to come; and the same of a sleeper on all its contacts.
+/// Share of sqrt(m / k) that a body bears for contacts still to come; and the same of a sleeper on all its contacts.
 const PRIOR: f64 = 0.25;
 const SLEEPER: f64 = 0.2;
 /// Steps after which the contacts of now are looked at again.
@@ -73,7 +73,7 @@ impl Stride {
         bed.run(steps)
     }
 
-    /// That sleepers bear on their contacts of now too, s.
+    /// Longest step that sleepers bear on their contacts of now too, s.
     fn longest<R: Real>(&self, bed: &Bed<R>, sleepers: &[WallId]) -> f64 {
         let of = |wall: &WallId| {
             let wall = bed.wall(*wall);
@@ -87,7 +87,7 @@ impl Stride {
     }
 }
 
-/// Of a contact between bodies of each surface, N/m.
+/// Stiffness of a contact between bodies of each surface, N/m.
 fn stiffness<R: Real>(bed: &Bed<R>) -> Vec<f64> {
     let of = |surface: u16| match bed.laws().get(surface, surface) {
         Law::Linear(law) => law.normal_stiffness.max(law.shear_stiffness),

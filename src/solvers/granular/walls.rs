@@ -33,7 +33,7 @@ pub struct Wall {
     pub(super) cell: [i32; 3],
     pub(super) surface: u16,
     pub(super) motion: Motion,
-    /// Of the last half step \[m/s\], \[rad/s\].
+    /// Velocities of the last half step \[m/s\], \[rad/s\].
     pub(super) velocity: Vector3<f64>,
     pub(super) spin: Vector3<f64>,
     pub(super) felt: Felt,
@@ -273,7 +273,7 @@ impl<R: Real> WallContacts<R> {
                 let (force, record) = (force_of(outcome), &records[entry.pebble as usize]);
                 let law = &laws.all()[usize::from(entry.law)];
                 wall.felt.force -= Vector3::from(force);
-                let tangent = Tangent::of(law, slot.overlap, record.mass().to_f64(), record.radius());
+                let tangent = Tangent::from_law(law, slot.overlap, record.mass().to_f64(), record.radius());
                 wall.felt.stiffness += tangent.normal;
                 wall.felt.dashpot += tangent.normal_dashpot;
                 wall.felt.contacts += 1;
@@ -450,7 +450,7 @@ fn meet<R: Real>(wall: &Wall, record: &R::Record, away: Vec3, touch: &Touch) -> 
     let (wall_velocity, wall_spin): (Vec3, Vec3) = (wall.velocity.into(), wall.spin.into());
     let [u, v, w] = sub(own, add(wall_velocity, cross(wall_spin, point)));
     let lanes = One::<R>::new();
-    let num = |value: f64| Num { lanes, value: [R::of(value)] };
+    let num = |value: f64| Num { lanes, value: [R::from_f64(value)] };
     let meeting = Meeting {
         overlap: num(overlap),
         normal: Vector([num(normal[0]), num(normal[1]), num(normal[2])]),

@@ -17,6 +17,7 @@
 
 use super::WheelContact;
 use super::contact::WheelLaw;
+use super::error::Unsettled;
 use super::influence::Stepper;
 use super::mesh::RailPoint;
 use super::reach::Reach;
@@ -37,7 +38,7 @@ pub(super) struct Interface {
     /// Change of the indentation over the last step, m: the first guess of the next.
     trends: Vec<f64>,
     contacts: Vec<WheelContact>,
-    /// Of this step.
+    /// Laws of the wheels in this step.
     laws: Vec<WheelLaw>,
     /// Indentation if this step's wheel forces were zero, m.
     pub free_indentations: Vec<f64>,
@@ -214,19 +215,17 @@ impl Interface {
         self.lines[sleeper].force(phase, self.gaps[sleeper], self.corrections[sleeper]).max(0.0)
     }
 
-    /// A contact and the state it is in, for people.
-    pub fn describe(&self, contact: Contact) -> String {
+    /// A contact and the state it is in.
+    pub fn describe(&self, contact: Contact) -> Unsettled {
         match contact {
             Contact::Wheel(rank) => {
                 let wheel = self.wheel_of(rank);
                 let (force, indentation) = (self.forces[wheel], self.indentations[wheel]);
-                format!("wheel {} with {force:.0} N at an indentation of {indentation:.3e} m", wheel + 1)
+                Unsettled::Wheel { number: wheel + 1, force, indentation }
             }
             Contact::Support(sleeper) => match (self.phases.get(sleeper), self.gaps.get(sleeper)) {
-                (Some(phase), Some(gap)) => {
-                    format!("the support of sleeper {}, {} at a gap of {gap:.3e} m", sleeper + 1, phase.word())
-                }
-                _ => "no support".to_owned(),
+                (Some(&phase), Some(&gap)) => Unsettled::Support { sleeper: sleeper + 1, phase, gap },
+                _ => Unsettled::Nothing,
             },
         }
     }
@@ -303,7 +302,7 @@ impl Interface {
                     (Contact::Support(s), Contact::Wheel(p)) | (Contact::Wheel(p), Contact::Support(s)) => {
                         reach.wheels[p].at_sleeper(s)
                     }
-                    (Contact::Support(s), Contact::Support(t)) => stepper.of_sleeper_at_sleepers[s].at(t),
+                    (Contact::Support(s), Contact::Support(t)) => stepper.of_sleeper_at_sleepers[s].entry(t),
                 };
             }
             let diagonal = &mut row[r - first];

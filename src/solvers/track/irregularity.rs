@@ -1,6 +1,6 @@
 //! The unevenness of the rail's running surface: a wheel sees the rail at w(x) + r(x).
 
-use super::TrackError;
+use super::error::{Parameter, TrackError};
 
 /// r over x, m below the even surface: cubics side by side, none where the surface is even. Beyond the outer ends it stays as
 /// there, so a surface that does not end level has a kink there.
@@ -55,7 +55,7 @@ impl Irregularity {
     }
 
     /// r at a chainage, m.
-    pub fn at(&self, x: f64) -> f64 {
+    pub fn depth_at(&self, x: f64) -> f64 {
         let right = self.cubics.partition_point(|cubic| cubic.ends[0] <= x);
         let Some(cubic) = self.cubics.get(right.saturating_sub(1)) else { return 0.0 };
         let length = cubic.ends[1] - cubic.ends[0];
@@ -80,13 +80,13 @@ impl Irregularity {
 fn check(points: &[(f64, f64)]) -> Result<(), TrackError> {
     let fail = |name, value, expected| Err(TrackError::Parameter { name, value, expected });
     if points.is_empty() {
-        return fail("points of an irregularity", 0.0, "of 1 or more");
+        return fail(Parameter::Irregularity("points of an irregularity"), 0.0, "of 1 or more");
     }
     if let Some(point) = points.iter().find(|(x, r)| !(x.is_finite() && r.is_finite())) {
-        return fail("point of an irregularity", point.0 + point.1, "a finite number");
+        return fail(Parameter::Irregularity("point of an irregularity"), point.0 + point.1, "a finite number");
     }
     match points.windows(2).find(|pair| pair[1].0 <= pair[0].0) {
-        Some(pair) => fail("chainage in an irregularity", pair[1].0, "above the one before"),
+        Some(pair) => fail(Parameter::Irregularity("chainage in an irregularity"), pair[1].0, "above the one before"),
         None => Ok(()),
     }
 }
@@ -117,16 +117,16 @@ mod tests {
 
     #[test]
     fn profiles_go_through_their_points() {
-        assert_eq!(Irregularity::default().at(3.0), 0.0);
+        assert_eq!(Irregularity::default().depth_at(3.0), 0.0);
         let points = vec![(0.0, 1.0), (1.0, 3.0), (1.5, -1.0), (4.0, 0.5)];
         for profile in [Irregularity::linear(points.clone()).unwrap(), Irregularity::spline(points.clone()).unwrap()] {
             for (x, r) in &points {
-                assert!((profile.at(*x) - r).abs() < 1e-14);
+                assert!((profile.depth_at(*x) - r).abs() < 1e-14);
             }
-            assert_eq!((profile.at(-9.0), profile.at(9.0)), (1.0, 0.5));
+            assert_eq!((profile.depth_at(-9.0), profile.depth_at(9.0)), (1.0, 0.5));
         }
-        assert_eq!(Irregularity::linear(points).unwrap().at(0.5), 2.0);
-        assert_eq!(Irregularity::spline(vec![(2.0, 7.0)]).unwrap().at(0.0), 7.0);
+        assert_eq!(Irregularity::linear(points).unwrap().depth_at(0.5), 2.0);
+        assert_eq!(Irregularity::spline(vec![(2.0, 7.0)]).unwrap().depth_at(0.0), 7.0);
     }
 
     #[test]
@@ -135,7 +135,7 @@ mod tests {
         let worst = |count: usize| {
             let x = |i: usize| std::f64::consts::PI * i as f64 / count as f64;
             let spline = Irregularity::spline((0..=count).map(|i| (x(i), wave(x(i)))).collect()).unwrap();
-            (0..1000).map(|i| 3.1e-3 * f64::from(i)).fold(0.0f64, |m, x| m.max((spline.at(x) - wave(x)).abs()))
+            (0..1000).map(|i| 3.1e-3 * f64::from(i)).fold(0.0f64, |m, x| m.max((spline.depth_at(x) - wave(x)).abs()))
         };
         assert!((worst(20) / worst(40)).log2() > 3.9);
     }

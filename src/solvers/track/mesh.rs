@@ -1,7 +1,7 @@
 //! The meshed track: its nodes, its unknowns and its matrices, and what a place on it is to them.
 
 use super::beam::Element;
-use super::error::TrackError;
+use super::error::{Parameter, TrackError};
 use super::model::{SAME_PLACE, TrackLevel, TrackModel};
 use super::support::Sleeper;
 use crate::linalg::banded::SymmetricBanded;
@@ -204,10 +204,18 @@ impl Track {
     pub(super) fn check_level(&self, level: &TrackLevel) -> Result<(), TrackError> {
         if level.settlements.len() != self.model.seats.len() {
             let value = level.settlements.len() as f64;
-            return Err(TrackError::Parameter { name: "settlements", value, expected: "one per seat" });
+            return Err(TrackError::Parameter {
+                name: Parameter::Level("settlements"),
+                value,
+                expected: "one per seat",
+            });
         }
         match level.settlements.iter().chain(&level.ends).find(|s| !s.is_finite()) {
-            Some(value) => Err(TrackError::Parameter { name: "level", value: *value, expected: "a finite number" }),
+            Some(value) => Err(TrackError::Parameter {
+                name: Parameter::Level("level"),
+                value: *value,
+                expected: "a finite number",
+            }),
             None => Ok(()),
         }
     }

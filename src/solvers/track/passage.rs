@@ -4,13 +4,14 @@
 //! contact forces displace. Nothing is factored and nothing allocated while it runs.
 
 use super::counters::Counters;
+use super::error::{Parameter, TrackError, Wild};
 use super::influence::Stepper;
 use super::interface::{Contact, Interface};
 use super::ladder::Choice;
 use super::motion::Timetable;
 use super::quasi_static::{self, Start};
 use super::running::RunningVehicle;
-use super::{Loads, Motion, StaticState, SupportPhase, TrackError, TrackLevel, Train, WheelContact, solve_static};
+use super::{Loads, Motion, StaticState, SupportPhase, TrackLevel, Train, WheelContact, solve_static};
 use crate::linalg::vector::add_scaled;
 use std::ops::Range;
 
@@ -48,7 +49,7 @@ pub struct Passage<'a> {
     pub(super) tick_length: f64,
     pub(super) ticks_per_step: u64,
     pub(super) ticks_per_longest: u64,
-    /// Of the last step, s; of the first one at the start.
+    /// Length of the last step, s; that of the first one at the start.
     pub(super) last_step: f64,
     pub(super) planned_ticks: u64,
     /// How the length of a step is chosen; none where it is fixed.
@@ -98,7 +99,11 @@ impl<'a> Passage<'a> {
     ) -> Result<Self, TrackError> {
         if !state.vehicles.is_empty() {
             let value = state.vehicles.len() as f64;
-            return Err(TrackError::Parameter { name: "vehicles", value, expected: "of 0 on a released track" });
+            return Err(TrackError::Parameter {
+                name: Parameter::Train("vehicles"),
+                value,
+                expected: "of 0 on a released track",
+            });
         }
         let track = &stepper.track;
         let start = Start::at_rest(track, state);
@@ -290,7 +295,7 @@ impl<'a> Passage<'a> {
                     (0..4).map(|k| point.shape[k] * (predicted[unknowns[k]] + share * a[unknowns[k]])).sum();
                 self.interface.points[j] = point;
                 self.interface.free_indentations[j] =
-                    vehicle.free_wheel(scheme, j - wheels.start) - rail - track.model.irregularity.at(x);
+                    vehicle.free_wheel(scheme, j - wheels.start) - rail - track.model.irregularity.depth_at(x);
             }
         }
     }
@@ -359,8 +364,8 @@ impl<'a> Passage<'a> {
     fn check_sense(&self) -> Result<(), TrackError> {
         let mut forces = self.interface.forces.iter().zip(&self.force_limits);
         if let Some(j) = forces.position(|(force, limit)| !within(*force, *limit)) {
-            let (step, x, value) = (self.counters.steps, self.wheel_positions[j], self.interface.forces[j]);
-            return Err(TrackError::Unstable { step, time: self.time(), x, what: "a wheel force", value, unit: "N" });
+            let (step, x, force) = (self.counters.steps, self.wheel_positions[j], self.interface.forces[j]);
+            return Err(TrackError::Unstable { step, time: self.time(), x, what: Wild::WheelForce(force) });
         }
         if self.displacement.iter().fold(true, |sound, u| sound & within(*u, WILD_DISPLACEMENT)) {
             Ok(())
@@ -377,9 +382,7 @@ impl<'a> Passage<'a> {
             step: self.counters.steps,
             time,
             x: track.place_of(unknown),
-            what: "a displacement",
-            value: self.displacement[unknown],
-            unit: "m",
+            what: Wild::Displacement(self.displacement[unknown]),
         }
     }
 

@@ -98,7 +98,7 @@ impl Reach {
                 let unknowns = track.element_unknowns(at.element);
                 for (column, shape) in columns.into_iter().zip(point.shape) {
                     for (unknown, other_shape) in unknowns.into_iter().zip(at.shape) {
-                        *entry += shape * other_shape * column.at(unknown);
+                        *entry += shape * other_shape * column.entry(unknown);
                     }
                 }
                 if q == rank {

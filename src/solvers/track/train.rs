@@ -1,10 +1,11 @@
 //! Vehicles that run together.
 
-use super::{Multibody, TrackError};
+use super::error::{Parameter, TrackError};
+use super::multibody::Multibody;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// As x grows.
+    /// Towards larger x.
     Forward,
     Backward,
 }
@@ -59,7 +60,7 @@ impl Train {
             vehicle.check()?;
             if !(*offset >= 0.0 && offset.is_finite()) {
                 return Err(TrackError::Parameter {
-                    name: "offset of a vehicle",
+                    name: Parameter::Train("offset of a vehicle"),
                     value: *offset,
                     expected: "of 0 or more",
                 });

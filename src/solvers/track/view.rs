@@ -63,7 +63,7 @@ impl<'a> StepView<'a> {
         self.passage.time()
     }
 
-    /// Of the step that has led here, s.
+    /// Length of the step that has led here, s.
     pub fn time_step(&self) -> f64 {
         self.passage.last_step
     }

@@ -222,7 +222,7 @@ impl Open {
                 format!("clump {name}, which begins here, has {found} pebbles; at most {most} fit"),
             );
         }
-        match Template::of(&pebbles) {
+        match Template::from_pebbles(&pebbles) {
             Ok(template) => Ok(Piece::Clump(template)),
             Err(error) => malformed(line, format!("clump {name}, which begins here: {error}")),
         }

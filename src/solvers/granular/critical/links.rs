@@ -78,7 +78,7 @@ pub struct Roots {
 }
 
 impl Roots {
-    /// Of a body with `factor` times the inertia.
+    /// Roots of a body with `factor` times the inertia.
     pub fn heavier(&self, factor: f64) -> Roots {
         let share = factor.sqrt().recip();
         Roots { translation: self.translation * share, rotation: self.rotation * share }
@@ -155,7 +155,7 @@ impl<R: Real> Bed<R> {
             let normal: Vec3 = wall.pose.direction_to_space(&touch.normal).into();
             let overlap = record.radius() - touch.distance;
             let arm = self.arm(entry.pebble, scale(normal, -(record.radius() - 0.5 * overlap)));
-            let tangent = Tangent::of(law, overlap, mass, record.radius());
+            let tangent = Tangent::from_law(law, overlap, mass, record.radius());
             Link { bodies: [self.bodies[body as usize].id, GROUND], normal, arms: [arm, [0.0; 3]], tangent, mass }
         }));
     }
@@ -196,7 +196,7 @@ impl<R: Real> Bed<R> {
                 self.arm(a, scale(normal, -(one.radius() - 0.5 * overlap))),
                 self.arm(b, scale(normal, other.radius() - 0.5 * overlap)),
             ],
-            tangent: Tangent::of(law, overlap, mass, reduced(one.radius(), other.radius())),
+            tangent: Tangent::from_law(law, overlap, mass, reduced(one.radius(), other.radius())),
             mass,
         };
         // which of two comes first in a list is chance

@@ -110,7 +110,7 @@ impl<R: Real> Bed<R> {
 
     fn seat(&self, body: u32, around: &Around) -> Seat {
         let state = self.body_state(BodyId(body));
-        let contacts = around.of(body as usize).len();
+        let contacts = around.links_of(body as usize).len();
         Seat { body: state.id, place: state.place, surface: state.surface, contacts }
     }
 
@@ -133,7 +133,7 @@ impl<R: Real> Bed<R> {
             let (one, other) = (&self.records[a as usize], &self.records[b as usize]);
             let law = &self.laws.all()[usize::from(self.contacts.law[place / BLOCK])];
             let mass = links::reduced(one.mass().to_f64(), other.mass().to_f64());
-            let tangent = Tangent::of(law, overlap, mass, links::reduced(one.radius(), other.radius()));
+            let tangent = Tangent::from_law(law, overlap, mass, links::reduced(one.radius(), other.radius()));
             count(a, &tangent, 2.0);
             count(b, &tangent, 2.0);
         }
@@ -141,7 +141,11 @@ impl<R: Real> Bed<R> {
             let record = &self.records[entry.pebble as usize];
             let law = &self.laws.all()[usize::from(entry.law)];
             for slot in self.wall_contacts.slots(entry).iter().filter(|s| s.touches()) {
-                count(entry.pebble, &Tangent::of(law, slot.overlap, record.mass().to_f64(), record.radius()), 1.0);
+                count(
+                    entry.pebble,
+                    &Tangent::from_law(law, slot.overlap, record.mass().to_f64(), record.radius()),
+                    1.0,
+                );
             }
         }
         let braked = 1.0 + self.damping;

@@ -159,7 +159,7 @@ fn chains_meet_the_closed_form() {
 fn a_clump_of_two_rocks_on_its_feet() {
     let apart = 0.9 * RADIUS;
     let pebble = |x: f64| Pebble { centre: Vector3::new(x, 0.0, 0.0), radius: RADIUS };
-    let template = Template::of(&[pebble(-apart), pebble(apart)]).unwrap();
+    let template = Template::from_pebbles(&[pebble(-apart), pebble(apart)]).unwrap();
     let mut bed = bed(law(0.0, [0.0; 2]));
     let placed = Placed {
         template: &template,

@@ -27,9 +27,9 @@ pub struct ShapeError {
 }
 
 impl ShapeError {
-    /// Of a clump that stands in the frame in which its pebbles were given.
+    /// What a clump gets wrong that stands in the frame in which its pebbles were given.
     pub fn between(surface: &Mesh, clump: &Template) -> Self {
-        let solid = Solid::of(surface.vertices(), surface.triangles());
+        let solid = Solid::inside(surface.vertices(), surface.triangles());
         let scale = (solid.volume / clump.volume).cbrt();
         let pebbles: Vec<Pebble> = clump
             .pebbles

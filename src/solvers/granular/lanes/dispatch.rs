@@ -11,7 +11,7 @@ impl Real for f32 {
     const NAME: &'static str = "mixed";
 
     #[inline(always)]
-    fn of(value: f64) -> f32 {
+    fn from_f64(value: f64) -> f32 {
         value as f32
     }
     #[inline(always)]
@@ -47,7 +47,7 @@ impl Real for f64 {
     const NAME: &'static str = "f64";
 
     #[inline(always)]
-    fn of(value: f64) -> f64 {
+    fn from_f64(value: f64) -> f64 {
         value
     }
     #[inline(always)]

@@ -44,7 +44,7 @@ pub trait Real:
     /// The name of the precision, for tables.
     const NAME: &'static str;
 
-    fn of(value: f64) -> Self;
+    fn from_f64(value: f64) -> Self;
     fn to_f64(self) -> f64;
     fn sqrt(self) -> Self;
     fn fma(self, factor: Self, summand: Self) -> Self;
@@ -146,14 +146,14 @@ impl<L: Lanes> Neg for Num<L> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self.of(-L::Real::of(1.0)) * self
+        self.alike(-L::Real::from_f64(1.0)) * self
     }
 }
 
 impl<L: Lanes> Num<L> {
     #[inline(always)]
     pub fn splat(lanes: L, value: f64) -> Self {
-        Num { lanes, value: lanes.splat(L::Real::of(value)) }
+        Num { lanes, value: lanes.splat(L::Real::from_f64(value)) }
     }
 
     #[inline(always)]
@@ -168,7 +168,7 @@ impl<L: Lanes> Num<L> {
 
     /// The same number in every lane.
     #[inline(always)]
-    pub fn of(self, value: L::Real) -> Self {
+    pub fn alike(self, value: L::Real) -> Self {
         Num { lanes: self.lanes, value: self.lanes.splat(value) }
     }
 

@@ -14,9 +14,9 @@ pub struct Balance {
     pub acting: f64,
 }
 
-/// Of all bodies in the order of making. The snapshot is one of this bed, of now.
+/// Forces on all bodies in the order of making. The snapshot is one of this bed, of now.
 pub fn balance<R: Real>(bed: &Bed<R>, snapshot: &Snapshot) -> Vec<Balance> {
-    let gravity = bed.gravity.at(bed.time);
+    let gravity = bed.gravity.value_at(bed.time);
     let at_weight = |mass| Balance { net: scale(gravity, mass), acting: norm(scale(gravity, mass)) };
     let mut all: Vec<Balance> = bed.states().map(|state| at_weight(state.mass)).collect();
     for contact in &snapshot.contacts {

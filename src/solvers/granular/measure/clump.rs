@@ -50,7 +50,7 @@ fn flux(ball: &Pebble, radius: f64, arcs: &Trig) -> [f64; 1] {
 fn union_in_ball(pebbles: &[Pebble], border: &Pebble) -> f64 {
     let mut total = 0.0;
     for (i, pebble) in pebbles.iter().enumerate() {
-        let mut patch = Patch::of(pebbles, i);
+        let mut patch = Patch::of_pebble(pebbles, i);
         patch.keep_within(pebble, border);
         total += patch.integrate(&TOLERANCE, |_, radius, open| flux(pebble, radius, open))[0];
     }
@@ -61,7 +61,7 @@ fn union_in_ball(pebbles: &[Pebble], border: &Pebble) -> f64 {
 fn union_in_box(pebbles: &[Pebble], lower: &Vector3<f64>, upper: &Vector3<f64>) -> f64 {
     let mut total = 0.0;
     for (i, pebble) in pebbles.iter().enumerate() {
-        let mut patch = Patch::of(pebbles, i);
+        let mut patch = Patch::of_pebble(pebbles, i);
         for k in 0..3 {
             let normal = Vector3::from_fn(|row, _| f64::from(u8::from(row == k)));
             patch.cut(Cap { normal, offset: (upper[k] - pebble.centre[k]) / pebble.radius });

@@ -48,8 +48,8 @@ pub struct ForceSpread {
 }
 
 impl ForceSpread {
-    /// Of contacts whose normal force pushes; the others are left out.
-    pub fn of(pushes: impl IntoIterator<Item = Push>) -> ForceSpread {
+    /// How the forces of contacts spread whose normal force pushes; the others are left out.
+    pub fn from_pushes(pushes: impl IntoIterator<Item = Push>) -> ForceSpread {
         let pushes: Vec<Push> = pushes.into_iter().filter(|push| push.normal > 0.0).collect();
         if pushes.is_empty() {
             return ForceSpread::default();

@@ -66,7 +66,7 @@ const SIDE: f64 = 8.0 * RADIUS;
 /// A cubic lattice of `count` layers in a periodic column, on a floor or without one.
 fn column(count: u32, floor: bool, fall: f64) -> Bed<f64> {
     let domain = Domain::open().periodic(0, SIDE).periodic(1, SIDE);
-    let mut bed = Bed::new(domain, Laws::of(&[surface()]));
+    let mut bed = Bed::new(domain, Laws::from_surfaces(&[surface()]));
     if floor {
         bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
     }
@@ -82,7 +82,7 @@ fn column(count: u32, floor: bool, fall: f64) -> Bed<f64> {
 
 fn survey(bed: &mut Bed<f64>) -> Survey {
     let snapshot = bed.snapshot().unwrap();
-    Survey::of(bed, &snapshot, &[DENSITY])
+    Survey::from_snapshot(bed, &snapshot, &[DENSITY])
 }
 
 fn block(lower: [f64; 3], upper: [f64; 3]) -> Region {

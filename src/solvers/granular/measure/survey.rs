@@ -102,8 +102,8 @@ impl Reading {
 }
 
 impl Survey {
-    /// Of a bed and its snapshot of now. `densities` (kg/m3) by surface give bodies of several pebbles their volume.
-    pub fn of<R: Real>(bed: &Bed<R>, snapshot: &Snapshot, densities: &[f64]) -> Survey {
+    /// Surveys a bed by its snapshot of now. `densities` (kg/m3) by surface give bodies of several pebbles their volume.
+    pub fn from_snapshot<R: Real>(bed: &Bed<R>, snapshot: &Snapshot, densities: &[f64]) -> Survey {
         let periods = [0, 1, 2].map(|axis| bed.domain().period(axis));
         let touches = snapshot.contacts.iter().filter_map(|contact| touch(bed, contact, &periods));
         Survey { grains: grains(bed, snapshot, densities, &periods), touches: touches.collect(), periods }
@@ -168,11 +168,11 @@ impl Survey {
         Reading {
             bodies: inside.len(),
             porosity: 1.0 - solid / volume,
-            coordination: Coordination::of(&counts).mean,
+            coordination: Coordination::from_neighbours(&counts).mean,
             stress: rows(&stress),
             velocity: mean(|grain| grain.velocity),
             acceleration: mean(|grain| grain.acceleration),
-            fabric: Fabric::of(normals),
+            fabric: Fabric::from_normals(normals),
         }
     }
 }

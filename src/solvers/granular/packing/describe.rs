@@ -5,16 +5,44 @@ use super::super::lanes::Real;
 use super::super::measure::{Coordination, neighbours};
 use super::super::snapshot::{ContactState, Snapshot};
 use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// What a bed goes through until it is finished.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum StageKind {
+    /// A lift of a layer falls and is pressed; lifts count from 1.
+    Lift { layer: String, lift: u32, lifts: u32 },
+    /// The plate is eased.
+    Eased,
+    /// Friction comes back.
+    Restored,
+    /// The plate goes.
+    Lifted,
+    /// Cells stand side by side as the bed of a track.
+    SideBySide,
+}
+
+impl fmt::Display for StageKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            StageKind::Lift { layer, lift, lifts } => write!(f, "{layer}, lift {lift} of {lifts}"),
+            StageKind::Eased => write!(f, "plate eased"),
+            StageKind::Restored => write!(f, "friction restored"),
+            StageKind::Lifted => write!(f, "plate lifted"),
+            StageKind::SideBySide => write!(f, "cells side by side"),
+        }
+    }
+}
 
 /// A stage as it ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stage {
     pub name: String,
-    /// That it took, s.
+    /// Time that it took, s.
     pub time: f64,
-    /// Of the plate, Pa; 0 without it.
+    /// Pressure of the plate, Pa; 0 without it.
     pub pressure: f64,
-    /// Of the plate, m; `None` without it.
+    /// Level of the plate, m; `None` without it.
     pub level: Option<f64>,
     pub state: State,
 }
@@ -26,7 +54,7 @@ pub struct State {
     pub unbalance: f64,
     /// J.
     pub kinetic: f64,
-    /// Of each layer; those that are still to come are empty.
+    /// State of each layer; those that are still to come are empty.
     pub layers: Vec<LayerState>,
 }
 
@@ -43,7 +71,7 @@ pub struct LayerState {
 }
 
 impl State {
-    pub(super) fn of<R: Real>(bed: &Bed<R>, snapshot: &Snapshot, unbalance: f64) -> State {
+    pub(super) fn from_snapshot<R: Real>(bed: &Bed<R>, snapshot: &Snapshot, unbalance: f64) -> State {
         let pair = |contact: &ContactState| Some((contact.first.body()?.0, contact.second.body()?.0));
         let pairs: Vec<(u32, u32)> = snapshot.contacts.iter().filter_map(pair).collect();
         let neighbours = neighbours(bed.len(), &pairs);
@@ -52,13 +80,13 @@ impl State {
             layers[usize::from(state.surface)].push(count);
         }
         let kinetic = snapshot.translation + snapshot.rotation;
-        State { unbalance, kinetic, layers: layers.iter().map(|counts| LayerState::of(counts)).collect() }
+        State { unbalance, kinetic, layers: layers.iter().map(|counts| LayerState::from_neighbours(counts)).collect() }
     }
 }
 
 impl LayerState {
-    fn of(neighbours: &[u32]) -> LayerState {
-        let Coordination { mean, without_rattlers, rattlers, .. } = Coordination::of(neighbours);
+    fn from_neighbours(neighbours: &[u32]) -> LayerState {
+        let Coordination { mean, without_rattlers, rattlers, .. } = Coordination::from_neighbours(neighbours);
         LayerState { bodies: neighbours.len(), coordination: mean, without_rattlers, rattlers }
     }
 }

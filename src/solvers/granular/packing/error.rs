@@ -2,8 +2,10 @@
 
 use super::super::failure::Failure;
 use super::super::grains::GradingError;
+use super::describe::StageKind;
 use std::fmt;
 
+/// Why a bed was not packed.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PackingError {
     /// A number of the recipe, and what it should be.
@@ -34,20 +36,20 @@ pub enum PackingError {
     },
     /// The plate has not reached its pressure in time.
     Pressure {
-        stage: String,
+        stage: StageKind,
         reached: f64,
         target: f64,
         time: f64,
     },
     /// Forces are not in balance after the time that a stage may take.
     Restless {
-        stage: String,
+        stage: StageKind,
         unbalance: f64,
         limit: f64,
         time: f64,
     },
     Failure {
-        stage: String,
+        stage: StageKind,
         failure: Failure,
     },
 }

@@ -20,7 +20,7 @@ mod store;
 mod tests;
 mod track;
 
-pub use describe::{LayerState, Stage, State};
+pub use describe::{LayerState, Stage, StageKind, State};
 pub use error::PackingError;
 pub use pack::pack;
 pub use packed::Packed;

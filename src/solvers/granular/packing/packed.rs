@@ -13,9 +13,9 @@ use super::press::LAST;
 #[derive(Clone)]
 pub struct Packed<R: Real> {
     pub bed: Bed<R>,
-    /// Of the cell along x and across, m.
+    /// Sides of the cell along x and across, m.
     pub plan: [f64; 2],
-    /// Of the grains of each layer, kg/m3.
+    /// Density of the grains of each layer, kg/m3.
     pub densities: Vec<f64>,
     /// Where the bodies of each layer begin, and the end of the last.
     pub bodies: Vec<u32>,
@@ -42,10 +42,10 @@ impl<R: Real> Packed<R> {
     /// All that can be measured of it now. `bed` is its own, or a copy that something was done to.
     pub fn survey(&self, bed: &mut Bed<R>) -> Result<Survey, Failure> {
         let snapshot = bed.snapshot()?;
-        Ok(Survey::of(bed, &snapshot, &self.densities))
+        Ok(Survey::from_snapshot(bed, &snapshot, &self.densities))
     }
 
-    /// Of the plan, m2.
+    /// Area of the plan, m2.
     pub fn area(&self) -> f64 {
         self.plan[0] * self.plan[1]
     }

@@ -8,7 +8,7 @@ use super::super::motion::{Motion, Pose};
 use super::super::rest::{Criterion, Look, Waiting, until_rest};
 use super::super::shape::Shape;
 use super::super::walls::WallId;
-use super::describe::{Stage, State};
+use super::describe::{Stage, StageKind, State};
 use super::error::PackingError;
 use super::pace::{Pace, SAFE};
 use super::place::{Loose, Room, set_loose};
@@ -22,7 +22,7 @@ const LOOK: u64 = 200;
 const CALM: usize = 3;
 /// At which loose grains fall and the plate comes down to them, m/s.
 const FALL: f64 = 1.0;
-/// Of the plate once it bears, m/s.
+/// Speed of the plate once it bears, m/s.
 const SLOW: f64 = 0.2;
 /// At which it goes away, m/s.
 const LIFT: f64 = 0.05;
@@ -37,9 +37,6 @@ const GONE: f64 = 0.01;
 
 /// Stages after those of the lifts.
 pub(super) const LAST: usize = 3;
-const EASED: &str = "plate eased";
-const RESTORED: &str = "friction restored";
-const LIFTED: &str = "plate lifted";
 
 /// A bed under a plate.
 pub(super) struct Press<'a, R: Real, T> {
@@ -60,7 +57,7 @@ pub(super) struct Press<'a, R: Real, T> {
 /// What a stage waits for.
 #[derive(Clone, Copy)]
 struct Goal {
-    /// Of the plate, Pa.
+    /// Pressure of the plate, Pa.
     pressure: Option<f64>,
     unbalance: f64,
 }
@@ -79,7 +76,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
             recipe,
             area: length * width,
             level: 0.0,
-            pace: Some(Pace::of(recipe)),
+            pace: Some(Pace::without_friction(recipe)),
             count: lifts as usize + LAST,
             tell,
         };
@@ -87,7 +84,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         press
     }
 
-    /// Of the plate when it last pressed, m.
+    /// Level of the plate when it last pressed, m.
     pub fn level(&self) -> f64 {
         self.level
     }
@@ -103,7 +100,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         put(&mut self.bed, &loose, layer, number as u16, FALL);
         self.bed.set_damping(layer.packing.local_damping);
         self.lower_from(top, layer.pressure, FALL);
-        let stage = format!("{}, lift {} of {}", layer.name, lift + 1, layer.lifts_that_fit());
+        let stage = StageKind::Lift { layer: layer.name.clone(), lift: lift + 1, lifts: layer.lifts_that_fit() };
         let goal = Goal { pressure: Some(layer.pressure), unbalance: recipe.rest.lift };
         self.until_rest(&stage, goal, top)?;
         self.level = self.height();
@@ -115,16 +112,16 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
     /// `weight` is that of the bed over its area, Pa: half of it is what the plate presses with, as the bed's own weight does inside.
     pub fn finish(&mut self, recipe: &Recipe, weight: f64) -> Result<(), PackingError> {
         let pressure = recipe.layers.last().map(|layer| layer.pressure.min(0.5 * weight));
-        self.until_rest(EASED, Goal { pressure, unbalance: recipe.rest.lift }, self.level)?;
+        self.until_rest(&StageKind::Eased, Goal { pressure, unbalance: recipe.rest.lift }, self.level)?;
         let unbalance = recipe.rest.bed;
         self.pace = None;
         self.bed.unscale_masses();
         self.bed.set_laws(recipe.laws());
         self.bed.set_damping(recipe.local_damping);
-        self.until_rest(RESTORED, Goal { pressure, unbalance }, self.level)?;
+        self.until_rest(&StageKind::Restored, Goal { pressure, unbalance }, self.level)?;
         self.level = self.height();
         self.lift()?;
-        self.until_rest(LIFTED, Goal { pressure: None, unbalance }, self.level)
+        self.until_rest(&StageKind::Lifted, Goal { pressure: None, unbalance }, self.level)
     }
 
     /// The plate goes up until it all but presses no more.
@@ -135,7 +132,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         // the springs under it give way long before it is a grain's size away
         let clear = level + self.recipe.layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
         while self.pressure() > GONE * pressure && self.height() < clear {
-            self.advance(LOOK).map_err(|failure| failed(LIFTED, failure))?;
+            self.advance(LOOK).map_err(|failure| failed(&StageKind::Lifted, failure))?;
         }
         self.away();
         Ok(())
@@ -182,7 +179,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
     }
 
     /// Runs until forces are in balance and the plate presses as it should.
-    fn until_rest(&mut self, stage: &str, goal: Goal, top: f64) -> Result<(), PackingError> {
+    fn until_rest(&mut self, stage: &StageKind, goal: Goal, top: f64) -> Result<(), PackingError> {
         // loose grains need their time to fall, and grains under a lower pressure more time to find their places
         let slower = goal.pressure.map_or(1.0, |pressure| (USUAL / pressure).sqrt().max(1.0));
         let criterion = Criterion {
@@ -196,15 +193,15 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         let longest = criterion.longest;
         let start = self.bed.time();
         let look = until_rest(&mut Pressing { press: self, stage, goal, longest, bears: false }, &criterion, start)?;
-        let state = State::of(&self.bed, &look.snapshot, look.unbalance);
+        let state = State::from_snapshot(&self.bed, &look.snapshot, look.unbalance);
         let (pressure, level) = (self.pressure(), goal.pressure.map(|_| self.height()));
-        self.stages.push(Stage { name: stage.to_owned(), time: look.time, pressure, level, state });
+        self.stages.push(Stage { name: stage.to_string(), time: look.time, pressure, level, state });
         Ok(())
     }
 
-    fn say(&mut self, stage: &str, share: f64) {
+    fn say(&mut self, stage: &StageKind, share: f64) {
         let share = (self.stages.len() as f64 + share) / self.count as f64;
-        let progress = Progress { stage: stage.to_owned(), share, bodies: self.bed.len(), steps: self.bed.steps() };
+        let progress = Progress { stage: stage.to_string(), share, bodies: self.bed.len(), steps: self.bed.steps() };
         (self.tell)(&progress);
     }
 }
@@ -212,7 +209,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
 /// A stage under way.
 struct Pressing<'p, 'a, R: Real, T> {
     press: &'p mut Press<'a, R, T>,
-    stage: &'p str,
+    stage: &'p StageKind,
     goal: Goal,
     /// Time that it may take, s.
     longest: f64,
@@ -246,7 +243,7 @@ impl<R: Real, T: FnMut(&Progress)> Waiting<R> for Pressing<'_, '_, R, T> {
     }
 
     fn restless(&self, look: &Look) -> PackingError {
-        let (stage, time) = (self.stage.to_owned(), look.time);
+        let (stage, time) = (self.stage.clone(), look.time);
         match self.goal.pressure.filter(|_| look.missed > self.press.recipe.rest.pressure) {
             Some(target) => PackingError::Pressure { stage, reached: self.press.pressure(), target, time },
             None => PackingError::Restless { stage, unbalance: look.unbalance, limit: self.goal.unbalance, time },
@@ -258,8 +255,8 @@ impl<R: Real, T: FnMut(&Progress)> Waiting<R> for Pressing<'_, '_, R, T> {
     }
 }
 
-fn failed(stage: &str, failure: Failure) -> PackingError {
-    PackingError::Failure { stage: stage.to_owned(), failure }
+fn failed(stage: &StageKind, failure: Failure) -> PackingError {
+    PackingError::Failure { stage: stage.clone(), failure }
 }
 
 /// Puts grains into a bed, falling.

@@ -4,7 +4,7 @@
 #[derive(Debug, Clone, PartialEq)]
 pub struct Progress {
     pub stage: String,
-    /// Of all stages, 0 .. 1; an estimate.
+    /// Share of all stages that is done, 0 .. 1; an estimate.
     pub share: f64,
     pub bodies: usize,
     pub steps: u64,

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// What is packed, and how.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Recipe {
-    /// Of the cell along x and across, m.
+    /// Sides of the cell along x and across, m.
     pub plan: [f64; 2],
     /// Whether walls stand at both ends across; else the bed is periodic there too.
     pub walls: bool,
@@ -34,11 +34,11 @@ pub struct Recipe {
 pub struct Layer {
     pub name: String,
     pub curve: Curve,
-    /// Of unit size; grains are copies of them as often of one as of another.
+    /// Clumps of unit size; grains are copies of them, as often of one as of another.
     pub templates: Vec<Template>,
-    /// Of a grain, kg/m3.
+    /// Density of a grain, kg/m3.
     pub density: f64,
-    /// Of the finished bed.
+    /// Surface of the grains in the finished bed.
     pub surface: Surface,
     /// To walls, floor and plate.
     pub wall_friction: f64,
@@ -79,14 +79,14 @@ impl Default for Rest {
     }
 }
 
-/// Of a layer so thick (m), none thinner than its largest grain, which would bear the plate alone; at most as many as asked for.
+/// Number of lifts of a layer so thick (m), none thinner than its largest grain, which would bear the plate alone; at most as many as asked for.
 pub fn lifts_that_fit(asked: u32, thickness: f64, curve: &Curve) -> u32 {
     let most = (thickness / curve.ends()[1] + 1e-9).floor().max(1.0);
     asked.min(most as u32)
 }
 
 impl Layer {
-    /// That it is pressed in, at most as many as asked for.
+    /// Number of lifts that it is pressed in, at most as many as asked for.
     pub fn lifts_that_fit(&self) -> u32 {
         lifts_that_fit(self.lifts, self.thickness, &self.curve)
     }
@@ -118,7 +118,7 @@ impl Recipe {
         let surfaces: Vec<(Surface, f64)> = self.layers.iter().map(of).collect();
         let mut all: Vec<Surface> = surfaces.iter().map(|(surface, _)| *surface).collect();
         all.extend(all.last().copied());
-        let mut laws = Laws::of(&all);
+        let mut laws = Laws::from_surfaces(&all);
         for (number, (surface, friction)) in surfaces.iter().enumerate() {
             let mut law = surface.meet(surface);
             if let Law::Linear(law) = &mut law {
@@ -129,7 +129,7 @@ impl Recipe {
         laws
     }
 
-    /// Of contacts between grains of each layer, N/m: two bodies in series.
+    /// Stiffness of contacts between grains of each layer, N/m: two bodies in series.
     pub(super) fn stiffness(&self) -> Vec<f64> {
         self.layers.iter().map(|layer| 0.5 * layer.surface.normal_stiffness).collect()
     }

@@ -13,6 +13,7 @@ use super::super::failure::Failure;
 use super::super::grains::Random;
 use super::super::lanes::Real;
 use super::super::rest::{Criterion, Look, Waiting, until_rest};
+use super::describe::StageKind;
 use super::error::PackingError;
 use super::pace::Pace;
 use super::packed::Packed;
@@ -100,7 +101,7 @@ pub fn lay<R: Real>(
     let bays = with_ends(&order.0);
     let all = Bed::side_by_side(&mut beds, &bays, -1, |_, _| true).map_err(failed)?;
     let sizes: Vec<usize> = bays.iter().map(|&cell| beds[cell].len()).collect();
-    let parts = Parts::of(all, &sizes).map_err(failed)?;
+    let parts = Parts::sorted(all, &sizes).map_err(failed)?;
     // numbers of `all` go bay by bay, body by body
     let starts: Vec<usize> = sizes.iter().scan(0, |next, size| Some(std::mem::replace(next, *next + size))).collect();
     let role = |bay: usize, body: BodyId| parts.roles[starts[bay] + body.0 as usize];
@@ -123,9 +124,6 @@ pub fn lay<R: Real>(
     Ok(TrackBed { bed, account })
 }
 
-/// The name of the stage.
-const LAID: &str = "cells side by side";
-
 /// With a further bay at each end, of the cell that stands there.
 fn with_ends(order: &[usize]) -> Vec<usize> {
     [&order[..1], order, &order[order.len() - 1..]].concat()
@@ -140,7 +138,7 @@ enum Role {
 }
 
 struct Parts {
-    /// Of every body of every bay.
+    /// Role of every body of every bay.
     roles: Vec<Role>,
     removed: usize,
     /// Share of the mass.
@@ -148,8 +146,8 @@ struct Parts {
 }
 
 impl Parts {
-    /// Of bays with so many bodies, the first and the last beyond the ends.
-    fn of<R: Real>(mut all: Bed<R>, sizes: &[usize]) -> Result<Parts, Failure> {
+    /// Sorts the bodies of bays with so many of them each, the first and the last bay beyond the ends.
+    fn sorted<R: Real>(mut all: Bed<R>, sizes: &[usize]) -> Result<Parts, Failure> {
         let inside = sizes[0]..all.len() - sizes[sizes.len() - 1];
         let mut roles = vec![Role::Out; all.len()];
         roles[inside.clone()].fill(Role::Free);
@@ -280,12 +278,12 @@ impl<R: Real, T: FnMut(&Progress)> Waiting<R> for Settling<'_, R, T> {
         let far = (look.unbalance / self.limit).ln().max(0.0);
         let share = 1.0 - (far / *self.first.get_or_insert(far.max(1.0))).min(1.0);
         let (bodies, steps) = (self.bed.len(), self.bed.steps());
-        (self.tell)(&Progress { stage: LAID.to_owned(), share, bodies, steps });
+        (self.tell)(&Progress { stage: StageKind::SideBySide.to_string(), share, bodies, steps });
     }
 
     fn restless(&self, look: &Look) -> PackingError {
         let &Look { unbalance, time, .. } = look;
-        PackingError::Restless { stage: LAID.to_owned(), unbalance, limit: self.limit, time }
+        PackingError::Restless { stage: StageKind::SideBySide, unbalance, limit: self.limit, time }
     }
 
     fn failed(&self, failure: Failure) -> PackingError {
@@ -294,5 +292,5 @@ impl<R: Real, T: FnMut(&Progress)> Waiting<R> for Settling<'_, R, T> {
 }
 
 fn failed(failure: Failure) -> PackingError {
-    PackingError::Failure { stage: LAID.to_owned(), failure }
+    PackingError::Failure { stage: StageKind::SideBySide, failure }
 }

@@ -42,7 +42,7 @@ pub enum Outline {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Plate {
     pub outline: Outline,
-    /// Of its middle in plan, m.
+    /// Place of its middle in plan, m.
     pub centre: [f64; 2],
     /// Largest pressure, Pa.
     pub pressure: f64,
@@ -70,7 +70,7 @@ impl Default for Stillness {
     }
 }
 
-/// Of the largest pressure, at which the plate counts as seated: DIN 18134 seats it with 10 kPa.
+/// Share of the largest pressure at which the plate counts as seated: DIN 18134 seats it with 10 kPa.
 pub const SEAT: f64 = 0.05;
 /// Pressures of the test over the largest one: first loading, back, second loading, back.
 const STEPS: [f64; 12] = [SEAT, 0.25, 0.5, 0.75, 1.0, 0.5, SEAT, 0.25, 0.5, 0.75, 1.0, SEAT];
@@ -80,9 +80,9 @@ const AGAIN: [usize; 2] = [6, 10];
 /// How many steps are done when the first full pressure is at rest.
 pub const FULL: usize = FIRST[1] + 1;
 
-/// Of the copy: a test wants states of rest, not how fast they are reached.
+/// Local damping of the copy: a test wants states of rest, not how fast they are reached.
 const LOCAL_DAMPING: f64 = 0.7;
-/// Of the plate, m/s; and the gain of its servo, as under the plate of the packing.
+/// Largest speed of the plate, m/s; and the gain of its servo, as under the plate of the packing.
 const SPEED: f64 = 0.02;
 const GAIN: f64 = 0.2;
 /// Inertia that may be added meanwhile, over all mass: states of rest do not know it.
@@ -128,7 +128,7 @@ impl Outline {
 
     /// Modulus, Pa, of a half-space that carries a rigid plate with `stiffness`, N/m; `None` for one without an edge.
     ///
-    /// Of a circle it is `E = 1.5 r Δσ/Δs` (DIN 18134): Boussinesq's `(1 - ν²) F/(2 r s)` with `1 - ν² = 3/π`. A rectangle of
+    /// For a circle it is `E = 1.5 r Δσ/Δs` (DIN 18134): Boussinesq's `(1 - ν²) F/(2 r s)` with `1 - ν² = 3/π`. A rectangle of
     /// half sides a >= b has `F/s = E a/(1 - ν²) (0.73 + 1.54 (b/a)^0.75)` (Gazetas 1991, Foundation Engineering Handbook,
     /// Table 15.1), with the same ν: 1.5 % less than exact for a square.
     pub fn modulus(&self, stiffness: f64) -> Option<f64> {
@@ -255,7 +255,7 @@ impl<'a, R: Real> Test<'a, R> {
         Ok(Test { bed, plate, wall, depth, seat: top, stride })
     }
 
-    /// Of the lower face, m.
+    /// Level of the lower face, m.
     fn level(&self) -> f64 {
         self.bed.wall(self.wall).pose(self.bed.domain()).position.z - self.depth
     }

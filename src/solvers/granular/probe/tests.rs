@@ -20,7 +20,7 @@ fn studs() -> Bed<f64> {
         damping: [0.3; 2],
         mode: DashpotMode::default(),
     };
-    let mut bed = Bed::new(Domain::open().periodic(0, SIDE).periodic(1, SIDE), Laws::of(&[surface]));
+    let mut bed = Bed::new(Domain::open().periodic(0, SIDE).periodic(1, SIDE), Laws::from_surfaces(&[surface]));
     bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
     for k in 0..16 {
         let at = |n: i32| (f64::from(n) + 0.5) * SIDE / 4.0;

@@ -16,7 +16,7 @@ pub struct Cycle {
     pub stiffness: f64,
     /// Largest force of the bed on the sleeper, N.
     pub contact_force: f64,
-    /// Of the actuator less what came back: the bed keeps it, J.
+    /// Work of the actuator less what came back: the bed keeps it, J.
     pub work: f64,
     /// Time steps so far.
     pub steps: u64,
@@ -29,7 +29,7 @@ pub struct Sample {
     pub cycle: u64,
     /// Share of the cycle that is over, 0 .. 1.
     pub phase: f64,
-    /// Of the actuator, and of the bed on the sleeper, N.
+    /// Force of the actuator, and of the bed on the sleeper, N.
     pub force: f64,
     pub contact_force: f64,
     /// m.

@@ -4,7 +4,7 @@ use super::super::bed::Bed;
 use super::super::lanes::Real;
 use super::super::rest::{Criterion, Look};
 use super::super::stride::Stride;
-use super::error::{RigError, in_cycle};
+use super::error::{Resting, RigError, in_cycle};
 
 /// When sleepers are at rest: the bed carries them but for a hundredth of their force.
 pub(super) const AT_REST: Criterion =
@@ -29,7 +29,7 @@ pub(super) fn calmed<R: Real, T>(
 }
 
 /// The error of a stage that has not come to rest.
-pub(super) fn restless(stage: &'static str, look: &Look) -> RigError {
+pub(super) fn restless(stage: Resting, look: &Look) -> RigError {
     let &Look { unbalance, missed: uncarried, time, .. } = look;
     RigError::Restless { stage, unbalance, limit: AT_REST.unbalance, uncarried, time }
 }

@@ -9,11 +9,11 @@ pub struct Rig {
     pub sleepers: Vec<Sleeper>,
     /// Sides that give way under a pressure; the one sleeper is then a plate over all of the bed.
     pub specimen: Option<Specimen>,
-    /// Of a cycle, s; of a history its length.
+    /// Time of a cycle, s; of a history its length.
     pub period: f64,
     pub cycles: u64,
     pub gravity: f64,
-    /// Of the grains of each surface, kg/m3.
+    /// Density of the grains of each surface, kg/m3.
     pub densities: Vec<f64>,
     /// Cycles of which loops of force and depth and what sensors read are kept, the first is 1.
     pub kept: Vec<u64>,
@@ -23,17 +23,17 @@ pub struct Rig {
     pub added: f64,
 }
 
-/// Of the mass of a bed, added as inertia while it is loaded.
+/// Share of the mass of a bed that is added as inertia while it is loaded.
 pub const ADDED: f64 = 0.005;
 
 /// A block on the bed, in the bed's own axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sleeper {
-    /// Of its middle, along and across, m.
+    /// Place of its middle, along and across, m.
     pub place: [f64; 2],
     /// Along, across, height, m.
     pub size: [f64; 3],
-    /// That the bed under it carries, kg.
+    /// Mass that the bed under it carries, kg.
     pub mass: f64,
     pub load: Load,
 }

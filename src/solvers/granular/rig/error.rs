@@ -3,11 +3,12 @@
 use super::super::failure::Failure;
 use std::fmt;
 
+/// Why a test on a rig has no answer.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RigError {
     /// Forces are not in balance after the time that a stage may take.
     Restless {
-        stage: &'static str,
+        stage: Resting,
         unbalance: f64,
         limit: f64,
         /// Share of the force on the sleepers that the bed does not carry.
@@ -18,6 +19,24 @@ pub enum RigError {
     Sunk { sleeper: usize, depth: f64, cycle: u64 },
     /// The motion of grains has run away.
     Failure { cycle: u64, failure: Failure },
+}
+
+/// What comes to rest before a test begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Resting {
+    /// The sleepers under their own weight.
+    Sleepers,
+    /// A specimen under the pressure on its sides.
+    Specimen,
+}
+
+impl fmt::Display for Resting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Resting::Sleepers => "sleepers set down",
+            Resting::Specimen => "specimen under the pressure on its sides",
+        })
+    }
 }
 
 impl fmt::Display for RigError {

@@ -24,7 +24,7 @@ mod trial;
 
 pub use answer::{Cycle, Sample};
 pub use description::{ADDED, Load, Rig, Sleeper};
-pub use error::RigError;
+pub use error::{Resting, RigError};
 pub use sensor::{Reading, Sensor};
 pub use specimen::{Specimen, SpecimenState};
 pub use store::Stored;

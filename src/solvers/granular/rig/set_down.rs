@@ -10,7 +10,7 @@ use super::super::stride::Stride;
 use super::super::walls::WallId;
 use super::calm::{AT_REST, DAMPING, calmed, restless};
 use super::description::{Rig, Sleeper};
-use super::error::{RigError, in_cycle};
+use super::error::{Resting, RigError, in_cycle};
 use nalgebra::Vector3;
 
 /// Puts the sleepers on the bed, each where it touches its first grain.
@@ -31,7 +31,7 @@ pub(super) fn place<R: Real>(bed: &mut Bed<R>, rig: &Rig) -> Vec<WallId> {
     walls.collect()
 }
 
-/// Of a sleeper under its weight, N, and a push.
+/// Motion of a sleeper under its weight, N, and a push.
 pub(super) fn motion(sleeper: &Sleeper, weight: f64, damping: f64, push: Push) -> Motion {
     Motion::Loaded { axis: -Vector3::z(), mass: sleeper.mass, weight, damping, push }
 }
@@ -49,15 +49,10 @@ fn highest<R: Real>(bed: &Bed<R>, sleeper: &Sleeper) -> f64 {
 }
 
 /// Runs until forces are in balance and the bed carries the sleepers. `tell` hears the share of the longest time.
-pub(super) fn until_rest<R: Real>(
-    bed: &mut Bed<R>,
-    walls: &[WallId],
-    stage: &'static str,
-    tell: impl FnMut(f64),
-) -> Result<(), RigError> {
+pub(super) fn until_rest<R: Real>(bed: &mut Bed<R>, walls: &[WallId], tell: impl FnMut(f64)) -> Result<(), RigError> {
     calmed(bed, |bed, stride| {
         let start = bed.time();
-        rest::until_rest(&mut Standing { bed, walls, stride, stage, tell }, &AT_REST, start).map(|_| ())
+        rest::until_rest(&mut Standing { bed, walls, stride, tell }, &AT_REST, start).map(|_| ())
     })
 }
 
@@ -66,7 +61,6 @@ struct Standing<'s, R: Real, T> {
     bed: &'s mut Bed<R>,
     walls: &'s [WallId],
     stride: Stride,
-    stage: &'static str,
     tell: T,
 }
 
@@ -90,7 +84,7 @@ impl<R: Real, T: FnMut(f64)> Waiting<R> for Standing<'_, R, T> {
     }
 
     fn restless(&self, look: &Look) -> RigError {
-        restless(self.stage, look)
+        restless(Resting::Sleepers, look)
     }
 
     fn failed(&self, failure: Failure) -> RigError {
@@ -103,7 +97,7 @@ fn uncarried<R: Real>(bed: &Bed<R>, walls: &[WallId]) -> f64 {
     let of = |wall: &WallId| {
         let wall = bed.wall(*wall);
         let Motion::Loaded { weight, push, .. } = wall.motion() else { return 0.0 };
-        let force = weight + push.at(bed.time());
+        let force = weight + push.force_at(bed.time());
         if force > 0.0 { (wall.felt().force.z / force - 1.0).abs() } else { 0.0 }
     };
     walls.iter().map(of).fold(0.0, f64::max)

@@ -12,11 +12,11 @@ use super::super::rest::{Criterion, Look, Waiting, until_rest};
 use super::super::stride::Stride;
 use super::super::walls::WallId;
 use super::calm::{AT_REST, calmed, restless};
-use super::error::{RigError, in_cycle};
+use super::error::{Resting, RigError, in_cycle};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Of the sides, m/s; and the gain of their servos, the usual one: with less they lag behind a specimen that dilates.
+/// Largest speed of the sides, m/s; and the gain of their servos, the usual one: with less they lag behind a specimen that dilates.
 const SPEED: f64 = 0.1;
 const GAIN: f64 = 0.5;
 /// When consolidation is over: a side may miss a fiftieth of its pressure.
@@ -61,7 +61,7 @@ impl SpecimenState {
         self.axial_stress - self.lateral_stress
     }
 
-    /// Of Mohr's circle through the origin: sin phi = (s1 - s3)/(s1 + s3), rad.
+    /// Mobilised angle of friction, by Mohr's circle through the origin: sin phi = (s1 - s3)/(s1 + s3), rad.
     pub fn mobilised_friction(&self) -> f64 {
         (self.deviator() / (self.axial_stress + self.lateral_stress)).asin()
     }
@@ -141,7 +141,7 @@ impl Specimen {
     }
 }
 
-/// Of one that stands across an axis, m2.
+/// Area of a side that stands across an axis, m2.
 fn area_of_side(size: &Size, axis: usize) -> f64 {
     size.plan[1 - axis] * size.height
 }
@@ -153,7 +153,7 @@ struct Consolidation<'s, R: Real, L, P, T> {
     plate: WallId,
     /// Gives the level of the plate's face, m.
     level: L,
-    /// Of the specimen before the last steps.
+    /// Size of the specimen before the last steps.
     size: Size,
     stride: Stride,
     push: P,
@@ -188,7 +188,7 @@ impl<R: Real, L: Fn(&Bed<R>) -> f64, P: FnMut(&mut Bed<R>, f64), T: FnMut(f64)> 
     }
 
     fn restless(&self, look: &Look) -> RigError {
-        restless("specimen under the pressure on its sides", look)
+        restless(Resting::Specimen, look)
     }
 
     fn failed(&self, failure: Failure) -> RigError {

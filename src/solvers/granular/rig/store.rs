@@ -20,7 +20,7 @@ impl<'a, R: Real> Trial<'a, R> {
         Stored { bed: self.bed.checkpoint(), state: self.state.clone() }
     }
 
-    /// Of the same rig. Fails where what was stored is damaged.
+    /// A test of the same rig that goes on. Fails where what was stored is damaged.
     pub fn restore(stored: Stored<R>, rig: &'a Rig) -> Result<Self, RestoreError> {
         Ok(Trial { bed: Bed::restore(stored.bed)?, rig, state: stored.state })
     }

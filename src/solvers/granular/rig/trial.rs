@@ -35,16 +35,16 @@ pub struct Trial<'a, R: Real> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct State {
     pub walls: Vec<WallId>,
-    /// Of the sleepers' middles as they rest under their own weight, or under the pressure on a specimen, m.
+    /// Level of the sleepers' middles as they rest under their own weight, or under the pressure on a specimen, m.
     pub rest: Vec<f64>,
-    /// Of a specimen that is consolidated.
+    /// Size of a specimen that is consolidated.
     pub size: Option<Size>,
     pub specimen: Vec<SpecimenState>,
     /// Time at which the first ramp begins, s.
     pub start: f64,
     pub pieces: u64,
     pub steps: u64,
-    /// That the bed is held at, s.
+    /// Step that the bed is held at, s.
     pub stride: f64,
     pub current: Vec<Current>,
     pub cycles: Vec<Cycle>,
@@ -68,7 +68,7 @@ impl<'a, R: Real> Trial<'a, R> {
     pub fn new(mut bed: Bed<R>, rig: &'a Rig, mut tell: impl FnMut(f64)) -> Result<Self, RigError> {
         let before = bed.steps();
         let walls = place(&mut bed, rig);
-        until_rest(&mut bed, &walls, "sleepers set down", &mut tell)?;
+        until_rest(&mut bed, &walls, &mut tell)?;
         let size = consolidated(&mut bed, rig, &walls, tell)?;
         let rest = walls.iter().map(|wall| bed.wall(*wall).pose(bed.domain()).position.z).collect();
         let state = State {
@@ -105,7 +105,7 @@ impl<'a, R: Real> Trial<'a, R> {
         }
     }
 
-    /// Of a sleeper under a weight, N.
+    /// Motion of a sleeper under a weight, N.
     fn motion(&self, number: usize, weight: f64) -> Motion {
         let sleeper = &self.rig.sleepers[number];
         let ramp = RAMP as f64 * self.piece();
@@ -128,7 +128,7 @@ impl<'a, R: Real> Trial<'a, R> {
         motion(sleeper, weight, self.bed.damping, push)
     }
 
-    /// Of a specimen as it is.
+    /// Size of the specimen as it is.
     fn size(&self) -> Option<Size> {
         let [plate] = self.state.walls[..] else { return None };
         let level = self.bed.wall(plate).pose(self.bed.domain()).position.z - self.face();
@@ -217,7 +217,7 @@ impl<'a, R: Real> Trial<'a, R> {
         let (depth, contact_force) = (self.state.rest[sleeper] - level, wall.felt().force.z);
         let velocity = -wall.velocity().0[2];
         let force = match wall.motion() {
-            Motion::Loaded { push, .. } => push.at(self.bed.time()),
+            Motion::Loaded { push, .. } => push.force_at(self.bed.time()),
             // a plate that is driven: what it presses with, on top of the pressure on a specimen
             _ => contact_force - self.rig.specimen.zip(self.size()).map_or(0.0, |(s, size)| s.pressure * size.area()),
         };

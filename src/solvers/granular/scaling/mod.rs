@@ -45,7 +45,7 @@ pub struct Scaling {
 pub struct HeldEnergy {
     pub all: f64,
     pub scaled: f64,
-    /// Of the added mass alone: what is not there in nature.
+    /// Energy of the added mass alone: what is not there in nature.
     pub added: f64,
 }
 

@@ -26,7 +26,7 @@ fn mixed() -> Bed<f64> {
     bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
     bed.set_gravity(Gravity::EARTH);
     let pebble = |x: f64| Pebble { centre: Vector3::new(x, 0.0, 0.0), radius: 0.015 };
-    let template = Template::of(&[pebble(-0.01), pebble(0.01)]).unwrap();
+    let template = Template::from_pebbles(&[pebble(-0.01), pebble(0.01)]).unwrap();
     for k in 0..4 * 4 * 4 {
         let [i, j, l] = [k % 4, k / 4 % 4, k / 16];
         let centre =

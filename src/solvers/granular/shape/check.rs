@@ -69,10 +69,10 @@ pub(super) fn check(
     kind: MeshKind,
 ) -> Result<(), MeshError> {
     if triangles.is_empty() {
-        return Err(MeshError::of(FaultKind::Empty));
+        return Err(MeshError::single(FaultKind::Empty));
     }
     if triangles.len() > MOST_FACETS || vertices.len() > MOST_FACETS {
-        return Err(MeshError::of(FaultKind::TooMany));
+        return Err(MeshError::single(FaultKind::TooMany));
     }
     let mut found = Found::default();
     for (i, v) in vertices.iter().enumerate().filter(|(_, v)| !v.iter().all(|x| x.is_finite())) {
@@ -213,7 +213,7 @@ fn connected(vertices: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Vec<Part> {
 }
 
 impl MeshError {
-    pub(super) fn of(kind: FaultKind) -> Self {
+    pub(super) fn single(kind: FaultKind) -> Self {
         Self { faults: vec![Fault { kind, count: 1, places: Vec::new() }] }
     }
 }

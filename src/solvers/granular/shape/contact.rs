@@ -153,7 +153,7 @@ impl Mesh {
 }
 
 impl Facet {
-    /// Of a point above the plane.
+    /// Height of a point above the plane.
     fn height(&self, point: &Vector3<f64>) -> f64 {
         self.normal.dot(&(point - self.places[0]))
     }

@@ -85,7 +85,7 @@ impl Shape {
     /// Every distinct contact of a sphere of radius `reach` (m) whose centre is there, into `out`, which is emptied first:
     /// nearest first, in an order that does not depend on that of `facets`.
     ///
-    /// Of a mesh, `facets` must hold all that `near` finds with this reach, and may hold more; a plane and a block need
+    /// For a mesh, `facets` must hold all that `near` finds with this reach, and may hold more; a plane and a block need
     /// none. A centre inside gets one contact, the way out: at any depth of a plane or a block, to a depth of `reach` of a
     /// mesh or a one-sided sheet.
     pub fn touches(&self, centre: &Vector3<f64>, reach: f64, facets: &[u32], out: &mut Vec<Touch>) {

@@ -13,8 +13,9 @@ use super::stiffness::subtract_stiffness;
 use crate::linalg::banded::BandedFactor;
 use crate::linalg::skyline::Skyline;
 use crate::solvers::track::contact::WheelLaw;
+use crate::solvers::track::error::{Parameter, TrackError};
 use crate::solvers::track::mesh::{RailPoint, Track};
-use crate::solvers::track::{Multibody, SupportPhase, TrackError, TrackLevel, Train};
+use crate::solvers::track::{Multibody, SupportPhase, TrackLevel, Train};
 
 const NEWTON_LIMIT: usize = 60;
 /// Wheel forces are converged to this part of the mean one.
@@ -29,7 +30,7 @@ pub(super) struct StandingTrain {
     leading: f64,
     bodies: Vec<Body>,
     pub points: Vec<RailPoint>,
-    /// Of the running surface under the wheel, m.
+    /// Unevenness of the running surface under the wheel, m.
     unevenness: Vec<f64>,
     laws: Vec<WheelLaw>,
     pub forces: Vec<f64>,
@@ -75,7 +76,7 @@ impl StandingTrain {
             let wheel_load = vehicle.wheel_load(track.model.gravity);
             if vehicle.order() > 0 && wheel_load <= 0.0 {
                 return Err(TrackError::Parameter {
-                    name: "weight of a vehicle",
+                    name: Parameter::Vehicle("weight of a vehicle"),
                     value: wheel_load,
                     expected: "above 0: gravity or a force that holds it down",
                 });
@@ -95,7 +96,7 @@ impl StandingTrain {
         }
         for x in train.wheel_positions(leading) {
             standing.points.push(track.rail_point(x)?);
-            standing.unevenness.push(track.model.irregularity.at(x));
+            standing.unevenness.push(track.model.irregularity.depth_at(x));
         }
         Ok(standing)
     }

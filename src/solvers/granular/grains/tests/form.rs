@@ -35,7 +35,7 @@ fn an_ellipsoid_has_its_axes_and_its_moments() {
     let surface = moved(&ball, |v| turn() * v.component_mul(&half));
     let form = Form::of_surface(&surface);
     assert!((form.flatness() - 2.0 / 3.0).abs() < 2e-3 && (form.elongation() - 0.75).abs() < 2e-3, "{form:?}");
-    let solid = Solid::of(surface.vertices(), surface.triangles());
+    let solid = Solid::inside(surface.vertices(), surface.triangles());
     let volume = 4.0 / 3.0 * PI * half.product();
     assert!((solid.volume / volume - 1.0).abs() < 3e-3 && solid.centroid.norm() < 1e-9);
     let own = Matrix3::from_diagonal(&half.component_mul(&half)) * (volume / 5.0);
@@ -54,7 +54,7 @@ fn a_ball_is_round_as_a_surface_and_as_a_clump() {
 #[test]
 fn two_pebbles_are_as_long_as_they_are() {
     let pebble = |x: f64| Pebble { centre: turn() * Vector3::new(x, 0.0, 0.0), radius: 1.0 };
-    let form = Form::of_clump(&Template::of(&[pebble(-0.6), pebble(0.6)]).unwrap());
+    let form = Form::of_clump(&Template::from_pebbles(&[pebble(-0.6), pebble(0.6)]).unwrap());
     assert!((form.sides[2] - 3.2).abs() < 1e-4 && (form.sides[0] - 2.0).abs() < 1e-12);
     // two balls less two caps of height 0.4
     assert!((form.area / (2.0 * (4.0 * PI - 2.0 * PI * 0.4)) - 1.0).abs() < 1e-3);
