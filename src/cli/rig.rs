@@ -7,7 +7,7 @@ use crate::results::{self, Beds, Follow, FoundBed, RigRun, RigView, Tested, Unfi
 use crate::scenario::Scenario;
 use crate::solvers::granular::Bed;
 use crate::solvers::granular::packing::Progress;
-use crate::solvers::granular::rig::{Stored, Trial};
+use crate::solvers::granular::rig::{StoredTrial, Trial};
 use crate::units::number;
 use crate::{Compiled, fingerprint};
 use std::collections::BTreeMap;
@@ -96,7 +96,7 @@ impl Work<'_> {
     }
 
     /// Keeps what there is, to go on from.
-    fn keep(&mut self, done: &[Tested], running: Option<Stored<f32>>) -> Result<(), Diagnostic> {
+    fn keep(&mut self, done: &[Tested], running: Option<StoredTrial<f32>>) -> Result<(), Diagnostic> {
         checkpoint::write(self.options.out, &self.hash, &Unfinished { done: done.to_vec(), running })
             .map_err(|error| Diagnostic::new(Code::E0802, error.to_string()))?;
         self.kept = Instant::now();

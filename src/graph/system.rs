@@ -9,7 +9,7 @@ use super::{AdaptiveSteps, Blocks, Graph, Runner, Schedule, TrackNode};
 use crate::scenario::{Direction, Record, StaticLoad, Target, Train};
 use crate::solvers::settlement::Peak;
 use crate::solvers::track::{
-    Envelope, Ladder, Loads, Parameter, Passage, Run, Scheme, StaticState, Stepper, Track, TrackError, TrackLevel,
+    Envelope, Ladder, Loads, Passage, Run, Scheme, StaticState, Stepper, Track, TrackError, TrackLevel, TrackParameter,
     solve_static,
 };
 use std::ops::Range;
@@ -127,7 +127,7 @@ impl<'a> TrackSystem<'a> {
     ) -> Result<(Unloaded, PassageOutcome), TrackError> {
         let Some((blocks, steps)) = &self.traffic else {
             return Err(TrackError::Parameter {
-                name: Parameter::Train("trains"),
+                name: TrackParameter::Train("trains"),
                 value: 0.0,
                 expected: "of 1 or more",
             });

@@ -3,7 +3,7 @@
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{BedEnds, Contact, Granular, Layer, Loading, Scenario, Shape};
 use crate::solvers::granular::clump::Template;
-use crate::solvers::granular::packing::{Layer as Filling, Packing, Recipe, Rest};
+use crate::solvers::granular::packing::{GrainLayer as Filling, Packing, Recipe, Rest};
 use crate::solvers::granular::probe::{Outline, Plate, Stillness};
 use crate::solvers::granular::{DashpotMode, Surface};
 use crate::units::number;

@@ -3,8 +3,8 @@
 use super::{ResultsError, beds, checkpoint};
 use crate::lower::BedPlan;
 use crate::solvers::granular::measure::{Fabric, ForceSpread, Reading, Region, Rose, Survey};
-use crate::solvers::granular::packing::{Layer, Packed};
-use crate::solvers::granular::probe::{FULL, Outline, Plate, Point, Stiffness, probe};
+use crate::solvers::granular::packing::{GrainLayer, Packed};
+use crate::solvers::granular::probe::{FULL, LoadPoint, Outline, Plate, Stiffness, probe};
 use crate::solvers::granular::{Bed, Failure};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -56,7 +56,7 @@ pub struct PlateTest {
     pub sides_m: Option<[f64; 2]>,
     pub area_m2: f64,
     pub pressure_Pa: f64,
-    pub curve: Vec<Point>,
+    pub curve: Vec<LoadPoint>,
     /// First and second loading.
     pub stiffness_N_per_m: [f64; 2],
     /// Of an equal half-space, Ev1 and Ev2; `None` for a plate over the whole cell.
@@ -102,7 +102,7 @@ fn readings_hash(plan: &BedPlan) -> String {
 
 /// Levels between which a bed is measured, layer by layer.
 fn slabs(plan: &BedPlan, packed: &Packed<f32>) -> Vec<[f64; 2]> {
-    let layer = |(number, layer): (usize, &Layer)| {
+    let layer = |(number, layer): (usize, &GrainLayer)| {
         let [low, high] = packed.between(number);
         let count = ((high - low) / (SLAB * layer.curve.ends()[1])).floor().clamp(1.0, SLABS) as usize;
         let level = move |k: usize| low + (high - low) * k as f64 / count as f64;

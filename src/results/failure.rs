@@ -3,7 +3,7 @@
 use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::{Graph, RunError, Schedule};
 use crate::scenario::{Loading, Scenario, Section, Traffic};
-use crate::solvers::track::{Parameter, TrackError};
+use crate::solvers::track::{TrackError, TrackParameter};
 use crate::units::number;
 
 /// The diagnostic of a run's failure, with the declaration that it is about.
@@ -141,15 +141,15 @@ impl Scene<'_> {
         format!("exchange more often: write `update_every = {half} axles` in `solve`, or check the settlement law")
     }
 
-    fn parameter(&self, name: Parameter) -> (Option<Span>, String) {
+    fn parameter(&self, name: TrackParameter) -> (Option<Span>, String) {
         let (solve, train) = (&self.scenario.solve, self.traffic().map(|t| &t.train));
         let span = match name {
-            Parameter::Speed => train.and_then(|t| t.speed.origin.span()),
-            Parameter::TimeStep => solve.time_step.span(),
-            Parameter::Gravity => solve.gravity.origin.span(),
-            Parameter::ElementsPerBay => solve.elements_per_bay.origin.span(),
-            Parameter::Distance => solve.finish.or(solve.start).and_then(|f| f.origin.span()),
-            Parameter::Vehicle(_) => train.and_then(|t| t.vehicles.first()?.wheel_mass.origin.span()),
+            TrackParameter::Speed => train.and_then(|t| t.speed.origin.span()),
+            TrackParameter::TimeStep => solve.time_step.span(),
+            TrackParameter::Gravity => solve.gravity.origin.span(),
+            TrackParameter::ElementsPerBay => solve.elements_per_bay.origin.span(),
+            TrackParameter::Distance => solve.finish.or(solve.start).and_then(|f| f.origin.span()),
+            TrackParameter::Vehicle(_) => train.and_then(|t| t.vehicles.first()?.wheel_mass.origin.span()),
             _ => None,
         };
         (span, "given here".into())

@@ -4,7 +4,7 @@ use crate::scenes::{Vec3, packed, random, sphere, springs, threads};
 use nalgebra::{UnitQuaternion, Vector3};
 use trackbed::solvers::granular::clump::{Pebble, Template};
 use trackbed::solvers::granular::{
-    Bed, BodyId, Dashpot, DashpotMode, Domain, Energy, Gravity, Law, Laws, Linear, Placed, Real, Sphere,
+    Bed, BodyId, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, Energy, Gravity, Linear, Placed, Real, Sphere,
 };
 
 /// 1800 bodies, every fifth a clump of two, set going; enough for several tasks of every kind.
@@ -15,7 +15,7 @@ fn bed<R: Real>() -> Bed<R> {
         mode: DashpotMode::NoTensionRestInSlip,
         ..springs(1e7, 1e7)
     };
-    let mut bed = Bed::new(Domain::open().periodic(0, 0.75), Laws::single(Law::Linear(law)));
+    let mut bed = Bed::new(Domain::open().periodic(0, 0.75), ContactLaws::single(ContactLaw::Linear(law)));
     bed.set_time_step(1e-5);
     bed.set_gravity(Gravity::EARTH);
     bed.set_damping(0.1);

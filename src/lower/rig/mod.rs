@@ -12,7 +12,7 @@ use super::bed::{BedPlan, beds, confinement};
 use crate::diag::Diagnostic;
 use crate::scenario::{Foot, Force, Given, Loading, RigLoad, Scenario, Seat, Section, SleeperBody, Target, Volume};
 use crate::solvers::granular::measure::Region;
-use crate::solvers::granular::packing::Layer;
+use crate::solvers::granular::packing::GrainLayer;
 use crate::solvers::granular::rig::{ADDED, Load, Rig, Sensor, Sleeper, Specimen};
 use crate::units::number;
 use std::f64::consts::PI;
@@ -108,7 +108,7 @@ pub fn rig(scenario: &Scenario) -> Result<RigPlan, Vec<Diagnostic>> {
     };
     let densities = bed.recipe.layers.iter().map(|layer| layer.density).collect();
     let (sensors, places) = sensors(scenario, length, across);
-    let of = |layer: &Layer| [layer.curve.mean_volume(), layer.density, confinement.unwrap_or(layer.pressure)];
+    let of = |layer: &GrainLayer| [layer.curve.mean_volume(), layer.density, confinement.unwrap_or(layer.pressure)];
     let rest = rest_time(bed.recipe.layers.iter().map(of));
     bed.notes.extend(driven(&loads, rest));
     let specimen = confinement.zip(bed.recipe.sides());

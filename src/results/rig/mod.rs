@@ -15,7 +15,7 @@ use crate::diag::Sources;
 use crate::lower::{RigPlan, rig_listing};
 use crate::scenario::Scenario;
 use crate::solvers::granular::Bed;
-use crate::solvers::granular::rig::{Cycle, Reading, Sample, SpecimenState};
+use crate::solvers::granular::rig::{Cycle, CycleSample, SensorReading, SpecimenState};
 use serde::{Deserialize, Serialize};
 
 /// One packing under test, as it ended.
@@ -24,8 +24,8 @@ pub struct Tested {
     pub seed: u64,
     pub bed: BedSummary,
     pub cycles: Vec<Cycle>,
-    pub samples: Vec<Sample>,
-    pub readings: Vec<Reading>,
+    pub samples: Vec<CycleSample>,
+    pub readings: Vec<SensorReading>,
     /// Of a specimen with sides that give way.
     pub specimen: Vec<SpecimenState>,
     /// Time steps of the test.
@@ -198,7 +198,7 @@ impl RigRun {
     }
 
     pub fn loops(&self) -> Vec<LoopRow> {
-        let row = |test: &Tested, sample: &Sample| LoopRow {
+        let row = |test: &Tested, sample: &CycleSample| LoopRow {
             seed: test.seed,
             sleeper: self.sleepers[sample.sleeper].0.clone(),
             cycle: sample.cycle,
@@ -212,7 +212,7 @@ impl RigRun {
     }
 
     pub fn readings(&self) -> Vec<SensorRow> {
-        let row = |test: &Tested, reading: &Reading| SensorRow {
+        let row = |test: &Tested, reading: &SensorReading| SensorRow {
             seed: test.seed,
             sensor: self.sensors[reading.sensor].0.clone(),
             cycle: reading.cycle,

@@ -7,7 +7,7 @@ use crate::lower::{self, RigPlan};
 use crate::scenario::Scenario;
 use crate::solvers::granular::Bed;
 use crate::solvers::granular::packing::{Packed, Progress};
-use crate::solvers::granular::rig::{Rig, RigError, Stored, Trial};
+use crate::solvers::granular::rig::{Rig, RigError, StoredTrial, Trial};
 use serde::{Deserialize, Serialize};
 
 /// Who follows a rig and may keep what there is; `()` does neither. What it answers with a diagnostic ends the rig.
@@ -35,7 +35,7 @@ impl Follow for () {}
 #[derive(Default, Serialize, Deserialize)]
 pub struct Unfinished {
     pub done: Vec<Tested>,
-    pub running: Option<Stored<f32>>,
+    pub running: Option<StoredTrial<f32>>,
 }
 
 /// A rig that has answered: one test for each packing, and the bed of the last as it ended.
@@ -74,7 +74,7 @@ fn test(
     scenario: &Scenario,
     plan: &RigPlan,
     packed: Packed<f32>,
-    running: Option<Stored<f32>>,
+    running: Option<StoredTrial<f32>>,
     done: &[Tested],
     follow: &mut impl Follow,
 ) -> Result<(Tested, Bed<f32>), Diagnostic> {

@@ -9,9 +9,9 @@ use super::failure::Limits;
 use super::gravity::Gravity;
 use super::integrate::{Incidence, Tally, rotate, rotate_back};
 use super::lanes::Real;
-use super::law::{Law, Laws};
+use super::law::{ContactLaw, ContactLaws};
 use super::lists::Lists;
-use super::motion::{Felt, Motion, Pose};
+use super::motion::{Felt, Pose, WallMotion};
 use super::record::Record;
 use super::rotation;
 use super::shape::Shape;
@@ -30,7 +30,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 #[derive(Debug, Clone)]
 pub struct Bed<R: Real = f32> {
     pub(super) domain: Domain,
-    pub(super) laws: Laws,
+    pub(super) laws: ContactLaws,
     pub(super) gravity: Gravity,
     pub(super) damping: f64,
     pub(super) dt: f64,
@@ -117,7 +117,7 @@ pub struct PebbleState {
 
 impl<R: Real> Bed<R> {
     /// An empty bed without gravity and damping.
-    pub fn new(domain: Domain, laws: Laws) -> Self {
+    pub fn new(domain: Domain, laws: ContactLaws) -> Self {
         Bed {
             domain,
             laws,
@@ -222,14 +222,14 @@ impl<R: Real> Bed<R> {
     }
 
     /// Adds a wall. Its frame stands at `pose`.
-    pub fn add_wall(&mut self, shape: Shape, pose: Pose, surface: u16, motion: Motion) -> WallId {
+    pub fn add_wall(&mut self, shape: Shape, pose: Pose, surface: u16, motion: WallMotion) -> WallId {
         let (cell, position) = self.domain.split(pose.position.into());
         self.walls.push(Wall {
             shape,
             pose: Pose { position: position.into(), ..pose },
             cell,
             surface,
-            motion: Motion::Fixed,
+            motion: WallMotion::Fixed,
             velocity: Vector3::zeros(),
             spin: Vector3::zeros(),
             felt: Felt::default(),
@@ -244,18 +244,18 @@ impl<R: Real> Bed<R> {
     /// Adds a fixed plane through `point` \[m\] with the solid behind its unit `normal`.
     pub fn add_plane(&mut self, point: [f64; 3], normal: [f64; 3], surface: u16) -> WallId {
         let pose = Pose { position: point.into(), ..Pose::default() };
-        self.add_wall(Shape::Plane { normal: normal.into() }, pose, surface, Motion::Fixed)
+        self.add_wall(Shape::Plane { normal: normal.into() }, pose, surface, WallMotion::Fixed)
     }
 
     /// Moves a wall in another way from now on.
-    pub fn set_motion(&mut self, wall: WallId, motion: Motion) {
+    pub fn set_motion(&mut self, wall: WallId, motion: WallMotion) {
         let wall = &mut self.walls[wall.0 as usize];
         (wall.velocity, wall.spin) = match &motion {
             // a servo waits for what it will feel
-            Motion::Servo { .. } => (Vector3::zeros(), Vector3::zeros()),
+            WallMotion::Servo { .. } => (Vector3::zeros(), Vector3::zeros()),
             faulty if faulty.check().is_err() => (Vector3::zeros(), Vector3::zeros()),
             // what has a mass keeps its speed
-            Motion::Loaded { axis, .. } => (axis * wall.velocity.dot(axis), Vector3::zeros()),
+            WallMotion::Loaded { axis, .. } => (axis * wall.velocity.dot(axis), Vector3::zeros()),
             given => given.velocity(self.time, self.dt.max(f64::MIN_POSITIVE), &Felt::default()),
         };
         wall.motion = motion;
@@ -333,7 +333,7 @@ impl<R: Real> Bed<R> {
     }
 
     /// Changes every contact law, friction for example.
-    pub fn change_laws(&mut self, change: impl FnMut(&mut Law)) {
+    pub fn change_laws(&mut self, change: impl FnMut(&mut ContactLaw)) {
         self.laws.change(change);
         self.unchecked = true;
     }
@@ -342,13 +342,13 @@ impl<R: Real> Bed<R> {
     ///
     /// # Panics
     /// If there are fewer or more surfaces than before.
-    pub fn set_laws(&mut self, laws: Laws) {
+    pub fn set_laws(&mut self, laws: ContactLaws) {
         assert_eq!(laws.surfaces(), self.laws.surfaces(), "surfaces of a bed");
         self.laws = laws;
         self.unchecked = true;
     }
 
-    pub fn laws(&self) -> &Laws {
+    pub fn laws(&self) -> &ContactLaws {
         &self.laws
     }
 

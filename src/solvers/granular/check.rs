@@ -70,7 +70,7 @@ impl<R: Real> Bed<R> {
         for (pair, law) in self.laws.all().iter().enumerate() {
             if let Some(&LawError { quantity, value, expected }) = law.faults().first() {
                 let surfaces = self.laws.surfaces();
-                let of = Subject::Law((pair / surfaces) as u16, (pair % surfaces) as u16);
+                let of = Subject::ContactLaw((pair / surfaces) as u16, (pair % surfaces) as u16);
                 return Err(Fault { of, quantity, value, expected });
             }
         }

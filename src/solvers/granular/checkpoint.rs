@@ -9,7 +9,7 @@ use super::failure::{Failure, Limits};
 use super::gravity::Gravity;
 use super::integrate::Tally;
 use super::lanes::Real;
-use super::law::Laws;
+use super::law::ContactLaws;
 use super::record::Record;
 use super::vector::Vec3;
 use super::walls::{Kept, Wall};
@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 pub struct Checkpoint<R: Real> {
     version: u32,
     domain: Domain,
-    laws: Laws,
+    laws: ContactLaws,
     gravity: Gravity,
     damping: f64,
     dt: f64,

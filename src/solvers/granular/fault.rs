@@ -25,7 +25,7 @@ pub enum Subject {
     Body(BodyId),
     Wall(WallId),
     /// The law of two surfaces.
-    Law(u16, u16),
+    ContactLaw(u16, u16),
     /// The domain, gravity, the time step and other settings.
     Bed,
 }
@@ -35,7 +35,7 @@ impl fmt::Display for Fault {
         match self.of {
             Subject::Body(id) => write!(f, "body {}: ", id.0)?,
             Subject::Wall(id) => write!(f, "wall {}: ", id.0)?,
-            Subject::Law(a, b) => write!(f, "law of surfaces {a} and {b}: ")?,
+            Subject::ContactLaw(a, b) => write!(f, "law of surfaces {a} and {b}: ")?,
             Subject::Bed => {}
         }
         write!(f, "expected {} to be {}, found {}", self.quantity, self.expected, self.value)

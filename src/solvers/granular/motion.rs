@@ -41,7 +41,7 @@ pub struct Felt {
 
 /// The rule by which a wall moves.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub enum Motion {
+pub enum WallMotion {
     #[default]
     Fixed,
     /// Constant velocity (m/s) of the frame's origin and angular velocity (rad/s) about it, in the axes of space.
@@ -96,22 +96,22 @@ fn usual_gain() -> f64 {
     0.5
 }
 
-impl Motion {
+impl WallMotion {
     /// A servo with the usual gain of 0.5.
     pub fn servo(axis: Vector3<f64>, force: f64, speed_limit: f64) -> Self {
-        Motion::Servo { axis, force, speed_limit, gain: usual_gain() }
+        WallMotion::Servo { axis, force, speed_limit, gain: usual_gain() }
     }
 
     /// The first number that is out of its range.
     pub fn check(&self) -> Result<(), MotionError> {
         match self {
-            Motion::Fixed => Ok(()),
-            Motion::Velocity { linear, angular } => {
+            WallMotion::Fixed => Ok(()),
+            WallMotion::Velocity { linear, angular } => {
                 finite("velocity of a wall", linear)?;
                 finite("angular velocity of a wall", angular)
             }
-            Motion::Table { times, velocities } => check_table(times, velocities),
-            Motion::Harmonic { axis, amplitude, frequency, phase } => {
+            WallMotion::Table { times, velocities } => check_table(times, velocities),
+            WallMotion::Harmonic { axis, amplitude, frequency, phase } => {
                 unit("axis of a harmonic motion", axis)?;
                 let number = |name, value: f64| require(value.is_finite(), name, value, "a finite number");
                 number("amplitude of a harmonic motion", *amplitude)?;
@@ -119,14 +119,14 @@ impl Motion {
                 let fine = frequency.is_finite() && *frequency >= 0.0;
                 require(fine, "frequency of a harmonic motion", *frequency, "of 0 Hz or more")
             }
-            Motion::Servo { axis, force, speed_limit, gain } => {
+            WallMotion::Servo { axis, force, speed_limit, gain } => {
                 unit("axis of a servo", axis)?;
                 require(force.is_finite(), "force of a servo", *force, "a finite number")?;
                 let fine = speed_limit.is_finite() && *speed_limit > 0.0;
                 require(fine, "speed limit of a servo", *speed_limit, "above 0 m/s")?;
                 require(*gain > 0.0 && *gain <= 1.0, "gain of a servo", *gain, "above 0 and up to 1")
             }
-            Motion::Loaded { axis, mass, weight, damping, push } => {
+            WallMotion::Loaded { axis, mass, weight, damping, push } => {
                 unit("axis of a loaded wall", axis)?;
                 require(mass.is_finite() && *mass > 0.0, "mass of a wall", *mass, "above 0 kg")?;
                 require(weight.is_finite(), "weight of a wall", *weight, "a finite number")?;
@@ -139,15 +139,15 @@ impl Motion {
     /// Velocity (m/s) and angular velocity (rad/s) of the step from `time` (s) over `dt` (s, above 0).
     pub fn velocity(&self, time: f64, dt: f64, felt: &Felt) -> (Vector3<f64>, Vector3<f64>) {
         let linear = match self {
-            Motion::Fixed => Vector3::zeros(),
-            Motion::Velocity { linear, angular } => return (*linear, *angular),
-            Motion::Table { times, velocities } => mean_of_table(times, velocities, time, dt),
-            Motion::Harmonic { axis, amplitude, frequency, phase } => {
+            WallMotion::Fixed => Vector3::zeros(),
+            WallMotion::Velocity { linear, angular } => return (*linear, *angular),
+            WallMotion::Table { times, velocities } => mean_of_table(times, velocities, time, dt),
+            WallMotion::Harmonic { axis, amplitude, frequency, phase } => {
                 // sin b - sin a = 2 cos((a + b)/2) sin((b - a)/2) keeps its digits where a and b are close
                 let half = TAU * frequency * dt / 2.0;
                 axis * (amplitude * 2.0 * (TAU * frequency * time + phase + half).cos() * half.sin() / dt)
             }
-            Motion::Servo { axis, force, speed_limit, gain } => {
+            WallMotion::Servo { axis, force, speed_limit, gain } => {
                 let excess = felt.force.dot(axis) - force;
                 let speed = if felt.contacts > 0 && felt.stiffness > 0.0 {
                     let drive = gain * excess + felt.dashpot * felt.velocity.dot(axis);
@@ -159,7 +159,7 @@ impl Motion {
                 };
                 axis * speed
             }
-            Motion::Loaded { axis, mass, weight, damping, push } => {
+            WallMotion::Loaded { axis, mass, weight, damping, push } => {
                 let before = felt.velocity.dot(axis);
                 let drive = felt.force.dot(axis) + weight + push.force_at(time);
                 let braked = drive - damping * drive.abs() * if before == 0.0 { 0.0 } else { before.signum() };

@@ -4,8 +4,8 @@
 use super::bed::{Bed, BodyState};
 use super::failure::Failure;
 use super::lanes::Real;
-use super::law::Law;
-use super::motion::Motion;
+use super::law::ContactLaw;
+use super::motion::WallMotion;
 use super::walls::WallId;
 
 /// Share of the stable step that is taken.
@@ -78,7 +78,7 @@ impl Stride {
         let of = |wall: &WallId| {
             let wall = bed.wall(*wall);
             match wall.motion() {
-                Motion::Loaded { mass, .. } if wall.felt().stiffness > 0.0 => (mass / wall.felt().stiffness).sqrt(),
+                WallMotion::Loaded { mass, .. } if wall.felt().stiffness > 0.0 => (mass / wall.felt().stiffness).sqrt(),
                 _ => f64::INFINITY,
             }
         };
@@ -90,9 +90,9 @@ impl Stride {
 /// Stiffness of a contact between bodies of each surface, N/m.
 fn stiffness<R: Real>(bed: &Bed<R>) -> Vec<f64> {
     let of = |surface: u16| match bed.laws().get(surface, surface) {
-        Law::Linear(law) => law.normal_stiffness.max(law.shear_stiffness),
+        ContactLaw::Linear(law) => law.normal_stiffness.max(law.shear_stiffness),
         // beds of a scene have linear contacts; others are bounded by the contacts of now alone
-        Law::HertzMindlin(_) => 0.0,
+        ContactLaw::HertzMindlin(_) => 0.0,
     };
     (0..bed.laws().surfaces() as u16).map(of).collect()
 }

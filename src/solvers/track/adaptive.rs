@@ -13,7 +13,7 @@
 //! kept and counted. As e falls with Δt³, a step may double once its error is below a twelfth of the tolerance, where the
 //! longer step begins on its own grid: every time that a longer step reaches, all shorter ones reach too.
 
-use super::error::{Parameter, TrackError};
+use super::error::{TrackError, TrackParameter};
 use super::influence::Stepper;
 use super::ladder::{Before, Choice, Ladder};
 use super::model::TrackLevel;
@@ -33,7 +33,11 @@ impl<'a> Passage<'a> {
         tolerance: f64,
     ) -> Result<Self, TrackError> {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
-            return Err(TrackError::Parameter { name: Parameter::Tolerance, value: tolerance, expected: "above 0" });
+            return Err(TrackError::Parameter {
+                name: TrackParameter::Tolerance,
+                value: tolerance,
+                expected: "above 0",
+            });
         }
         let mut passage = Self::new(ladder.longest(), level, run)?;
         passage.divide_ticks(ladder.rungs.len() as u32 - 1);

@@ -9,7 +9,7 @@ pub enum TrackError {
     /// The model contradicts itself near `x` (m).
     Model { x: f64, flaw: Flaw },
     /// A number of the call is out of its range.
-    Parameter { name: Parameter, value: f64, expected: &'static str },
+    Parameter { name: TrackParameter, value: f64, expected: &'static str },
     /// A wheel or a load stands outside the track.
     OffTrack { x: f64, start: f64, end: f64 },
     /// Nothing holds the track near `x` (m), or a vehicle whose leading wheel is there: it moves without resistance.
@@ -49,7 +49,7 @@ pub enum Flaw {
 
 /// A number of a call, by the part that it belongs to; where a part has several, with the words for it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Parameter {
+pub enum TrackParameter {
     TimeStep,
     /// A share by which a scheme damps.
     Damping(&'static str),
@@ -146,23 +146,23 @@ impl fmt::Display for Flaw {
     }
 }
 
-impl fmt::Display for Parameter {
+impl fmt::Display for TrackParameter {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Parameter::TimeStep => "time step",
-            Parameter::Tolerance => "tolerance of a step",
-            Parameter::Gravity => "gravity",
-            Parameter::ElementsPerBay => "elements per bay",
-            Parameter::Speed => "speed",
-            Parameter::Distance => "distance",
-            Parameter::Damping(words)
-            | Parameter::Irregularity(words)
-            | Parameter::Level(words)
-            | Parameter::Load(words)
-            | Parameter::SpeedProfile(words)
-            | Parameter::Train(words)
-            | Parameter::Vehicle(words)
-            | Parameter::Wheel(words) => words,
+            TrackParameter::TimeStep => "time step",
+            TrackParameter::Tolerance => "tolerance of a step",
+            TrackParameter::Gravity => "gravity",
+            TrackParameter::ElementsPerBay => "elements per bay",
+            TrackParameter::Speed => "speed",
+            TrackParameter::Distance => "distance",
+            TrackParameter::Damping(words)
+            | TrackParameter::Irregularity(words)
+            | TrackParameter::Level(words)
+            | TrackParameter::Load(words)
+            | TrackParameter::SpeedProfile(words)
+            | TrackParameter::Train(words)
+            | TrackParameter::Vehicle(words)
+            | TrackParameter::Wheel(words) => words,
         })
     }
 }

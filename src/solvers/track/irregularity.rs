@@ -1,6 +1,6 @@
 //! The unevenness of the rail's running surface: a wheel sees the rail at w(x) + r(x).
 
-use super::error::{Parameter, TrackError};
+use super::error::{TrackError, TrackParameter};
 
 /// r over x, m below the even surface: cubics side by side, none where the surface is even. Beyond the outer ends it stays as
 /// there, so a surface that does not end level has a kink there.
@@ -80,13 +80,15 @@ impl Irregularity {
 fn check(points: &[(f64, f64)]) -> Result<(), TrackError> {
     let fail = |name, value, expected| Err(TrackError::Parameter { name, value, expected });
     if points.is_empty() {
-        return fail(Parameter::Irregularity("points of an irregularity"), 0.0, "of 1 or more");
+        return fail(TrackParameter::Irregularity("points of an irregularity"), 0.0, "of 1 or more");
     }
     if let Some(point) = points.iter().find(|(x, r)| !(x.is_finite() && r.is_finite())) {
-        return fail(Parameter::Irregularity("point of an irregularity"), point.0 + point.1, "a finite number");
+        return fail(TrackParameter::Irregularity("point of an irregularity"), point.0 + point.1, "a finite number");
     }
     match points.windows(2).find(|pair| pair[1].0 <= pair[0].0) {
-        Some(pair) => fail(Parameter::Irregularity("chainage in an irregularity"), pair[1].0, "above the one before"),
+        Some(pair) => {
+            fail(TrackParameter::Irregularity("chainage in an irregularity"), pair[1].0, "above the one before")
+        }
         None => Ok(()),
     }
 }

@@ -1,9 +1,9 @@
 //! The meshed track: its nodes, its unknowns and its matrices, and what a place on it is to them.
 
 use super::beam::Element;
-use super::error::{Parameter, TrackError};
+use super::error::{TrackError, TrackParameter};
 use super::model::{SAME_PLACE, TrackLevel, TrackModel};
-use super::support::Sleeper;
+use super::support::SleeperSupport;
 use crate::linalg::banded::SymmetricBanded;
 
 /// A [`TrackModel`] with its mesh and matrices; immutable and shared by all states and passages.
@@ -21,7 +21,7 @@ pub struct Track {
     /// Node of each seat.
     pub(super) seat_nodes: Vec<usize>,
     pub(super) feet: Vec<FootUnknown>,
-    pub(super) sleepers: Vec<Sleeper>,
+    pub(super) sleepers: Vec<SleeperSupport>,
     pub(super) slabs: Vec<BeamMesh>,
     pub(super) auxiliary_rails: Vec<BeamMesh>,
     /// All supports closed, nothing held.
@@ -205,14 +205,14 @@ impl Track {
         if level.settlements.len() != self.model.seats.len() {
             let value = level.settlements.len() as f64;
             return Err(TrackError::Parameter {
-                name: Parameter::Level("settlements"),
+                name: TrackParameter::Level("settlements"),
                 value,
                 expected: "one per seat",
             });
         }
         match level.settlements.iter().chain(&level.ends).find(|s| !s.is_finite()) {
             Some(value) => Err(TrackError::Parameter {
-                name: Parameter::Level("level"),
+                name: TrackParameter::Level("level"),
                 value: *value,
                 expected: "a finite number",
             }),

@@ -40,7 +40,7 @@ mod view;
 
 pub use counters::Counters;
 pub use envelope::Envelope;
-pub use error::{Flaw, Parameter, TrackError, Unsettled, Wild};
+pub use error::{Flaw, TrackError, TrackParameter, Unsettled, Wild};
 pub use influence::Stepper;
 pub use irregularity::{Cubic, Irregularity};
 pub use ladder::Ladder;

@@ -1,6 +1,6 @@
 //! The track as numbers, before it is meshed, and the checks that a mesh relies on. Everything belongs to one rail.
 
-use super::error::{Flaw, Parameter, TrackError};
+use super::error::{Flaw, TrackError, TrackParameter};
 use super::irregularity::Irregularity;
 use super::support::Seating;
 
@@ -169,14 +169,14 @@ impl TrackModel {
         }
         if self.elements_per_bay == 0 {
             return Err(TrackError::Parameter {
-                name: Parameter::ElementsPerBay,
+                name: TrackParameter::ElementsPerBay,
                 value: 0.0,
                 expected: "of 1 or more",
             });
         }
         if !not_negative(self.gravity) {
             return Err(TrackError::Parameter {
-                name: Parameter::Gravity,
+                name: TrackParameter::Gravity,
                 value: self.gravity,
                 expected: "of 0 or more",
             });

@@ -8,7 +8,7 @@
 use super::beam::Element;
 use super::mesh::{BeamMesh, FootUnknown, RailElement};
 use super::model::{Foot, SAME_PLACE, TrackModel};
-use super::support::Sleeper;
+use super::support::SleeperSupport;
 
 /// The unknowns of every part, in the order of the nodes.
 pub(super) struct Numbering {
@@ -19,7 +19,7 @@ pub(super) struct Numbering {
     right_rotation: Vec<usize>,
     pub seat_nodes: Vec<usize>,
     pub feet: Vec<FootUnknown>,
-    pub sleepers: Vec<Sleeper>,
+    pub sleepers: Vec<SleeperSupport>,
     pub slabs: Vec<BeamMesh>,
     pub auxiliary_rails: Vec<BeamMesh>,
 }
@@ -82,7 +82,13 @@ impl Numbering {
             && let Foot::Sleeper { support_stiffness, support_damping, seating, .. } = model.seats[seat].foot
         {
             self.feet[seat] = FootUnknown::Sleeper(self.sleepers.len());
-            self.sleepers.push(Sleeper { seat, unknown: self.order, support_stiffness, support_damping, seating });
+            self.sleepers.push(SleeperSupport {
+                seat,
+                unknown: self.order,
+                support_stiffness,
+                support_damping,
+                seating,
+            });
             self.order += 1;
         }
     }

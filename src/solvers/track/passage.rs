@@ -4,9 +4,9 @@
 //! contact forces displace. Nothing is factored and nothing allocated while it runs.
 
 use super::counters::Counters;
-use super::error::{Parameter, TrackError, Wild};
+use super::error::{TrackError, TrackParameter, Wild};
 use super::influence::Stepper;
-use super::interface::{Contact, Interface};
+use super::interface::{ContactIndex, Interface};
 use super::ladder::Choice;
 use super::motion::Timetable;
 use super::quasi_static::{self, Start};
@@ -100,7 +100,7 @@ impl<'a> Passage<'a> {
         if !state.vehicles.is_empty() {
             let value = state.vehicles.len() as f64;
             return Err(TrackError::Parameter {
-                name: Parameter::Train("vehicles"),
+                name: TrackParameter::Train("vehicles"),
                 value,
                 expected: "of 0 on a released track",
             });
@@ -318,8 +318,8 @@ impl<'a> Passage<'a> {
             step: self.counters.steps,
             time: self.tick as f64 * self.tick_length,
             x: match contact {
-                Contact::Wheel(rank) => self.wheel_positions[self.interface.wheel_of(rank)],
-                Contact::Support(s) => track.sleepers.get(s).map_or(f64::NAN, |s| track.model.seats[s.seat].x),
+                ContactIndex::Wheel(rank) => self.wheel_positions[self.interface.wheel_of(rank)],
+                ContactIndex::Support(s) => track.sleepers.get(s).map_or(f64::NAN, |s| track.model.seats[s.seat].x),
             },
             contact: self.interface.describe(contact),
         })?;

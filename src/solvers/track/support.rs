@@ -52,7 +52,7 @@ pub struct Seating {
 
 /// A sleeper of the mesh, and the support that it stands on.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sleeper {
+pub(super) struct SleeperSupport {
     pub seat: usize,
     pub unknown: usize,
     pub support_stiffness: f64,
@@ -63,7 +63,7 @@ pub(super) struct Sleeper {
 /// Gaps below this are none, m.
 const GAP_TOLERANCE: f64 = 1e-14;
 
-impl Sleeper {
+impl SleeperSupport {
     /// What the seating lacks of the full stiffness, N/m, and its closure, m; both 0 where there is none.
     #[inline]
     fn seating(&self) -> (f64, f64) {
@@ -202,8 +202,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn sleeper(seating: Option<Seating>) -> Sleeper {
-        Sleeper { seat: 0, unknown: 0, support_stiffness: 50e6, support_damping: 50e3, seating }
+    fn sleeper(seating: Option<Seating>) -> SleeperSupport {
+        SleeperSupport { seat: 0, unknown: 0, support_stiffness: 50e6, support_damping: 50e3, seating }
     }
 
     #[test]

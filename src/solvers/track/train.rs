@@ -1,6 +1,6 @@
 //! Vehicles that run together.
 
-use super::error::{Parameter, TrackError};
+use super::error::{TrackError, TrackParameter};
 use super::multibody::Multibody;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,7 +60,7 @@ impl Train {
             vehicle.check()?;
             if !(*offset >= 0.0 && offset.is_finite()) {
                 return Err(TrackError::Parameter {
-                    name: Parameter::Train("offset of a vehicle"),
+                    name: TrackParameter::Train("offset of a vehicle"),
                     value: *offset,
                     expected: "of 0 or more",
                 });

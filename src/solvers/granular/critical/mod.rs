@@ -37,7 +37,7 @@ use super::record::Record;
 
 /// Where a limit comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seat {
+pub struct LimitSeat {
     pub body: BodyId,
     /// \[m\]
     pub place: [f64; 3],
@@ -51,7 +51,7 @@ pub struct Seat {
 pub struct Limit {
     /// \[s\]; infinite where nothing touches.
     pub step: f64,
-    pub seat: Option<Seat>,
+    pub seat: Option<LimitSeat>,
 }
 
 /// How long a time step may be, by three rules.
@@ -108,10 +108,10 @@ impl<R: Real> Bed<R> {
         Ok(local::bound(&links, &roots, &Around::new(&links, roots.len())).0)
     }
 
-    fn seat(&self, body: u32, around: &Around) -> Seat {
+    fn seat(&self, body: u32, around: &Around) -> LimitSeat {
         let state = self.body_state(BodyId(body));
         let contacts = around.links_of(body as usize).len();
-        Seat { body: state.id, place: state.place, surface: state.surface, contacts }
+        LimitSeat { body: state.id, place: state.place, surface: state.surface, contacts }
     }
 
     /// A stable time step by the contacts of the last step, body by body and cheaply \[s\]; infinite without contacts.

@@ -21,7 +21,7 @@ const TRIES: usize = 9;
 
 /// Form of a grain.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Form {
+pub struct GrainForm {
     /// Shortest, intermediate and longest side of the smallest box, m.
     pub sides: [f64; 3],
     /// Their directions, unit.
@@ -32,7 +32,7 @@ pub struct Form {
     pub area: f64,
 }
 
-impl Form {
+impl GrainForm {
     /// Form of a closed surface.
     pub fn of_surface(surface: &Mesh) -> Self {
         let vertices = surface.vertices();

@@ -14,7 +14,7 @@ const ON_SURFACE: usize = 3000;
 
 /// What a clump gets wrong of a surface; 0 in all four for one that is the surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ShapeError {
+pub struct Misfit {
     /// Volume that is in one of the two only, over the volume of the surface: half of it is missing, half too much.
     pub volume: f64,
     /// Distance of the surfaces, averaged over both, over the diameter of the ball of equal volume. Inside a clump a
@@ -26,7 +26,7 @@ pub struct ShapeError {
     pub inertia: f64,
 }
 
-impl ShapeError {
+impl Misfit {
     /// What a clump gets wrong that stands in the frame in which its pebbles were given.
     pub fn between(surface: &Mesh, clump: &Template) -> Self {
         let solid = Solid::inside(surface.vertices(), surface.triangles());

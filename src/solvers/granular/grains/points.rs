@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 /// A point of a surface that stands for a part of it.
 #[derive(Debug, Clone, Copy)]
-pub struct Point {
+pub struct SurfacePoint {
     /// m.
     pub at: Vector3<f64>,
     /// Unit, outward.
@@ -17,7 +17,7 @@ pub struct Point {
 }
 
 /// Points of the surface of a union of balls, `count` on each ball less those that others hide (a spiral of equal areas).
-pub fn outside(pebbles: &[Pebble], count: usize) -> Vec<Point> {
+pub fn outside(pebbles: &[Pebble], count: usize) -> Vec<SurfacePoint> {
     let golden = PI * (3.0 - 5.0f64.sqrt());
     let on = |(number, pebble): (usize, &Pebble)| {
         let others: Vec<Pebble> = pebbles.iter().enumerate().filter(|(i, _)| *i != number).map(|(_, p)| *p).collect();
@@ -28,14 +28,14 @@ pub fn outside(pebbles: &[Pebble], count: usize) -> Vec<Point> {
             let (sine, cosine) = (golden * k as f64).sin_cos();
             let normal = Vector3::new((1.0 - z * z).sqrt() * cosine, (1.0 - z * z).sqrt() * sine, z);
             let at = pebble.centre + normal * pebble.radius;
-            (height(&others, &at) > 0.0).then_some(Point { at, normal, area })
+            (height(&others, &at) > 0.0).then_some(SurfacePoint { at, normal, area })
         })
     };
     pebbles.iter().enumerate().flat_map(on).collect()
 }
 
 /// About so many points of a mesh: facets larger than their share are divided, of those smaller every so manyth is taken.
-pub fn on_facets(surface: &Mesh, count: usize) -> Vec<Point> {
+pub fn on_facets(surface: &Mesh, count: usize) -> Vec<SurfacePoint> {
     let share = surface.area() / count as f64;
     let (mut points, mut waiting) = (Vec::new(), 0.5 * share);
     for (number, corners) in surface.triangles().iter().enumerate() {
@@ -46,7 +46,7 @@ pub fn on_facets(surface: &Mesh, count: usize) -> Vec<Point> {
             waiting += area;
             if waiting >= share {
                 waiting -= share;
-                points.push(Point { at: (a + b + c) / 3.0, normal, area: share });
+                points.push(SurfacePoint { at: (a + b + c) / 3.0, normal, area: share });
             }
             continue;
         }
@@ -55,9 +55,9 @@ pub fn on_facets(surface: &Mesh, count: usize) -> Vec<Point> {
         let part = area / (n * n) as f64;
         let at = |i: f64, j: f64| a + (b - a) * (i / n as f64) + (c - a) * (j / n as f64);
         for (i, j) in (0..n).flat_map(|i| (0..n - i).map(move |j| (i as f64, j as f64))) {
-            points.push(Point { at: at(i + 1.0 / 3.0, j + 1.0 / 3.0), normal, area: part });
+            points.push(SurfacePoint { at: at(i + 1.0 / 3.0, j + 1.0 / 3.0), normal, area: part });
             if i + j + 1.0 < n as f64 {
-                points.push(Point { at: at(i + 2.0 / 3.0, j + 2.0 / 3.0), normal, area: part });
+                points.push(SurfacePoint { at: at(i + 2.0 / 3.0, j + 2.0 / 3.0), normal, area: part });
             }
         }
     }

@@ -3,7 +3,7 @@
 //! The surface of what lies inside is made of the patches of the balls that lie inside, and of the parts of the border that lie in
 //! the union. On a sphere every face of a box, the border of a ball and every other pebble cut off a cap.
 
-use super::region::{Ball, Region, Shape};
+use super::region::{Ball, Region, RegionShape};
 use crate::solvers::granular::union::{Arcs, Cap, Patch, Pebble, Trig};
 use nalgebra::{Vector2, Vector3};
 
@@ -25,15 +25,15 @@ impl Region {
 }
 
 /// Volume of a union of balls inside a region, m³.
-pub(super) fn union_in(shape: &Shape, balls: &[Ball]) -> f64 {
+pub(super) fn union_in(shape: &RegionShape, balls: &[Ball]) -> f64 {
     // Places about the first pebble, in units of the largest: fluxes are then no differences of large numbers.
     let unit = balls.iter().map(|b| b.1).fold(0.0, f64::max);
     let origin = balls[0].0;
     let place = |c: &[f64; 3]| Vector3::from_fn(|k, _| (c[k] - origin[k]) / unit);
     let pebbles: Vec<_> = balls.iter().map(|(c, r)| Pebble { centre: place(c), radius: r / unit }).collect();
     let share = match shape {
-        Shape::Block { lower, upper } => union_in_box(&pebbles, &place(lower), &place(upper)),
-        Shape::Ball { centre, radius } => {
+        RegionShape::Block { lower, upper } => union_in_box(&pebbles, &place(lower), &place(upper)),
+        RegionShape::Ball { centre, radius } => {
             union_in_ball(&pebbles, &Pebble { centre: place(centre), radius: radius / unit })
         }
     };

@@ -17,9 +17,9 @@ mod survey;
 #[cfg(test)]
 mod tests;
 
-pub use balance::{Balance, balance, unbalance};
+pub use balance::{ForceBalance, balance, unbalance};
 pub use contacts::{Contact, Coordination, coordination, neighbours, stress};
 pub use fabric::{Fabric, Rose};
-pub use forces::{ForceSpread, Push};
+pub use forces::{ContactPush, ForceSpread};
 pub use region::{Ball, NoRegion, Region};
 pub use survey::{Reading, Survey};

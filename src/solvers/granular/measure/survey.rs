@@ -13,11 +13,11 @@
 //! In a periodic bed a region may lie anywhere and reach over borders.
 
 use super::fabric::{equivalent, rows};
-use super::forces::Push;
+use super::forces::ContactPush;
 use super::{Ball, Coordination, Fabric, Region, balance, neighbours};
 use crate::solvers::granular::bed::Bed;
 use crate::solvers::granular::lanes::Real;
-use crate::solvers::granular::law::Law;
+use crate::solvers::granular::law::ContactLaw;
 use crate::solvers::granular::snapshot::{ContactState, Party, Snapshot};
 use crate::solvers::granular::vector::{Vec3, add, dot, norm, scale, sub};
 use nalgebra::{Matrix3, Vector3};
@@ -127,11 +127,11 @@ impl Survey {
     }
 
     /// Forces of the contacts between bodies.
-    pub fn pushes(&self) -> impl Iterator<Item = Push> + '_ {
+    pub fn pushes(&self) -> impl Iterator<Item = ContactPush> + '_ {
         self.inner().map(|touch| {
             let normal = touch.normal_force();
             let shear = norm(sub(touch.force, scale(touch.normal, normal)));
-            Push { normal, shear, friction: touch.friction }
+            ContactPush { normal, shear, friction: touch.friction }
         })
     }
 
@@ -241,8 +241,8 @@ fn touch<R: Real>(bed: &Bed<R>, contact: &ContactState, periods: &[Option<f64>; 
     };
     let shift = into_period(&first.place, periods);
     let friction = match bed.laws().get(first.surface, surface) {
-        Law::Linear(law) => law.friction,
-        Law::HertzMindlin(law) => law.friction,
+        ContactLaw::Linear(law) => law.friction,
+        ContactLaw::HertzMindlin(law) => law.friction,
     };
     Some(Touch {
         centre: add(first.place, shift),

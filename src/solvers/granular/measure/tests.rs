@@ -299,7 +299,7 @@ fn exponential_forces_are_known_as_such() {
     // quantiles of an exponential of mean 7 N, half of its friction used by each
     let count = 100_000;
     let force = |k: i32| -7.0 * (1.0 - (f64::from(k) + 0.5) / f64::from(count)).ln();
-    let pushes = (0..count).map(|k| Push { normal: force(k), shear: 0.25 * force(k), friction: 0.5 });
+    let pushes = (0..count).map(|k| ContactPush { normal: force(k), shear: 0.25 * force(k), friction: 0.5 });
     let found = ForceSpread::from_pushes(pushes);
     assert!((found.mean / 7.0 - 1.0).abs() < 1e-4, "{}", found.mean);
     assert!((found.decay.unwrap() - 1.0).abs() < 1e-3, "{:?}", found.decay);
@@ -317,7 +317,7 @@ fn exponential_forces_are_known_as_such() {
 
 #[test]
 fn contacts_at_their_friction_slide_and_equal_forces_have_no_tail() {
-    let at = |shear: f64, friction: f64| Push { normal: 2.0, shear, friction };
+    let at = |shear: f64, friction: f64| ContactPush { normal: 2.0, shear, friction };
     let found = ForceSpread::from_pushes([at(1.0, 0.5), at(0.5, 0.5), at(0.0, 0.5), at(0.0, 0.0)]);
     assert_eq!((found.sliding, found.mobilised), (Some(1.0 / 3.0), Some(0.5)));
     assert_eq!((found.decay, found.above, found.largest), (None, 0.0, 1.0));

@@ -1,7 +1,7 @@
 //! Recipes that no bed can be made of.
 
 use super::error::PackingError;
-use super::recipe::{Layer, Recipe};
+use super::recipe::{GrainLayer, Recipe};
 
 /// Greatest part of the shorter side of the plan that a grain may take: a third, or it would meet itself.
 const GRAIN: f64 = 1.0 / 3.0;
@@ -33,7 +33,7 @@ impl Recipe {
     }
 }
 
-fn check_layer(recipe: &Recipe, layer: &Layer) -> Result<(), PackingError> {
+fn check_layer(recipe: &Recipe, layer: &GrainLayer) -> Result<(), PackingError> {
     let number = |quantity, value: f64, fine: bool, expected| match value.is_finite() && fine {
         true => Ok(()),
         false => Err(PackingError::Number { layer: Some(layer.name.clone()), quantity, value, expected }),

@@ -44,12 +44,12 @@ pub struct Stage {
     pub pressure: f64,
     /// Level of the plate, m; `None` without it.
     pub level: Option<f64>,
-    pub state: State,
+    pub state: BedState,
 }
 
 /// A bed at an instant.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct State {
+pub struct BedState {
     /// Mean force out of balance over mean force that acts.
     pub unbalance: f64,
     /// J.
@@ -70,8 +70,8 @@ pub struct LayerState {
     pub rattlers: usize,
 }
 
-impl State {
-    pub(super) fn from_snapshot<R: Real>(bed: &Bed<R>, snapshot: &Snapshot, unbalance: f64) -> State {
+impl BedState {
+    pub(super) fn from_snapshot<R: Real>(bed: &Bed<R>, snapshot: &Snapshot, unbalance: f64) -> BedState {
         let pair = |contact: &ContactState| Some((contact.first.body()?.0, contact.second.body()?.0));
         let pairs: Vec<(u32, u32)> = snapshot.contacts.iter().filter_map(pair).collect();
         let neighbours = neighbours(bed.len(), &pairs);
@@ -80,7 +80,11 @@ impl State {
             layers[usize::from(state.surface)].push(count);
         }
         let kinetic = snapshot.translation + snapshot.rotation;
-        State { unbalance, kinetic, layers: layers.iter().map(|counts| LayerState::from_neighbours(counts)).collect() }
+        BedState {
+            unbalance,
+            kinetic,
+            layers: layers.iter().map(|counts| LayerState::from_neighbours(counts)).collect(),
+        }
     }
 }
 

@@ -20,13 +20,13 @@ mod store;
 mod tests;
 mod track;
 
-pub use describe::{LayerState, Stage, StageKind, State};
+pub use describe::{BedState, LayerState, Stage, StageKind};
 pub use error::PackingError;
 pub use pack::pack;
 pub use packed::Packed;
 pub use progress::Progress;
-pub use recipe::{Layer, Packing, Recipe, Rest, lifts_that_fit};
-pub use store::Stored;
+pub use recipe::{GrainLayer, Packing, Recipe, Rest, lifts_that_fit};
+pub use store::StoredBed;
 pub use track::{Order, TrackAccount, TrackBed, lay};
 
 /// Counts the ways in which beds have been packed and read: another one makes another bed of the same recipe.

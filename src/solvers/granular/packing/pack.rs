@@ -6,7 +6,7 @@ use super::error::PackingError;
 use super::packed::Packed;
 use super::press::Press;
 use super::progress::Progress;
-use super::recipe::{Layer, Recipe};
+use super::recipe::{GrainLayer, Recipe};
 
 /// Builds the bed. `tell` hears how far it is.
 pub fn pack<R: Real>(recipe: &Recipe, tell: impl FnMut(&Progress)) -> Result<Packed<R>, PackingError> {
@@ -43,7 +43,7 @@ fn fill<R: Real, T: FnMut(&Progress)>(
     press: &mut Press<'_, R, T>,
     recipe: &Recipe,
     number: usize,
-    layer: &Layer,
+    layer: &GrainLayer,
     top: f64,
 ) -> Result<Sample, PackingError> {
     let area = recipe.plan[0] * recipe.plan[1];

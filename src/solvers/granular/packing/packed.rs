@@ -6,7 +6,7 @@ use super::super::failure::Failure;
 use super::super::grains::Sample;
 use super::super::lanes::Real;
 use super::super::measure::{Ball, Region, Survey};
-use super::describe::{Stage, State};
+use super::describe::{BedState, Stage};
 use super::press::LAST;
 
 /// A finished bed, and what became of it on the way.
@@ -29,7 +29,7 @@ pub struct Packed<R: Real> {
 
 impl<R: Real> Packed<R> {
     /// The bed under the plate of its last lift, without friction, and as it is in the end.
-    pub fn pressed_and_at_rest(&self) -> [&State; 2] {
+    pub fn pressed_and_at_rest(&self) -> [&BedState; 2] {
         let last = self.stages.len() - 1;
         [last - LAST, last].map(|stage| &self.stages[stage].state)
     }

@@ -4,16 +4,16 @@ use super::super::bed::{Bed, Placed};
 use super::super::failure::Failure;
 use super::super::grains::{Grain, Random};
 use super::super::lanes::Real;
-use super::super::motion::{Motion, Pose};
+use super::super::motion::{Pose, WallMotion};
 use super::super::rest::{Criterion, Look, Waiting, until_rest};
 use super::super::shape::Shape;
 use super::super::walls::WallId;
-use super::describe::{Stage, StageKind, State};
+use super::describe::{BedState, Stage, StageKind};
 use super::error::PackingError;
 use super::pace::{Pace, SAFE};
 use super::place::{Loose, Room, set_loose};
 use super::progress::Progress;
-use super::recipe::{Layer, Recipe};
+use super::recipe::{GrainLayer, Recipe};
 use nalgebra::Vector3;
 
 /// Steps between looks at forces and at the time step.
@@ -66,7 +66,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
     pub fn new(recipe: &'a Recipe, tell: T) -> Self {
         let mut bed = recipe.ground();
         let normal = Vector3::new(0.0, 0.0, -1.0);
-        let plate = bed.add_wall(Shape::Plane { normal }, Pose::default(), recipe.wall_surface(), Motion::Fixed);
+        let plate = bed.add_wall(Shape::Plane { normal }, Pose::default(), recipe.wall_surface(), WallMotion::Fixed);
         let lifts: u32 = recipe.layers.iter().map(|layer| layer.lifts_that_fit()).sum();
         let [length, width] = recipe.plan;
         let mut press = Press {
@@ -127,7 +127,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
     /// The plate goes up until it all but presses no more.
     fn lift(&mut self) -> Result<(), PackingError> {
         let (pressure, level) = (self.pressure(), self.level);
-        let up = Motion::Velocity { linear: Vector3::new(0.0, 0.0, LIFT), angular: Vector3::zeros() };
+        let up = WallMotion::Velocity { linear: Vector3::new(0.0, 0.0, LIFT), angular: Vector3::zeros() };
         self.bed.set_motion(self.plate, up);
         // the springs under it give way long before it is a grain's size away
         let clear = level + self.recipe.layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
@@ -154,7 +154,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
     /// Out of reach of every grain, at rest.
     fn away(&mut self) {
         let high = 10.0 * (1.0 + self.recipe.layers.iter().map(|layer| layer.thickness).sum::<f64>());
-        self.bed.set_motion(self.plate, Motion::Fixed);
+        self.bed.set_motion(self.plate, WallMotion::Fixed);
         self.bed.stand(self.plate, [0.0, 0.0, high]);
     }
 
@@ -165,7 +165,8 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
 
     fn drive(&mut self, pressure: f64, speed_limit: f64) {
         let axis = Vector3::new(0.0, 0.0, 1.0);
-        self.bed.set_motion(self.plate, Motion::Servo { axis, force: pressure * self.area, speed_limit, gain: GAIN });
+        self.bed
+            .set_motion(self.plate, WallMotion::Servo { axis, force: pressure * self.area, speed_limit, gain: GAIN });
     }
 
     /// Does some steps, each as long as it may be.
@@ -193,7 +194,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         let longest = criterion.longest;
         let start = self.bed.time();
         let look = until_rest(&mut Pressing { press: self, stage, goal, longest, bears: false }, &criterion, start)?;
-        let state = State::from_snapshot(&self.bed, &look.snapshot, look.unbalance);
+        let state = BedState::from_snapshot(&self.bed, &look.snapshot, look.unbalance);
         let (pressure, level) = (self.pressure(), goal.pressure.map(|_| self.height()));
         self.stages.push(Stage { name: stage.to_string(), time: look.time, pressure, level, state });
         Ok(())
@@ -260,7 +261,7 @@ fn failed(stage: &StageKind, failure: Failure) -> PackingError {
 }
 
 /// Puts grains into a bed, falling.
-fn put<R: Real>(bed: &mut Bed<R>, loose: &[Loose], layer: &Layer, surface: u16, fall: f64) {
+fn put<R: Real>(bed: &mut Bed<R>, loose: &[Loose], layer: &GrainLayer, surface: u16, fall: f64) {
     for grain in loose {
         let placed = Placed {
             template: &grain.template,

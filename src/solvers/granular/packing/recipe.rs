@@ -6,7 +6,7 @@ use super::super::domain::Domain;
 use super::super::grains::Curve;
 use super::super::gravity::Gravity;
 use super::super::lanes::Real;
-use super::super::law::{Law, Laws, Surface};
+use super::super::law::{ContactLaw, ContactLaws, Surface};
 use super::super::walls::WallId;
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,7 @@ pub struct Recipe {
     /// Whether walls stand at both ends along too.
     pub ends: bool,
     /// From the floor upwards.
-    pub layers: Vec<Layer>,
+    pub layers: Vec<GrainLayer>,
     /// Downwards, m/s2.
     pub gravity: f64,
     /// Local damping of the finished bed.
@@ -31,7 +31,7 @@ pub struct Recipe {
 
 /// A layer of one material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Layer {
+pub struct GrainLayer {
     pub name: String,
     pub curve: Curve,
     /// Clumps of unit size; grains are copies of them, as often of one as of another.
@@ -85,7 +85,7 @@ pub fn lifts_that_fit(asked: u32, thickness: f64, curve: &Curve) -> u32 {
     asked.min(most as u32)
 }
 
-impl Layer {
+impl GrainLayer {
     /// Number of lifts that it is pressed in, at most as many as asked for.
     pub fn lifts_that_fit(&self) -> u32 {
         lifts_that_fit(self.lifts, self.thickness, &self.curve)
@@ -94,17 +94,17 @@ impl Layer {
 
 impl Recipe {
     /// Laws of the finished bed: surface `i` is layer `i`, the last one is walls, floor and plate, as stiff as the grains.
-    pub fn laws(&self) -> Laws {
+    pub fn laws(&self) -> ContactLaws {
         self.between(|layer| (layer.surface, layer.wall_friction))
     }
 
     /// The same without dashpots, which forces at rest do not know.
-    pub(super) fn laws_without_dashpots(&self) -> Laws {
+    pub(super) fn laws_without_dashpots(&self) -> ContactLaws {
         self.between(|layer| (Surface { damping: [0.0; 2], ..layer.surface }, layer.wall_friction))
     }
 
     /// Laws while it is packed.
-    fn packing_laws(&self) -> Laws {
+    fn packing_laws(&self) -> ContactLaws {
         self.between(|layer| {
             let Packing { friction, viscous_damping, .. } = layer.packing;
             // without friction nothing holds against sliding, and steps may be longer
@@ -114,14 +114,14 @@ impl Recipe {
         })
     }
 
-    fn between(&self, of: impl Fn(&Layer) -> (Surface, f64)) -> Laws {
+    fn between(&self, of: impl Fn(&GrainLayer) -> (Surface, f64)) -> ContactLaws {
         let surfaces: Vec<(Surface, f64)> = self.layers.iter().map(of).collect();
         let mut all: Vec<Surface> = surfaces.iter().map(|(surface, _)| *surface).collect();
         all.extend(all.last().copied());
-        let mut laws = Laws::from_surfaces(&all);
+        let mut laws = ContactLaws::from_surfaces(&all);
         for (number, (surface, friction)) in surfaces.iter().enumerate() {
             let mut law = surface.meet(surface);
-            if let Law::Linear(law) = &mut law {
+            if let ContactLaw::Linear(law) = &mut law {
                 law.friction = *friction;
             }
             laws.set(number as u16, self.wall_surface(), law);
@@ -136,7 +136,7 @@ impl Recipe {
 
     /// The least sqrt(m / k) of a mean grain of any layer, s.
     pub(super) fn mean_step(&self) -> f64 {
-        let of = |(layer, k): (&Layer, f64)| (layer.density * layer.curve.mean_volume() / k).sqrt();
+        let of = |(layer, k): (&GrainLayer, f64)| (layer.density * layer.curve.mean_volume() / k).sqrt();
         self.layers.iter().zip(self.stiffness()).map(of).fold(f64::INFINITY, f64::min)
     }
 

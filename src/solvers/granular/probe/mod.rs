@@ -12,7 +12,7 @@ pub use error::ProbeError;
 use super::bed::Bed;
 use super::failure::Failure;
 use super::lanes::Real;
-use super::motion::{Motion, Pose};
+use super::motion::{Pose, WallMotion};
 use super::rest::{Criterion, Look, Waiting, until_rest};
 use super::shape::{Mesh, Shape};
 use super::stride::Stride;
@@ -93,7 +93,7 @@ const CALM: usize = 2;
 
 /// A step of the test as it ended.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Point {
+pub struct LoadPoint {
     /// Pa.
     #[serde(rename = "pressure_Pa")]
     pub pressure: f64,
@@ -108,7 +108,7 @@ pub struct Stiffness {
     /// m2.
     pub area: f64,
     /// Step after step.
-    pub curve: Vec<Point>,
+    pub curve: Vec<LoadPoint>,
     /// Force over settlement from the seat to the full pressure, first and second loading, N/m.
     pub first: f64,
     pub again: f64,
@@ -188,7 +188,7 @@ pub fn probe<R: Real>(
 ) -> Result<Stiffness, ProbeError> {
     plate.check(bed)?;
     let mut test = Test::new(bed.clone(), plate)?;
-    let mut curve: Vec<Point> = Vec::new();
+    let mut curve: Vec<LoadPoint> = Vec::new();
     for (number, share) in STEPS.iter().enumerate() {
         let seat = curve.first().map(|_| test.seat);
         let point = test.until_rest(share * plate.pressure, seat)?;
@@ -249,7 +249,7 @@ impl<'a, R: Real> Test<'a, R> {
         let (shape, depth) = plate.outline.shape()?;
         let [x, y] = plate.centre;
         let pose = Pose { position: Vector3::new(x, y, top + depth), ..Pose::default() };
-        let wall = bed.add_wall(shape, pose, plate.surface, Motion::Fixed);
+        let wall = bed.add_wall(shape, pose, plate.surface, WallMotion::Fixed);
         bed.set_damping(LOCAL_DAMPING);
         let stride = Stride::with_added(&mut bed, ADDED).map_err(ProbeError::Failure)?;
         Ok(Test { bed, plate, wall, depth, seat: top, stride })
@@ -265,16 +265,16 @@ impl<'a, R: Real> Test<'a, R> {
     }
 
     /// Presses with `target` (Pa) until forces are in balance.
-    fn until_rest(&mut self, target: f64, seat: Option<f64>) -> Result<Point, ProbeError> {
+    fn until_rest(&mut self, target: f64, seat: Option<f64>) -> Result<LoadPoint, ProbeError> {
         let Stillness { unbalance, pressure: missed, longest, .. } = self.plate.rest;
         let criterion = Criterion { unbalance, missed, every: LOOK, looks: CALM, longest, look_first: false };
         let axis = Vector3::new(0.0, 0.0, 1.0);
         let force = target * self.plate.outline.area();
-        self.bed.set_motion(self.wall, Motion::Servo { axis, force, speed_limit: SPEED, gain: GAIN });
+        self.bed.set_motion(self.wall, WallMotion::Servo { axis, force, speed_limit: SPEED, gain: GAIN });
         let (start, from) = (self.bed.time(), seat.unwrap_or(self.seat));
         until_rest(&mut Step { test: self, target, from }, &criterion, start)?;
         let settlement = if seat.is_some() { from - self.level() } else { 0.0 };
-        Ok(Point { pressure: self.pressure(), settlement })
+        Ok(LoadPoint { pressure: self.pressure(), settlement })
     }
 }
 

@@ -24,7 +24,7 @@ pub struct Cycle {
 
 /// A sleeper at an instant of a cycle that is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Sample {
+pub struct CycleSample {
     pub sleeper: usize,
     pub cycle: u64,
     /// Share of the cycle that is over, 0 .. 1.

@@ -22,10 +22,10 @@ mod store;
 mod tests;
 mod trial;
 
-pub use answer::{Cycle, Sample};
+pub use answer::{Cycle, CycleSample};
 pub use description::{ADDED, Load, Rig, Sleeper};
 pub use error::{Resting, RigError};
-pub use sensor::{Reading, Sensor};
+pub use sensor::{Sensor, SensorReading};
 pub use specimen::{Specimen, SpecimenState};
-pub use store::Stored;
+pub use store::StoredTrial;
 pub use trial::Trial;

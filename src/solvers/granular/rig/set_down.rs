@@ -3,7 +3,7 @@
 use super::super::bed::Bed;
 use super::super::failure::Failure;
 use super::super::lanes::Real;
-use super::super::motion::{Motion, Pose, Push};
+use super::super::motion::{Pose, Push, WallMotion};
 use super::super::rest::{self, Look, Waiting};
 use super::super::shape::Shape;
 use super::super::stride::Stride;
@@ -32,8 +32,8 @@ pub(super) fn place<R: Real>(bed: &mut Bed<R>, rig: &Rig) -> Vec<WallId> {
 }
 
 /// Motion of a sleeper under its weight, N, and a push.
-pub(super) fn motion(sleeper: &Sleeper, weight: f64, damping: f64, push: Push) -> Motion {
-    Motion::Loaded { axis: -Vector3::z(), mass: sleeper.mass, weight, damping, push }
+pub(super) fn motion(sleeper: &Sleeper, weight: f64, damping: f64, push: Push) -> WallMotion {
+    WallMotion::Loaded { axis: -Vector3::z(), mass: sleeper.mass, weight, damping, push }
 }
 
 /// Highest point of the grains that reach under a sleeper, m.
@@ -96,7 +96,7 @@ impl<R: Real, T: FnMut(f64)> Waiting<R> for Standing<'_, R, T> {
 fn uncarried<R: Real>(bed: &Bed<R>, walls: &[WallId]) -> f64 {
     let of = |wall: &WallId| {
         let wall = bed.wall(*wall);
-        let Motion::Loaded { weight, push, .. } = wall.motion() else { return 0.0 };
+        let WallMotion::Loaded { weight, push, .. } = wall.motion() else { return 0.0 };
         let force = weight + push.force_at(bed.time());
         if force > 0.0 { (wall.felt().force.z / force - 1.0).abs() } else { 0.0 }
     };

@@ -7,7 +7,7 @@
 use super::super::bed::Bed;
 use super::super::failure::Failure;
 use super::super::lanes::Real;
-use super::super::motion::Motion;
+use super::super::motion::WallMotion;
 use super::super::rest::{Criterion, Look, Waiting, until_rest};
 use super::super::stride::Stride;
 use super::super::walls::WallId;
@@ -91,7 +91,7 @@ impl Specimen {
     pub(super) fn hold<R: Real>(&self, bed: &mut Bed<R>, size: &Size) {
         for (axis, side, outward) in self.each() {
             let force = self.pressure * area_of_side(size, axis);
-            bed.set_motion(side, Motion::Servo { axis: outward, force, speed_limit: SPEED, gain: GAIN });
+            bed.set_motion(side, WallMotion::Servo { axis: outward, force, speed_limit: SPEED, gain: GAIN });
         }
     }
 

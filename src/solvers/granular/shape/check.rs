@@ -16,12 +16,12 @@ const MOST_FACETS: usize = 600_000_000;
 /// Why triangles make no mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshError {
-    pub faults: Vec<Fault>,
+    pub faults: Vec<MeshFault>,
 }
 
 /// Everything of one kind that is wrong.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fault {
+pub struct MeshFault {
     pub kind: FaultKind,
     pub count: usize,
     /// The first few.
@@ -98,13 +98,13 @@ pub(super) fn check(
 
 #[derive(Default)]
 struct Found {
-    faults: Vec<Fault>,
+    faults: Vec<MeshFault>,
 }
 
 impl Found {
     fn add(&mut self, kind: FaultKind, number: u32, at: Vector3<f64>) {
         let known = self.faults.iter().position(|fault| fault.kind == kind).unwrap_or_else(|| {
-            self.faults.push(Fault { kind, count: 0, places: Vec::new() });
+            self.faults.push(MeshFault { kind, count: 0, places: Vec::new() });
             self.faults.len() - 1
         });
         let fault = &mut self.faults[known];
@@ -214,7 +214,7 @@ fn connected(vertices: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Vec<Part> {
 
 impl MeshError {
     pub(super) fn single(kind: FaultKind) -> Self {
-        Self { faults: vec![Fault { kind, count: 1, places: Vec::new() }] }
+        Self { faults: vec![MeshFault { kind, count: 1, places: Vec::new() }] }
     }
 }
 

@@ -1,7 +1,7 @@
 //! A surface of triangles: checked once, with its edges, corners and search tree built once.
 
 use super::check::{MeshError, check};
-use super::topology::Surface;
+use super::topology::MeshSurface;
 use super::tree::Tree;
 use super::triangles::{MeshKind, area_vector, volume};
 use nalgebra::Vector3;
@@ -16,7 +16,7 @@ pub struct Mesh {
     pub(super) kind: MeshKind,
     pub(super) vertices: Vec<Vector3<f64>>,
     pub(super) triangles: Vec<[u32; 3]>,
-    pub(super) surface: Surface,
+    pub(super) surface: MeshSurface,
     pub(super) tree: Tree,
     /// The largest coordinate, m: round-off is measured by it.
     pub(super) extent: f64,
@@ -65,7 +65,7 @@ impl Mesh {
 
     /// From parts without faults.
     fn build(vertices: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>, kind: MeshKind) -> Self {
-        let surface = Surface::new(&vertices, &triangles);
+        let surface = MeshSurface::new(&vertices, &triangles);
         let tree = Tree::new(&vertices, &triangles);
         let extent = vertices.iter().fold(0.0, |m: f64, v| m.max(v.amax()));
         Self { kind, vertices, triangles, surface, tree, extent }

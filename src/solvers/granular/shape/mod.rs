@@ -22,7 +22,7 @@ use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-pub use check::{Fault, FaultKind, MeshError, Place};
+pub use check::{FaultKind, MeshError, MeshFault, Place};
 pub use distance::Nearest;
 pub use history::inherit;
 pub use mesh::Mesh;

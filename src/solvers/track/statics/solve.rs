@@ -9,7 +9,7 @@ use super::loads::{Inertia, Loads};
 use super::standing::StandingTrain;
 use super::state::{StaticState, describe};
 use super::stiffness::factor;
-use crate::solvers::track::error::{Parameter, TrackError};
+use crate::solvers::track::error::{TrackError, TrackParameter};
 use crate::solvers::track::mesh::{FootUnknown, Track};
 use crate::solvers::track::model::TrackLevel;
 use crate::solvers::track::support::SupportPhase;
@@ -47,7 +47,7 @@ pub(in super::super) fn solve_with_inertia(
             Some(FootUnknown::Sleeper(s)) => forces[track.sleepers[*s].unknown] += force,
             _ => {
                 return Err(TrackError::Parameter {
-                    name: Parameter::Load("loaded seat"),
+                    name: TrackParameter::Load("loaded seat"),
                     value: seat as f64,
                     expected: "with a sleeper",
                 });

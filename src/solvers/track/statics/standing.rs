@@ -13,7 +13,7 @@ use super::stiffness::subtract_stiffness;
 use crate::linalg::banded::BandedFactor;
 use crate::linalg::skyline::Skyline;
 use crate::solvers::track::contact::WheelLaw;
-use crate::solvers::track::error::{Parameter, TrackError};
+use crate::solvers::track::error::{TrackError, TrackParameter};
 use crate::solvers::track::mesh::{RailPoint, Track};
 use crate::solvers::track::{Multibody, SupportPhase, TrackLevel, Train};
 
@@ -76,7 +76,7 @@ impl StandingTrain {
             let wheel_load = vehicle.wheel_load(track.model.gravity);
             if vehicle.order() > 0 && wheel_load <= 0.0 {
                 return Err(TrackError::Parameter {
-                    name: Parameter::Vehicle("weight of a vehicle"),
+                    name: TrackParameter::Vehicle("weight of a vehicle"),
                     value: wheel_load,
                     expected: "above 0: gravity or a force that holds it down",
                 });
