@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::Instant;
 use trackbed::report::{PebbleRow, grain_pebbles_svg, grain_templates_svg};
 use trackbed::solvers::granular::clump::Template;
-use trackbed::solvers::granular::grains::{Angular, ClumpShape, Fitted, Form, Rule, ShapeError, Surfaces, stl};
+use trackbed::solvers::granular::grains::{Angular, ClumpShape, Fitted, GrainForm, Misfit, Rule, Surfaces, stl};
 
 /// Surfaces of the library: flatness, elongation, roundness.
 const LIBRARY: [(&str, [f64; 3]); 5] = [
@@ -43,7 +43,7 @@ fn library(folder: &Path) -> std::io::Result<()> {
     for (number, (name, [flatness, elongation, roundness])) in LIBRARY.into_iter().enumerate() {
         let surface = Angular { flatness, elongation, roundness }.surface(1, number as u64).expect("indices of grains");
         std::fs::write(folder.join(format!("{name}.stl")), stl::write(&surface))?;
-        let form = Form::of_surface(&surface);
+        let form = GrainForm::of_surface(&surface);
         println!(
             "{name}: S/I {:.3}, I/L {:.3}, sphericity {:.3}, {} triangles",
             form.flatness(),
@@ -81,8 +81,8 @@ fn pictures(folder: &Path) -> std::io::Result<()> {
 
 fn row(pebbles: usize) -> PebbleRow {
     let fitted = shape(pebbles, SURFACES).fitted(1).expect("angular grains");
-    let errors: Vec<ShapeError> = fitted.iter().map(|f| ShapeError::between(&f.surface, &f.template)).collect();
-    let mean = |of: fn(&ShapeError) -> f64| errors.iter().map(of).sum::<f64>() / errors.len() as f64;
+    let errors: Vec<Misfit> = fitted.iter().map(|f| Misfit::between(&f.surface, &f.template)).collect();
+    let mean = |of: fn(&Misfit) -> f64| errors.iter().map(of).sum::<f64>() / errors.len() as f64;
     let templates: Vec<Template> = fitted.into_iter().map(|f| f.template).collect();
     PebbleRow {
         pebbles,

@@ -6,7 +6,7 @@
 
 use std::fmt::Write;
 use trackbed::solvers::granular::{
-    Bed, BodyId, Dashpot, DashpotMode, Domain, FrictionLimit, Law, Laws, Limits, Linear, Sphere,
+    Bed, BodyId, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, Limits, Linear, Sphere,
 };
 
 const STIFFNESS: f64 = 1.3e7;
@@ -39,8 +39,8 @@ struct Column {
     grows: Vec<bool>,
 }
 
-fn law(ratio: f64, friction: f64) -> Law {
-    Law::Linear(Linear {
+fn law(ratio: f64, friction: f64) -> ContactLaw {
+    ContactLaw::Linear(Linear {
         normal_stiffness: STIFFNESS,
         shear_stiffness: STIFFNESS,
         friction,
@@ -58,7 +58,7 @@ fn sphere(centre: [f64; 3], radius: f64) -> Sphere {
 fn lattice(places: &[[f64; 3]], periods: [Option<f64>; 3]) -> Bed<f64> {
     let unit = 2.0 * RADIUS * (1.0 - PRESSED);
     let periodic = |d: Domain, axis: usize| periods[axis].map_or(d, |p| d.periodic(axis, p * unit));
-    let mut bed = Bed::new((0..3).fold(Domain::open(), periodic), Laws::uniform(1, law(0.0, 1e9)));
+    let mut bed = Bed::new((0..3).fold(Domain::open(), periodic), ContactLaws::uniform(1, law(0.0, 1e9)));
     for place in places {
         let id = bed.add_sphere(&sphere(place.map(|x| x * unit), RADIUS));
         bed.hold_rotation(id);
@@ -79,7 +79,7 @@ fn grid(counts: [usize; 3], cell: f64, basis: &[[f64; 3]]) -> Vec<[f64; 3]> {
 fn chain(size_ratio: f64) -> Bed<f64> {
     let radii = [RADIUS, size_ratio * RADIUS];
     let step = (radii[0] + radii[1]) * (1.0 - PRESSED);
-    let mut bed = Bed::new(Domain::open().periodic(0, 8.0 * step), Laws::uniform(1, law(0.0, 1e9)));
+    let mut bed = Bed::new(Domain::open().periodic(0, 8.0 * step), ContactLaws::uniform(1, law(0.0, 1e9)));
     for k in 0..8 {
         let id = bed.add_sphere(&sphere([f64::from(k) * step, 0.0, 0.0], radii[k as usize % 2]));
         bed.hold_rotation(id);
@@ -102,7 +102,7 @@ fn random(size_ratio: f64, count: usize) -> Bed<f64> {
     let solid: f64 = radii.iter().map(|r| 4.0 / 3.0 * std::f64::consts::PI * r.powi(3)).sum();
     let length = (solid / if size_ratio < 2.0 { 0.67 } else { 0.72 }).cbrt();
     let domain = (0..3).fold(Domain::open(), |d, axis| d.periodic(axis, length));
-    let mut bed = Bed::new(domain, Laws::uniform(1, law(0.0, 0.0)));
+    let mut bed = Bed::new(domain, ContactLaws::uniform(1, law(0.0, 0.0)));
     for radius in radii {
         bed.add_sphere(&sphere([(); 3].map(|()| chance() * length), radius));
     }

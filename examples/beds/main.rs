@@ -16,7 +16,7 @@ use trackbed::results::Beds;
 use trackbed::solvers::granular::clump::Template;
 use trackbed::solvers::granular::grains::{ClumpShape, Curve};
 use trackbed::solvers::granular::packing::{
-    Layer, Order, Packed, Packing, PackingError, Progress, Recipe, Rest, lay, pack,
+    GrainLayer, Order, Packed, Packing, PackingError, Progress, Recipe, Rest, lay, pack,
 };
 use trackbed::solvers::granular::probe::{Outline, Plate, Stillness, probe};
 use trackbed::solvers::granular::{DashpotMode, Surface};
@@ -51,7 +51,7 @@ fn surface(contact: f64, friction: f64) -> Surface {
 /// Table 2 and Fig. 4: two layers of 0.3 m, half a track wide, one bay long.
 fn paper(seed: u64) -> Recipe {
     let packing = Packing { friction: 0.0, local_damping: 0.7, viscous_damping: 0.0 };
-    let layer = |name: &str, curve: &[[f64; 2]], templates, surface: Surface| Layer {
+    let layer = |name: &str, curve: &[[f64; 2]], templates, surface: Surface| GrainLayer {
         name: name.into(),
         curve: Curve::new(curve).expect("a grading"),
         templates,
@@ -245,7 +245,7 @@ fn seeds(count: u64) {
 }
 
 /// Grains so many times as large, in layers as stiff.
-fn scaled(layer: &mut Layer, factor: f64) {
+fn scaled(layer: &mut GrainLayer, factor: f64) {
     let points: Vec<[f64; 2]> = layer.curve.points().iter().map(|[size, share]| [size * factor, *share]).collect();
     layer.curve = Curve::new(&points).expect("a grading");
     layer.surface.normal_stiffness *= factor;
@@ -253,19 +253,19 @@ fn scaled(layer: &mut Layer, factor: f64) {
 }
 
 fn readings(word: &str) {
-    let with = |name: &str, change: &dyn Fn(&mut Layer)| {
+    let with = |name: &str, change: &dyn Fn(&mut GrainLayer)| {
         let mut recipe = paper(1);
         recipe.layers.iter_mut().for_each(change);
         (name.to_owned(), recipe)
     };
-    let of_bodies = |layer: &mut Layer| {
+    let of_bodies = |layer: &mut GrainLayer| {
         layer.surface.normal_stiffness *= 0.5;
         layer.surface.shear_stiffness *= 0.5;
     };
     let mut clumps = paper(1);
     // 6484 in place of about 3080
     scaled(&mut clumps.layers[1], (3080.0f64 / 6484.0).cbrt());
-    let with_friction = |friction: f64| move |layer: &mut Layer| layer.packing.friction = friction;
+    let with_friction = |friction: f64| move |layer: &mut GrainLayer| layer.packing.friction = friction;
     let cases = [
         with("contact stiffness and count of pebbles", &|_| ()),
         ("count of clumps".into(), clumps),
@@ -282,7 +282,7 @@ fn accuracy(word: &str) {
         change(&mut recipe);
         (name.to_owned(), recipe)
     };
-    let all = |recipe: &mut Recipe, change: &dyn Fn(&mut Layer)| recipe.layers.iter_mut().for_each(change);
+    let all = |recipe: &mut Recipe, change: &dyn Fn(&mut GrainLayer)| recipe.layers.iter_mut().for_each(change);
     let cases = [
         with("as it is", &|_| ()),
         with("lifts at rest to 0.03", &|r| r.rest.lift = 0.03),

@@ -6,8 +6,8 @@ use std::sync::Mutex;
 use std::time::Instant;
 use trackbed::solvers::granular::clump::{Pebble, Template};
 use trackbed::solvers::granular::{
-    Bed, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Law, Laws, Linear, Motion, Placed, Pose, Real, Shape,
-    WallId,
+    Bed, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Linear, Placed, Pose, Real,
+    Shape, WallId, WallMotion,
 };
 
 /// Side of the periodic cell \[m\].
@@ -95,7 +95,7 @@ fn run_in<R: Real>(setting: &Setting, seed: u64) -> Option<Answer> {
 /// Moves the plate at `speed` \[m/s\] until it feels `pressure` \[Pa\], and says where that is \[m\].
 fn press<R: Real>(bed: &mut Bed<R>, plate: WallId, speed: f64, pressure: f64) -> Option<f64> {
     let linear = Vector3::new(0.0, 0.0, speed);
-    bed.set_motion(plate, Motion::Velocity { linear, angular: Vector3::zeros() });
+    bed.set_motion(plate, WallMotion::Velocity { linear, angular: Vector3::zeros() });
     let end = bed.time() + PATIENCE;
     while bed.time() < end {
         if let Err(failure) = bed.step() {
@@ -133,7 +133,7 @@ fn settled<R: Real>(setting: &Setting, seed: u64) -> Option<(Bed<R>, WallId)> {
 
 fn fallen(pebbles: u32, seed: u64) -> Option<Bed<f64>> {
     let mut random = Random(seed.wrapping_add(1).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
-    let law = Law::Linear(Linear {
+    let law = ContactLaw::Linear(Linear {
         normal_stiffness: 1.3e7,
         shear_stiffness: 1.3e7,
         friction: 0.6,
@@ -142,8 +142,8 @@ fn fallen(pebbles: u32, seed: u64) -> Option<Bed<f64>> {
         limit: FrictionLimit::Spring,
     });
     let domain = Domain::open().periodic(0, SIDE).periodic(1, SIDE);
-    let mut bed: Bed<f64> = Bed::new(domain, Laws::single(law));
-    let template = Template::of(&ellipsoid(pebbles.max(1))).ok()?;
+    let mut bed: Bed<f64> = Bed::new(domain, ContactLaws::single(law));
+    let template = Template::from_pebbles(&ellipsoid(pebbles.max(1))).ok()?;
     for grain in 0..GRAINS {
         let (layer, cell) = (grain / 16, grain % 16);
         let mut around = |x: f64| x + 0.004 * (random.next() - 0.5);
@@ -171,9 +171,9 @@ fn fallen(pebbles: u32, seed: u64) -> Option<Bed<f64>> {
     }
     let top = bed.pebbles().map(|p| p.place[2] + p.radius).fold(0.0, f64::max);
     let pose = Pose { position: Vector3::new(0.0, 0.0, top), ..Pose::default() };
-    let plate = bed.add_wall(Shape::plane(-Vector3::z()).ok()?, pose, 0, Motion::Fixed);
+    let plate = bed.add_wall(Shape::plane(-Vector3::z()).ok()?, pose, 0, WallMotion::Fixed);
     press(&mut bed, plate, -APPROACH, LOW)?;
-    bed.set_motion(plate, Motion::Fixed);
+    bed.set_motion(plate, WallMotion::Fixed);
     bed.run((0.1 / SETTLING_STEP) as u64).ok()?;
     bed.set_damping(0.2);
     Some(bed)

@@ -5,8 +5,8 @@ use super::particles::Particles;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use trackbed::solvers::granular::{
-    Bed, Dashpot, DashpotMode, Domain, Failure, FrictionLimit, Gravity, Law, Laws, Linear, Motion, Party, Real, Sphere,
-    WallId,
+    Bed, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, Failure, FrictionLimit, Gravity, Linear, Party, Real,
+    Sphere, WallId, WallMotion,
 };
 
 /// Steps between looks at the plate's pressure.
@@ -138,8 +138,8 @@ impl Parameters {
     }
 
     /// A spring without a dashpot.
-    fn law(&self) -> Law {
-        Law::Linear(Linear {
+    fn law(&self) -> ContactLaw {
+        ContactLaw::Linear(Linear {
             normal_stiffness: self.normal_stiffness,
             shear_stiffness: self.shear_stiffness,
             friction: self.friction,
@@ -207,7 +207,7 @@ impl<R: Real> Oedometer<R> {
             return Err(Trouble::NoSpheres);
         }
         let [x, y] = parameters.period;
-        let mut bed = Bed::new(Domain::open().periodic(0, x).periodic(1, y), Laws::single(parameters.law()));
+        let mut bed = Bed::new(Domain::open().periodic(0, x).periodic(1, y), ContactLaws::single(parameters.law()));
         bed.set_time_step(parameters.time_step);
         bed.set_gravity(Gravity::Constant([0.0, 0.0, -parameters.gravity]));
         bed.set_damping(parameters.damping);
@@ -241,7 +241,7 @@ impl<R: Real> Oedometer<R> {
     pub fn drive(&mut self, phase: &Phase, mut tell: impl FnMut(u64)) -> Result<Vec<Row>, Trouble> {
         let down = if phase.loads { -phase.speed } else { phase.speed };
         let linear = [0.0, 0.0, down].into();
-        self.bed.set_motion(self.plate, Motion::Velocity { linear, angular: [0.0; 3].into() });
+        self.bed.set_motion(self.plate, WallMotion::Velocity { linear, angular: [0.0; 3].into() });
         let last = self.steps() + (FARTHEST * self.start_height / (phase.speed * self.parameters.time_step)) as u64;
         let mut rows = Vec::new();
         loop {

@@ -7,7 +7,7 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Surface, Surfaces};
 use crate::schema::{Need, Word};
 use crate::solvers::granular::grains::stl::{self, StlError};
-use crate::solvers::granular::shape::{Fault, FaultKind, Mesh};
+use crate::solvers::granular::shape::{FaultKind, Mesh, MeshFault};
 use crate::units::number;
 use std::sync::Arc;
 
@@ -124,7 +124,7 @@ fn is_default(word: &Word, name: &str, slot: &Slot) -> bool {
 }
 
 /// All that keeps triangles from being a closed body, with the way out of the first.
-fn not_closed(name: &str, faults: &[Fault]) -> Diagnostic {
+fn not_closed(name: &str, faults: &[MeshFault]) -> Diagnostic {
     let told: Vec<String> = faults.iter().map(one_fault).collect();
     let help = match faults.first().map(|fault| fault.kind) {
         Some(FaultKind::OpenEdge) => "close the holes in a mesh tool: only a closed body has a volume",
@@ -138,7 +138,7 @@ fn not_closed(name: &str, faults: &[Fault]) -> Diagnostic {
 }
 
 /// `3 open edges, the first at triangle 12 near (1.2, 0.4, 3)`, in the unit of the file.
-fn one_fault(fault: &Fault) -> String {
+fn one_fault(fault: &MeshFault) -> String {
     let (one, several) = match fault.kind {
         FaultKind::OpenEdge => ("open edge", "open edges"),
         FaultKind::InsideOut => ("part inside out", "parts inside out"),
@@ -178,7 +178,7 @@ mod tests {
         assert_eq!(words, LIBRARY.iter().map(|(name, _)| *name).collect::<Vec<_>>());
         for word in from.form.words().into_iter().filter(|word| word.name != "file") {
             let bytes = LIBRARY.iter().find(|(name, _)| *name == word.name).unwrap().1;
-            let form = crate::solvers::granular::grains::Form::of_surface(&stl::read(bytes).unwrap());
+            let form = crate::solvers::granular::grains::GrainForm::of_surface(&stl::read(bytes).unwrap());
             let said = |index: &str| {
                 let rest = word.doc.split(index).nth(1).unwrap().trim_start();
                 rest.split([',', ' ']).next().unwrap().parse::<f64>().unwrap()

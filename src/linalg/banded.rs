@@ -306,7 +306,7 @@ impl Window {
 
     /// The entry of a row; zero outside the window.
     #[inline]
-    pub fn at(&self, row: usize) -> f64 {
+    pub fn entry(&self, row: usize) -> f64 {
         self.values.get(row.wrapping_sub(self.start)).copied().unwrap_or(0.0)
     }
 }
@@ -355,7 +355,7 @@ mod tests {
             let mut scratch = vec![0.0; order];
             for j in 0..order {
                 let column = factor.inverse_column(j, 1e-18, &mut scratch);
-                prop_assert!((0..order).all(|i| (column.at(i) - inverse[(i, j)]).abs() < 1e-13));
+                prop_assert!((0..order).all(|i| (column.entry(i) - inverse[(i, j)]).abs() < 1e-13));
                 prop_assert!(scratch.iter().all(|x| *x == 0.0));
             }
         }
@@ -372,7 +372,7 @@ mod tests {
         full[2000] = 1.0;
         factor.solve_in_place(&mut full);
         let largest = full.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-        assert!((0..4000).all(|i| (full[i] - column.at(i)).abs() <= 1e-15 * largest));
+        assert!((0..4000).all(|i| (full[i] - column.entry(i)).abs() <= 1e-15 * largest));
     }
 
     #[test]

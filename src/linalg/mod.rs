@@ -3,3 +3,4 @@
 pub mod banded;
 pub mod skyline;
 pub mod twisted;
+pub mod vector;

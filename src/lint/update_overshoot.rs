@@ -48,6 +48,6 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
 fn first_block(law: &Law, peak: Peak, block: &Block) -> f64 {
     let mut support = law.fresh();
     let trains = block.trains().max(1);
-    law.load(&mut support, &vec![peak; (block.axles / trains) as usize], trains);
-    law.settlement(&support)
+    support.load(&vec![peak; (block.axles / trains) as usize], trains);
+    support.settlement()
 }

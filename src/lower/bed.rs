@@ -4,7 +4,7 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::BedPlan;
 use crate::scenario::{BedEnds, Contact, Granular, Layer, Loading, Scenario, Section};
 use crate::solvers::granular::clump::Template;
-use crate::solvers::granular::packing::{Layer as Filling, Packing, PackingError, Recipe, Rest};
+use crate::solvers::granular::packing::{GrainLayer as Filling, Packing, PackingError, Recipe, Rest};
 use crate::solvers::granular::probe::{Outline, Plate, Stillness};
 use crate::solvers::granular::{DashpotMode, Surface};
 use crate::units::number;

@@ -71,7 +71,6 @@ impl Outlook {
 /// The seat whose settlement chooses the blocks.
 struct WorstSeat<'a> {
     blocks: &'a Blocks,
-    law: &'a Law,
     tolerance: f64,
     cap: Option<f64>,
     /// Of its support, N/m.
@@ -86,14 +85,13 @@ impl<'a> WorstSeat<'a> {
     fn new(
         supports: &[SupportNode],
         gravity: f64,
-        law: &'a Law,
+        law: &Law,
         blocks: &'a Blocks,
         (tolerance, cap): (f64, Option<f64>),
     ) -> Self {
         let stiffness = supports.iter().find_map(|support| Some(support.spring?.stiffness));
         WorstSeat {
             blocks,
-            law,
             tolerance,
             cap,
             stiffness: stiffness.unwrap_or(1.0),
@@ -112,14 +110,14 @@ impl<'a> WorstSeat<'a> {
             let trains = self.control.choose(most, left, |trains| self.settled(&self.blocks.block(before, trains)));
             let block = self.blocks.block(before, trains);
             let whole = self.after(&self.state, &block, 0.0);
-            let settled = self.law.settlement(&whole) - self.law.settlement(&self.state);
+            let settled = whole.settlement() - self.state.settlement();
             if trains > 1 {
                 middle(&block.runners());
                 let half = self.blocks.block(before, trains / 2);
                 let rest = self.blocks.block(before + half.axles, trains - trains / 2);
                 let lost = UNEVEN * self.stiffness * self.settled(&half);
                 let halves = self.after(&self.after(&self.state, &half, 0.0), &rest, lost);
-                let error = (self.law.settlement(&halves) - self.law.settlement(&whole)).abs();
+                let error = (halves.settlement() - whole.settlement()).abs();
                 self.control.learn(error, settled, self.tolerance, self.cap);
                 if trains > 2 && error > self.tolerance {
                     most = (trains / 2).max(2);
@@ -133,7 +131,7 @@ impl<'a> WorstSeat<'a> {
 
     /// What a block settles, m.
     fn settled(&self, block: &Block) -> f64 {
-        self.law.settlement(&self.after(&self.state, block, 0.0)) - self.law.settlement(&self.state)
+        self.after(&self.state, block, 0.0).settlement() - self.state.settlement()
     }
 
     /// The seat after a block under forces that are smaller by `lost`, N.
@@ -143,7 +141,7 @@ impl<'a> WorstSeat<'a> {
             for (force, vehicles) in &self.forces[runner.kind] {
                 let force = force - lost;
                 let peak = Peak { force, deflection: force / self.stiffness };
-                self.law.load(&mut state, &[peak; 4], trains * vehicles);
+                state.load(&[peak; 4], trains * vehicles);
             }
         }
         state

@@ -17,6 +17,10 @@ pub enum NodeError {
     Packing(BedsError),
     /// A test.
     Rig(RigError),
+    /// A track that stands on nothing yet.
+    NoGround,
+    /// A passage of a schedule without trains.
+    NoTrain,
     /// A state that was kept and is not of this node.
     Foreign { node: &'static str, why: String },
     /// A node of the graph for which nobody has a builder.
@@ -32,6 +36,8 @@ impl fmt::Display for NodeError {
             NodeError::Bed(cause) => cause.fmt(f),
             NodeError::Packing(cause) => cause.fmt(f),
             NodeError::Rig(cause) => cause.fmt(f),
+            NodeError::NoGround => f.write_str("the track stands on no ground"),
+            NodeError::NoTrain => f.write_str("no train runs over the track"),
             NodeError::Foreign { node, why } => write!(f, "the kept state of the {node} cannot be used: {why}"),
             NodeError::NoBuilder { node, kind } => {
                 write!(f, "node `{node}` is of a kind `{kind}` that this program cannot run")

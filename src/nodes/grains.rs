@@ -3,7 +3,9 @@
 use super::NodeError;
 use crate::solvers::granular::Bed;
 use crate::solvers::granular::packing::Packed;
-use crate::solvers::granular::rig::{Cycle, Reading, Rig, RigError, Sample, SpecimenState, Stored, Trial};
+use crate::solvers::granular::rig::{
+    Cycle, CycleSample, Rig, RigError, SensorReading, SpecimenState, StoredTrial, Trial,
+};
 use serde::{Deserialize, Serialize};
 
 /// A packing under test, as it ended.
@@ -11,8 +13,8 @@ use serde::{Deserialize, Serialize};
 pub struct Tested {
     pub seed: u64,
     pub cycles: Vec<Cycle>,
-    pub samples: Vec<Sample>,
-    pub readings: Vec<Reading>,
+    pub samples: Vec<CycleSample>,
+    pub readings: Vec<SensorReading>,
     /// States of a specimen with sides that give way.
     pub specimen: Vec<SpecimenState>,
     /// Time steps of the test.
@@ -20,7 +22,7 @@ pub struct Tested {
 }
 
 /// A test that is not finished, as data.
-pub type TestState = Stored<f32>;
+pub type TestState = StoredTrial<f32>;
 
 /// A test on its way.
 pub struct BedUnderActuators<'a> {

@@ -55,16 +55,16 @@ impl<'a> LawGround<'a> {
     fn settlement_of(&self, law: usize, state: &State) -> Vec<f64> {
         let mut settlement = state.level[law].clone();
         for (seat, support) in self.seats.iter().zip(&state.supports[law]) {
-            settlement[*seat] += self.laws[law].settlement(support);
+            settlement[*seat] += support.settlement();
         }
         settlement
     }
 
     fn load(&self, state: &mut State, laws: usize, loads: &[Load<'_>]) {
         for load in loads {
-            for (law, supports) in self.laws[..laws].iter().zip(&mut state.supports) {
+            for supports in &mut state.supports[..laws] {
                 for (seat, support) in self.seats.iter().zip(supports) {
-                    law.load(support, &load.passage.peaks[*seat], load.trains);
+                    support.load(&load.passage.peaks[*seat], load.trains);
                 }
             }
         }
@@ -140,18 +140,13 @@ impl Substructure for LawGround<'_> {
             && state.level.len() == laws
             && state.supports.iter().all(|supports| supports.len() == self.seats.len())
             && state.level.iter().all(|level| level.len() == self.initial.len())
-            && self.laws.iter().zip(&state.supports).all(|(law, s)| s.iter().all(|support| is_state_of(law, support)));
+            && self.laws.iter().zip(&state.supports).all(|(law, s)| s.iter().all(|support| support.law() == **law));
         if !fits {
             return Err(foreign("it holds other laws or another number of seats"));
         }
         self.state = state;
         Ok(())
     }
-}
-
-/// Whether a support remembers what this law wants to know.
-fn is_state_of(law: &Law, support: &SupportState) -> bool {
-    std::mem::discriminant(&law.fresh()) == std::mem::discriminant(support)
 }
 
 fn foreign(why: impl ToString) -> NodeError {

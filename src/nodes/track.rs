@@ -39,9 +39,8 @@ impl<'a> TrackSystem<'a> {
         TrackSystem { node, records, blocks, built: None }
     }
 
-    fn built(&self) -> Result<&Built, TrackError> {
-        let nothing = TrackError::Model { x: self.node.ends()[0], reason: "the track stands on no ground".into() };
-        self.built.as_ref().ok_or(nothing)
+    fn built(&self) -> Result<&Built, NodeError> {
+        self.built.as_ref().ok_or(NodeError::NoGround)
     }
 
     fn at_rest(&self, state: &StaticState, settlement: &[f64], track: &Track) -> Unloaded {
@@ -58,11 +57,9 @@ impl<'a> TrackSystem<'a> {
         Unloaded { rail: rail.collect(), seats: seats.collect(), profile: Vec::new() }
     }
 
-    fn run(&self, request: Request<'_>) -> Result<(Unloaded, PassageOutcome), TrackError> {
+    fn run(&self, request: Request<'_>) -> Result<(Unloaded, PassageOutcome), NodeError> {
         let Request { axles, settlement, runner, kept, forces } = request;
-        let Some(blocks) = self.blocks else {
-            return Err(TrackError::Parameter { name: "trains", value: 0.0, expected: "of 1 or more" });
-        };
+        let blocks = self.blocks.ok_or(NodeError::NoTrain)?;
         let Built { responses, track, steps } = self.built()?;
         let Runner { kind, direction } = runner;
         let ((train, plan), steps) = (blocks.kind(kind), &steps[kind]);
@@ -187,6 +184,6 @@ impl Superstructure for TrackSystem<'_> {
     }
 
     fn passage(&self, request: Request<'_>) -> Result<(Unloaded, PassageOutcome), NodeError> {
-        Ok(self.run(request)?)
+        self.run(request)
     }
 }

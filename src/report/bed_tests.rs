@@ -8,7 +8,7 @@ use super::page::{expectations, opening, picture, provenance, subtitle};
 use super::scene::WIDTH;
 use super::svg::{Frame, Svg, escape};
 use crate::results::{BedTest, BedTests, BedTestsView, Run};
-use crate::solvers::granular::rig::{Cycle, Reading, Sample, SpecimenState};
+use crate::solvers::granular::rig::{Cycle, CycleSample, SensorReading, SpecimenState};
 use std::fmt::Write;
 
 const HEIGHT: f64 = 320.0;
@@ -162,7 +162,7 @@ impl<'a> BedTestsPage<'a> {
         let test = &self.tests.tests[0];
         let worst =
             test.answer.cycles.iter().max_by(|a, b| a.settlement.total_cmp(&b.settlement)).map_or(0, |c| c.sleeper);
-        let samples: Vec<&Sample> = test.answer.samples.iter().filter(|sample| sample.sleeper == worst).collect();
+        let samples: Vec<&CycleSample> = test.answer.samples.iter().filter(|sample| sample.sleeper == worst).collect();
         for (number, cycle) in some(kept(&samples, |sample| sample.cycle), LOOPS).into_iter().enumerate() {
             let of = samples.iter().filter(|sample| sample.cycle == cycle);
             let points = of.map(|sample| (sample.depth, sample.force)).collect();
@@ -251,7 +251,14 @@ impl<'a> BedTestsPage<'a> {
     }
 
     /// What sensors of the first packing read over the last cycle that is kept.
-    fn at_sensors(&self, y: Axis, of: fn(&Reading) -> f64, id: &str, title: &str, caption: &str) -> Option<Figure> {
+    fn at_sensors(
+        &self,
+        y: Axis,
+        of: fn(&SensorReading) -> f64,
+        id: &str,
+        title: &str,
+        caption: &str,
+    ) -> Option<Figure> {
         let readings = &self.tests.tests[0].answer.readings;
         let last = readings.iter().map(|reading| reading.cycle).max()?;
         let mut chart = Chart::new(Axis { range: Some((0.0, 1.0)), ..Axis::new("Share of the cycle", ("%", 0.01)) }, y);

@@ -71,7 +71,7 @@ fn curve(plate: &PlateTest) -> Figure {
     let pressures = plate.curve.iter().map(|point| point.pressure);
     let mut chart = Chart::new(from_zero(Axis::new("Pressure", ("kPa", 1e3)), pressures), settlement);
     let points = |range: &[_]| -> Vec<(f64, f64)> {
-        range.iter().map(|p: &crate::solvers::granular::probe::Point| (p.pressure, p.settlement)).collect()
+        range.iter().map(|p: &crate::solvers::granular::probe::LoadPoint| (p.pressure, p.settlement)).collect()
     };
     // both loadings begin at a seat
     let second = plate.curve.iter().skip(1).position(|point| point.pressure <= plate.curve[0].pressure * 1.5);

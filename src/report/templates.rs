@@ -6,7 +6,7 @@ use super::scene::WIDTH;
 use super::svg::{Anchor, Svg};
 use crate::scenario::{Granular, Scenario, Surfaces};
 use crate::solvers::granular::clump::Pebble;
-use crate::solvers::granular::grains::{self, ClumpShape, Fitted, Form, ShapeError};
+use crate::solvers::granular::grains::{self, ClumpShape, Fitted, GrainForm, Misfit};
 
 /// Templates of a material that are shown.
 const SHOWN: usize = 6;
@@ -72,7 +72,7 @@ fn draw_material(
     };
     for (k, fitted) in fitted.iter().enumerate() {
         let x = (k as f64 + 0.5) * WIDTH / SHOWN as f64;
-        let form = Form::of_surface(&fitted.surface);
+        let form = GrainForm::of_surface(&fitted.surface);
         let look = Look::along([form.axes[2], form.axes[1], form.axes[0]], SIZE);
         draw_both(
             svg,
@@ -81,7 +81,7 @@ fn draw_material(
             &look,
             [(x, top + 24.0 + 0.5 * CELL), (x, top + 24.0 + 1.4 * CELL)],
         );
-        let error = ShapeError::between(&fitted.surface, &fitted.template);
+        let error = Misfit::between(&fitted.surface, &fitted.template);
         let lines = [
             named.get(k).map_or(String::new(), |name| (*name).to_string()),
             format!("S/I {}, I/L {}", plain(form.flatness(), 2), plain(form.elongation(), 2)),
@@ -132,14 +132,14 @@ pub fn grain_templates_svg(counts: &[usize], rows: &[Vec<Fitted>]) -> String {
     }
     for (number, fitted) in rows.iter().enumerate() {
         let Some(first) = fitted.first() else { continue };
-        let form = Form::of_surface(&first.surface);
+        let form = GrainForm::of_surface(&first.surface);
         let look = Look::along([form.axes[2], form.axes[1], form.axes[0]], 0.64 * column);
         let y = head + (number as f64 + 0.47) * row;
         let place = |k: usize| (5.0 + (k as f64 + 0.5) * column, y);
         draw_surface(&mut svg, &first.surface, &look, place(0));
         for (k, fitted) in fitted.iter().enumerate() {
             draw_pebbles(&mut svg, &format!("grain-{number}-{k}"), &placed(fitted), &look, place(k + 1));
-            let error = ShapeError::between(&fitted.surface, &fitted.template);
+            let error = Misfit::between(&fitted.surface, &fitted.template);
             let text = format!("{} % elsewhere", plain(50.0 * error.volume, 2));
             svg.text("small muted", (place(k + 1).0, y + 0.5 * row), Anchor::Middle, &text);
         }

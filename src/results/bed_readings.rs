@@ -3,8 +3,8 @@
 use super::{ResultsError, beds, checkpoint};
 use crate::graph::BedRecipe;
 use crate::solvers::granular::measure::{Fabric, ForceSpread, Reading, Region, Rose, Survey};
-use crate::solvers::granular::packing::{Layer, Packed};
-use crate::solvers::granular::probe::{FULL, Outline, Plate, Point, Stiffness, probe};
+use crate::solvers::granular::packing::{GrainLayer, Packed};
+use crate::solvers::granular::probe::{FULL, LoadPoint, Outline, Plate, Stiffness, probe};
 use crate::solvers::granular::{Bed, Failure};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -56,7 +56,7 @@ pub struct PlateTest {
     pub sides_m: Option<[f64; 2]>,
     pub area_m2: f64,
     pub pressure_Pa: f64,
-    pub curve: Vec<Point>,
+    pub curve: Vec<LoadPoint>,
     /// First and second loading.
     pub stiffness_N_per_m: [f64; 2],
     /// Of an equal half-space, Ev1 and Ev2; `None` for a plate over the whole cell.
@@ -73,7 +73,7 @@ pub fn read_bed(
 ) -> Result<BedReadings, Failure> {
     let slabs = slabs(plan, packed);
     let survey = packed.survey(&mut packed.bed.clone())?;
-    let forces = ForceSpread::of(survey.pushes());
+    let forces = ForceSpread::from_pushes(survey.pushes());
     let row = |slab: &[f64; 2]| Some(profile_row(slab, &survey.slab(*slab, packed.area())?));
     let mut notes = Vec::new();
     let plate = press(plan, packed, &slabs, tell).map_err(|why| notes.push(format!("No stiffness: {why}."))).ok();
@@ -106,7 +106,7 @@ fn readings_hash(plan: &BedRecipe) -> String {
 
 /// Levels between which a bed is measured, layer by layer.
 fn slabs(plan: &BedRecipe, packed: &Packed<f32>) -> Vec<[f64; 2]> {
-    let layer = |(number, layer): (usize, &Layer)| {
+    let layer = |(number, layer): (usize, &GrainLayer)| {
         let [low, high] = packed.between(number);
         let count = ((high - low) / (SLAB * layer.curve.ends()[1])).floor().clamp(1.0, SLABS) as usize;
         let level = move |k: usize| low + (high - low) * k as f64 / count as f64;
@@ -131,8 +131,8 @@ fn profile_row([from, to]: &[f64; 2], reading: &Reading) -> ProfileRow {
 impl Directions {
     /// Of the contacts with more than `least` N.
     fn of(survey: &Survey, least: f64) -> Directions {
-        let fabric = Fabric::of(survey.normals(least));
-        let rose = Rose::of(survey.normals(least));
+        let fabric = Fabric::from_normals(survey.normals(least));
+        let rose = Rose::from_normals(survey.normals(least));
         Directions { fabric, deviator: fabric.deviator(), anisotropy: fabric.anisotropy(), rose }
     }
 }

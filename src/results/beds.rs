@@ -2,7 +2,7 @@
 
 use super::{ResultsError, checkpoint};
 use crate::solvers::granular::RestoreError;
-use crate::solvers::granular::packing::{METHOD, Packed, PackingError, Progress, Recipe, Stored, pack};
+use crate::solvers::granular::packing::{METHOD, Packed, PackingError, Progress, Recipe, StoredBed, pack};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
@@ -120,7 +120,7 @@ fn packed(
 /// A bed of this recipe that was kept; `None` where there is none that can be used.
 fn kept(folder: &Path, recipe: &Recipe) -> Option<Packed<f32>> {
     let hash = bed_hash(recipe);
-    let stored: Stored<f32> = checkpoint::read(&folder.join(&hash), &hash).ok()??;
+    let stored: StoredBed<f32> = checkpoint::read(&folder.join(&hash), &hash).ok()??;
     Packed::restore(stored).ok()
 }
 

@@ -6,7 +6,7 @@ use crate::graph::{Clock, Graph, Schedule, TrackSection, Train, Update};
 use crate::lower::{Origins, Parameter};
 use crate::nodes::NodeError;
 use crate::solvers::granular::rig::RigError;
-use crate::solvers::track::TrackError;
+use crate::solvers::track::{TrackError, TrackParameter};
 use crate::units::number;
 
 /// The diagnostic of a run's failure, with the declaration that it is about.
@@ -34,7 +34,7 @@ fn of_node(clock: Clock, cause: &NodeError, graph: &Graph, origins: &Origins) ->
         NodeError::Rig(_) => said(Code::E0812).help("is the `force` meant `per sleeper` or `per seat`?"),
         NodeError::Foreign { .. } => said(Code::E0803).help("run with `--force`"),
         NodeError::NoBuilder { .. } => said(Code::E0604),
-        NodeError::Other { .. } => said(Code::E0801),
+        NodeError::NoGround | NodeError::NoTrain | NodeError::Other { .. } => said(Code::E0801),
     }
 }
 
@@ -99,7 +99,7 @@ impl Scene<'_> {
                 (vec![self.place(*x)], "change the value that the message names, in that section".into())
             }
             TrackError::Parameter { name, expected, .. } => {
-                (vec![self.parameter(name)], format!("write a {name} {expected}"))
+                (vec![self.parameter(*name)], format!("write a {name} {expected}"))
             }
         }
     }
@@ -171,14 +171,14 @@ impl Scene<'_> {
         format!("exchange more often: write `update_every = {half} axles` in `solve`, or check the settlement law")
     }
 
-    fn parameter(&self, name: &str) -> (Option<Span>, String) {
+    fn parameter(&self, name: TrackParameter) -> (Option<Span>, String) {
         let span = match name {
-            "speed" => self.at(Parameter::Speed(0)),
-            "time step" => self.at(Parameter::TimeStep),
-            "gravity" => self.at(Parameter::Gravity),
-            "elements per bay" => self.at(Parameter::ElementsPerBay),
-            "distance" => self.at(Parameter::Finish).or(self.at(Parameter::Start)),
-            "vehicle" => self.at(Parameter::WheelMass(0)),
+            TrackParameter::Speed => self.at(Parameter::Speed(0)),
+            TrackParameter::TimeStep => self.at(Parameter::TimeStep),
+            TrackParameter::Gravity => self.at(Parameter::Gravity),
+            TrackParameter::ElementsPerBay => self.at(Parameter::ElementsPerBay),
+            TrackParameter::Distance => self.at(Parameter::Finish).or(self.at(Parameter::Start)),
+            TrackParameter::Vehicle(_) => self.at(Parameter::WheelMass(0)),
             _ => None,
         };
         (span, "given here".into())

@@ -160,11 +160,12 @@ pub(super) mod tests {
     use super::*;
     use crate::results::{grains, links, places};
     use crate::solvers::granular::{
-        Bed, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Law, Laws, Linear, Placed, Sphere, clump,
+        Bed, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Linear, Placed, Sphere,
+        clump,
     };
 
-    fn law() -> Law {
-        Law::Linear(Linear {
+    fn law() -> ContactLaw {
+        ContactLaw::Linear(Linear {
             normal_stiffness: 1e6,
             shear_stiffness: 1e6,
             friction: 0.5,
@@ -176,11 +177,11 @@ pub(super) mod tests {
 
     /// A sphere that touches the floor and, round the period, a clump of two that lies on the floor too.
     fn bed() -> Bed<f64> {
-        let mut bed = Bed::new(Domain::open().periodic(0, 1.0), Laws::single(law()));
+        let mut bed = Bed::new(Domain::open().periodic(0, 1.0), ContactLaws::single(law()));
         bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
         bed.add_sphere(&Sphere { centre: [0.98, 0.0, 0.0999], radius: 0.1, density: 2700.0, surface: 0 });
         let pebble = |x: f64| clump::Pebble { centre: [x, 0.0, 0.0].into(), radius: 0.1 };
-        let template = clump::Template::of(&[pebble(-0.05), pebble(0.05)]).unwrap();
+        let template = clump::Template::from_pebbles(&[pebble(-0.05), pebble(0.05)]).unwrap();
         let attitude = template.axes;
         let centre = [0.2299, 0.0, 0.0999];
         bed.add_clump(&Placed { template: &template, centre, attitude, density: 2700.0, surface: 0 });

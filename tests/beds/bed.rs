@@ -3,7 +3,7 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use trackbed::solvers::granular::clump::{Pebble, Template};
 use trackbed::solvers::granular::{
-    Bed, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Law, Laws, Linear, Placed, Real, Sphere,
+    Bed, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Linear, Placed, Real, Sphere,
 };
 
 /// Pseudo-random numbers in 0..1.
@@ -22,8 +22,8 @@ impl Random {
     }
 }
 
-pub fn law() -> Law {
-    Law::Linear(Linear {
+pub fn law() -> ContactLaw {
+    ContactLaw::Linear(Linear {
         normal_stiffness: 1.3e7,
         shear_stiffness: 1.0e7,
         friction: 0.6,
@@ -36,13 +36,13 @@ pub fn law() -> Law {
 /// About 200 grains of 16 to 30 mm radius that fall on a floor, five times as heavy as on earth, every third a clump of two or three pebbles.
 pub fn bed<R: Real>(seed: u64) -> Bed<R> {
     let mut random = Random::new(seed);
-    let mut bed = Bed::new(Domain::open().periodic(0, 0.4).periodic(1, 0.4), Laws::single(law()));
+    let mut bed = Bed::new(Domain::open().periodic(0, 0.4).periodic(1, 0.4), ContactLaws::single(law()));
     let dumbbell = [(0.0, 0.0, 0.02), (0.018, 0.004, 0.016)];
     let bent = [(0.0, 0.0, 0.018), (0.016, 0.0, 0.016), (0.009, 0.014, 0.014)];
     let template = |shape: &[(f64, f64, f64)]| {
         let pebbles: Vec<Pebble> =
             shape.iter().map(|&(x, y, radius)| Pebble { centre: Vector3::new(x, y, 0.0), radius }).collect();
-        Template::of(&pebbles).unwrap()
+        Template::from_pebbles(&pebbles).unwrap()
     };
     let templates = [template(&dumbbell), template(&bent)];
     for layer in 0..6 {

@@ -1,7 +1,7 @@
 //! A killed run resumes with the same answer.
 
 use crate::bed::{bed, bits};
-use trackbed::solvers::granular::{Bed, Checkpoint, Motion, Pose, Real, Shape, WallId};
+use trackbed::solvers::granular::{Bed, Checkpoint, Pose, Real, Shape, WallId, WallMotion};
 
 fn resumes<R: Real>() {
     let mut whole = bed::<R>(7);
@@ -9,7 +9,7 @@ fn resumes<R: Real>() {
         Shape::block([0.1, 0.1, 0.02].into()).unwrap(),
         Pose { position: [0.2, 0.2, 0.46].into(), ..Pose::default() },
         0,
-        Motion::Velocity { linear: [0.0, 0.0, -0.05].into(), angular: [0.0; 3].into() },
+        WallMotion::Velocity { linear: [0.0, 0.0, -0.05].into(), angular: [0.0; 3].into() },
     );
     whole.watch_energy(true);
     whole.run(16_000).unwrap();

@@ -11,8 +11,8 @@ const MASS: f64 = 100.0;
 /// s; 300 of them a swing.
 const STEP: f64 = TAU / 100.0 / 300.0;
 
-fn elastic() -> Laws {
-    Laws::single(Law::Linear(Linear {
+fn elastic() -> ContactLaws {
+    ContactLaws::single(ContactLaw::Linear(Linear {
         normal_stiffness: STIFFNESS,
         shear_stiffness: 0.0,
         friction: 0.0,
@@ -22,12 +22,12 @@ fn elastic() -> Laws {
     }))
 }
 
-fn loaded(weight: f64, damping: f64, push: Push) -> Motion {
-    Motion::Loaded { axis: -Vector3::z(), mass: MASS, weight, damping, push }
+fn loaded(weight: f64, damping: f64, push: Push) -> WallMotion {
+    WallMotion::Loaded { axis: -Vector3::z(), mass: MASS, weight, damping, push }
 }
 
 /// A block whose base touches a sphere that stays where it is, without a force.
-fn on_a_spring(motion: Motion) -> (Bed<f64>, WallId) {
+fn on_a_spring(motion: WallMotion) -> (Bed<f64>, WallId) {
     let mut bed: Bed<f64> = Bed::new(Domain::open(), elastic());
     let sphere = bed.add_sphere(&Sphere { centre: [0.0, 0.0, -0.05], radius: 0.05, density: 2700.0, surface: 0 });
     bed.fix(sphere);
@@ -110,7 +110,7 @@ fn it_gives_a_grain_the_momentum_that_it_loses() {
     let sphere = bed.add_sphere(&Sphere { centre: [0.0, 0.0, -0.06], radius: 0.05, density: 2700.0, surface: 0 });
     let shape = Shape::block(Vector3::new(0.1, 0.1, 0.1)).unwrap();
     let pose = Pose { position: Vector3::new(0.0, 0.0, 0.1), ..Pose::default() };
-    let down = Motion::Velocity { linear: Vector3::new(0.0, 0.0, -1.0), angular: Vector3::zeros() };
+    let down = WallMotion::Velocity { linear: Vector3::new(0.0, 0.0, -1.0), angular: Vector3::zeros() };
     let wall = bed.add_wall(shape, pose, 0, down);
     bed.set_time_step(1e-5);
     bed.set_motion(wall, loaded(0.0, 0.0, Push::Constant(0.0)));
@@ -136,8 +136,8 @@ fn pushes_that_cannot_be_are_refused() {
         assert!(refused.contains(said), "{refused}");
     }
     let massless =
-        Motion::Loaded { axis: -Vector3::z(), mass: 0.0, weight: 0.0, damping: 0.0, push: Push::Constant(1.0) };
+        WallMotion::Loaded { axis: -Vector3::z(), mass: 0.0, weight: 0.0, damping: 0.0, push: Push::Constant(1.0) };
     assert!(massless.check().unwrap_err().to_string().contains("mass of a wall"));
     let push = table(&[1.0, 2.0], &[10.0, 30.0]);
-    assert_eq!([0.0, 1.0, 1.5, 2.0, 9.0].map(|t| push.at(t)), [10.0, 10.0, 20.0, 30.0, 30.0]);
+    assert_eq!([0.0, 1.0, 1.5, 2.0, 9.0].map(|t| push.force_at(t)), [10.0, 10.0, 20.0, 30.0, 30.0]);
 }

@@ -2,7 +2,7 @@
 
 use crate::oracle::{Grain, Oracle, Plane};
 use crate::scenes::{Vec3, alone, mass, norm, packed, random, shown, sub, walls};
-use trackbed::solvers::granular::{Bed, DashpotMode, Domain, Gravity, Laws, Real, Sphere, Surface};
+use trackbed::solvers::granular::{Bed, ContactLaws, DashpotMode, Domain, Gravity, Real, Sphere, Surface};
 
 const DT: f64 = 1e-5;
 const DAMPING: f64 = 0.2;
@@ -40,7 +40,7 @@ fn scene() -> Scene {
 }
 
 fn bed<R: Real>(scene: &Scene) -> Bed<R> {
-    let mut bed = Bed::new(Domain::open(), Laws::of(&surfaces()));
+    let mut bed = Bed::new(Domain::open(), ContactLaws::from_surfaces(&surfaces()));
     bed.set_time_step(DT);
     bed.set_gravity(Gravity::Constant(GRAVITY));
     bed.set_damping(DAMPING);

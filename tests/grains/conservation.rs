@@ -1,7 +1,7 @@
 //! What collisions keep: momentum, angular momentum, and energy where nothing is lost.
 
 use crate::scenes::{RADIUS, Vec3, add, alone, cross, norm, random, scaled, shown, sphere, springs, sub};
-use trackbed::solvers::granular::{Bed, Dashpot, DashpotMode, Domain, Law, Laws, Linear, Real, Sphere};
+use trackbed::solvers::granular::{Bed, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, Linear, Real, Sphere};
 
 /// Momentum and angular momentum, and the sums of the sizes of their parts.
 fn momenta<R: Real>(bed: &Bed<R>, radii: &[f64]) -> [(Vec3, f64); 2] {
@@ -25,7 +25,7 @@ fn errors<R: Real>() -> [f64; 2] {
         mode: DashpotMode::NoTensionRestInSlip,
         ..springs(1e6, 8e5)
     };
-    let mut bed = Bed::<R>::new(Domain::open(), Laws::single(Law::Linear(law)));
+    let mut bed = Bed::<R>::new(Domain::open(), ContactLaws::single(ContactLaw::Linear(law)));
     bed.set_time_step(1e-5);
     let (mut seed, mut radii) = (9, Vec::new());
     for k in 0..64 {
@@ -66,7 +66,7 @@ fn collisions_keep_momentum_and_angular_momentum() {
 fn drift<R: Real>(dt: f64) -> (f64, f64) {
     let side = 0.36;
     let domain = (0..3).fold(Domain::open(), |domain, axis| domain.periodic(axis, side));
-    let mut bed = Bed::<R>::new(domain, Laws::single(Law::Linear(springs(1e6, 0.0))));
+    let mut bed = Bed::<R>::new(domain, ContactLaws::single(ContactLaw::Linear(springs(1e6, 0.0))));
     bed.set_time_step(dt);
     bed.watch_energy(true);
     let mut seed = 2;

@@ -4,7 +4,7 @@ use crate::scenes::{Vec3, packed, random, sphere, springs, threads};
 use nalgebra::{UnitQuaternion, Vector3};
 use trackbed::solvers::granular::clump::{Pebble, Template};
 use trackbed::solvers::granular::{
-    Bed, BodyId, Dashpot, DashpotMode, Domain, Energy, Gravity, Law, Laws, Linear, Placed, Real, Sphere,
+    Bed, BodyId, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, Energy, Gravity, Linear, Placed, Real, Sphere,
 };
 
 /// 1800 bodies, every fifth a clump of two, set going; enough for several tasks of every kind.
@@ -15,13 +15,13 @@ fn bed<R: Real>() -> Bed<R> {
         mode: DashpotMode::NoTensionRestInSlip,
         ..springs(1e7, 1e7)
     };
-    let mut bed = Bed::new(Domain::open().periodic(0, 0.75), Laws::single(Law::Linear(law)));
+    let mut bed = Bed::new(Domain::open().periodic(0, 0.75), ContactLaws::single(ContactLaw::Linear(law)));
     bed.set_time_step(1e-5);
     bed.set_gravity(Gravity::EARTH);
     bed.set_damping(0.1);
     let (spheres, side) = packed();
     let pebble = |x: f64| Pebble { centre: Vector3::new(x, 0.0, 0.0), radius: 0.7 };
-    let template = Template::of(&[pebble(-0.3), pebble(0.3)]).unwrap();
+    let template = Template::from_pebbles(&[pebble(-0.3), pebble(0.3)]).unwrap();
     let mut seed = 1;
     for tile in 0..9 {
         let shift = [side * f64::from(tile % 3), side * f64::from(tile / 3), 0.0];

@@ -4,7 +4,7 @@ use crate::scenes::{packed, springs, threads, walls};
 use nalgebra::Vector3;
 use trackbed::solvers::granular::shape::Shape;
 use trackbed::solvers::granular::{
-    Bed, Dashpot, DashpotMode, Domain, Gravity, Law, Laws, Linear, Motion, Pose, Real, WallId,
+    Bed, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, Gravity, Linear, Pose, Real, WallId, WallMotion,
 };
 
 /// A packed bed under a plate that has been pressed on it.
@@ -15,7 +15,7 @@ fn pressed<R: Real>() -> (Bed<R>, WallId) {
         mode: DashpotMode::NoTensionRestInSlip,
         ..springs(1e7, 8e6)
     };
-    let mut bed = Bed::new(Domain::open(), Laws::single(Law::Linear(law)));
+    let mut bed = Bed::new(Domain::open(), ContactLaws::single(ContactLaw::Linear(law)));
     bed.set_time_step(1e-5);
     bed.set_gravity(Gravity::EARTH);
     bed.set_damping(0.3);
@@ -28,9 +28,9 @@ fn pressed<R: Real>() -> (Bed<R>, WallId) {
     }
     let top = spheres.iter().map(|s| s.centre[2] + s.radius).fold(0.0, f64::max);
     let pose = Pose { position: Vector3::new(0.0, 0.0, top), ..Pose::default() };
-    let plate = bed.add_wall(Shape::Plane { normal: -Vector3::z() }, pose, 0, Motion::Fixed);
+    let plate = bed.add_wall(Shape::Plane { normal: -Vector3::z() }, pose, 0, WallMotion::Fixed);
     let force = |bed: &Bed<R>| bed.wall(plate).felt().force.z;
-    let down = Motion::Velocity { linear: Vector3::new(0.0, 0.0, -0.3), angular: Vector3::zeros() };
+    let down = WallMotion::Velocity { linear: Vector3::new(0.0, 0.0, -0.3), angular: Vector3::zeros() };
     threads(1, || {
         // again and again, until the bed stands under it
         while force(&bed) < 3000.0 {
@@ -38,7 +38,7 @@ fn pressed<R: Real>() -> (Bed<R>, WallId) {
             while force(&bed) < 6000.0 {
                 bed.step().unwrap();
             }
-            bed.set_motion(plate, Motion::Fixed);
+            bed.set_motion(plate, WallMotion::Fixed);
             bed.run(1000).unwrap();
         }
     });
@@ -64,7 +64,7 @@ fn cycle<R: Real>(mut bed: Bed<R>, plate: WallId, dt: f64) -> Cycle {
     bed.watch_energy(true);
     let times: Vec<f64> = (0..5).map(|k| start + 5e-3 * f64::from(k)).collect();
     let velocities = [0.0, -0.06, 0.0, 0.06, 0.0].map(|v| Vector3::new(0.0, 0.0, v)).to_vec();
-    bed.set_motion(plate, Motion::Table { times, velocities });
+    bed.set_motion(plate, WallMotion::Table { times, velocities });
     let work = |bed: &Bed<R>| bed.energy().walls + bed.energy().gravity;
     let steps = (20e-3 / dt).round() as u64;
     let (mut worst, mut loading, mut forces) = (0.0f64, 0.0f64, [bed.wall(plate).felt().force.z, 0.0, 0.0]);

@@ -5,7 +5,7 @@ use crate::scenes::{
 };
 use nalgebra::{Rotation3, Unit, Vector3};
 use trackbed::solvers::granular::{
-    Bed, BodyId, Dashpot, DashpotMode, Domain, FrictionLimit, Law, Laws, Linear, Real, Sphere,
+    Bed, BodyId, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, Linear, Real, Sphere,
 };
 
 const STIFFNESS: f64 = 1e6;
@@ -183,7 +183,7 @@ fn pairs() -> Vec<[(Sphere, Vec3, Vec3); 2]> {
 
 /// States of the first and second of each pair after a collision; `swapped` makes the second first.
 fn collided<R: Real>(pairs: &[[(Sphere, Vec3, Vec3); 2]], swapped: bool) -> Vec<[[Vec3; 3]; 2]> {
-    let mut bed = Bed::<R>::new(Domain::open(), Laws::single(Law::Linear(rubbing())));
+    let mut bed = Bed::<R>::new(Domain::open(), ContactLaws::single(ContactLaw::Linear(rubbing())));
     bed.set_time_step(1e-5);
     let mut add = |(sphere, velocity, spin): &(Sphere, Vec3, Vec3)| {
         let id = bed.add_sphere(sphere);

@@ -2,7 +2,7 @@
 
 use crate::scenes::{DENSITY, RADIUS, Vec3, alone, close, mass, open, sphere, springs};
 use trackbed::solvers::granular::{
-    Bed, Dashpot, DashpotMode, Domain, FrictionLimit, Law, Laws, Linear, Surface, in_series,
+    Bed, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, Linear, Surface, in_series,
 };
 
 const DT: f64 = 1e-6;
@@ -116,11 +116,11 @@ fn pairs_inherit_from_their_surfaces() {
         mode: DashpotMode::NoTensionRestInSlip,
     };
     let surfaces = [surface(1.3e7, 0.7, 0.3), surface(5e6, 0.5, 0.1), surface(1e9, 0.2, 0.0)];
-    let laws = Laws::of(&surfaces);
+    let laws = ContactLaws::from_surfaces(&surfaces);
     close(in_series(1.3e7, 5e6), 1.3e7 * 5e6 / 1.8e7, 1e-15, "in series");
     for (a, first) in surfaces.iter().enumerate() {
         for (b, second) in surfaces.iter().enumerate() {
-            let Law::Linear(law) = laws.get(a as u16, b as u16) else { panic!("not linear") };
+            let ContactLaw::Linear(law) = laws.get(a as u16, b as u16) else { panic!("not linear") };
             close(
                 law.normal_stiffness,
                 1.0 / (1.0 / first.normal_stiffness + 1.0 / second.normal_stiffness),

@@ -4,7 +4,7 @@ use crate::scenes::{RADIUS, Vec3, alone, norm, open, sphere, springs, sub};
 use nalgebra::{UnitQuaternion, Vector3};
 use trackbed::solvers::granular::clump::{Pebble, Template};
 use trackbed::solvers::granular::shape::Shape;
-use trackbed::solvers::granular::{Bed, BodyId, Gravity, Linear, Motion, Placed, Pose};
+use trackbed::solvers::granular::{Bed, BodyId, Gravity, Linear, Placed, Pose, WallMotion};
 
 /// A plane that turns meets spheres far from its origin, where it moves fast.
 #[test]
@@ -13,7 +13,7 @@ fn a_plane_that_turns_meets_far_spheres() {
         let mut bed = open(springs(1e7, 0.0));
         bed.set_time_step(1e-5);
         let rate = 0.2;
-        let turning = Motion::Velocity { linear: Vector3::zeros(), angular: Vector3::new(0.0, -rate, 0.0) };
+        let turning = WallMotion::Velocity { linear: Vector3::zeros(), angular: Vector3::new(0.0, -rate, 0.0) };
         let plane = bed.add_wall(Shape::Plane { normal: Vector3::z() }, Pose::default(), 0, turning);
         let gap = 0.005 * far;
         let id = bed.add_sphere(&sphere([far, 0.0, RADIUS + gap]));
@@ -31,7 +31,7 @@ fn a_plane_that_turns_meets_far_spheres() {
 /// A sphere and a clump, both in free fall onto others, that are told how to move.
 fn bodies(bed: &mut Bed<f64>) -> [BodyId; 2] {
     let pebble = |x: f64| Pebble { centre: Vector3::new(x, 0.0, 0.0), radius: RADIUS };
-    let template = &Template::of(&[pebble(-0.01), pebble(0.01)]).unwrap();
+    let template = &Template::from_pebbles(&[pebble(-0.01), pebble(0.01)]).unwrap();
     let attitude = UnitQuaternion::from_euler_angles(0.3, -0.2, 0.5);
     let centre = [0.3, 0.0, 0.0];
     let clump = bed.add_clump(&Placed { template, centre, attitude, density: 2700.0, surface: 0 });

@@ -2,7 +2,7 @@
 
 use crate::scenes::{GRAVITY, RADIUS, Vec3, add, alone, norm, packed, random, scaled, sphere, springs, sub};
 use trackbed::solvers::granular::{
-    Bed, BodyId, Dashpot, DashpotMode, Domain, Gravity, Law, Laws, Linear, Real, Sphere,
+    Bed, BodyId, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, Gravity, Linear, Real, Sphere,
 };
 
 const SIDE: f64 = 0.25;
@@ -34,8 +34,8 @@ fn going() -> Vec<(Sphere, Vec3, Vec3)> {
 
 fn bed<R: Real>(domain: Domain, spheres: &[(Sphere, Vec3, Vec3)], shift: impl Fn(usize) -> Vec3) -> Bed<R> {
     // a smooth floor lets them drift across the borders
-    let mut laws = Laws::uniform(2, Law::Linear(rubbing()));
-    laws.set(0, 1, Law::Linear(springs(1e7, 0.0)));
+    let mut laws = ContactLaws::uniform(2, ContactLaw::Linear(rubbing()));
+    laws.set(0, 1, ContactLaw::Linear(springs(1e7, 0.0)));
     let mut bed = Bed::new(domain, laws);
     bed.set_time_step(1e-5);
     bed.set_gravity(Gravity::Constant([0.0, 0.0, -GRAVITY]));
@@ -119,7 +119,7 @@ fn bays_repeat_bit_by_bit() {
 #[test]
 fn a_sphere_crosses_bays() {
     let run = |domain: Domain| {
-        let mut bed = Bed::<f64>::new(domain, Laws::single(Law::Linear(rubbing())));
+        let mut bed = Bed::<f64>::new(domain, ContactLaws::single(ContactLaw::Linear(rubbing())));
         bed.set_time_step(1e-5);
         bed.set_gravity(Gravity::EARTH);
         bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
@@ -143,7 +143,7 @@ fn a_sphere_crosses_bays() {
 #[test]
 fn collisions_across_a_border() {
     let collide = |domain: Domain, middle: Vec3| {
-        let mut bed = Bed::<f64>::new(domain, Laws::single(Law::Linear(rubbing())));
+        let mut bed = Bed::<f64>::new(domain, ContactLaws::single(ContactLaw::Linear(rubbing())));
         bed.set_time_step(1e-5);
         let along = scaled([0.6, -0.48, 0.64], RADIUS + 1e-4);
         for sign in [1.0, -1.0] {

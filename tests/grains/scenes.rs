@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 use trackbed::solvers::granular::{
-    Bed, BodyId, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Law, Laws, Linear, Sphere,
+    Bed, BodyId, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Linear, Sphere,
 };
 
 pub type Vec3 = [f64; 3];
@@ -26,7 +26,7 @@ pub fn springs(normal_stiffness: f64, shear_stiffness: f64) -> Linear {
 
 /// Everything by one linear law, in an open space.
 pub fn open(law: Linear) -> Bed<f64> {
-    Bed::new(Domain::open(), Laws::single(Law::Linear(law)))
+    Bed::new(Domain::open(), ContactLaws::single(ContactLaw::Linear(law)))
 }
 
 pub fn sphere(centre: Vec3) -> Sphere {

@@ -4,7 +4,9 @@
 //! stable for `dt < (2/w) (sqrt(1 + Z^2) - Z)`.
 
 use crate::scenes::{DENSITY, RADIUS, alone, close, mass, norm, open, sphere, springs, sub};
-use trackbed::solvers::granular::{Bed, BodyId, Dashpot, Domain, Gravity, Law, Laws, Limits, Linear, Sphere};
+use trackbed::solvers::granular::{
+    Bed, BodyId, ContactLaw, ContactLaws, Dashpot, Domain, Gravity, Limits, Linear, Sphere,
+};
 
 const NORMAL: f64 = 1e6;
 /// What modes are set off by \[m/s\] \[rad/s\]: so little that no contact opens and none slips.
@@ -129,8 +131,8 @@ fn two_spheres_on_each_other() {
     let soft = springs(1e-5 * NORMAL, 0.0);
     for z in [0.0, 0.1, 0.3, 0.7] {
         let law = Linear { dashpot: Dashpot::Ratio { normal: z, shear: 0.0 }, ..springs(NORMAL, 0.0) };
-        let mut laws = Laws::uniform(2, Law::Linear(law));
-        laws.set(0, 1, Law::Linear(soft));
+        let mut laws = ContactLaws::uniform(2, ContactLaw::Linear(law));
+        laws.set(0, 1, ContactLaw::Linear(soft));
         let mut bed = Bed::<f64>::new(Domain::open(), laws);
         let (small, large) = (RADIUS, 1.5 * RADIUS);
         let (deep, overlap) = (5e-3, 5e-8);

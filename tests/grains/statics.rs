@@ -4,7 +4,8 @@ use crate::scenes::{DENSITY, GRAVITY, RADIUS, alone, close, mass, norm, packed, 
 use std::f64::consts::PI;
 use trackbed::solvers::granular::measure::{Contact, Region, coordination, stress};
 use trackbed::solvers::granular::{
-    Bed, BodyId, Dashpot, DashpotMode, Domain, Failure, Gravity, Law, Laws, Linear, Real, Snapshot, WallId,
+    Bed, BodyId, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, Failure, Gravity, Linear, Real, Snapshot,
+    WallId,
 };
 
 const STIFFNESS: f64 = 1e7;
@@ -20,7 +21,7 @@ fn settling() -> Linear {
 
 /// Equal spheres one on another on a floor, the first at the bottom.
 fn column<R: Real>(count: usize) -> Bed<R> {
-    let mut bed = Bed::new(Domain::open(), Laws::single(Law::Linear(settling())));
+    let mut bed = Bed::new(Domain::open(), ContactLaws::single(ContactLaw::Linear(settling())));
     bed.set_gravity(Gravity::EARTH);
     bed.set_time_step(1e-5);
     bed.set_damping(0.5);
@@ -105,8 +106,8 @@ fn stress_of_a_column_under_its_own_weight() {
 fn a_floor_carries_the_weight_of_a_bed() {
     let (spheres, side) = packed();
     // smooth sides, so that they carry nothing
-    let mut laws = Laws::uniform(2, Law::Linear(settling()));
-    laws.set(0, 1, Law::Linear(springs(STIFFNESS, 0.0)));
+    let mut laws = ContactLaws::uniform(2, ContactLaw::Linear(settling()));
+    laws.set(0, 1, ContactLaw::Linear(springs(STIFFNESS, 0.0)));
     let mut bed = Bed::<f32>::new(Domain::open(), laws);
     bed.set_gravity(Gravity::EARTH);
     bed.set_time_step(1e-5);
@@ -159,7 +160,7 @@ impl Lattice {
         let distance = 2.0 * RADIUS * (1.0 - squeeze);
         let cell = [0, 1, 2].map(|c| edges[c] * distance * repeats[c] as f64);
         let domain = (0..3).fold(Domain::open(), |domain, axis| domain.periodic(axis, cell[axis]));
-        let mut bed = Bed::new(domain, Laws::single(Law::Linear(settling())));
+        let mut bed = Bed::new(domain, ContactLaws::single(ContactLaw::Linear(settling())));
         bed.set_time_step(1e-5);
         let mut count = 0;
         for k in 0..repeats.iter().product() {
@@ -263,7 +264,7 @@ fn a_nudged_lattice_comes_back() {
         lattice.bed.set_velocity(BodyId(id), velocity, [0.0; 3]);
     }
     lattice.bed.change_laws(|law| {
-        if let Law::Linear(law) = law {
+        if let ContactLaw::Linear(law) = law {
             law.friction = 0.0;
         }
     });

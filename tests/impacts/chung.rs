@@ -2,7 +2,7 @@
 
 use crate::hertz::closed_form;
 use crate::scene::{Material, bed, bits, mass, near, norm, put, sphere};
-use trackbed::solvers::granular::{Bed, BodyId, DashpotMode, FrictionLimit, HertzMindlin, Law};
+use trackbed::solvers::granular::{Bed, BodyId, ContactLaw, DashpotMode, FrictionLimit, HertzMindlin};
 
 const ALUMINIUM_OXIDE: Material = Material(3.8e11, 0.23, 4000.0);
 const CAST_IRON: Material = Material(1e11, 0.25, 7000.0);
@@ -45,7 +45,7 @@ impl Impact {
     }
 
     fn bed(&self, steps: f64) -> (Bed<f64>, BodyId) {
-        let mut bed = bed(Law::HertzMindlin(self.law), self.duration() / steps);
+        let mut bed = bed(ContactLaw::HertzMindlin(self.law), self.duration() / steps);
         bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
         let ball = sphere([0.0, 0.0, self.radius], self.radius, self.material.2);
         let [down, along] = self.speed;
@@ -96,7 +96,7 @@ fn one_two_spheres_meet_head_on() {
         let exact = closed_form(&law, 0.5 * mass(0.01, material.2), 0.005, 20.0);
         near(exact.0, force, 1e-4);
         near(exact.1, overlap, 2e-5);
-        let mut bed: Bed<f64> = bed(Law::HertzMindlin(law), exact.2 / 400.0);
+        let mut bed: Bed<f64> = bed(ContactLaw::HertzMindlin(law), exact.2 / 400.0);
         for (x, v) in [(0.01, -10.0), (-0.01, 10.0)] {
             put(&mut bed, sphere([x, 0.0, 0.0], 0.01, material.2), [v, 0.0, 0.0], [0.0; 3]);
         }
@@ -236,7 +236,7 @@ fn pair(material: Material, law: HertzMindlin, radii: [f64; 2], spins: [f64; 2],
     let [r, s] = radii;
     let (m, n) = (mass(r, material.2), mass(s, material.2));
     let duration = closed_form(&law, m * n / (m + n), r * s / (r + s), 0.4).2;
-    let mut bed = bed(Law::HertzMindlin(law), duration / STEPS);
+    let mut bed = bed(ContactLaw::HertzMindlin(law), duration / STEPS);
     let mut order = [(r, -r, 0.2, spins[0]), (s, s, -0.2, spins[1])];
     if swapped {
         order.reverse();

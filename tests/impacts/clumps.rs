@@ -6,7 +6,8 @@ use trackbed::solvers::granular::clump::{Pebble, Template};
 use trackbed::solvers::granular::measure::coordination;
 use trackbed::solvers::granular::shape::{Mesh, Shape};
 use trackbed::solvers::granular::{
-    Bed, BodyId, BodyState, Domain, Gravity, Law, Laws, Linear, Motion, Placed, Pose, Snapshot, WallId,
+    Bed, BodyId, BodyState, ContactLaw, ContactLaws, Domain, Gravity, Linear, Placed, Pose, Snapshot, WallId,
+    WallMotion,
 };
 
 type V = Vector3<f64>;
@@ -20,13 +21,13 @@ fn pebble(x: f64, y: f64, z: f64) -> Pebble {
 
 /// Two spheres that touch each other, along x.
 fn dumbbell() -> Template {
-    Template::of(&[pebble(-RADIUS, 0.0, 0.0), pebble(RADIUS, 0.0, 0.0)]).unwrap()
+    Template::from_pebbles(&[pebble(-RADIUS, 0.0, 0.0), pebble(RADIUS, 0.0, 0.0)]).unwrap()
 }
 
 /// Three overlapping pebbles of three sizes: no two moments alike.
 fn stone() -> Template {
     let ball = |x, y, radius| Pebble { centre: V::new(x, y, 0.0), radius };
-    Template::of(&[ball(0.0, 0.0, 0.02), ball(0.03, 0.0, 0.018), ball(0.01, 0.02, 0.015)]).unwrap()
+    Template::from_pebbles(&[ball(0.0, 0.0, 0.02), ball(0.03, 0.0, 0.018), ball(0.01, 0.02, 0.015)]).unwrap()
 }
 
 fn add(bed: &mut Bed<f64>, template: &Template, centre: V, attitude: UnitQuaternion<f64>) -> BodyId {
@@ -40,7 +41,7 @@ fn along(direction: V) -> UnitQuaternion<f64> {
 
 #[test]
 fn a_clump_of_one_pebble_is_a_sphere_to_the_bit() {
-    let law = Law::Linear(damped(1e6, 0.5, 0.1));
+    let law = ContactLaw::Linear(damped(1e6, 0.5, 0.1));
     let run = |clump: bool| {
         let mut bed: Bed<f32> = bed(law, 5e-6);
         bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
@@ -68,7 +69,7 @@ fn a_round_clump_of_two_pebbles_moves_as_a_sphere() {
     let inner = Pebble { centre: V::new(0.001, 0.002, 0.0), radius: 0.01 };
     let hidden = Template { pebbles: vec![ball.pebbles[0], inner], ..ball.clone() };
     let run = |clump: bool| {
-        let mut bed: Bed<f64> = bed(Law::Linear(damped(1e6, 0.5, 0.1)), 5e-6);
+        let mut bed: Bed<f64> = bed(ContactLaw::Linear(damped(1e6, 0.5, 0.1)), 5e-6);
         bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
         bed.set_gravity(Gravity::EARTH);
         let id = match clump {
@@ -201,7 +202,7 @@ fn a_falling_dumbbell_is_a_rigid_body() {
         alone.step(&body, &mut slips, TIME / f64::from(steps));
     }
     let error = |dt: f64| {
-        let mut bed = bed(Law::Linear(law), dt);
+        let mut bed = bed(ContactLaw::Linear(law), dt);
         bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
         bed.set_gravity(Gravity::EARTH);
         let id = add(&mut bed, &dumbbell(), start, along(axis));
@@ -235,7 +236,7 @@ fn turning(state: &BodyState, inertia: V, dt: f64) -> (V, f64) {
 /// A free stone that turns with a spin given in its principal frame.
 fn free(spin: V, dt: f64) -> (Bed<f64>, BodyId, V) {
     let template = stone();
-    let mut bed = bed(Law::Linear(springs(1e6, 0.5)), dt);
+    let mut bed = bed(ContactLaw::Linear(springs(1e6, 0.5)), dt);
     let attitude = UnitQuaternion::from_euler_angles(0.3, -0.7, 1.1);
     let id = add(&mut bed, &template, V::new(0.1, 0.2, 0.3), attitude);
     bed.set_velocity(id, [0.0; 3], (attitude * spin).into());
@@ -309,13 +310,13 @@ fn a_clump_flips_about_its_middle_axis_in_time() {
 /// Gives spins at two times, 10 ms apart, while all slips.
 fn spin_up(damping: f64, start: f64) -> [f64; 2] {
     let overlap = 1e-5;
-    let mut bed = bed(Law::Linear(springs(1e6, 0.3)), 1e-6);
+    let mut bed = bed(ContactLaw::Linear(springs(1e6, 0.3)), 1e-6);
     let id = add(&mut bed, &dumbbell(), V::zeros(), along(V::y()));
     bed.set_velocity(id, [0.0; 3], [0.0, start, 0.0]);
     bed.set_damping(damping);
     for side in [1.0, -1.0] {
         let pose = Pose { position: V::z() * side * (RADIUS - overlap), ..Pose::default() };
-        let motion = Motion::Velocity { linear: V::x() * side * 10.0, angular: V::zeros() };
+        let motion = WallMotion::Velocity { linear: V::x() * side * 10.0, angular: V::zeros() };
         bed.add_wall(Shape::Plane { normal: -V::z() * side }, pose, 0, motion);
     }
     [1000, 10_000].map(|steps| {
@@ -340,8 +341,9 @@ fn a_moment_spins_a_clump_up() {
 
 #[test]
 fn a_clump_at_rest_on_three_pebbles_carries_its_weight() {
-    let template = Template::of(&[pebble(0.0, 0.0, 0.0), pebble(0.035, 0.0, 0.0), pebble(0.01, 0.03, 0.0)]).unwrap();
-    let mut bed = bed(Law::Linear(damped(1e7, 0.5, 0.3)), 5e-6);
+    let template =
+        Template::from_pebbles(&[pebble(0.0, 0.0, 0.0), pebble(0.035, 0.0, 0.0), pebble(0.01, 0.03, 0.0)]).unwrap();
+    let mut bed = bed(ContactLaw::Linear(damped(1e7, 0.5, 0.3)), 5e-6);
     bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
     bed.set_gravity(Gravity::EARTH);
     bed.set_damping(0.7);
@@ -368,7 +370,7 @@ fn a_clump_at_rest_on_three_pebbles_carries_its_weight() {
 
 /// Pebbles of a dumbbell thrown onto a floor, after a while.
 fn thrown(floor: impl FnOnce(&mut Bed<f64>) -> WallId) -> Vec<V> {
-    let mut bed = bed(Law::Linear(damped(1e6, 0.4, 0.1)), 4e-6);
+    let mut bed = bed(ContactLaw::Linear(damped(1e6, 0.4, 0.1)), 4e-6);
     floor(&mut bed);
     bed.set_gravity(Gravity::EARTH);
     let id = add(&mut bed, &dumbbell(), V::new(0.0, 0.0, 0.04), along(V::new(0.8, 0.1, 0.3).normalize()));
@@ -382,8 +384,8 @@ fn a_clump_meets_planes_blocks_and_meshes_alike() {
     let half = V::new(0.2, 0.3, 0.1);
     let pose = || Pose { position: V::new(0.013, 0.017, -0.1), ..Pose::default() };
     let plane = thrown(|bed| bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0));
-    let block = thrown(|bed| bed.add_wall(Shape::block(half).unwrap(), pose(), 0, Motion::Fixed));
-    let mesh = thrown(|bed| bed.add_wall(Shape::Mesh(Mesh::block(half).unwrap()), pose(), 0, Motion::Fixed));
+    let block = thrown(|bed| bed.add_wall(Shape::block(half).unwrap(), pose(), 0, WallMotion::Fixed));
+    let mesh = thrown(|bed| bed.add_wall(Shape::Mesh(Mesh::block(half).unwrap()), pose(), 0, WallMotion::Fixed));
     for others in [block, mesh] {
         let apart = plane.iter().zip(&others).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
         println!("floors differ by {apart:.1e} m");
@@ -401,7 +403,7 @@ fn pairs(now: &Snapshot) -> Vec<(u32, u32)> {
 
 #[test]
 fn coordination_counts_a_pair_of_clumps_once() {
-    let mut bed = bed(Law::Linear(springs(1e6, 0.5)), 1e-6);
+    let mut bed = bed(ContactLaw::Linear(springs(1e6, 0.5)), 1e-6);
     // side by side: two contacts of one pair; a sphere on top of the second; all on the floor
     for y in [0.0, 0.03999] {
         add(&mut bed, &dumbbell(), V::new(0.0, y, 0.01999), UnitQuaternion::identity());
@@ -425,7 +427,7 @@ fn coordination_counts_a_pair_of_clumps_once() {
 #[test]
 fn a_symmetric_clump_falls_straight() {
     // along y over an edge of nothing: mirrored pebbles feel mirrored forces, so that no turning starts
-    let mut bed = bed(Law::Linear(damped(1e6, 0.5, 0.1)), 4e-6);
+    let mut bed = bed(ContactLaw::Linear(damped(1e6, 0.5, 0.1)), 4e-6);
     bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
     bed.set_gravity(Gravity::EARTH);
     let axis = Unit::new_normalize(V::z());
@@ -440,8 +442,10 @@ fn a_symmetric_clump_falls_straight() {
 #[test]
 fn clumps_meet_across_a_period_as_anywhere() {
     let run = |x: f64| {
-        let mut bed =
-            Bed::<f64>::new(Domain::open().periodic(0, 0.5), Laws::single(Law::Linear(damped(1e6, 0.5, 0.1))));
+        let mut bed = Bed::<f64>::new(
+            Domain::open().periodic(0, 0.5),
+            ContactLaws::single(ContactLaw::Linear(damped(1e6, 0.5, 0.1))),
+        );
         bed.set_time_step(4e-6);
         let template = stone();
         let ids = [(-0.03, 1.0), (0.03, -1.0)].map(|(side, speed)| {

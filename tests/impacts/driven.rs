@@ -1,14 +1,14 @@
 //! What is told to a bed from outside: gravity over time, bodies that keep their motion, bodies that come later.
 
 use crate::scene::{bed, bits, damped, mass, near, norm, put, sphere, springs};
-use trackbed::solvers::granular::{Bed, Failure, Gravity, Law};
+use trackbed::solvers::granular::{Bed, ContactLaw, Failure, Gravity};
 
 const DOWN: [f64; 3] = [0.0, 0.0, -1.0];
 
 #[test]
 fn a_table_of_gravity_is_felt_as_it_stands() {
     // up from 0 to g in 0.1 s, then held: v = g t²/0.2, then g (t - 0.05)
-    let mut bed: Bed<f64> = bed(Law::Linear(springs(1e6, 0.5)), 1e-4);
+    let mut bed: Bed<f64> = bed(ContactLaw::Linear(springs(1e6, 0.5)), 1e-4);
     let id = bed.add_sphere(&sphere([0.0; 3], 0.02, 2700.0));
     bed.set_gravity(Gravity::Table { times: vec![0.0, 0.1], values: vec![[0.0; 3], [0.0, 1.0, -9.81]] });
     bed.run(500).unwrap();
@@ -23,7 +23,7 @@ fn a_table_of_gravity_is_felt_as_it_stands() {
 
 #[test]
 fn free_fall_is_exact() {
-    let mut bed: Bed<f32> = bed(Law::Linear(springs(1e6, 0.5)), 1e-4);
+    let mut bed: Bed<f32> = bed(ContactLaw::Linear(springs(1e6, 0.5)), 1e-4);
     let id = put(&mut bed, sphere([1.0, 2.0, 3.0], 0.02, 2700.0), [3.0, 0.0, 4.0], [0.0; 3]);
     bed.set_gravity(Gravity::EARTH);
     bed.run(10_000).unwrap();
@@ -35,7 +35,7 @@ fn free_fall_is_exact() {
 
 #[test]
 fn a_fixed_body_keeps_its_motion_and_pushes() {
-    let mut bed: Bed<f64> = bed(Law::Linear(springs(1e6, 0.0)), 1e-6);
+    let mut bed: Bed<f64> = bed(ContactLaw::Linear(springs(1e6, 0.0)), 1e-6);
     let pusher = put(&mut bed, sphere([-0.02, 0.0, 0.0], 0.02, 2700.0), [0.3, 0.0, 0.0], [0.0, 0.0, 2.0]);
     bed.fix(pusher);
     let pushed = bed.add_sphere(&sphere([0.02, 0.0, 0.0], 0.02, 2700.0));
@@ -56,7 +56,7 @@ fn a_fixed_body_keeps_its_motion_and_pushes() {
 fn held_rotation_makes_a_block_of_a_sphere() {
     // a sphere slides and turns, a block stops after v²/(2 mu g)
     let (g, speed, friction) = (9.81, 0.5, 0.4);
-    let mut bed: Bed<f64> = bed(Law::Linear(damped(1e6, friction, 0.2)), 2e-6);
+    let mut bed: Bed<f64> = bed(ContactLaw::Linear(damped(1e6, friction, 0.2)), 2e-6);
     bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
     let weight = mass(0.02, 2700.0) * g;
     let id = put(&mut bed, sphere([0.0, 0.0, 0.02 - weight / 1e6], 0.02, 2700.0), [speed, 0.0, 0.0], [0.0; 3]);
@@ -72,7 +72,7 @@ fn held_rotation_makes_a_block_of_a_sphere() {
 
 #[test]
 fn a_velocity_set_in_the_middle_is_the_velocity() {
-    let mut bed: Bed<f64> = bed(Law::Linear(springs(1e6, 0.0)), 1e-4);
+    let mut bed: Bed<f64> = bed(ContactLaw::Linear(springs(1e6, 0.0)), 1e-4);
     let id = bed.add_sphere(&sphere([0.0; 3], 0.02, 2700.0));
     bed.run(10).unwrap();
     bed.set_velocity(id, [1.0, 0.0, -2.0], [0.0, 7.0, 0.0]);
@@ -97,7 +97,7 @@ fn pile(bed: &mut Bed<f64>, range: std::ops::Range<u32>) {
 #[test]
 fn bodies_that_come_later_leave_contacts_as_they_are() {
     let start = || {
-        let mut bed: Bed<f64> = bed(Law::Linear(damped(1e6, 0.5, 0.1)), 1e-5);
+        let mut bed: Bed<f64> = bed(ContactLaw::Linear(damped(1e6, 0.5, 0.1)), 1e-5);
         bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
         for (x, side) in [(-0.021, 1.0), (0.107, -1.0)] {
             bed.add_plane([x, 0.0, 0.0], [side, 0.0, 0.0], 0);
@@ -129,7 +129,7 @@ fn bodies_that_come_later_leave_contacts_as_they_are() {
 
 #[test]
 fn a_body_set_deep_into_another_is_told() {
-    let mut bed: Bed<f64> = bed(Law::Linear(springs(1e6, 0.5)), 1e-6);
+    let mut bed: Bed<f64> = bed(ContactLaw::Linear(springs(1e6, 0.5)), 1e-6);
     bed.add_sphere(&sphere([0.0; 3], 0.02, 2700.0));
     bed.add_sphere(&sphere([0.01, 0.0, 0.0], 0.02, 2700.0));
     let told = bed.run(1000);
@@ -140,7 +140,7 @@ fn a_body_set_deep_into_another_is_told() {
 
 #[test]
 fn two_bodies_in_one_place_give_no_nonsense() {
-    let mut bed: Bed<f32> = bed(Law::Linear(springs(1e6, 0.5)), 1e-6);
+    let mut bed: Bed<f32> = bed(ContactLaw::Linear(springs(1e6, 0.5)), 1e-6);
     for _ in 0..2 {
         bed.add_sphere(&sphere([0.3, 0.2, 0.1], 0.02, 2700.0));
     }

@@ -4,8 +4,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use trackbed::solvers::granular::clump::{Pebble, Template};
 use trackbed::solvers::granular::shape::Shape;
 use trackbed::solvers::granular::{
-    Bed, BodyId, Dashpot, Domain, Failure, Fault, Gravity, HertzMindlin, Law, Laws, Limits, Linear, Motion, Placed,
-    Pose, Sphere, Subject,
+    Bed, BodyId, ContactLaw, ContactLaws, Dashpot, Domain, Failure, Fault, Gravity, HertzMindlin, Limits, Linear,
+    Placed, Pose, Sphere, Subject, WallMotion,
 };
 
 const BAD: [f64; 5] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 0.0, -1.0];
@@ -27,7 +27,7 @@ fn ball() -> Sphere {
 
 /// A sound bed of two spheres that touch, on a plane.
 fn sound() -> Bed<f32> {
-    let mut bed = Bed::new(Domain::open().periodic(0, 1.0), Laws::single(Law::Linear(law())));
+    let mut bed = Bed::new(Domain::open().periodic(0, 1.0), ContactLaws::single(ContactLaw::Linear(law())));
     bed.add_sphere(&ball());
     bed.add_sphere(&Sphere { centre: [0.139, 0.2, 0.3], ..ball() });
     bed.add_plane([0.0, 0.0, 0.281], [0.0, 0.0, 1.0], 0);
@@ -90,7 +90,7 @@ fn spheres_that_cannot_be_are_told() {
 #[test]
 fn clumps_that_cannot_be_are_told() {
     let pebble = |x: f64| Pebble { centre: Vector3::new(x, 0.0, 0.0), radius: 0.02 };
-    let template = Template::of(&[pebble(0.0), pebble(0.02)]).unwrap();
+    let template = Template::from_pebbles(&[pebble(0.0), pebble(0.02)]).unwrap();
     let add = |template: &Template, attitude: UnitQuaternion<f64>, density: f64| {
         fault(|bed| {
             bed.add_clump(&Placed { template, centre: [0.5; 3], attitude, density, surface: 0 });
@@ -123,43 +123,43 @@ fn clumps_that_cannot_be_are_told() {
 
 #[test]
 fn laws_that_cannot_be_are_told() {
-    let with = |law: Law| fault(|bed| bed.change_laws(|l| *l = law));
+    let with = |law: ContactLaw| fault(|bed| bed.change_laws(|l| *l = law));
     for bad in [f64::NAN, f64::INFINITY, -1.0] {
-        with(Law::Linear(Linear { normal_stiffness: bad, ..law() }));
-        with(Law::Linear(Linear { shear_stiffness: bad, ..law() }));
-        with(Law::Linear(Linear { friction: bad, ..law() }));
-        with(Law::HertzMindlin(HertzMindlin::between((1e9, 0.2), (1e9, 0.2), bad, 0.9)));
-        with(Law::HertzMindlin(HertzMindlin::between((1e9, 0.2), (1e9, 0.2), 0.5, bad)));
+        with(ContactLaw::Linear(Linear { normal_stiffness: bad, ..law() }));
+        with(ContactLaw::Linear(Linear { shear_stiffness: bad, ..law() }));
+        with(ContactLaw::Linear(Linear { friction: bad, ..law() }));
+        with(ContactLaw::HertzMindlin(HertzMindlin::between((1e9, 0.2), (1e9, 0.2), bad, 0.9)));
+        with(ContactLaw::HertzMindlin(HertzMindlin::between((1e9, 0.2), (1e9, 0.2), 0.5, bad)));
     }
     let rigid = (f64::INFINITY, 0.2);
-    let told = with(Law::HertzMindlin(HertzMindlin::between(rigid, rigid, 0.5, 0.9)));
-    assert_eq!((told.of, told.quantity), (Subject::Law(0, 0), "effective modulus"));
-    with(Law::HertzMindlin(HertzMindlin::between((1e9, 0.2), (1e9, 0.2), 0.5, 0.0)));
+    let told = with(ContactLaw::HertzMindlin(HertzMindlin::between(rigid, rigid, 0.5, 0.9)));
+    assert_eq!((told.of, told.quantity), (Subject::ContactLaw(0, 0), "effective modulus"));
+    with(ContactLaw::HertzMindlin(HertzMindlin::between((1e9, 0.2), (1e9, 0.2), 0.5, 0.0)));
 }
 
 #[test]
 fn walls_that_cannot_be_are_told() {
-    let add = |shape: Shape, pose: Pose, motion: Motion| {
+    let add = |shape: Shape, pose: Pose, motion: WallMotion| {
         fault(|bed| {
             bed.add_wall(shape, pose, 0, motion);
         })
     };
     let floor = || Shape::Plane { normal: Vector3::z() };
     for bad in BAD {
-        add(Shape::Plane { normal: Vector3::z() * (2.0 * bad) }, Pose::default(), Motion::Fixed);
-        add(Shape::Block { half: Vector3::new(1.0, bad, 1.0) }, Pose::default(), Motion::Fixed);
+        add(Shape::Plane { normal: Vector3::z() * (2.0 * bad) }, Pose::default(), WallMotion::Fixed);
+        add(Shape::Block { half: Vector3::new(1.0, bad, 1.0) }, Pose::default(), WallMotion::Fixed);
     }
     for bad in [f64::NAN, f64::INFINITY] {
-        add(floor(), Pose { position: Vector3::repeat(bad), ..Pose::default() }, Motion::Fixed);
-        add(floor(), Pose { orientation: [bad, 0.0, 0.0, 0.0], ..Pose::default() }, Motion::Fixed);
+        add(floor(), Pose { position: Vector3::repeat(bad), ..Pose::default() }, WallMotion::Fixed);
+        add(floor(), Pose { orientation: [bad, 0.0, 0.0, 0.0], ..Pose::default() }, WallMotion::Fixed);
         let linear = Vector3::repeat(bad);
-        add(floor(), Pose::default(), Motion::Velocity { linear, angular: Vector3::zeros() });
-        add(floor(), Pose::default(), Motion::servo(Vector3::z(), bad, 1.0));
+        add(floor(), Pose::default(), WallMotion::Velocity { linear, angular: Vector3::zeros() });
+        add(floor(), Pose::default(), WallMotion::servo(Vector3::z(), bad, 1.0));
     }
-    add(floor(), Pose::default(), Motion::Table { times: vec![], velocities: vec![] });
-    add(floor(), Pose::default(), Motion::Table { times: vec![0.0, 1.0], velocities: vec![Vector3::zeros()] });
+    add(floor(), Pose::default(), WallMotion::Table { times: vec![], velocities: vec![] });
+    add(floor(), Pose::default(), WallMotion::Table { times: vec![0.0, 1.0], velocities: vec![Vector3::zeros()] });
     let told = fault(|bed| {
-        bed.add_wall(floor(), Pose::default(), 7, Motion::Fixed);
+        bed.add_wall(floor(), Pose::default(), 7, WallMotion::Fixed);
     });
     assert!(matches!(told.of, Subject::Wall(id) if id.0 == 1) && told.value == 7.0, "{told}");
 }
@@ -177,14 +177,14 @@ fn settings_that_cannot_be_are_told() {
     fault(|bed| bed.set_gravity(Gravity::Table { times: vec![0.0, 0.0], values: vec![[0.0; 3]; 2] }));
     fault(|bed| bed.set_gravity(Gravity::Table { times: vec![0.0, 1.0], values: vec![[0.0; 3]] }));
     fault(|bed| bed.set_limits(Limits { every: 0, ..Limits::default() }));
-    let mut bed = Bed::<f32>::new(Domain::open(), Laws::single(Law::Linear(law())));
+    let mut bed = Bed::<f32>::new(Domain::open(), ContactLaws::single(ContactLaw::Linear(law())));
     assert_eq!(bed.step(), Err(Failure::NoTimeStep));
 }
 
 #[test]
 fn domains_that_cannot_be_are_told() {
     let step = |domain: Domain| {
-        let mut bed = Bed::<f64>::new(domain, Laws::single(Law::Linear(law())));
+        let mut bed = Bed::<f64>::new(domain, ContactLaws::single(ContactLaw::Linear(law())));
         bed.add_sphere(&ball());
         bed.set_time_step(1e-5);
         bed.step()
@@ -204,7 +204,8 @@ fn domains_that_cannot_be_are_told() {
 #[test]
 fn a_period_that_is_too_short_for_two_is_told() {
     let step = |period: f64| {
-        let mut bed = Bed::<f64>::new(Domain::open().periodic(1, period), Laws::single(Law::Linear(law())));
+        let mut bed =
+            Bed::<f64>::new(Domain::open().periodic(1, period), ContactLaws::single(ContactLaw::Linear(law())));
         bed.add_sphere(&ball());
         bed.add_sphere(&Sphere { centre: [0.1, 0.2 + 0.039, 0.3], ..ball() });
         bed.set_time_step(1e-5);
@@ -223,7 +224,7 @@ fn a_bed_mended_goes_on() {
     bed.set_time_step(1e-5);
     assert_eq!(bed.step(), Ok(()));
     // no bodies, no walls: nothing moves, and time goes on
-    let mut bed = Bed::<f64>::new(Domain::open(), Laws::single(Law::Linear(law())));
+    let mut bed = Bed::<f64>::new(Domain::open(), ContactLaws::single(ContactLaw::Linear(law())));
     bed.set_time_step(0.5);
     assert_eq!(bed.run(4), Ok(()));
     assert_eq!(bed.time(), 2.0);

@@ -1,7 +1,7 @@
 //! Impacts under Hertz's law against closed forms and against an ordinary differential equation solved on its own.
 
 use crate::scene::{Material, bed, mass, near, norm, put, sphere};
-use trackbed::solvers::granular::{Bed, DashpotMode, HertzMindlin, Law};
+use trackbed::solvers::granular::{Bed, ContactLaw, DashpotMode, HertzMindlin};
 
 /// Glass of Chung and Ooi's first test.
 const GLASS: Material = Material(4.8e10, 0.20, 2800.0);
@@ -17,7 +17,7 @@ pub fn closed_form(law: &HertzMindlin, mass: f64, radius: f64, speed: f64) -> (f
 
 /// Two glass spheres that touch, closing at 20 m/s.
 fn two_spheres(law: HertzMindlin, dt: f64) -> Bed<f64> {
-    let mut bed = bed(Law::HertzMindlin(law), dt);
+    let mut bed = bed(ContactLaw::HertzMindlin(law), dt);
     for (x, v) in [(RADIUS, -10.0), (-RADIUS, 10.0)] {
         put(&mut bed, sphere([x, 0.0, 0.0], RADIUS, GLASS.2), [v, 0.0, 0.0], [0.0; 3]);
     }
@@ -208,7 +208,7 @@ fn the_critical_step_is_that_of_the_tangent() {
     let stiffness = 4.0 * law.effective_modulus * (RADIUS * overlap).sqrt();
     let critical = 2.0 * (mass(RADIUS, GLASS.2) / stiffness).sqrt();
     let largest = |share: f64| {
-        let mut bed: Bed<f64> = bed(Law::HertzMindlin(law), share * critical);
+        let mut bed: Bed<f64> = bed(ContactLaw::HertzMindlin(law), share * critical);
         bed.add_plane([0.0, 0.0, overlap - RADIUS], [0.0, 0.0, 1.0], 0);
         bed.add_plane([0.0, 0.0, RADIUS - overlap], [0.0, 0.0, -1.0], 0);
         // a millionth of the overlap, so that the springs are as good as linear

@@ -1,7 +1,9 @@
 //! The bed of 10,000 spheres that LAMMPS and LIGGGHTS have run: same law, same step, same shaken gravity.
 
 use crate::scene::{near, sphere};
-use trackbed::solvers::granular::{Bed, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Law, Laws, Linear, Real};
+use trackbed::solvers::granular::{
+    Bed, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Linear, Real,
+};
 
 /// Springs, Coulomb friction of the total normal force, a normal dashpot that may pull.
 const LAW: Linear = Linear {
@@ -15,7 +17,8 @@ const LAW: Linear = Linear {
 
 fn bed<R: Real>() -> Bed<R> {
     let text = include_str!("../../benches/grains/bed10k.xyzr");
-    let mut bed = Bed::new(Domain::open().periodic(0, 1.2).periodic(1, 1.2), Laws::single(Law::Linear(LAW)));
+    let mut bed =
+        Bed::new(Domain::open().periodic(0, 1.2).periodic(1, 1.2), ContactLaws::single(ContactLaw::Linear(LAW)));
     for line in text.lines().filter(|line| !line.starts_with('#')) {
         let [x, y, z, radius] = *line.split_whitespace().map(|n| n.parse().unwrap()).collect::<Vec<f64>>() else {
             panic!("four numbers a sphere, not {line}")

@@ -1,12 +1,13 @@
 //! What the tests share: small beds, laws, vectors.
 
 use trackbed::solvers::granular::{
-    Bed, BodyId, BodyState, Dashpot, DashpotMode, Domain, FrictionLimit, HertzMindlin, Law, Laws, Linear, Real, Sphere,
+    Bed, BodyId, BodyState, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, HertzMindlin, Linear,
+    Real, Sphere,
 };
 
 /// An open bed under one law.
-pub fn bed<R: Real>(law: Law, dt: f64) -> Bed<R> {
-    let mut bed = Bed::new(Domain::open(), Laws::single(law));
+pub fn bed<R: Real>(law: ContactLaw, dt: f64) -> Bed<R> {
+    let mut bed = Bed::new(Domain::open(), ContactLaws::single(law));
     bed.set_time_step(dt);
     bed
 }

@@ -3,7 +3,7 @@
 use crate::scene::{bed, damped, mass, near, norm, put, sphere, springs};
 use nalgebra::Vector3;
 use trackbed::solvers::granular::shape::{Mesh, MeshKind, Shape};
-use trackbed::solvers::granular::{Bed, Domain, Gravity, Law, Laws, Motion, Pose, Sphere, WallId};
+use trackbed::solvers::granular::{Bed, ContactLaw, ContactLaws, Domain, Gravity, Pose, Sphere, WallId, WallMotion};
 
 type V = Vector3<f64>;
 
@@ -44,8 +44,8 @@ fn sheet() -> Shape {
 #[test]
 fn a_sphere_slides_over_triangles_as_over_a_plane() {
     let run = |floor: Shape| {
-        let mut bed: Bed<f64> = bed(Law::Linear(damped(1e6, 0.4, 0.1)), 1e-5);
-        bed.add_wall(floor, Pose::default(), 0, Motion::Fixed);
+        let mut bed: Bed<f64> = bed(ContactLaw::Linear(damped(1e6, 0.4, 0.1)), 1e-5);
+        bed.add_wall(floor, Pose::default(), 0, WallMotion::Fixed);
         bed.set_gravity(Gravity::EARTH);
         let id = put(&mut bed, ball(0.0, 0.0, RADIUS), [0.8, 0.5, 0.0], [0.0, 0.0, 3.0]);
         bed.run(30_000).unwrap();
@@ -63,10 +63,10 @@ fn a_sphere_slides_over_triangles_as_over_a_plane() {
 fn a_sphere_rolls_off_an_edge_and_keeps_its_energy() {
     let (g, speed) = (9.81, 0.1);
     let run = |mesh: bool, dt: f64| {
-        let mut bed: Bed<f64> = bed(Law::Linear(springs(1e6, 5.0)), dt);
+        let mut bed: Bed<f64> = bed(ContactLaw::Linear(springs(1e6, 5.0)), dt);
         let half = V::new(0.1, 0.1, 0.1);
         let shape = if mesh { Shape::Mesh(Mesh::block(half).unwrap()) } else { Shape::block(half).unwrap() };
-        bed.add_wall(shape, at(-0.1, 0.0, -0.1), 0, Motion::Fixed);
+        bed.add_wall(shape, at(-0.1, 0.0, -0.1), 0, WallMotion::Fixed);
         bed.set_gravity(Gravity::EARTH);
         let sunk = mass(RADIUS, 2700.0) * g / 1e6;
         let start = ball(-0.002, 0.003, RADIUS - sunk);
@@ -102,8 +102,8 @@ fn a_corner_throws_back_what_falls_straight_onto_it() {
     let law = damped(1e6, 0.5, 0.3);
     let half = V::new(0.1, 0.07, 0.05);
     for shape in [Shape::block(half).unwrap(), Shape::Mesh(Mesh::block(half).unwrap())] {
-        let mut bed: Bed<f64> = bed(Law::Linear(law), 1e-7);
-        bed.add_wall(shape, at(0.3, 0.2, 0.1), 0, Motion::Fixed);
+        let mut bed: Bed<f64> = bed(ContactLaw::Linear(law), 1e-7);
+        bed.add_wall(shape, at(0.3, 0.2, 0.1), 0, WallMotion::Fixed);
         let out = V::new(0.6, 0.48, 0.64);
         let start = V::new(0.4, 0.27, 0.15) + RADIUS * out;
         let id = put(&mut bed, ball(start.x, start.y, start.z), (-out).into(), [0.0; 3]);
@@ -119,10 +119,10 @@ fn a_corner_throws_back_what_falls_straight_onto_it() {
 
 #[test]
 fn a_container_keeps_a_bouncing_sphere_and_its_energy() {
-    let mut bed: Bed<f64> = bed(Law::Linear(springs(1e6, 0.0)), 2e-6);
+    let mut bed: Bed<f64> = bed(ContactLaw::Linear(springs(1e6, 0.0)), 2e-6);
     let half = V::new(0.05, 0.06, 0.07);
     let shape = Shape::Mesh(Mesh::block(half).unwrap().flipped());
-    bed.add_wall(shape, Pose::default(), 0, Motion::Fixed);
+    bed.add_wall(shape, Pose::default(), 0, WallMotion::Fixed);
     let id = put(&mut bed, ball(0.01, 0.0, 0.0), [3.0, 2.1, -1.7], [0.0; 3]);
     bed.watch_energy(true);
     let (mut bounces, mut before, mut worst): (_, _, f64) = (0, 0, 0.0);
@@ -143,8 +143,8 @@ fn a_container_keeps_a_bouncing_sphere_and_its_energy() {
 fn a_moving_plate_gives_twice_its_speed_and_accounts_for_it() {
     let (speed, m) = (0.7, mass(RADIUS, 2700.0));
     let run = |dt: f64| {
-        let mut bed: Bed<f64> = bed(Law::Linear(springs(1e6, 0.3)), dt);
-        let motion = Motion::Velocity { linear: V::z() * speed, angular: V::zeros() };
+        let mut bed: Bed<f64> = bed(ContactLaw::Linear(springs(1e6, 0.3)), dt);
+        let motion = WallMotion::Velocity { linear: V::z() * speed, angular: V::zeros() };
         bed.add_wall(Shape::Plane { normal: V::z() }, Pose::default(), 0, motion);
         let id = bed.add_sphere(&ball(0.0, 0.0, RADIUS + 1e-4));
         bed.watch_energy(true);
@@ -176,7 +176,7 @@ fn a_floor_of_triangles_goes_on_round_a_period() {
     let run = |shift: Option<V>| {
         let mut bed = Bed::<f64>::new(
             Domain::open().periodic(0, 0.4).periodic(1, 0.3),
-            Laws::single(Law::Linear(damped(1e6, 0.4, 0.1))),
+            ContactLaws::single(ContactLaw::Linear(damped(1e6, 0.4, 0.1))),
         );
         let corners = [[0.0, 0.0], [0.4, 0.0], [0.4, 0.3], [0.0, 0.3]];
         let shape = match shift {
@@ -187,7 +187,7 @@ fn a_floor_of_triangles_goes_on_round_a_period() {
             }
         };
         let place = shift.unwrap_or_default();
-        bed.add_wall(shape, at(place.x, place.y, place.z), 0, Motion::Fixed);
+        bed.add_wall(shape, at(place.x, place.y, place.z), 0, WallMotion::Fixed);
         bed.set_gravity(Gravity::EARTH);
         bed.set_time_step(1e-5);
         let id = put(&mut bed, ball(0.05, 0.02, RADIUS), [3.0, 2.0, 0.0], [0.0; 3]);
@@ -205,7 +205,7 @@ fn a_floor_of_triangles_goes_on_round_a_period() {
 /// 500 spheres in a periodic box, on a floor, under a plate above them.
 fn heap() -> (Bed<f32>, WallId) {
     let domain = Domain::open().periodic(0, 0.3).periodic(1, 0.3);
-    let mut bed = Bed::new(domain, Laws::single(Law::Linear(damped(1e6, 0.0, 0.2))));
+    let mut bed = Bed::new(domain, ContactLaws::single(ContactLaw::Linear(damped(1e6, 0.0, 0.2))));
     let mut random = 1u64;
     let mut share = || {
         random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -219,7 +219,7 @@ fn heap() -> (Bed<f32>, WallId) {
         bed.add_sphere(&sphere(centre, radius, 2700.0));
     }
     bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
-    let down = Motion::Velocity { linear: -V::z(), angular: V::zeros() };
+    let down = WallMotion::Velocity { linear: -V::z(), angular: V::zeros() };
     let plate = bed.add_wall(Shape::Plane { normal: -V::z() }, at(0.0, 0.0, 0.47), 0, down);
     bed.set_gravity(Gravity::EARTH);
     bed.set_damping(0.5);
@@ -233,7 +233,7 @@ fn heap() -> (Bed<f32>, WallId) {
 fn a_servo_presses_a_bed_holds_it_and_lets_it_go() {
     let (mut bed, plate) = heap();
     bed.change_laws(|law| {
-        if let Law::Linear(law) = law {
+        if let ContactLaw::Linear(law) = law {
             law.friction = 0.5;
         }
     });
@@ -241,7 +241,7 @@ fn a_servo_presses_a_bed_holds_it_and_lets_it_go() {
     let mut heights = Vec::new();
     for pressure in [20e3, 40e3, 2e3] {
         let force = pressure * area;
-        bed.set_motion(plate, Motion::servo(V::z(), force, 0.3));
+        bed.set_motion(plate, WallMotion::servo(V::z(), force, 0.3));
         bed.run(6000).unwrap();
         let mut worst: f64 = 0.0;
         for _ in 0..500 {
@@ -263,13 +263,13 @@ fn a_shaken_floor_is_shaken_gravity() {
     let rate = std::f64::consts::TAU * frequency;
     let amplitude = share * g / (rate * rate);
     let run = |shaken_floor: bool, dt: f64| {
-        let mut bed: Bed<f64> = bed(Law::Linear(damped(1e6, 0.5, 0.1)), dt);
+        let mut bed: Bed<f64> = bed(ContactLaw::Linear(damped(1e6, 0.5, 0.1)), dt);
         let (motion, gravity, start) = if shaken_floor {
-            let motion = Motion::Harmonic { axis: V::z(), amplitude, frequency, phase: 0.0 };
+            let motion = WallMotion::Harmonic { axis: V::z(), amplitude, frequency, phase: 0.0 };
             (motion, Gravity::EARTH, amplitude * rate)
         } else {
             // the floor's acceleration, - A w² sin, is taken off
-            (Motion::Fixed, Gravity::Shaken { mean: [0.0, 0.0, -g], share: -share, frequency }, 0.0)
+            (WallMotion::Fixed, Gravity::Shaken { mean: [0.0, 0.0, -g], share: -share, frequency }, 0.0)
         };
         let floor = bed.add_wall(Shape::Plane { normal: V::z() }, Pose::default(), 0, motion);
         bed.set_gravity(gravity);

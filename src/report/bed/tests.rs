@@ -2,7 +2,8 @@
 
 use super::*;
 use crate::solvers::granular::{
-    Bed, Dashpot, DashpotMode, FrictionLimit, Law, Laws, Linear, Motion, Pose, WallId, shape::Mesh, shape::MeshKind,
+    Bed, ContactLaw, ContactLaws, Dashpot, DashpotMode, FrictionLimit, Linear, Pose, WallId, WallMotion, shape::Mesh,
+    shape::MeshKind,
 };
 use nalgebra::Vector3;
 
@@ -27,7 +28,7 @@ fn bed() -> Bed<f64> {
         mode: DashpotMode::Full,
         limit: FrictionLimit::Spring,
     };
-    Bed::new(Domain::open(), Laws::single(Law::Linear(law)))
+    Bed::new(Domain::open(), ContactLaws::single(ContactLaw::Linear(law)))
 }
 
 fn draw(grains: &[Grain], chains: &[Link], bed: &Bed<f64>, colour: Colour, side: Side) -> String {
@@ -84,10 +85,10 @@ fn walls_and_forces_are_drawn_where_they_are() {
     bed.add_plane([0.0, 0.0, -0.1], [0.0, 0.0, 1.0], 0);
     bed.add_plane([0.0, 3.0, 0.0], [0.0, -1.0, 0.0], 0);
     let pose = Pose { position: Vector3::new(0.5, 0.0, 0.5), ..Pose::default() };
-    bed.add_wall(Shape::Block { half: Vector3::repeat(0.1) }, pose, 0, Motion::Fixed);
+    bed.add_wall(Shape::Block { half: Vector3::repeat(0.1) }, pose, 0, WallMotion::Fixed);
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vector3::from);
     let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2]], MeshKind::TwoSided).unwrap();
-    let last = bed.add_wall(Shape::Mesh(mesh), Pose::default(), 0, Motion::Fixed);
+    let last = bed.add_wall(Shape::Mesh(mesh), Pose::default(), 0, WallMotion::Fixed);
     assert_eq!(last, WallId(3));
     let grains = [grain(0.0, 0.0, 0.0, 0.1, 0.0), Grain { body: 1, ..grain(0.2, 0.0, 0.0, 0.1, 0.0) }];
     let link = |to: Option<u32>, force: f64| Link {

@@ -11,7 +11,7 @@ pub use view::{BedTestsView, read_tests};
 use super::{BedSummary, Row};
 use crate::graph::BedNode;
 use crate::nodes::Tested;
-use crate::solvers::granular::rig::{Cycle, Reading, Sample, SpecimenState};
+use crate::solvers::granular::rig::{Cycle, CycleSample, SensorReading, SpecimenState};
 use serde::{Deserialize, Serialize};
 
 /// One packing, and its test as it ended.
@@ -185,7 +185,7 @@ impl BedTests {
     }
 
     pub fn loops(&self) -> Vec<LoopRow> {
-        let row = |test: &BedTest, sample: &Sample| LoopRow {
+        let row = |test: &BedTest, sample: &CycleSample| LoopRow {
             seed: test.answer.seed,
             sleeper: self.sleepers[sample.sleeper].0.clone(),
             cycle: sample.cycle,
@@ -199,7 +199,7 @@ impl BedTests {
     }
 
     pub fn readings(&self) -> Vec<SensorRow> {
-        let row = |test: &BedTest, reading: &Reading| SensorRow {
+        let row = |test: &BedTest, reading: &SensorReading| SensorRow {
             seed: test.answer.seed,
             sensor: self.sensors[reading.sensor].0.clone(),
             cycle: reading.cycle,

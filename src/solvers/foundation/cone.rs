@@ -12,7 +12,7 @@
 //! Vibration 270 (2004) 673-683, take one layer of ballast on springs. Their formula takes the mean width in the part that
 //! is shared where the integral is exact here (0.3 % of the stiffness of their own example).
 
-use super::{Bearing, Below, Layer, Support};
+use super::layers::{Bearing, Below, Layer, Support};
 use std::f64::consts::PI;
 
 /// The rectangle on which the load acts at some depth.
@@ -42,7 +42,7 @@ impl Slice {
 struct Limits([f64; 4]);
 
 impl Limits {
-    fn of(bearing: &Bearing) -> Limits {
+    fn new(bearing: &Bearing) -> Limits {
         let [left, right] = bearing.spacings;
         let inner = bearing.to_centre.map_or(f64::INFINITY, |gap| 0.5 * bearing.length + gap);
         Limits([0.5 * left, 0.5 * right, inner, f64::INFINITY])
@@ -69,7 +69,7 @@ impl Limits {
 }
 
 pub(super) fn support(bearing: &Bearing, layers: &[Layer], below: Below) -> Support {
-    let limits = Limits::of(bearing);
+    let limits = Limits::new(bearing);
     let mut slice = Slice { along: [0.5 * bearing.width; 2], across: [0.5 * bearing.length; 2] };
     let mut pressures = vec![1.0 / slice.area()];
     let (mut compliance, mut masses) = (0.0, Vec::with_capacity(layers.len()));

@@ -12,9 +12,9 @@
 //! than the mean of a uniform pressure: by 7 % on a half-space, nothing on a thin layer.
 
 use super::kernel::Kernel;
+use super::layers::{Bearing, Below, Layer, Support};
 use super::rectangle::mean_settlement;
 use super::sine::{LANES, sine};
-use super::{Bearing, Below, Layer, Support};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::iter;
 
@@ -49,7 +49,7 @@ struct Plan {
 }
 
 impl Plan {
-    fn of(bearing: &Bearing, neighbours: f64) -> Plan {
+    fn new(bearing: &Bearing, neighbours: f64) -> Plan {
         Plan {
             sides: [bearing.width, bearing.length],
             spacings: bearing.spacings,
@@ -108,7 +108,7 @@ pub(super) fn support(
 ) -> Support {
     // a layer that has run out is not there; its bottom lies where that of the one above does
     let solid: Vec<Layer> = layers.iter().filter(|layer| layer.thickness > 0.0).copied().collect();
-    let plan = Plan::of(bearing, neighbours);
+    let plan = Plan::new(bearing, neighbours);
     let (top, depth) = (solid[0], solid.iter().map(|layer| layer.thickness).sum());
     let panels = panels(&plan, top.thickness, depth);
     let waves = match known.iter().position(|waves| waves.panels == panels) {
@@ -153,7 +153,7 @@ pub(super) struct Waves {
 struct Wave {
     /// 1/m.
     k: f64,
-    /// Of its node, 1/m.
+    /// Weight of its node, 1/m.
     weight: f64,
     /// See [`Plan::averages`].
     mean: f64,

@@ -1,6 +1,6 @@
 //! What can be wrong with a stack of layers.
 
-use super::{Bearing, Below, Layer, Method};
+use super::layers::{Bearing, Below, Layer, Method};
 use std::fmt;
 
 /// A load spreads by less than this, rad; only stiff plates come near it.

@@ -13,7 +13,7 @@
 //! compliance `(u, w) = C (t, s)` of all that lies below is carried along. It says what comes up for what goes down; only
 //! decaying exponentials appear, so that no layer is too thick.
 
-use super::{Below, Layer};
+use super::layers::{Below, Layer};
 use nalgebra::{Matrix2, Vector2};
 
 type Pair = Matrix2<f64>;
@@ -124,7 +124,7 @@ mod tests {
         Layer { thickness, youngs_modulus, poisson_ratio, density: 2e3, spread: 0.5 }
     }
 
-    /// Of a layer on a rough rigid base (Vorovich, Aleksandrov and Babeshko 1974): with n = 3 - 4 nu and x = k h,
+    /// The settlement of a layer on a rough rigid base (Vorovich, Aleksandrov and Babeshko 1974): with n = 3 - 4 nu and x = k h,
     /// `2 (1 - nu^2) / E (2 n sinh 2x - 4x) / (2 n cosh 2x + 1 + n^2 + 4 x^2)`.
     fn on_rock(e: f64, nu: f64, x: f64) -> f64 {
         let n = 3.0 - 4.0 * nu;

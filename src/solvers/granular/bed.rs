@@ -1,22 +1,24 @@
 //! A bed of grains: what there is, and how to make it.
 
 use super::body::{Body, BodyId, Clump, SPHERE};
-use super::build::Build;
 use super::clump::Template;
 use super::contacts::Contacts;
 use super::domain::Domain;
 use super::energy::Ledger;
+use super::failure::Limits;
 use super::gravity::Gravity;
 use super::integrate::{Incidence, Tally, rotate, rotate_back};
 use super::lanes::Real;
-use super::law::{Law, Laws};
-use super::motion::{Felt, Motion, Pose};
+use super::law::{ContactLaw, ContactLaws};
+use super::lists::Lists;
+use super::motion::{Felt, Pose, WallMotion};
 use super::record::Record;
 use super::rotation;
 use super::shape::Shape;
-use super::step::Timings;
+use super::timings::Timings;
 use super::vector::{Vec3, add, cross};
 use super::walls::{Wall, WallContacts, WallId};
+use super::watch::memory::Watch;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Spheres and clumps, the walls round them, and their state.
@@ -28,13 +30,13 @@ use nalgebra::{UnitQuaternion, Vector3};
 #[derive(Debug, Clone)]
 pub struct Bed<R: Real = f32> {
     pub(super) domain: Domain,
-    pub(super) laws: Laws,
+    pub(super) laws: ContactLaws,
     pub(super) gravity: Gravity,
     pub(super) damping: f64,
     pub(super) dt: f64,
     /// Sorted by place, where the contacts are up to date.
     pub(super) bodies: Vec<Body>,
-    /// Of the pebbles, body by body; two that touch nothing stand behind.
+    /// Records of the pebbles, body by body; two that touch nothing stand behind.
     pub(super) records: Vec<R::Record>,
     /// Body of each pebble.
     pub(super) owner: Vec<u32>,
@@ -48,7 +50,7 @@ pub struct Bed<R: Real = f32> {
     pub(super) contacts: Contacts<R>,
     pub(super) wall_contacts: WallContacts<R>,
     pub(super) incidence: Incidence,
-    pub(super) build: Build,
+    pub(super) lists: Lists,
     pub(super) tally: Tally,
     pub(super) ledger: Ledger,
     pub(super) time: f64,
@@ -57,8 +59,8 @@ pub struct Bed<R: Real = f32> {
     pub(super) fresh: bool,
     /// Whether something was added or set that nobody has checked.
     pub(super) unchecked: bool,
-    pub(super) limits: super::watch::Limits,
-    pub(super) watch: super::watch::Watch,
+    pub(super) limits: Limits,
+    pub(super) watch: Watch,
     pub(super) timings: Timings,
 }
 
@@ -76,7 +78,7 @@ pub struct Sphere {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Placed<'a> {
     pub template: &'a Template,
-    /// Of the centroid \[m\].
+    /// Place of the centroid \[m\].
     pub centre: [f64; 3],
     /// Principal frame of the template to world.
     pub attitude: UnitQuaternion<f64>,
@@ -89,11 +91,11 @@ pub struct Placed<'a> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyState {
     pub id: BodyId,
-    /// Of the centroid, not wrapped into the period \[m\].
+    /// Place of the centroid, not wrapped into the period \[m\].
     pub place: [f64; 3],
-    /// Of the last half step \[m/s\].
+    /// Velocity of the last half step \[m/s\].
     pub velocity: [f64; 3],
-    /// Of the last half step \[rad/s\].
+    /// Angular velocity of the last half step \[rad/s\].
     pub spin: [f64; 3],
     /// Unit quaternion w, x, y, z; the identity for a sphere, whose turning does not show.
     pub attitude: [f64; 4],
@@ -115,7 +117,7 @@ pub struct PebbleState {
 
 impl<R: Real> Bed<R> {
     /// An empty bed without gravity and damping.
-    pub fn new(domain: Domain, laws: Laws) -> Self {
+    pub fn new(domain: Domain, laws: ContactLaws) -> Self {
         Bed {
             domain,
             laws,
@@ -132,15 +134,15 @@ impl<R: Real> Bed<R> {
             contacts: Contacts::default(),
             wall_contacts: WallContacts::default(),
             incidence: Incidence::default(),
-            build: Build::default(),
+            lists: Lists::default(),
             tally: Tally::default(),
             ledger: Ledger::default(),
             time: 0.0,
             steps: 0,
             fresh: true,
             unchecked: true,
-            limits: super::watch::Limits::default(),
-            watch: super::watch::Watch::default(),
+            limits: Limits::default(),
+            watch: Watch::default(),
             timings: Timings::default(),
         }
     }
@@ -214,26 +216,26 @@ impl<R: Real> Bed<R> {
         self.owner.resize(self.records.len(), place);
         self.bodies.push(body);
         self.index.push(place);
-        self.build.outdated = true;
+        self.lists.outdated = true;
         self.unchecked = true;
         BodyId(body.id)
     }
 
     /// Adds a wall. Its frame stands at `pose`.
-    pub fn add_wall(&mut self, shape: Shape, pose: Pose, surface: u16, motion: Motion) -> WallId {
+    pub fn add_wall(&mut self, shape: Shape, pose: Pose, surface: u16, motion: WallMotion) -> WallId {
         let (cell, position) = self.domain.split(pose.position.into());
         self.walls.push(Wall {
             shape,
             pose: Pose { position: position.into(), ..pose },
             cell,
             surface,
-            motion: Motion::Fixed,
+            motion: WallMotion::Fixed,
             velocity: Vector3::zeros(),
             spin: Vector3::zeros(),
             felt: Felt::default(),
             moment: [0.0; 3],
         });
-        self.build.outdated = true;
+        self.lists.outdated = true;
         let id = WallId(self.walls.len() as u32 - 1);
         self.set_motion(id, motion);
         id
@@ -242,18 +244,18 @@ impl<R: Real> Bed<R> {
     /// Adds a fixed plane through `point` \[m\] with the solid behind its unit `normal`.
     pub fn add_plane(&mut self, point: [f64; 3], normal: [f64; 3], surface: u16) -> WallId {
         let pose = Pose { position: point.into(), ..Pose::default() };
-        self.add_wall(Shape::Plane { normal: normal.into() }, pose, surface, Motion::Fixed)
+        self.add_wall(Shape::Plane { normal: normal.into() }, pose, surface, WallMotion::Fixed)
     }
 
     /// Moves a wall in another way from now on.
-    pub fn set_motion(&mut self, wall: WallId, motion: Motion) {
+    pub fn set_motion(&mut self, wall: WallId, motion: WallMotion) {
         let wall = &mut self.walls[wall.0 as usize];
         (wall.velocity, wall.spin) = match &motion {
             // a servo waits for what it will feel
-            Motion::Servo { .. } => (Vector3::zeros(), Vector3::zeros()),
+            WallMotion::Servo { .. } => (Vector3::zeros(), Vector3::zeros()),
             faulty if faulty.check().is_err() => (Vector3::zeros(), Vector3::zeros()),
             // what has a mass keeps its speed
-            Motion::Loaded { axis, .. } => (axis * wall.velocity.dot(axis), Vector3::zeros()),
+            WallMotion::Loaded { axis, .. } => (axis * wall.velocity.dot(axis), Vector3::zeros()),
             given => given.velocity(self.time, self.dt.max(f64::MIN_POSITIVE), &Felt::default()),
         };
         wall.motion = motion;
@@ -265,7 +267,7 @@ impl<R: Real> Bed<R> {
         let (cell, position) = self.domain.split(place);
         let wall = &mut self.walls[wall.0 as usize];
         (wall.cell, wall.pose.position) = (cell, position.into());
-        self.build.outdated = true;
+        self.lists.outdated = true;
     }
 
     /// Sets velocity \[m/s\] and angular velocity \[rad/s\] of a body.
@@ -276,7 +278,7 @@ impl<R: Real> Bed<R> {
         let range = body.first as usize..body.first as usize + usize::from(body.pebbles);
         if body.clump == SPHERE {
             body.spin = spin;
-            self.records[range.start].move_with(velocity.map(R::of), spin.map(R::of));
+            self.records[range.start].move_with(velocity.map(R::from_f64), spin.map(R::from_f64));
             return;
         }
         let clump = &mut self.clumps[body.clump as usize];
@@ -289,7 +291,7 @@ impl<R: Real> Bed<R> {
         clump.turning = spin;
         for (record, arm) in self.records[range].iter_mut().zip(&self.arms[clump.arms as usize..]) {
             let velocity = add(velocity, cross(spin, rotate(&matrix, *arm)));
-            record.move_with(velocity.map(R::of), spin.map(R::of));
+            record.move_with(velocity.map(R::from_f64), spin.map(R::from_f64));
         }
     }
 
@@ -331,7 +333,7 @@ impl<R: Real> Bed<R> {
     }
 
     /// Changes every contact law, friction for example.
-    pub fn change_laws(&mut self, change: impl FnMut(&mut Law)) {
+    pub fn change_laws(&mut self, change: impl FnMut(&mut ContactLaw)) {
         self.laws.change(change);
         self.unchecked = true;
     }
@@ -340,13 +342,13 @@ impl<R: Real> Bed<R> {
     ///
     /// # Panics
     /// If there are fewer or more surfaces than before.
-    pub fn set_laws(&mut self, laws: Laws) {
+    pub fn set_laws(&mut self, laws: ContactLaws) {
         assert_eq!(laws.surfaces(), self.laws.surfaces(), "surfaces of a bed");
         self.laws = laws;
         self.unchecked = true;
     }
 
-    pub fn laws(&self) -> &Laws {
+    pub fn laws(&self) -> &ContactLaws {
         &self.laws
     }
 

@@ -11,11 +11,11 @@ pub struct BodyId(pub u32);
 pub(super) struct Body {
     /// At half steps \[m/s\].
     pub velocity: [f64; 3],
-    /// Of a sphere, angular velocity at half steps \[rad/s\]; of a clump, angular momentum \[kg m2/s\].
+    /// Angular velocity of a sphere at half steps \[rad/s\]; of a clump, angular momentum \[kg m2/s\].
     pub spin: [f64; 3],
-    /// Of inertia \[1/kg\]; 0 for a body that keeps its velocity.
+    /// Inverse of its inertia \[1/kg\]; 0 for a body that keeps its velocity.
     pub inverse_mass: f64,
-    /// Of a sphere \[1/(kg m2)\].
+    /// Inverse moment of inertia of a sphere \[1/(kg m2)\].
     pub inverse_inertia: f64,
     /// Mass that has weight, without what mass scaling added \[kg\].
     pub mass: f64,

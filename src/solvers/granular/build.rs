@@ -4,18 +4,17 @@
 //! neighbours only, so how often lists are made, and how far they reach, is a matter of speed.
 
 use super::bed::Bed;
-use super::body::SPHERE;
+use super::body::{Body, SPHERE};
 use super::contacts::{BlockVector, Contacts};
 use super::domain::{mirrored, steps_of};
+use super::failure::Failure;
 use super::integrate::{Incidence, TASK, Task};
 use super::lanes::{BLOCK, Real};
-use super::motion::Pose;
 use super::order::Strips;
 use super::record::Record;
 use super::search::{CellTooSmall, Grids, Pair, Seen};
-use super::vector::{Vec3, dot, norm, sub};
+use super::vector::{dot, norm, sub};
 use super::walls::{Kept, Near, Wall, WallContacts, moved};
-use super::watch::Failure;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -25,30 +24,6 @@ const LIFE: u64 = 400;
 const SETTLE: u64 = 128;
 /// What single precision may hide of a displacement \[m\].
 const SLACK: f64 = 1e-6;
-
-/// When lists were made, and for how long they are good.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Build {
-    /// Something was added.
-    pub outdated: bool,
-    /// How far pairs may be apart and still be listed \[m\].
-    pub skin: f64,
-    /// A reach that a user wants \[m\].
-    pub fixed_skin: Option<f64>,
-    /// Bound of what two bodies have come nearer since \[m\].
-    pub travel: f64,
-    pub step: u64,
-    /// Lists made.
-    pub count: u64,
-    /// How far pebbles are from the origins of planes \[m\]: what a plane that turns sweeps.
-    pub extent: f64,
-    /// Where tasks begin, and one more.
-    pub tasks: Vec<Task>,
-    /// Where pebbles, walls were \[m\].
-    reference: Vec<[f32; 3]>,
-    origin: Vec<Vec3>,
-    walls: Vec<Pose>,
-}
 
 /// A contact that goes on in a new list, of a lower and a higher body.
 #[derive(Debug, Clone, Copy, Serialize, Deserialize)]
@@ -88,15 +63,15 @@ impl<R: Real> Bed<R> {
             self.check()?;
             self.unchecked = false;
         }
-        if self.build.outdated {
+        if self.lists.outdated {
             return Ok(self.rebuild()?);
         }
-        if self.build.travel <= self.build.skin {
+        if self.lists.travel <= self.lists.skin {
             return Ok(());
         }
         // the bound is spent; what was really gone decides
-        self.build.travel = self.gone();
-        if self.build.travel <= self.build.skin { Ok(()) } else { Ok(self.rebuild()?) }
+        self.lists.travel = self.gone();
+        if self.lists.travel <= self.lists.skin { Ok(()) } else { Ok(self.rebuild()?) }
     }
 
     /// The most that two bodies, or a body and a wall, can have come nearer since the lists were made \[m\].
@@ -106,13 +81,13 @@ impl<R: Real> Bed<R> {
             .into_par_iter()
             .with_min_len(4096)
             .map(|p| {
-                let before = self.build.reference[p].map(f64::from);
-                let now = sub(self.records[p].position(), self.build.origin[p / BLOCK]);
+                let before = self.lists.reference[p].map(f64::from);
+                let now = sub(self.records[p].position(), self.lists.origin[p / BLOCK]);
                 dot(sub(now, before), sub(now, before))
             })
             .reduce(|| 0.0, f64::max);
         let walls =
-            self.walls.iter().zip(&self.build.walls).map(|(w, p)| moved(w, p, self.build.extent)).fold(0.0, f64::max);
+            self.walls.iter().zip(&self.lists.walls).map(|(w, p)| moved(w, p, self.lists.extent)).fold(0.0, f64::max);
         square.sqrt() + square.sqrt().max(walls)
     }
 
@@ -121,7 +96,7 @@ impl<R: Real> Bed<R> {
         let kept = self.kept();
         let done = self.rebuild_with(carried, kept);
         // lists that are not finished must not be used
-        self.build.outdated |= done.is_err();
+        self.lists.outdated |= done.is_err();
         done
     }
 
@@ -162,7 +137,7 @@ impl<R: Real> Bed<R> {
         self.incidence = Incidence::default();
         let seen = self.seen();
         let domain = self.domain;
-        let skin = self.build.skin + SLACK;
+        let skin = self.lists.skin + SLACK;
         let (pairs, wall_contacts) = {
             let grids = Grids::new(&domain, &seen, skin);
             let about = |pebble: u32| {
@@ -186,7 +161,7 @@ impl<R: Real> Bed<R> {
     fn choose_skin(&mut self) {
         let largest = self.records[..self.owner.len()].iter().map(Record::radius).fold(0.0, f64::max);
         let (least, most) = (1e-3 * largest, 0.2 * largest);
-        let build = &mut self.build;
+        let build = &mut self.lists;
         build.skin = match build.fixed_skin {
             Some(skin) => skin,
             None if build.count == 0 || build.skin == 0.0 => {
@@ -230,7 +205,7 @@ impl<R: Real> Bed<R> {
             }
             let (cell, offset) = self.domain.settle(body.cell, centre);
             body.cell = cell;
-            self.build.outdated = true;
+            self.lists.outdated = true;
             let moved = sub(centre, offset);
             for record in records {
                 record.place(sub(record.position(), moved));
@@ -244,11 +219,11 @@ impl<R: Real> Bed<R> {
 
     /// Sorts bodies so that neighbours are near in memory.
     fn sort(&mut self) {
-        let place = |body: &super::body::Body| {
+        let place = |body: &Body| {
             let first = self.records[body.first as usize].position();
             self.domain.place(self.domain.wrap(body.cell), first)
         };
-        let strips = Strips::of(self.bodies.iter().map(place));
+        let strips = Strips::through(self.bodies.iter().map(place));
         let key = |(index, body)| (strips.key(place(body)), index as u32);
         let mut order: Vec<(u64, u32)> = self.bodies.iter().enumerate().map(key).collect();
         order.sort_unstable_by_key(|&(key, index)| (key, self.bodies[index as usize].id));
@@ -325,7 +300,7 @@ impl<R: Real> Bed<R> {
             }
         }
         tasks.last_mut().expect("an end").block = contacts.law.len() as u32;
-        self.build.tasks = tasks;
+        self.lists.tasks = tasks;
         let zero = [[R::default(); BLOCK]; 3];
         contacts.shear = vec![zero; contacts.law.len()];
         if self.ledger.watched {
@@ -337,7 +312,7 @@ impl<R: Real> Bed<R> {
             }
             let (a, b) = (self.name(contacts.first[place]), self.name(contacts.second[place]));
             let Some(carried) = histories.find(a.min(b), a.max(b)) else { continue };
-            let sign = if a < b { R::of(1.0) } else { R::of(-1.0) };
+            let sign = if a < b { R::from_f64(1.0) } else { R::from_f64(-1.0) };
             let (block, lane) = (place / BLOCK, place % BLOCK);
             for c in 0..3 {
                 contacts.shear[block][c][lane] = sign * carried.shear[c];
@@ -434,11 +409,11 @@ impl<R: Real> Bed<R> {
     /// Notes where everything is. Displacements are kept in single precision, from an origin that blocks of pebbles share.
     fn remember(&mut self) {
         let records = &self.records[..self.owner.len()];
-        self.build.origin = records.chunks(BLOCK).map(|block| block[0].position()).collect();
-        let origin = &self.build.origin;
-        self.build.reference =
+        self.lists.origin = records.chunks(BLOCK).map(|block| block[0].position()).collect();
+        let origin = &self.lists.origin;
+        self.lists.reference =
             records.iter().enumerate().map(|(p, r)| sub(r.position(), origin[p / BLOCK]).map(|x| x as f32)).collect();
-        self.build.walls = self.walls.iter().map(|w| w.pose).collect();
+        self.lists.walls = self.walls.iter().map(|w| w.pose).collect();
         let far = |wall: &Wall| {
             let pebbles = records.iter().zip(&self.owner);
             pebbles
@@ -446,6 +421,6 @@ impl<R: Real> Bed<R> {
                 .fold(0.0, f64::max)
         };
         let planes = self.walls.iter().filter(|w| w.shape.bounds().is_none());
-        self.build.extent = planes.map(far).fold(0.0, f64::max) + self.build.skin;
+        self.lists.extent = planes.map(far).fold(0.0, f64::max) + self.lists.skin;
     }
 }

@@ -5,14 +5,14 @@ use super::body::{Body, Clump};
 use super::build::Carried;
 use super::domain::Domain;
 use super::energy::Ledger;
+use super::failure::{Failure, Limits};
 use super::gravity::Gravity;
 use super::integrate::Tally;
 use super::lanes::Real;
-use super::law::Laws;
+use super::law::ContactLaws;
 use super::record::Record;
 use super::vector::Vec3;
 use super::walls::{Kept, Wall};
-use super::watch::{Failure, Limits};
 use serde::{Deserialize, Serialize};
 
 /// Everything that the future of a bed depends on; serialise it with a format that keeps every bit of a number.
@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 pub struct Checkpoint<R: Real> {
     version: u32,
     domain: Domain,
-    laws: Laws,
+    laws: ContactLaws,
     gravity: Gravity,
     damping: f64,
     dt: f64,
@@ -111,8 +111,8 @@ impl<R: Real> Bed<R> {
             steps: self.steps,
             fresh: self.fresh,
             limits: self.limits,
-            skin: self.build.skin,
-            fixed_skin: self.build.fixed_skin,
+            skin: self.lists.skin,
+            fixed_skin: self.lists.fixed_skin,
         }
     }
 
@@ -139,7 +139,7 @@ impl<R: Real> Bed<R> {
         (bed.bodies, bed.clumps, bed.arms, bed.walls) = (from.bodies, from.clumps, from.arms, from.walls);
         (bed.tally, bed.ledger, bed.limits) = (from.tally, from.ledger, from.limits);
         (bed.time, bed.steps, bed.fresh) = (from.time, from.steps, from.fresh);
-        (bed.build.skin, bed.build.fixed_skin, bed.build.outdated) = (from.skin, from.fixed_skin, true);
+        (bed.lists.skin, bed.lists.fixed_skin, bed.lists.outdated) = (from.skin, from.fixed_skin, true);
         bed.check().map_err(|fault| RestoreError::Failure(fault.into()))?;
         bed.rebuild_with(from.shear, from.kept).map_err(|e| RestoreError::Failure(e.into()))?;
         Ok(bed)

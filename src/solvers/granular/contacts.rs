@@ -1,7 +1,7 @@
 //! Contacts between pebbles: sorted once, kept in blocks of lanes, each force computed once (methods 4.2, pass 1).
 
 use super::domain::{Domain, Image};
-use super::force::{Meeting, Outcome, Prepared, Rule, outcome};
+use super::force::{ForceRule, Meeting, Outcome, Prepared, outcome};
 use super::integrate::Task;
 use super::lanes::{BLOCK, Fine, Lanes, Num, Real, Vector, Work};
 use super::prefetch::prefetch;
@@ -157,12 +157,18 @@ impl<R: Real> Pass<'_, R> {
     }
 
     #[inline(always)]
-    fn block<L: Lanes<Real = R>>(&mut self, lanes: L, block: usize, rule: &impl Rule, sums: &mut [[f64; BLOCK]; 3]) {
+    fn block<L: Lanes<Real = R>>(
+        &mut self,
+        lanes: L,
+        block: usize,
+        rule: &impl ForceRule,
+        sums: &mut [[f64; BLOCK]; 3],
+    ) {
         for at in (0..BLOCK).step_by(L::WIDTH) {
             let places = block * BLOCK + at..block * BLOCK + at + L::WIDTH;
             let a = lanes.gather(self.around.records, &self.first[places.clone()]);
             let b = lanes.gather(self.around.records, &self.second[places.clone()]);
-            let meeting = Meeting::of(lanes, &a, &b, self.shift(lanes, places.clone()));
+            let meeting = Meeting::between(lanes, &a, &b, self.shift(lanes, places.clone()));
             let shear = &mut self.shear[block];
             let contact = rule.force(lanes, &meeting, Vector::load(lanes, shear, at));
             contact.shear.store(shear, at);

@@ -4,29 +4,29 @@ use super::bed::Bed;
 use super::body::{Body, Clump};
 use super::contacts::BlockVector;
 use super::domain::Image;
+use super::failure::Failure;
 use super::force::Outcome;
 use super::lanes::{BLOCK, Real};
 use super::vector::Vec3;
 use super::walls::{Entry, Slot};
-use super::watch::Failure;
 
 impl<R: Real> Bed<R> {
     /// How far apart pairs may be and still be listed \[m\]; `None` lets the bed choose from how long its lists last.
     /// A matter of speed: the motion is the same, bit by bit.
     pub fn set_skin(&mut self, skin: Option<f64>) {
-        self.build.fixed_skin = skin;
-        self.build.outdated = true;
+        self.lists.fixed_skin = skin;
+        self.lists.outdated = true;
         self.unchecked = true;
     }
 
     /// How far apart pairs may be and still be listed at present \[m\].
     pub fn skin(&self) -> f64 {
-        self.build.skin
+        self.lists.skin
     }
 
     /// Number of times that lists were made.
     pub fn lists_made(&self) -> u64 {
-        self.build.count
+        self.lists.count
     }
 
     /// Makes the lists where they are not good for the next step, which then need not do so.

@@ -1,25 +1,13 @@
-//! What no bed can hold: numbers out of their range, found before anything moves.
-//!
-//! Bodies, walls and settings enter a bed unchecked, so that a bed is made without an error at every line. What has changed
-//! is checked before the next step, which then fails with the fault and moves nothing; [`Bed::check`] looks at once.
+//! What no bed can hold: a number out of its range, and what it belongs to.
 
-use super::bed::Bed;
-use super::body::{Body, BodyId, SPHERE};
-use super::gravity::Gravity;
-use super::lanes::Real;
-use super::law::LawError;
+use super::body::BodyId;
 use super::motion::MotionError;
-use super::record::Record;
 use super::shape::ShapeError;
-use super::vector::{Vec3, dot, norm, sub};
-use super::walls::{Wall, WallId};
+use super::walls::WallId;
 use std::fmt;
 
-/// Farther from the origin a body is lost in the rounding of places \[m\], and cells run out of numbers.
-const FARTHEST: f64 = 1e8;
-
-const POSITIVE: &str = "a number above 0";
-const NOT_NEGATIVE: &str = "a number from 0";
+pub(super) const POSITIVE: &str = "a number above 0";
+pub(super) const NOT_NEGATIVE: &str = "a number from 0";
 const NUMBER: &str = "a number";
 
 /// A number that cannot be.
@@ -37,7 +25,7 @@ pub enum Subject {
     Body(BodyId),
     Wall(WallId),
     /// The law of two surfaces.
-    Law(u16, u16),
+    ContactLaw(u16, u16),
     /// The domain, gravity, the time step and other settings.
     Bed,
 }
@@ -47,7 +35,7 @@ impl fmt::Display for Fault {
         match self.of {
             Subject::Body(id) => write!(f, "body {}: ", id.0)?,
             Subject::Wall(id) => write!(f, "wall {}: ", id.0)?,
-            Subject::Law(a, b) => write!(f, "law of surfaces {a} and {b}: ")?,
+            Subject::ContactLaw(a, b) => write!(f, "law of surfaces {a} and {b}: ")?,
             Subject::Bed => {}
         }
         write!(f, "expected {} to be {}, found {}", self.quantity, self.expected, self.value)
@@ -57,23 +45,29 @@ impl fmt::Display for Fault {
 impl std::error::Error for Fault {}
 
 impl Subject {
-    fn want(self, fine: bool, quantity: &'static str, value: f64, expected: &'static str) -> Result<(), Fault> {
+    pub(super) fn want(
+        self,
+        fine: bool,
+        quantity: &'static str,
+        value: f64,
+        expected: &'static str,
+    ) -> Result<(), Fault> {
         if fine { Ok(()) } else { Err(Fault { of: self, quantity, value, expected }) }
     }
 
-    fn positive(self, quantity: &'static str, value: f64) -> Result<(), Fault> {
+    pub(super) fn positive(self, quantity: &'static str, value: f64) -> Result<(), Fault> {
         self.want(value.is_finite() && value > 0.0, quantity, value, POSITIVE)
     }
 
-    fn numbers(self, quantity: &'static str, values: &[f64]) -> Result<(), Fault> {
+    pub(super) fn numbers(self, quantity: &'static str, values: &[f64]) -> Result<(), Fault> {
         values.iter().try_for_each(|&value| self.want(value.is_finite(), quantity, value, NUMBER))
     }
 
-    fn moves(self, MotionError { name, value, expected }: MotionError) -> Fault {
+    pub(super) fn moves(self, MotionError { name, value, expected }: MotionError) -> Fault {
         Fault { of: self, quantity: name, value, expected }
     }
 
-    fn shape(self, error: ShapeError) -> Fault {
+    pub(super) fn shape(self, error: ShapeError) -> Fault {
         let (quantity, value, expected) = match error {
             ShapeError::Normal { normal } => ("length of the normal", normal.norm(), "1"),
             ShapeError::HalfLength { half } => {
@@ -82,122 +76,5 @@ impl Subject {
             }
         };
         Fault { of: self, quantity, value, expected }
-    }
-}
-
-impl<R: Real> Bed<R> {
-    /// Fails with the first number that cannot be, in the order settings, laws, bodies, walls.
-    pub fn check(&self) -> Result<(), Fault> {
-        self.check_settings()?;
-        self.check_laws()?;
-        self.bodies.iter().try_for_each(|body| self.check_body(body))?;
-        self.walls
-            .iter()
-            .enumerate()
-            .try_for_each(|(number, wall)| self.check_wall(Subject::Wall(WallId(number as u32)), wall))
-    }
-
-    fn check_settings(&self) -> Result<(), Fault> {
-        let bed = Subject::Bed;
-        for axis in 0..3 {
-            if let Some(length) = self.domain.cell_length(axis) {
-                bed.positive(["length of a period or bay along x", "period along y", "period along z"][axis], length)?;
-            }
-            let cells = self.domain.cells(axis).unwrap_or(1);
-            bed.want(cells > 0, "number of bays", f64::from(cells), POSITIVE)?;
-        }
-        // no step set yet is for a step to tell
-        bed.want(self.dt.is_finite() && self.dt >= 0.0, "time step", self.dt, POSITIVE)?;
-        bed.want((0.0..1.0).contains(&self.damping), "local damping", self.damping, "a share from 0 to below 1")?;
-        if let Some(skin) = self.build.fixed_skin {
-            bed.positive("reach of the lists", skin)?;
-        }
-        bed.want(self.limits.every > 0, "steps between looks at overlaps", 0.0, POSITIVE)?;
-        for (quantity, limit) in [("limit of overlap", self.limits.overlap), ("limit of stride", self.limits.stride)] {
-            bed.want(limit >= 0.0, quantity, limit, NOT_NEGATIVE)?;
-        }
-        match &self.gravity {
-            Gravity::Constant(value) => bed.numbers("gravity", value),
-            Gravity::Shaken { mean, share, frequency } => {
-                bed.numbers("gravity", mean)?;
-                bed.numbers("share of gravity that shakes", &[*share])?;
-                bed.numbers("frequency of gravity", &[*frequency])
-            }
-            Gravity::Table { times, values } => {
-                bed.want(!times.is_empty(), "number of times of gravity", 0.0, POSITIVE)?;
-                let same = times.len() == values.len();
-                bed.want(same, "number of values of gravity", values.len() as f64, "that of times")?;
-                bed.numbers("times of gravity", times)?;
-                let later = |t: &[f64]| bed.want(t[0] < t[1], "times of gravity", t[1], "each after the one before");
-                times.windows(2).try_for_each(later)?;
-                bed.numbers("gravity", values.as_flattened())
-            }
-        }
-    }
-
-    fn check_laws(&self) -> Result<(), Fault> {
-        for (pair, law) in self.laws.all().iter().enumerate() {
-            if let Some(&LawError { quantity, value, expected }) = law.faults().first() {
-                let surfaces = self.laws.surfaces();
-                let of = Subject::Law((pair / surfaces) as u16, (pair % surfaces) as u16);
-                return Err(Fault { of, quantity, value, expected });
-            }
-        }
-        Ok(())
-    }
-
-    fn check_surface(&self, of: Subject, surface: u16) -> Result<(), Fault> {
-        let fine = usize::from(surface) < self.laws.surfaces();
-        of.want(fine, "surface", f64::from(surface), "a number below that of the surfaces with laws")
-    }
-
-    fn check_body(&self, body: &Body) -> Result<(), Fault> {
-        let of = Subject::Body(BodyId(body.id));
-        of.want(body.pebbles > 0, "number of pebbles", f64::from(body.pebbles), "from 1 to 65535")?;
-        let records = &self.records[body.first as usize..body.first as usize + usize::from(body.pebbles)];
-        for record in records {
-            of.positive("radius", record.radius())?;
-            of.numbers("place", &record.position())?;
-        }
-        of.positive("mass, by its density and volume,", body.mass)?;
-        // single precision has a smaller range
-        records
-            .iter()
-            .try_for_each(|record| of.positive("mass in the precision of contacts", record.mass().to_f64()))?;
-        self.check_surface(of, body.surface)?;
-        of.numbers("velocity", &body.velocity)?;
-        of.numbers("spin", &body.spin)?;
-        let centre = match body.clump {
-            SPHERE => records[0].position(),
-            clump => {
-                let clump = &self.clumps[clump as usize];
-                let length = clump.attitude.iter().map(|c| c * c).sum::<f64>().sqrt();
-                of.want((length - 1.0).abs() < 1e-9, "length of the attitude's quaternion", length, "1")?;
-                for inverse in clump.inverse_inertia {
-                    of.want(inverse.is_finite() && inverse >= 0.0, "inertia", 1.0 / inverse, POSITIVE)?;
-                }
-                clump.centre
-            }
-        };
-        let place = self.domain.place(body.cell, centre);
-        let far = |&x: &f64| of.want(x.abs() <= FARTHEST, "place", x, "within 1e8 m of the origin");
-        place.iter().try_for_each(far)?;
-        self.check_period(of, records, centre)
-    }
-
-    /// A body must not reach itself round a period, however it turns.
-    fn check_period(&self, of: Subject, records: &[R::Record], centre: Vec3) -> Result<(), Fault> {
-        let reach = records.iter().map(|r| r.radius() + norm(sub(r.position(), centre))).fold(0.0, f64::max);
-        let shortest = (0..3).filter_map(|axis| self.domain.period(axis)).fold(f64::INFINITY, f64::min);
-        of.want(2.0 * reach <= shortest, "size", 2.0 * reach, "no longer than the shortest period")
-    }
-
-    fn check_wall(&self, of: Subject, wall: &Wall) -> Result<(), Fault> {
-        wall.shape.check().map_err(|error| of.shape(error))?;
-        wall.pose.check().map_err(|error| of.moves(error))?;
-        wall.motion.check().map_err(|error| of.moves(error))?;
-        let away = wall.pose(&self.domain).position;
-        of.want(dot(away.into(), away.into()).sqrt() <= FARTHEST, "place", away.norm(), "within 1e8 m of the origin")?;
-        self.check_surface(of, wall.surface)
     }
 }

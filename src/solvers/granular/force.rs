@@ -1,7 +1,7 @@
 //! The force of a contact: methods 1.1, lane by lane.
 
 use super::lanes::{Columns, Fine, Lanes, Num, Real, Vector};
-use super::law::{Dashpot, FrictionLimit, HertzMindlin, Law, Linear};
+use super::law::{ContactLaw, Dashpot, FrictionLimit, HertzMindlin, Linear};
 
 /// Two surfaces that may touch.
 #[derive(Clone, Copy)]
@@ -12,7 +12,7 @@ pub struct Meeting<L: Lanes> {
     pub normal: Vector<L>,
     /// From the centres to the contact point, mid way in the overlap \[m\].
     pub arms: [Num<L>; 2],
-    /// Of the first against the second, at the contact point \[m/s\].
+    /// Velocity of the first against the second, at the contact point \[m/s\].
     pub velocity: Vector<L>,
     /// Mean spin about the normal \[rad/s\].
     pub twist: Num<L>,
@@ -24,7 +24,7 @@ pub struct Meeting<L: Lanes> {
 
 /// What a contact does to the first of its two; the second feels the opposite.
 #[derive(Clone, Copy)]
-pub struct Contact<L: Lanes> {
+pub struct ContactForces<L: Lanes> {
     pub force: Vector<L>,
     /// Force of the shear spring, the history of the contact.
     pub shear: Vector<L>,
@@ -42,7 +42,7 @@ impl<L: Lanes> Meeting<L> {
     /// Swapping the two swaps signs and changes no bit else. The distance is an `f64`: a root in the contact's precision
     /// and one step of Newton's iteration.
     #[inline(always)]
-    pub fn of(lanes: L, a: &Columns<L>, b: &Columns<L>, image: Option<[Fine<L>; 3]>) -> Self {
+    pub fn between(lanes: L, a: &Columns<L>, b: &Columns<L>, image: Option<[Fine<L>; 3]>) -> Self {
         let ([ax, ay, az], [bx, by, bz]) = (a.position, b.position);
         let (mut x, mut y, mut z) = (ax - bx, ay - by, az - bz);
         if let Some([sx, sy, sz]) = image {
@@ -95,14 +95,14 @@ pub struct HertzStep {
 }
 
 /// A law that can be evaluated in lanes.
-pub trait Rule: Copy {
-    fn force<L: Lanes>(&self, lanes: L, meeting: &Meeting<L>, shear: Vector<L>) -> Contact<L>;
+pub trait ForceRule: Copy {
+    fn force<L: Lanes>(&self, lanes: L, meeting: &Meeting<L>, shear: Vector<L>) -> ContactForces<L>;
 }
 
 impl Prepared {
-    pub fn new(law: &Law, dt: f64) -> Prepared {
+    pub fn new(law: &ContactLaw, dt: f64) -> Prepared {
         match law {
-            Law::Linear(law) => {
+            ContactLaw::Linear(law) => {
                 let per_root = match law.dashpot {
                     Dashpot::Constant { .. } => [0.0; 2],
                     Dashpot::Ratio { normal, shear } => {
@@ -111,13 +111,13 @@ impl Prepared {
                 };
                 Prepared::Linear(LinearStep { law: *law, per_root, dt })
             }
-            Law::HertzMindlin(law) => Prepared::Hertz(HertzStep { law: *law, ratio: law.damping_ratio(), dt }),
+            ContactLaw::HertzMindlin(law) => Prepared::Hertz(HertzStep { law: *law, ratio: law.damping_ratio(), dt }),
         }
     }
 
     /// One meeting, in whatever lanes.
     #[inline(always)]
-    pub fn force<L: Lanes>(&self, lanes: L, meeting: &Meeting<L>, shear: Vector<L>) -> Contact<L> {
+    pub fn force<L: Lanes>(&self, lanes: L, meeting: &Meeting<L>, shear: Vector<L>) -> ContactForces<L> {
         match self {
             Prepared::Linear(rule) => rule.force(lanes, meeting, shear),
             Prepared::Hertz(rule) => rule.force(lanes, meeting, shear),
@@ -139,9 +139,9 @@ struct Springs<L: Lanes> {
     share: f64,
 }
 
-impl Rule for LinearStep {
+impl ForceRule for LinearStep {
     #[inline(always)]
-    fn force<L: Lanes>(&self, lanes: L, meeting: &Meeting<L>, shear: Vector<L>) -> Contact<L> {
+    fn force<L: Lanes>(&self, lanes: L, meeting: &Meeting<L>, shear: Vector<L>) -> ContactForces<L> {
         let law = &self.law;
         let (normal_dashpot, shear_dashpot) = match law.dashpot {
             Dashpot::Constant { normal, shear } => (Num::splat(lanes, normal), Num::splat(lanes, shear)),
@@ -165,9 +165,9 @@ impl Rule for LinearStep {
     }
 }
 
-impl Rule for HertzStep {
+impl ForceRule for HertzStep {
     #[inline(always)]
-    fn force<L: Lanes>(&self, lanes: L, meeting: &Meeting<L>, shear: Vector<L>) -> Contact<L> {
+    fn force<L: Lanes>(&self, lanes: L, meeting: &Meeting<L>, shear: Vector<L>) -> ContactForces<L> {
         let law = &self.law;
         let contact_radius = (meeting.curvature_radius * meeting.overlap.max(Num::splat(lanes, 0.0))).sqrt();
         let tangent = Num::splat(lanes, 2.0 * law.effective_modulus) * contact_radius;
@@ -195,7 +195,7 @@ impl Rule for HertzStep {
 
 impl<L: Lanes> Springs<L> {
     #[inline(always)]
-    fn act(self, lanes: L, meeting: &Meeting<L>, shear: Vector<L>, dt: f64) -> Contact<L> {
+    fn act(self, lanes: L, meeting: &Meeting<L>, shear: Vector<L>, dt: f64) -> ContactForces<L> {
         let (zero, one, two) = (Num::splat(lanes, 0.0), Num::splat(lanes, 1.0), Num::splat(lanes, 2.0));
         let (tiny, dt) = (Num::splat(lanes, 1e-30), Num::splat(lanes, dt));
         let touching = zero.less(meeting.overlap);
@@ -225,7 +225,7 @@ impl<L: Lanes> Springs<L> {
         let spring = self.normal.where_or(touching, zero);
         // work of the shear spring's mean force over the slip; nothing where no shear spring is
         let slipped = (carried + held).dot(trial - held) / (two * self.shear_stiffness.max(tiny));
-        Contact {
+        ContactForces {
             force: normal.fma(spring, damping + held),
             shear: held,
             damping,
@@ -258,9 +258,9 @@ pub struct Tangent {
 
 impl Tangent {
     /// At `overlap` \[m\] between bodies of effective `mass` \[kg\] and curvature `radius` \[m\].
-    pub fn of(law: &Law, overlap: f64, mass: f64, radius: f64) -> Tangent {
+    pub fn from_law(law: &ContactLaw, overlap: f64, mass: f64, radius: f64) -> Tangent {
         match law {
-            Law::Linear(law) => {
+            ContactLaw::Linear(law) => {
                 let (normal, shear) = (law.normal_stiffness, law.shear_stiffness);
                 let (normal_dashpot, shear_dashpot) = match law.dashpot {
                     Dashpot::Constant { normal, shear } => (normal, shear),
@@ -270,7 +270,7 @@ impl Tangent {
                 };
                 Tangent { normal, shear, normal_dashpot, shear_dashpot }
             }
-            Law::HertzMindlin(law) => {
+            ContactLaw::HertzMindlin(law) => {
                 let contact_radius = (radius * overlap.max(0.0)).sqrt();
                 let (normal, shear) =
                     (2.0 * law.effective_modulus * contact_radius, 8.0 * law.effective_shear_modulus * contact_radius);
@@ -284,7 +284,7 @@ impl Tangent {
 
 /// What a contact leaves for the bodies that it acts on: force, `normal x force`, and both arms.
 #[inline(always)]
-pub fn outcome<L: Lanes>(meeting: &Meeting<L>, contact: &Contact<L>) -> [Num<L>; 8] {
+pub fn outcome<L: Lanes>(meeting: &Meeting<L>, contact: &ContactForces<L>) -> [Num<L>; 8] {
     let [fx, fy, fz] = contact.force.0;
     let [qx, qy, qz] = meeting.normal.cross(contact.force).0;
     [fx, fy, fz, qx, qy, qz, meeting.arms[0], meeting.arms[1]]

@@ -25,7 +25,7 @@ impl Gravity {
     pub const EARTH: Gravity = Gravity::Constant([0.0, 0.0, -9.81]);
 
     /// At a time \[s\].
-    pub fn at(&self, time: f64) -> Vec3 {
+    pub fn value_at(&self, time: f64) -> Vec3 {
         match self {
             Gravity::Constant(value) => *value,
             Gravity::Shaken { mean, share, frequency } => {

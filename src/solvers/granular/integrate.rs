@@ -281,7 +281,7 @@ fn sphere<R: Real, T: Record<R>>(
         tally.damping -= dot(lost, mean) * drive.dt;
     }
     record.place(add(record.position(), scale(velocity, drive.dt)));
-    record.move_with(velocity.map(R::of), spin.map(R::of));
+    record.move_with(velocity.map(R::from_f64), spin.map(R::from_f64));
     (body.velocity, body.spin) = (velocity, spin);
     dot(velocity, velocity)
 }
@@ -330,7 +330,7 @@ fn clump_step<R: Real>(
         let arm = rotate(&turned, *arm);
         let velocity = add(velocity, cross(clump.turning, arm));
         record.place(add(clump.centre, arm));
-        record.move_with(velocity.map(R::of), clump.turning.map(R::of));
+        record.move_with(velocity.map(R::from_f64), clump.turning.map(R::from_f64));
         fastest = fastest.max(dot(velocity, velocity));
     }
     // a maximum forgets what is no number

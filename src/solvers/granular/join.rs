@@ -3,9 +3,9 @@
 use super::bed::Bed;
 use super::body::{BodyId, SPHERE};
 use super::build::Carried;
+use super::failure::Failure;
 use super::lanes::Real;
 use super::walls::Kept;
-use super::watch::Failure;
 
 /// Where the bodies of one bay begin, and which of them are there.
 struct Bay {
@@ -48,7 +48,7 @@ impl<R: Real> Bed<R> {
             bays.push(Bay { cell, numbers });
         }
         let (carried, touches) = histories(cells, &bays);
-        bed.build.outdated = true;
+        bed.lists.outdated = true;
         bed.rebuild_with(carried, touches)?;
         Ok(bed)
     }

@@ -8,7 +8,7 @@ use std::fmt;
 
 /// The law of one pair of surfaces.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum Law {
+pub enum ContactLaw {
     Linear(Linear),
     HertzMindlin(HertzMindlin),
 }
@@ -16,7 +16,7 @@ pub enum Law {
 /// Linear springs, Coulomb friction and dashpots in parallel.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Linear {
-    /// Of the contact, not of a body \[N/m\]; see [`in_series`].
+    /// Stiffness of the contact, not of a body \[N/m\]; see [`in_series`].
     pub normal_stiffness: f64,
     /// \[N/m\]
     pub shear_stiffness: f64,
@@ -147,7 +147,7 @@ fn ratio_without_tension(lost: f64, below: f64) -> f64 {
 /// What bodies of one surface are made of; a pair's law follows from two of them.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Surface {
-    /// Of the body; two in series make a contact \[N/m\].
+    /// Stiffness of the body; two in series make a contact \[N/m\].
     pub normal_stiffness: f64,
     /// \[N/m\]
     pub shear_stiffness: f64,
@@ -160,8 +160,8 @@ pub struct Surface {
 
 impl Surface {
     /// The linear law between two surfaces: stiffness in series, the smaller friction and damping.
-    pub fn meet(&self, other: &Surface) -> Law {
-        Law::Linear(Linear {
+    pub fn meet(&self, other: &Surface) -> ContactLaw {
+        ContactLaw::Linear(Linear {
             normal_stiffness: in_series(self.normal_stiffness, other.normal_stiffness),
             shear_stiffness: in_series(self.shear_stiffness, other.shear_stiffness),
             friction: self.friction.min(other.friction),
@@ -191,7 +191,7 @@ impl fmt::Display for LawError {
 
 impl std::error::Error for LawError {}
 
-impl Law {
+impl ContactLaw {
     /// Every number that cannot be, in the order of the fields.
     pub fn faults(&self) -> Vec<LawError> {
         const POSITIVE: &str = "a number above 0";
@@ -203,7 +203,7 @@ impl Law {
             }
         };
         match self {
-            Law::Linear(law) => {
+            ContactLaw::Linear(law) => {
                 want("normal stiffness", law.normal_stiffness, law.normal_stiffness > 0.0, POSITIVE);
                 want("shear stiffness", law.shear_stiffness, law.shear_stiffness >= 0.0, NOT_NEGATIVE);
                 want("friction", law.friction, law.friction >= 0.0, NOT_NEGATIVE);
@@ -211,7 +211,7 @@ impl Law {
                 want("normal dashpot", normal, normal >= 0.0, NOT_NEGATIVE);
                 want("shear dashpot", shear, shear >= 0.0, NOT_NEGATIVE);
             }
-            Law::HertzMindlin(law) => {
+            ContactLaw::HertzMindlin(law) => {
                 want("effective modulus", law.effective_modulus, law.effective_modulus > 0.0, POSITIVE);
                 want(
                     "effective shear modulus",
@@ -230,27 +230,27 @@ impl Law {
 
 /// The law of every pair of surfaces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Laws {
+pub struct ContactLaws {
     surfaces: usize,
     /// Row by row, `surfaces` squared, symmetric.
-    pairs: Vec<Law>,
+    pairs: Vec<ContactLaw>,
 }
 
-impl Laws {
+impl ContactLaws {
     /// One law for everything; surface 0 is all there is.
-    pub fn single(law: Law) -> Laws {
-        Laws { surfaces: 1, pairs: vec![law] }
+    pub fn single(law: ContactLaw) -> ContactLaws {
+        ContactLaws { surfaces: 1, pairs: vec![law] }
     }
 
     /// Laws of all pairs, by inheritance.
-    pub fn of(surfaces: &[Surface]) -> Laws {
+    pub fn from_surfaces(surfaces: &[Surface]) -> ContactLaws {
         let pairs = surfaces.iter().flat_map(|a| surfaces.iter().map(|b| a.meet(b))).collect();
-        Laws { surfaces: surfaces.len(), pairs }
+        ContactLaws { surfaces: surfaces.len(), pairs }
     }
 
-    /// The same law for all pairs of `surfaces` surfaces; [`Laws::set`] changes some.
-    pub fn uniform(surfaces: usize, law: Law) -> Laws {
-        Laws { surfaces, pairs: vec![law; surfaces * surfaces] }
+    /// The same law for all pairs of `surfaces` surfaces; [`ContactLaws::set`] changes some.
+    pub fn uniform(surfaces: usize, law: ContactLaw) -> ContactLaws {
+        ContactLaws { surfaces, pairs: vec![law; surfaces * surfaces] }
     }
 
     /// Number of surfaces.
@@ -258,28 +258,28 @@ impl Laws {
         self.surfaces
     }
 
-    pub fn set(&mut self, first: u16, second: u16, law: Law) {
+    pub fn set(&mut self, first: u16, second: u16, law: ContactLaw) {
         for (a, b) in [(first, second), (second, first)] {
             self.pairs[usize::from(a) * self.surfaces + usize::from(b)] = law;
         }
     }
 
-    pub fn get(&self, first: u16, second: u16) -> &Law {
+    pub fn get(&self, first: u16, second: u16) -> &ContactLaw {
         &self.pairs[self.class(first, second) as usize]
     }
 
     /// Changes every law in place: friction off and on again, dashpots for packing.
-    pub fn change(&mut self, change: impl FnMut(&mut Law)) {
+    pub fn change(&mut self, change: impl FnMut(&mut ContactLaw)) {
         self.pairs.iter_mut().for_each(change);
     }
 
-    /// Number of a pair in [`Laws::all`], the same for both orders.
+    /// Number of a pair in [`ContactLaws::all`], the same for both orders.
     pub(super) fn class(&self, first: u16, second: u16) -> u16 {
         let (a, b) = (first.min(second) as usize, first.max(second) as usize);
         (a * self.surfaces + b) as u16
     }
 
-    pub(super) fn all(&self) -> &[Law] {
+    pub(super) fn all(&self) -> &[ContactLaw] {
         &self.pairs
     }
 }

@@ -7,7 +7,7 @@
 //! ```
 //! use trackbed::solvers::granular::*;
 //!
-//! let law = Law::Linear(Linear {
+//! let law = ContactLaw::Linear(Linear {
 //!     normal_stiffness: 1.3e7,
 //!     shear_stiffness: 1.3e7,
 //!     friction: 0.7,
@@ -15,7 +15,7 @@
 //!     mode: DashpotMode::default(),
 //!     limit: FrictionLimit::default(),
 //! });
-//! let mut bed: Bed = Bed::new(Domain::open(), Laws::single(law));
+//! let mut bed: Bed = Bed::new(Domain::open(), ContactLaws::single(law));
 //! let grain = bed.add_sphere(&Sphere { centre: [0.0, 0.0, 0.031], radius: 0.03, density: 2700.0, surface: 0 });
 //! let floor = bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
 //! bed.set_gravity(Gravity::EARTH);
@@ -30,6 +30,7 @@
 mod bed;
 mod body;
 mod build;
+mod check;
 mod checkpoint;
 pub mod clump;
 mod contacts;
@@ -37,6 +38,7 @@ mod cost;
 mod critical;
 mod domain;
 mod energy;
+mod failure;
 mod fault;
 mod force;
 pub mod grains;
@@ -46,6 +48,7 @@ mod integrate;
 mod join;
 mod lanes;
 mod law;
+mod lists;
 pub mod measure;
 pub mod motion;
 mod order;
@@ -54,6 +57,7 @@ mod prefetch;
 pub mod probe;
 mod record;
 mod replicate;
+mod rest;
 pub mod rig;
 pub mod rotation;
 mod scaling;
@@ -62,6 +66,7 @@ pub mod shape;
 mod snapshot;
 mod step;
 mod stride;
+mod timings;
 mod union;
 mod vector;
 mod walls;
@@ -70,18 +75,20 @@ mod watch;
 pub use bed::{Bed, BodyState, PebbleState, Placed, Sphere};
 pub use body::BodyId;
 pub use checkpoint::{Checkpoint, RestoreError};
-pub use critical::{CriticalStep, Limit, Seat};
+pub use critical::{CriticalStep, Limit, LimitSeat};
 pub use domain::Domain;
 pub use energy::Energy;
+pub use failure::{Culprit, Failure, Limits};
 pub use fault::{Fault, Subject};
 pub use gravity::Gravity;
 pub use inspect::{Finding, Other};
 pub use lanes::Real;
-pub use law::{Dashpot, DashpotMode, FrictionLimit, HertzMindlin, Law, LawError, Laws, Linear, Surface, in_series};
-pub use motion::{Felt, Motion, Pose};
+pub use law::{
+    ContactLaw, ContactLaws, Dashpot, DashpotMode, FrictionLimit, HertzMindlin, LawError, Linear, Surface, in_series,
+};
+pub use motion::{Felt, Pose, WallMotion};
 pub use scaling::{HeldEnergy, Scaling};
 pub use shape::Shape;
 pub use snapshot::{ContactState, Party, Snapshot};
-pub use step::Timings;
+pub use timings::Timings;
 pub use walls::{Wall, WallId};
-pub use watch::{Culprit, Failure, Limits};

@@ -4,19 +4,21 @@
 //! Velocities belong to a whole step, from `time` to `time + dt`, as a leapfrog scheme takes them: x += v dt. For given
 //! motions they are the mean over the step, so that the wall stands where it should after every step, whatever dt is.
 
+mod error;
 mod push;
 
+pub use error::MotionError;
 pub use push::Push;
 
+use error::require;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-use std::fmt;
 
 /// Where a wall stands and how it is turned against its own frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// Of the frame's origin, m.
+    /// Place of the frame's origin, m.
     pub position: Vector3<f64>,
     /// Unit quaternion w, x, y, z that turns the frame's axes into those of space.
     pub orientation: [f64; 4],
@@ -31,7 +33,7 @@ pub struct Felt {
     pub stiffness: f64,
     /// Sum of their normal dashpots, N s/m.
     pub dashpot: f64,
-    /// Of the wall in the step before, which the dashpots have felt, m/s.
+    /// Velocity of the wall in the step before, which the dashpots have felt, m/s.
     pub velocity: Vector3<f64>,
     /// How many there are.
     pub contacts: usize,
@@ -39,7 +41,7 @@ pub struct Felt {
 
 /// The rule by which a wall moves.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub enum Motion {
+pub enum WallMotion {
     #[default]
     Fixed,
     /// Constant velocity (m/s) of the frame's origin and angular velocity (rad/s) about it, in the axes of space.
@@ -90,34 +92,26 @@ pub enum Motion {
     },
 }
 
-/// A number of a motion that is out of its range.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MotionError {
-    pub name: &'static str,
-    pub value: f64,
-    pub expected: &'static str,
-}
-
 fn usual_gain() -> f64 {
     0.5
 }
 
-impl Motion {
+impl WallMotion {
     /// A servo with the usual gain of 0.5.
     pub fn servo(axis: Vector3<f64>, force: f64, speed_limit: f64) -> Self {
-        Motion::Servo { axis, force, speed_limit, gain: usual_gain() }
+        WallMotion::Servo { axis, force, speed_limit, gain: usual_gain() }
     }
 
     /// The first number that is out of its range.
     pub fn check(&self) -> Result<(), MotionError> {
         match self {
-            Motion::Fixed => Ok(()),
-            Motion::Velocity { linear, angular } => {
+            WallMotion::Fixed => Ok(()),
+            WallMotion::Velocity { linear, angular } => {
                 finite("velocity of a wall", linear)?;
                 finite("angular velocity of a wall", angular)
             }
-            Motion::Table { times, velocities } => check_table(times, velocities),
-            Motion::Harmonic { axis, amplitude, frequency, phase } => {
+            WallMotion::Table { times, velocities } => check_table(times, velocities),
+            WallMotion::Harmonic { axis, amplitude, frequency, phase } => {
                 unit("axis of a harmonic motion", axis)?;
                 let number = |name, value: f64| require(value.is_finite(), name, value, "a finite number");
                 number("amplitude of a harmonic motion", *amplitude)?;
@@ -125,14 +119,14 @@ impl Motion {
                 let fine = frequency.is_finite() && *frequency >= 0.0;
                 require(fine, "frequency of a harmonic motion", *frequency, "of 0 Hz or more")
             }
-            Motion::Servo { axis, force, speed_limit, gain } => {
+            WallMotion::Servo { axis, force, speed_limit, gain } => {
                 unit("axis of a servo", axis)?;
                 require(force.is_finite(), "force of a servo", *force, "a finite number")?;
                 let fine = speed_limit.is_finite() && *speed_limit > 0.0;
                 require(fine, "speed limit of a servo", *speed_limit, "above 0 m/s")?;
                 require(*gain > 0.0 && *gain <= 1.0, "gain of a servo", *gain, "above 0 and up to 1")
             }
-            Motion::Loaded { axis, mass, weight, damping, push } => {
+            WallMotion::Loaded { axis, mass, weight, damping, push } => {
                 unit("axis of a loaded wall", axis)?;
                 require(mass.is_finite() && *mass > 0.0, "mass of a wall", *mass, "above 0 kg")?;
                 require(weight.is_finite(), "weight of a wall", *weight, "a finite number")?;
@@ -145,15 +139,15 @@ impl Motion {
     /// Velocity (m/s) and angular velocity (rad/s) of the step from `time` (s) over `dt` (s, above 0).
     pub fn velocity(&self, time: f64, dt: f64, felt: &Felt) -> (Vector3<f64>, Vector3<f64>) {
         let linear = match self {
-            Motion::Fixed => Vector3::zeros(),
-            Motion::Velocity { linear, angular } => return (*linear, *angular),
-            Motion::Table { times, velocities } => mean_of_table(times, velocities, time, dt),
-            Motion::Harmonic { axis, amplitude, frequency, phase } => {
+            WallMotion::Fixed => Vector3::zeros(),
+            WallMotion::Velocity { linear, angular } => return (*linear, *angular),
+            WallMotion::Table { times, velocities } => mean_of_table(times, velocities, time, dt),
+            WallMotion::Harmonic { axis, amplitude, frequency, phase } => {
                 // sin b - sin a = 2 cos((a + b)/2) sin((b - a)/2) keeps its digits where a and b are close
                 let half = TAU * frequency * dt / 2.0;
                 axis * (amplitude * 2.0 * (TAU * frequency * time + phase + half).cos() * half.sin() / dt)
             }
-            Motion::Servo { axis, force, speed_limit, gain } => {
+            WallMotion::Servo { axis, force, speed_limit, gain } => {
                 let excess = felt.force.dot(axis) - force;
                 let speed = if felt.contacts > 0 && felt.stiffness > 0.0 {
                     let drive = gain * excess + felt.dashpot * felt.velocity.dot(axis);
@@ -165,9 +159,9 @@ impl Motion {
                 };
                 axis * speed
             }
-            Motion::Loaded { axis, mass, weight, damping, push } => {
+            WallMotion::Loaded { axis, mass, weight, damping, push } => {
                 let before = felt.velocity.dot(axis);
-                let drive = felt.force.dot(axis) + weight + push.at(time);
+                let drive = felt.force.dot(axis) + weight + push.force_at(time);
                 let braked = drive - damping * drive.abs() * if before == 0.0 { 0.0 } else { before.signum() };
                 axis * (before + braked * dt / mass)
             }
@@ -184,13 +178,13 @@ fn mean_of_table(times: &[f64], velocities: &[Vector3<f64>], time: f64, dt: f64)
     let mut way = Vector3::zeros();
     let mut from = time;
     for to in inner.chain([end]) {
-        way += (at(times, velocities, from) + at(times, velocities, to)) * ((to - from) / 2.0);
+        way += (value_at(times, velocities, from) + value_at(times, velocities, to)) * ((to - from) / 2.0);
         from = to;
     }
     way / (end - time)
 }
 
-fn at(times: &[f64], velocities: &[Vector3<f64>], time: f64) -> Vector3<f64> {
+fn value_at(times: &[f64], velocities: &[Vector3<f64>], time: f64) -> Vector3<f64> {
     let right = times.partition_point(|t| *t <= time);
     if right == 0 {
         return velocities[0];
@@ -210,10 +204,6 @@ fn check_table(times: &[f64], velocities: &[Vector3<f64>]) -> Result<(), MotionE
     times.iter().try_for_each(|t| require(t.is_finite(), name, *t, "finite numbers"))?;
     times.windows(2).try_for_each(|pair| require(pair[1] > pair[0], name, pair[1], "each after the one before"))?;
     velocities.iter().try_for_each(|v| finite("velocities of a table", v))
-}
-
-fn require(fine: bool, name: &'static str, value: f64, expected: &'static str) -> Result<(), MotionError> {
-    if fine { Ok(()) } else { Err(MotionError { name, value, expected }) }
 }
 
 fn finite(name: &'static str, vector: &Vector3<f64>) -> Result<(), MotionError> {
@@ -290,14 +280,6 @@ fn turn([w, x, y, z]: [f64; 4], v: &Vector3<f64>) -> Vector3<f64> {
     let t = 2.0 * q.cross(v);
     v + w * t + q.cross(&t)
 }
-
-impl fmt::Display for MotionError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "expected {} {}, found {}", self.name, self.expected, self.value)
-    }
-}
-
-impl std::error::Error for MotionError {}
 
 #[cfg(test)]
 mod tests;

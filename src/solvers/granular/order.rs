@@ -23,7 +23,7 @@ const ACROSS: f64 = 24.0;
 const SLICE: f64 = 1.0;
 
 impl Strips {
-    pub fn of(places: impl Iterator<Item = Vec3>) -> Strips {
+    pub fn through(places: impl Iterator<Item = Vec3>) -> Strips {
         let (mut least, mut most, mut count) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3], 0.0);
         for place in places {
             for c in 0..3 {
@@ -62,7 +62,7 @@ mod tests {
         let places: Vec<Vec3> = (0..4000)
             .map(|k| [0.1 * f64::from(k % 10), 0.1 * f64::from(k / 100), 0.1 * f64::from(k / 10 % 10)])
             .collect();
-        let strips = Strips::of(places.iter().copied());
+        let strips = Strips::through(places.iter().copied());
         let mut sorted = places.clone();
         sorted.sort_by_key(|&place| strips.key(place));
         assert_eq!(strips.axes[0], 1);
@@ -72,7 +72,7 @@ mod tests {
     #[test]
     fn flat_and_single_beds_have_an_order() {
         for places in [vec![[1.0, 2.0, 3.0]], vec![[0.0; 3], [1.0, 0.0, 0.0]], vec![[0.0; 3], [1.0, 1.0, 0.0]]] {
-            let strips = Strips::of(places.iter().copied());
+            let strips = Strips::through(places.iter().copied());
             assert!(strips.spacing > 0.0 && strips.sides.iter().all(|s| *s > 0.0));
             let keys: Vec<u64> = places.iter().map(|&p| strips.key(p)).collect();
             assert!(keys.windows(2).all(|k| k[0] < k[1]), "{keys:?}");

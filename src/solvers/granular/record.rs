@@ -1,6 +1,5 @@
 //! What a contact reads of a pebble: one record, in one or two cache lines.
 
-use super::lanes::Real;
 use bytemuck::{Pod, Zeroable};
 
 /// A pebble as its contacts see it. Positions are offsets in the pebble's cell of the domain.
@@ -51,7 +50,7 @@ macro_rules! record {
     ($type:ident, $real:ty) => {
         impl Record<$real> for $type {
             fn new(radius: f64, mass: f64) -> Self {
-                $type { radius, mass: <$real>::of(mass), ..Zeroable::zeroed() }
+                $type { radius, mass: mass as $real, ..Zeroable::zeroed() }
             }
             #[inline(always)]
             fn place(&mut self, position: [f64; 3]) {

@@ -3,8 +3,8 @@
 use super::bed::Bed;
 use super::build::Carried;
 use super::domain::steps_of;
+use super::failure::Failure;
 use super::lanes::{BLOCK, Real};
-use super::watch::Failure;
 
 impl<R: Real> Bed<R> {
     /// `count` copies along x of a bed of one period, with velocities and the histories of contacts.
@@ -49,7 +49,7 @@ impl<R: Real> Bed<R> {
             }
         }
         kept.sort_by_key(|k| (k.wall, k.body, k.pebble));
-        copy.build.outdated = true;
+        copy.lists.outdated = true;
         copy.rebuild_with(carried, kept)?;
         Ok(copy)
     }

@@ -2,13 +2,13 @@
 
 use super::bed::Bed;
 use super::body::{BodyId, SPHERE};
+use super::failure::Failure;
 use super::force::force_of;
 use super::integrate::{self, Drive, Moving, Task};
 use super::lanes::{BLOCK, Real};
 use super::record::Record;
 use super::vector::{Vec3, add, norm, scale, sub};
 use super::walls::WallId;
-use super::watch::Failure;
 
 /// Who takes part in a contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -117,7 +117,7 @@ impl<R: Real> Bed<R> {
         let drive = Drive {
             kick: if self.fresh { 0.0 } else { 0.5 * self.dt },
             dt: 0.0,
-            gravity: self.gravity.at(self.time),
+            gravity: self.gravity.value_at(self.time),
             damping: self.damping,
             watched: true,
         };

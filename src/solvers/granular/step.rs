@@ -2,44 +2,19 @@
 
 use super::bed::Bed;
 use super::contacts::{ContactEnergy, Surroundings, shifts};
-use super::fault::Fault;
+use super::energy::Energy;
+use super::failure::Failure;
 use super::force::Prepared;
 use super::integrate::{self, Drive, Moving, Tally};
 use super::lanes::Real;
-use super::search::CellTooSmall;
+use super::timings::Timings;
 use super::walls::{Pebbles, approach};
-use super::watch::Failure;
-use std::time::{Duration, Instant};
-
-/// Where the time of steps went.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Timings {
-    /// Making lists.
-    pub search: Duration,
-    /// Forces between bodies.
-    pub forces: Duration,
-    /// Forces at walls.
-    pub walls: Duration,
-    /// Sums, bodies and walls in motion.
-    pub motion: Duration,
-}
+use std::time::Instant;
 
 /// Tasks that one thread does before it moves their bodies: what fits into its own cache.
 const ALONE: usize = 3;
 /// Tasks a thread that several do: threads wait for each other twice a window.
 const TOGETHER: usize = 6;
-
-impl From<Fault> for Failure {
-    fn from(fault: Fault) -> Failure {
-        Failure::Fault(fault)
-    }
-}
-
-impl From<CellTooSmall> for Failure {
-    fn from(_: CellTooSmall) -> Failure {
-        Failure::CellTooSmall
-    }
-}
 
 impl<R: Real> Bed<R> {
     /// Does `count` steps, or as many as go well.
@@ -60,7 +35,7 @@ impl<R: Real> Bed<R> {
         let drive = Drive {
             kick: if self.fresh { 0.5 * self.dt } else { self.dt },
             dt: self.dt,
-            gravity: self.gravity.at(self.time),
+            gravity: self.gravity.value_at(self.time),
             damping: self.damping,
             watched: self.ledger.watched,
         };
@@ -69,8 +44,8 @@ impl<R: Real> Bed<R> {
             self.ledger.enter(energy, &self.tally, &self.walls, self.dt);
         }
         self.move_walls();
-        self.build.travel +=
-            2.0 * self.tally.fastest.0.sqrt() * self.dt + approach(&self.walls, self.dt, self.build.extent);
+        self.lists.travel +=
+            2.0 * self.tally.fastest.0.sqrt() * self.dt + approach(&self.walls, self.dt, self.lists.extent);
         self.fresh = false;
         self.steps += 1;
         self.time += self.dt;
@@ -88,9 +63,9 @@ impl<R: Real> Bed<R> {
         let mut energy = self.wall_forces(&laws, &shifts);
         let mut tally = Tally::default();
         let window = if rayon::current_num_threads() == 1 { ALONE } else { TOGETHER * rayon::current_num_threads() };
-        let last = self.build.tasks.len().saturating_sub(1);
+        let last = self.lists.tasks.len().saturating_sub(1);
         for begin in (0..last).step_by(window) {
-            let tasks = &self.build.tasks[begin..=(begin + window).min(last)];
+            let tasks = &self.lists.tasks[begin..=(begin + window).min(last)];
             let start = Instant::now();
             let around = Surroundings { records: &self.records, laws: &laws, shifts: &shifts, dt: self.dt };
             energy += self.contacts.evaluate(tasks, around);
@@ -141,7 +116,7 @@ impl<R: Real> Bed<R> {
             if cell != wall.cell {
                 (wall.cell, wall.pose.position) = (cell, position.into());
                 // the lists measure ways from poses
-                self.build.outdated = true;
+                self.lists.outdated = true;
             }
         }
     }
@@ -153,7 +128,7 @@ impl<R: Real> Bed<R> {
     }
 
     /// Energies at the start of the last step; all zero where nobody watched.
-    pub fn energy(&self) -> super::Energy {
+    pub fn energy(&self) -> Energy {
         self.ledger.now
     }
 }

@@ -2,15 +2,15 @@
 //! dashpots) have some inertia added, and no weight; how much there may be of it in all is a choice.
 
 use super::bed::{Bed, BodyState};
+use super::failure::Failure;
 use super::lanes::Real;
-use super::law::Law;
-use super::motion::Motion;
+use super::law::ContactLaw;
+use super::motion::WallMotion;
 use super::walls::WallId;
-use super::watch::Failure;
 
 /// Share of the stable step that is taken.
 const SAFE: f64 = 0.8;
-/// Of sqrt(m / k), that a body bears for contacts still to come; and the same of a sleeper on all its contacts.
+/// Share of sqrt(m / k) that a body bears for contacts still to come; and the same of a sleeper on all its contacts.
 const PRIOR: f64 = 0.25;
 const SLEEPER: f64 = 0.2;
 /// Steps after which the contacts of now are looked at again.
@@ -73,12 +73,12 @@ impl Stride {
         bed.run(steps)
     }
 
-    /// That sleepers bear on their contacts of now too, s.
+    /// Longest step that sleepers bear on their contacts of now too, s.
     fn longest<R: Real>(&self, bed: &Bed<R>, sleepers: &[WallId]) -> f64 {
         let of = |wall: &WallId| {
             let wall = bed.wall(*wall);
             match wall.motion() {
-                Motion::Loaded { mass, .. } if wall.felt().stiffness > 0.0 => (mass / wall.felt().stiffness).sqrt(),
+                WallMotion::Loaded { mass, .. } if wall.felt().stiffness > 0.0 => (mass / wall.felt().stiffness).sqrt(),
                 _ => f64::INFINITY,
             }
         };
@@ -87,12 +87,12 @@ impl Stride {
     }
 }
 
-/// Of a contact between bodies of each surface, N/m.
+/// Stiffness of a contact between bodies of each surface, N/m.
 fn stiffness<R: Real>(bed: &Bed<R>) -> Vec<f64> {
     let of = |surface: u16| match bed.laws().get(surface, surface) {
-        Law::Linear(law) => law.normal_stiffness.max(law.shear_stiffness),
+        ContactLaw::Linear(law) => law.normal_stiffness.max(law.shear_stiffness),
         // beds of a scene have linear contacts; others are bounded by the contacts of now alone
-        Law::HertzMindlin(_) => 0.0,
+        ContactLaw::HertzMindlin(_) => 0.0,
     };
     (0..bed.laws().surfaces() as u16).map(of).collect()
 }

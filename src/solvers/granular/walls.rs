@@ -3,10 +3,10 @@
 use super::body::Body;
 use super::contacts::{ContactEnergy, Surroundings};
 use super::domain::Domain;
-use super::force::{Contact, Meeting, Outcome, Tangent, force_of, outcome};
+use super::force::{ContactForces, Meeting, Outcome, Tangent, force_of, outcome};
 use super::lanes::{Lanes, Num, Plain, Real, Vector, Work};
-use super::law::Laws;
-use super::motion::{Felt, Motion, Pose};
+use super::law::ContactLaws;
+use super::motion::{Felt, Pose, WallMotion};
 use super::prefetch::prefetch;
 use super::record::Record;
 use super::search::{Grids, Seen};
@@ -32,8 +32,8 @@ pub struct Wall {
     pub(super) pose: Pose,
     pub(super) cell: [i32; 3],
     pub(super) surface: u16,
-    pub(super) motion: Motion,
-    /// Of the last half step \[m/s\], \[rad/s\].
+    pub(super) motion: WallMotion,
+    /// Velocities of the last half step \[m/s\], \[rad/s\].
     pub(super) velocity: Vector3<f64>,
     pub(super) spin: Vector3<f64>,
     pub(super) felt: Felt,
@@ -57,7 +57,7 @@ impl Wall {
         (self.velocity.into(), self.spin.into())
     }
 
-    pub fn motion(&self) -> &Motion {
+    pub fn motion(&self) -> &WallMotion {
         &self.motion
     }
 
@@ -175,7 +175,7 @@ impl<R: Real> WallContacts<R> {
     pub fn find(
         walls: &[Wall],
         around: Near,
-        laws: &Laws,
+        laws: &ContactLaws,
         about: impl Fn(u32) -> (u32, u16, u16),
         kept: &[Kept<R>],
     ) -> Self {
@@ -238,7 +238,7 @@ impl<R: Real> WallContacts<R> {
     pub fn evaluate(
         &mut self,
         walls: &mut [Wall],
-        laws: &Laws,
+        laws: &ContactLaws,
         pebbles: Pebbles,
         around: Surroundings<R>,
         outcomes: &mut [Outcome<R>],
@@ -262,7 +262,7 @@ impl<R: Real> WallContacts<R> {
     }
 
     /// Sums what each wall feels: contact by contact, so that what is merely listed leaves no trace.
-    fn load(&self, walls: &mut [Wall], laws: &Laws, records: &[R::Record], outcomes: &[Outcome<R>]) {
+    fn load(&self, walls: &mut [Wall], laws: &ContactLaws, records: &[R::Record], outcomes: &[Outcome<R>]) {
         for wall in walls.iter_mut() {
             (wall.felt, wall.moment) = (Felt { velocity: wall.velocity, ..Felt::default() }, [0.0; 3]);
         }
@@ -273,7 +273,7 @@ impl<R: Real> WallContacts<R> {
                 let (force, record) = (force_of(outcome), &records[entry.pebble as usize]);
                 let law = &laws.all()[usize::from(entry.law)];
                 wall.felt.force -= Vector3::from(force);
-                let tangent = Tangent::of(law, slot.overlap, record.mass().to_f64(), record.radius());
+                let tangent = Tangent::from_law(law, slot.overlap, record.mass().to_f64(), record.radius());
                 wall.felt.stiffness += tangent.normal;
                 wall.felt.dashpot += tangent.normal_dashpot;
                 wall.felt.contacts += 1;
@@ -450,7 +450,7 @@ fn meet<R: Real>(wall: &Wall, record: &R::Record, away: Vec3, touch: &Touch) -> 
     let (wall_velocity, wall_spin): (Vec3, Vec3) = (wall.velocity.into(), wall.spin.into());
     let [u, v, w] = sub(own, add(wall_velocity, cross(wall_spin, point)));
     let lanes = One::<R>::new();
-    let num = |value: f64| Num { lanes, value: [R::of(value)] };
+    let num = |value: f64| Num { lanes, value: [R::from_f64(value)] };
     let meeting = Meeting {
         overlap: num(overlap),
         normal: Vector([num(normal[0]), num(normal[1]), num(normal[2])]),
@@ -464,7 +464,12 @@ fn meet<R: Real>(wall: &Wall, record: &R::Record, away: Vec3, touch: &Touch) -> 
 }
 
 /// Energy in a contact, and what it lost in a step.
-fn spent<R: Real>(meeting: &Meeting<One<R>>, contact: &Contact<One<R>>, before: [R; 3], dt: f64) -> ContactEnergy {
+fn spent<R: Real>(
+    meeting: &Meeting<One<R>>,
+    contact: &ContactForces<One<R>>,
+    before: [R; 3],
+    dt: f64,
+) -> ContactEnergy {
     let f64s = |v: [R; 3]| v.map(R::to_f64);
     let mean = scale(add(f64s(before), f64s(numbers(contact.damping))), 0.5);
     ContactEnergy {

@@ -1,12 +1,12 @@
 //! Fits a law to a settlement curve that was measured under known trains.
 
 use super::fit::{Fit, FitError, Parameter, fit};
-use super::{Form, Law, Peak};
+use super::law::{Form, Law, Peak};
 
 /// A parameter of a law that is to be found, between bounds, SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wanted {
-    /// As in [`Form::parameters`].
+    /// The name of the parameter, one of [`Form::parameters`].
     pub name: String,
     pub low: f64,
     pub high: f64,
@@ -45,11 +45,11 @@ pub fn curve(law: &Law, wheels: &[Peak], axles: &[u64]) -> Vec<f64> {
     let mut trains = 0;
     let mut settlement = Vec::with_capacity(axles.len());
     for count in axles {
-        law.load(&mut support, wheels, (count / of_train).saturating_sub(trains));
+        support.load(wheels, (count / of_train).saturating_sub(trains));
         trains = trains.max(count / of_train);
         let mut there = support.clone();
-        law.load(&mut there, &wheels[..(count % of_train) as usize], 1);
-        settlement.push(law.settlement(&there));
+        there.load(&wheels[..(count % of_train) as usize], 1);
+        settlement.push(there.settlement());
     }
     settlement
 }

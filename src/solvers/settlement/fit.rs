@@ -250,8 +250,8 @@ mod tests {
         let law = Law { form, cycle_per: CyclePer::Axle };
         let settled = |count: &u64| {
             let mut state = law.fresh();
-            law.load(&mut state, &[Peak { force: 40e3, deflection: 1e-3 }], *count);
-            law.settlement(&state)
+            state.load(&[Peak { force: 40e3, deflection: 1e-3 }], *count);
+            state.settlement()
         };
         COUNTS.iter().map(settled).collect()
     }

@@ -13,62 +13,19 @@
 //! kept and counted. As e falls with Δt³, a step may double once its error is below a twelfth of the tolerance, where the
 //! longer step begins on its own grid: every time that a longer step reaches, all shorter ones reach too.
 
-use super::interface::InterfaceState;
+use super::error::{TrackError, TrackParameter};
+use super::influence::Stepper;
+use super::ladder::{Before, Choice, Ladder};
+use super::model::TrackLevel;
 use super::passage::{Passage, Run};
-use super::{Scheme, Stepper, Track, TrackError, TrackLevel};
-use std::sync::Arc;
-
-/// One time step halved again and again, each prepared for one track; immutable and shared by all passages.
-#[derive(Debug, Clone)]
-pub struct Ladder {
-    /// Longest first.
-    rungs: Vec<Stepper>,
-}
-
-/// How a passage chooses among the steps of a ladder.
-#[derive(Debug, Clone)]
-pub(super) struct Choice<'a> {
-    ladder: &'a Ladder,
-    rung: usize,
-    /// m.
-    tolerance: f64,
-    before: Before,
-}
-
-/// The state before a step.
-#[derive(Debug, Clone, Default)]
-struct Before {
-    tick: u64,
-    /// Displacement, velocity and acceleration of the track, then of each vehicle.
-    track: [Vec<f64>; 3],
-    vehicles: Vec<[Vec<f64>; 3]>,
-    interface: InterfaceState,
-    support_forces: Vec<f64>,
-}
 
 /// Part of the tolerance below which a step may be twice as long: its error grows eightfold, and half as much again is spare.
 const CALM: f64 = 1.0 / 12.0;
 
-impl Ladder {
-    /// Prepares the step of `scheme` and its first `halvings` halves; fails where the track is a mechanism without mass.
-    pub fn new(track: &Arc<Track>, scheme: Scheme, halvings: usize) -> Result<Self, TrackError> {
-        let rung = |n: usize| {
-            let scheme = scheme.with_time_step(scheme.time_step / (1u64 << n.min(32)) as f64)?;
-            Stepper::new(track.clone(), scheme)
-        };
-        Ok(Self { rungs: (0..=halvings).map(rung).collect::<Result<_, _>>()? })
-    }
-
-    /// The longest step.
-    pub fn longest(&self) -> &Stepper {
-        &self.rungs[0]
-    }
-}
-
 impl<'a> Passage<'a> {
     /// Places the train at its start as [`Passage::new`] does, to run in steps of the ladder whose error stays below
     /// `tolerance` times the largest deflection of the rail under the train at its start, where the ladder is long enough;
-    /// [`super::Counters`] tells. Fails where the tolerance is not above 0, too.
+    /// [`Counters`](super::Counters) tells. Fails where the tolerance is not above 0, too.
     pub fn adaptive(
         ladder: &'a Ladder,
         level: &'a TrackLevel,
@@ -76,7 +33,11 @@ impl<'a> Passage<'a> {
         tolerance: f64,
     ) -> Result<Self, TrackError> {
         if !(tolerance > 0.0 && tolerance.is_finite()) {
-            return Err(TrackError::Parameter { name: "tolerance of a step", value: tolerance, expected: "above 0" });
+            return Err(TrackError::Parameter {
+                name: TrackParameter::Tolerance,
+                value: tolerance,
+                expected: "above 0",
+            });
         }
         let mut passage = Self::new(ladder.longest(), level, run)?;
         passage.divide_ticks(ladder.rungs.len() as u32 - 1);

@@ -1,14 +1,55 @@
-//! The matrices of a meshed track: every part adds its own.
+//! The matrices of a meshed track and its own forces: every part adds its share.
 
-use super::beam::ElementMatrix;
+use super::beam::add_element;
 use super::ends;
+use super::error::TrackError;
 use super::mesh::{FootUnknown, Track};
-use super::{Foot, RailEnds};
+use super::model::{Foot, RailEnds, TrackLevel, TrackModel};
+use super::numbering::{Numbering, place_nodes, rail_elements};
 use crate::linalg::banded::SymmetricBanded;
 
 impl Track {
+    /// Meshes a model and assembles its matrices; fails where the model contradicts itself.
+    pub fn new(model: TrackModel) -> Result<Self, TrackError> {
+        model.check()?;
+        let nodes = place_nodes(&model);
+        let numbering = Numbering::new(&model, &nodes);
+        let half_band = numbering.half_band();
+        let order = numbering.order;
+        let mut held = Vec::new();
+        for (end, node) in [(0, 0), (1, nodes.len() - 1)] {
+            if matches!(model.rail_ends, RailEnds::Clamped | RailEnds::Pinned) {
+                held.push((numbering.rail[node], Some(end)));
+            }
+            if model.rail_ends == RailEnds::Clamped {
+                held.push((numbering.rail[node] + 1, None));
+            }
+        }
+        let zeros = SymmetricBanded::zeros(order, half_band);
+        let mut track = Self {
+            elements: rail_elements(&model, &nodes, &numbering),
+            nodes,
+            rail: numbering.rail,
+            rail_unknowns: numbering.rail_unknowns,
+            seat_nodes: numbering.seat_nodes,
+            feet: numbering.feet,
+            sleepers: numbering.sleepers,
+            slabs: numbering.slabs,
+            auxiliary_rails: numbering.auxiliary_rails,
+            stiffness: zeros.clone(),
+            damping: zeros.clone(),
+            mass: zeros,
+            weight: vec![0.0; order],
+            dead_weight: 0.0,
+            held,
+            model,
+        };
+        track.assemble();
+        Ok(track)
+    }
+
     /// Adds up stiffness, damping, mass and weight, all supports closed.
-    pub(super) fn assemble(&mut self) {
+    fn assemble(&mut self) {
         self.assemble_rail();
         self.assemble_slabs();
         self.assemble_auxiliary_rails();
@@ -16,6 +57,25 @@ impl Track {
         if self.model.rail_ends == RailEnds::Absorbing {
             ends::assemble(self);
         }
+    }
+
+    /// Gravity on the nodes, and what pulls the rail ends to `level` where the track goes on beyond them.
+    pub(super) fn own_forces(&self, level: &TrackLevel) -> Vec<f64> {
+        let mut forces = self.weight.clone();
+        if self.model.rail_ends == RailEnds::Absorbing {
+            ends::add_forces(self, level, &mut forces);
+        }
+        forces
+    }
+
+    /// Forces on the nodes that do not change while the track stays at `level`: its own and the closed supports' levels.
+    pub(super) fn steady_forces(&self, level: &TrackLevel) -> Vec<f64> {
+        let mut forces = self.own_forces(level);
+        for sleeper in &self.sleepers {
+            forces[sleeper.unknown] +=
+                sleeper.support_stiffness * level.settlements[sleeper.seat] + sleeper.seating_loss();
+        }
+        forces
     }
 
     fn assemble_rail(&mut self) {
@@ -82,15 +142,6 @@ impl Track {
                 self.weight[unknown] += mass * self.model.gravity;
                 self.dead_weight += mass * self.model.gravity;
             }
-        }
-    }
-}
-
-/// Adds the matrix of an element over its unknowns.
-pub(super) fn add_element(matrix: &mut SymmetricBanded, unknowns: [usize; 4], element: ElementMatrix) {
-    for (r, row) in element.iter().enumerate() {
-        for c in 0..=r {
-            matrix.add(unknowns[r], unknowns[c], row[c]);
         }
     }
 }

@@ -8,6 +8,8 @@
 //! Under a point load P between the nodes the exact deflection exceeds that of the element by the one of a beam clamped at
 //! both nodes, [`Element::clamped_deflection`], and the moments at the nodes by the clamping moments `-P N₂(a)`, `P N₄(a)`.
 
+use crate::linalg::banded::SymmetricBanded;
+
 /// A symmetric 4 x 4 matrix over the unknowns of an element.
 pub(super) type ElementMatrix = [[f64; 4]; 4];
 
@@ -117,6 +119,15 @@ impl Element {
             }
         }
         matrix
+    }
+}
+
+/// Adds the matrix of an element over its unknowns.
+pub(super) fn add_element(matrix: &mut SymmetricBanded, unknowns: [usize; 4], element: ElementMatrix) {
+    for (r, row) in element.iter().enumerate() {
+        for c in 0..=r {
+            matrix.add(unknowns[r], unknowns[c], row[c]);
+        }
     }
 }
 

@@ -10,9 +10,9 @@
 //! Waves are met by dampers along the rail before the end, `c(x) = c_end ξ²` with ξ from 0 at the layer's inner end to 1 at the
 //! rail's end: damping that starts at once would reflect them.
 
-use super::assembly::add_element;
-use super::mesh::{Track, usual_bay};
-use super::{Foot, TrackLevel};
+use super::beam::add_element;
+use super::mesh::Track;
+use super::model::{Foot, TrackLevel};
 
 /// Length of the damped layer, m, where the track is at least four times as long.
 const LAYER: f64 = 5.0;
@@ -38,7 +38,7 @@ impl Continuation {
             0 => (model.rail.first()?, model.seats.first()?),
             _ => (model.rail.last()?, model.seats.last()?),
         };
-        let bay = usual_bay(model);
+        let bay = model.usual_bay();
         let below = match seat.foot {
             Foot::Sleeper { support_stiffness, .. } => 1.0 / support_stiffness,
             Foot::Slab => model.slab_under(seat.x).map_or(0.0, |s| 1.0 / (model.slabs[s].foundation_stiffness * bay)),

@@ -16,7 +16,7 @@ pub struct Envelope {
     /// Row by row for each seat: the largest contact force while each wheel was the nearest to the seat, N. A wheel that
     /// never was the nearest, or a seat without a sleeper, has 0.
     pub axle_peaks: Vec<f64>,
-    /// As `axle_peaks`: how far the sleeper presses its support below its unloaded level at most, m.
+    /// Row by row for each seat, like `axle_peaks`: how far the sleeper presses its support below its unloaded level at most, m.
     pub axle_deflections: Vec<f64>,
     /// Smallest and largest force of each wheel, N.
     pub wheel_forces: Vec<(f64, f64)>,

@@ -57,7 +57,7 @@ impl Stepper {
         let at_sleepers = |column: &Window| {
             let start = track.sleepers.partition_point(|s| s.unknown < column.start);
             let end = track.sleepers.partition_point(|s| s.unknown < column.end());
-            Window { start, values: track.sleepers[start..end].iter().map(|s| column.at(s.unknown)).collect() }
+            Window { start, values: track.sleepers[start..end].iter().map(|s| column.entry(s.unknown)).collect() }
         };
         Ok(Self {
             of_rail_at_sleepers: of_rail.iter().map(at_sleepers).collect(),

@@ -17,11 +17,13 @@
 
 use super::WheelContact;
 use super::contact::WheelLaw;
+use super::error::Unsettled;
 use super::influence::Stepper;
 use super::mesh::RailPoint;
 use super::reach::Reach;
 use super::support::{SupportLines, SupportPhase};
 use crate::linalg::skyline::Skyline;
+use crate::linalg::vector::add_scaled;
 use nalgebra::DMatrix;
 
 /// The contacts of a passage: their state after the last step and scratch for the next.
@@ -36,7 +38,7 @@ pub(super) struct Interface {
     /// Change of the indentation over the last step, m: the first guess of the next.
     trends: Vec<f64>,
     contacts: Vec<WheelContact>,
-    /// Of this step.
+    /// Laws of the wheels in this step.
     laws: Vec<WheelLaw>,
     /// Indentation if this step's wheel forces were zero, m.
     pub free_indentations: Vec<f64>,
@@ -56,7 +58,7 @@ pub(super) struct Interface {
     pub free_gaps: Vec<f64>,
     pub gaps: Vec<f64>,
     // Of the linear system.
-    unknowns: Vec<Contact>,
+    unknowns: Vec<ContactIndex>,
     /// Last unknown of the track that a contact touches, per row.
     ends: Vec<usize>,
     matrix: Skyline,
@@ -73,7 +75,7 @@ pub(super) struct InterfaceState {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Contact {
+pub(super) enum ContactIndex {
     /// By rank from left to right.
     Wheel(usize),
     Support(usize),
@@ -157,7 +159,7 @@ impl Interface {
 
     /// Solves the contacts of a step whose points, free indentations, lines and free gaps are set; fails with the contact
     /// that was last moved.
-    pub fn solve(&mut self, stepper: &Stepper) -> Result<Effort, Contact> {
+    pub fn solve(&mut self, stepper: &Stepper) -> Result<Effort, ContactIndex> {
         self.reach.gather(stepper, &self.points);
         for j in 0..self.points.len() {
             let (indentation, trend) = (self.indentations[j], self.trends[j]);
@@ -171,7 +173,7 @@ impl Interface {
         }
         self.take_given();
         let limit = 100 + 4 * self.phases.len();
-        let mut moved = Contact::Support(0);
+        let mut moved = ContactIndex::Support(0);
         for iteration in 1..=limit {
             let careful = iteration > FLIP_ALL;
             self.assemble(stepper);
@@ -179,27 +181,27 @@ impl Interface {
             self.corrections.fill(0.0);
             for (unknown, value) in self.unknowns.iter().zip(&self.rhs) {
                 match *unknown {
-                    Contact::Wheel(rank) => {
+                    ContactIndex::Wheel(rank) => {
                         self.answers[rank] = *value;
                         self.forces[self.reach.wheels[rank].wheel] = *value;
                     }
-                    Contact::Support(s) => self.corrections[s] = *value,
+                    ContactIndex::Support(s) => self.corrections[s] = *value,
                 }
             }
             let wheels = self.move_wheels(if careful { 0.5 } else { 1.0 });
             if let Some(wheel) = wheels {
-                moved = Contact::Wheel(wheel);
+                moved = ContactIndex::Wheel(wheel);
             }
             self.evaluate_gaps(stepper);
             let support = if careful && wheels.is_some() { None } else { self.move_supports(careful) };
             if let Some(sleeper) = support {
-                moved = Contact::Support(sleeper);
+                moved = ContactIndex::Support(sleeper);
             }
             if wheels.is_none() && support.is_none() {
                 for (trend, indentation) in self.trends.iter_mut().zip(&self.indentations) {
                     *trend += indentation;
                 }
-                let active = self.unknowns.iter().filter(|u| matches!(u, Contact::Support(_))).count();
+                let active = self.unknowns.iter().filter(|u| matches!(u, ContactIndex::Support(_))).count();
                 return Ok(Effort { iterations: iteration, active });
             }
         }
@@ -213,19 +215,17 @@ impl Interface {
         self.lines[sleeper].force(phase, self.gaps[sleeper], self.corrections[sleeper]).max(0.0)
     }
 
-    /// A contact and the state it is in, for people.
-    pub fn describe(&self, contact: Contact) -> String {
+    /// A contact and the state it is in.
+    pub fn describe(&self, contact: ContactIndex) -> Unsettled {
         match contact {
-            Contact::Wheel(rank) => {
+            ContactIndex::Wheel(rank) => {
                 let wheel = self.wheel_of(rank);
                 let (force, indentation) = (self.forces[wheel], self.indentations[wheel]);
-                format!("wheel {} with {force:.0} N at an indentation of {indentation:.3e} m", wheel + 1)
+                Unsettled::Wheel { number: wheel + 1, force, indentation }
             }
-            Contact::Support(sleeper) => match (self.phases.get(sleeper), self.gaps.get(sleeper)) {
-                (Some(phase), Some(gap)) => {
-                    format!("the support of sleeper {}, {} at a gap of {gap:.3e} m", sleeper + 1, phase.word())
-                }
-                _ => "no support".to_owned(),
+            ContactIndex::Support(sleeper) => match (self.phases.get(sleeper), self.gaps.get(sleeper)) {
+                (Some(&phase), Some(&gap)) => Unsettled::Support { sleeper: sleeper + 1, phase, gap },
+                _ => Unsettled::Nothing,
             },
         }
     }
@@ -265,7 +265,7 @@ impl Interface {
             let until = ranked.map_or(self.phases.len(), |wheel| wheel.sleepers_left);
             for s in next_sleeper..until {
                 if self.phases[s] != SupportPhase::Closed {
-                    self.unknowns.push(Contact::Support(s));
+                    self.unknowns.push(ContactIndex::Support(s));
                     self.ends.push(stepper.track.sleepers[s].unknown);
                 }
             }
@@ -274,7 +274,7 @@ impl Interface {
             self.row_of[rank] = self.unknowns.len();
             let law = self.laws[wheel.wheel];
             if law.touches(self.indentations[wheel.wheel]) {
-                self.unknowns.push(Contact::Wheel(rank));
+                self.unknowns.push(ContactIndex::Wheel(rank));
                 self.ends.push(wheel.end);
             } else {
                 self.answers[rank] = 0.0;
@@ -290,40 +290,39 @@ impl Interface {
         rhs.clear();
         for (r, contact) in unknowns.iter().enumerate() {
             let (from, coupled) = match *contact {
-                Contact::Wheel(rank) => (reach.wheels[rank].from, self.row_of[reach.wheels[rank].vehicle_first]),
-                Contact::Support(s) => (stepper.of_sleeper[s].start, r),
+                ContactIndex::Wheel(rank) => (reach.wheels[rank].from, self.row_of[reach.wheels[rank].vehicle_first]),
+                ContactIndex::Support(s) => (stepper.of_sleeper[s].start, r),
             };
             let felt = self.ends[..r].iter().rev().take_while(|end| **end >= from).count();
             let row = matrix.push_row((r - felt).min(coupled));
             let first = r + 1 - row.len();
             for (entry, other) in row.iter_mut().zip(&unknowns[first..]) {
                 *entry = match (*contact, *other) {
-                    (Contact::Wheel(p), Contact::Wheel(q)) => reach.compliance.get(p, q),
-                    (Contact::Support(s), Contact::Wheel(p)) | (Contact::Wheel(p), Contact::Support(s)) => {
-                        reach.wheels[p].at_sleeper(s)
-                    }
-                    (Contact::Support(s), Contact::Support(t)) => stepper.of_sleeper_at_sleepers[s].at(t),
+                    (ContactIndex::Wheel(p), ContactIndex::Wheel(q)) => reach.compliance.get(p, q),
+                    (ContactIndex::Support(s), ContactIndex::Wheel(p))
+                    | (ContactIndex::Wheel(p), ContactIndex::Support(s)) => reach.wheels[p].at_sleeper(s),
+                    (ContactIndex::Support(s), ContactIndex::Support(t)) => stepper.of_sleeper_at_sleepers[s].entry(t),
                 };
             }
             let diagonal = &mut row[r - first];
             rhs.push(match *contact {
-                Contact::Wheel(rank) => {
+                ContactIndex::Wheel(rank) => {
                     let j = reach.wheels[rank].wheel;
                     let (flexibility, rest) = self.laws[j].line(self.indentations[j]);
                     *diagonal += flexibility;
                     self.free_indentations[j] - rest
                 }
-                Contact::Support(s) if self.phases[s] == SupportPhase::Open => {
+                ContactIndex::Support(s) if self.phases[s] == SupportPhase::Open => {
                     let line = &self.lines[s];
                     *diagonal -= 1.0 / line.stiffness;
                     -(self.free_gaps[s] + line.closed(0.0) / line.stiffness)
                 }
-                Contact::Support(s) if self.phases[s] == SupportPhase::Seating => {
+                ContactIndex::Support(s) if self.phases[s] == SupportPhase::Seating => {
                     let line = &self.lines[s];
                     *diagonal -= 1.0 / line.lack;
                     line.closure - self.free_gaps[s]
                 }
-                Contact::Support(s) => -self.free_gaps[s],
+                ContactIndex::Support(s) => -self.free_gaps[s],
             });
         }
     }
@@ -334,7 +333,7 @@ impl Interface {
             *next = self.free_indentations[ranked.wheel];
         }
         self.reach.compliance.subtract_product(&self.answers, &mut self.next);
-        let any_support = self.unknowns.iter().any(|u| matches!(u, Contact::Support(_)));
+        let any_support = self.unknowns.iter().any(|u| matches!(u, ContactIndex::Support(_)));
         let mut worst = (0.0, None);
         for (rank, ranked) in self.reach.wheels.iter().enumerate() {
             let (j, mut next) = (ranked.wheel, self.next[rank]);
@@ -365,7 +364,7 @@ impl Interface {
             }
         }
         for unknown in &self.unknowns {
-            if let Contact::Support(s) = *unknown {
+            if let ContactIndex::Support(s) = *unknown {
                 let column = &stepper.of_sleeper_at_sleepers[s];
                 add_scaled(&mut self.gaps[column.start..], &column.values, self.corrections[s]);
             }
@@ -388,13 +387,5 @@ impl Interface {
             }
         }
         moved
-    }
-}
-
-/// `y += factor x` over the length of x.
-#[inline]
-pub(super) fn add_scaled(y: &mut [f64], x: &[f64], factor: f64) {
-    for (y, x) in y.iter_mut().zip(x) {
-        *y += factor * x;
     }
 }

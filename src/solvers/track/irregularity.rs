@@ -1,7 +1,6 @@
 //! The unevenness of the rail's running surface: a wheel sees the rail at w(x) + r(x).
 
-use super::TrackError;
-use super::model::SAME_PLACE;
+use super::error::{TrackError, TrackParameter};
 use serde::{Deserialize, Serialize};
 
 /// r over x, m below the even surface: cubics side by side, none where the surface is even. Beyond the outer ends it stays as
@@ -57,7 +56,7 @@ impl Irregularity {
     }
 
     /// r at a chainage, m.
-    pub fn at(&self, x: f64) -> f64 {
+    pub fn depth_at(&self, x: f64) -> f64 {
         let right = self.cubics.partition_point(|cubic| cubic.ends[0] <= x);
         let Some(cubic) = self.cubics.get(right.saturating_sub(1)) else { return 0.0 };
         let length = cubic.ends[1] - cubic.ends[0];
@@ -67,13 +66,13 @@ impl Irregularity {
         s * cubic.values[0] + t * cubic.values[1] + length * length / 6.0 * bend
     }
 
-    /// The first chainage at which the cubics are not numbers or do not stand side by side.
-    pub(super) fn flaw(&self) -> Option<f64> {
+    /// The first chainage at which the cubics are not numbers, or stand farther apart than `gap`, m.
+    pub(super) fn flaw(&self, gap: f64) -> Option<f64> {
         let broken = |cubic: &&Cubic| {
             let numbers = cubic.ends.iter().chain(&cubic.values).chain(&cubic.curvatures).all(|v| v.is_finite());
             !numbers || cubic.ends[1] <= cubic.ends[0]
         };
-        let apart = |pair: &&[Cubic]| (pair[1].ends[0] - pair[0].ends[1]).abs() > SAME_PLACE;
+        let apart = |pair: &&[Cubic]| (pair[1].ends[0] - pair[0].ends[1]).abs() > gap;
         let in_one = self.cubics.iter().find(broken).map(|cubic| cubic.ends[0]);
         in_one.or_else(|| self.cubics.windows(2).find(apart).map(|pair| pair[0].ends[1]))
     }
@@ -82,13 +81,15 @@ impl Irregularity {
 fn check(points: &[(f64, f64)]) -> Result<(), TrackError> {
     let fail = |name, value, expected| Err(TrackError::Parameter { name, value, expected });
     if points.is_empty() {
-        return fail("points of an irregularity", 0.0, "of 1 or more");
+        return fail(TrackParameter::Irregularity("points of an irregularity"), 0.0, "of 1 or more");
     }
     if let Some(point) = points.iter().find(|(x, r)| !(x.is_finite() && r.is_finite())) {
-        return fail("point of an irregularity", point.0 + point.1, "a finite number");
+        return fail(TrackParameter::Irregularity("point of an irregularity"), point.0 + point.1, "a finite number");
     }
     match points.windows(2).find(|pair| pair[1].0 <= pair[0].0) {
-        Some(pair) => fail("chainage in an irregularity", pair[1].0, "above the one before"),
+        Some(pair) => {
+            fail(TrackParameter::Irregularity("chainage in an irregularity"), pair[1].0, "above the one before")
+        }
         None => Ok(()),
     }
 }
@@ -119,16 +120,16 @@ mod tests {
 
     #[test]
     fn profiles_go_through_their_points() {
-        assert_eq!(Irregularity::default().at(3.0), 0.0);
+        assert_eq!(Irregularity::default().depth_at(3.0), 0.0);
         let points = vec![(0.0, 1.0), (1.0, 3.0), (1.5, -1.0), (4.0, 0.5)];
         for profile in [Irregularity::linear(points.clone()).unwrap(), Irregularity::spline(points.clone()).unwrap()] {
             for (x, r) in &points {
-                assert!((profile.at(*x) - r).abs() < 1e-14);
+                assert!((profile.depth_at(*x) - r).abs() < 1e-14);
             }
-            assert_eq!((profile.at(-9.0), profile.at(9.0)), (1.0, 0.5));
+            assert_eq!((profile.depth_at(-9.0), profile.depth_at(9.0)), (1.0, 0.5));
         }
-        assert_eq!(Irregularity::linear(points).unwrap().at(0.5), 2.0);
-        assert_eq!(Irregularity::spline(vec![(2.0, 7.0)]).unwrap().at(0.0), 7.0);
+        assert_eq!(Irregularity::linear(points).unwrap().depth_at(0.5), 2.0);
+        assert_eq!(Irregularity::spline(vec![(2.0, 7.0)]).unwrap().depth_at(0.0), 7.0);
     }
 
     #[test]
@@ -137,7 +138,7 @@ mod tests {
         let worst = |count: usize| {
             let x = |i: usize| std::f64::consts::PI * i as f64 / count as f64;
             let spline = Irregularity::spline((0..=count).map(|i| (x(i), wave(x(i)))).collect()).unwrap();
-            (0..1000).map(|i| 3.1e-3 * f64::from(i)).fold(0.0f64, |m, x| m.max((spline.at(x) - wave(x)).abs()))
+            (0..1000).map(|i| 3.1e-3 * f64::from(i)).fold(0.0f64, |m, x| m.max((spline.depth_at(x) - wave(x)).abs()))
         };
         assert!((worst(20) / worst(40)).log2() > 3.9);
     }

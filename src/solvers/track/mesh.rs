@@ -1,14 +1,9 @@
-//! The meshed track: nodes, the numbering of unknowns, and the matrices with all supports closed.
-//!
-//! Nodes stand at every seat, joint, section boundary, end of a slab or auxiliary rail and rail end, with `elements_per_bay` elements between two seats and
-//! proportionally fewer in shorter stretches. Unknowns are numbered node by node - rail deflection and rotation (two
-//! rotations at a joint), sleeper, slab, auxiliary rails - so the half band is 5 with sleepers on one side and a slab on the
-//! other, 7 where two slabs meet or beside one auxiliary rail.
+//! The meshed track: its nodes, its unknowns and its matrices, and what a place on it is to them.
 
 use super::beam::Element;
-use super::ends;
-use super::model::SAME_PLACE;
-use super::{Foot, RailEnds, Seating, TrackError, TrackLevel, TrackModel};
+use super::error::{TrackError, TrackParameter};
+use super::model::{SAME_PLACE, TrackLevel, TrackModel};
+use super::support::SleeperSupport;
 use crate::linalg::banded::SymmetricBanded;
 
 /// A [`TrackModel`] with its mesh and matrices; immutable and shared by all states and passages.
@@ -26,7 +21,7 @@ pub struct Track {
     /// Node of each seat.
     pub(super) seat_nodes: Vec<usize>,
     pub(super) feet: Vec<FootUnknown>,
-    pub(super) sleepers: Vec<Sleeper>,
+    pub(super) sleepers: Vec<SleeperSupport>,
     pub(super) slabs: Vec<BeamMesh>,
     pub(super) auxiliary_rails: Vec<BeamMesh>,
     /// All supports closed, nothing held.
@@ -58,15 +53,6 @@ pub(super) enum FootUnknown {
         unknown: usize,
     },
     Rigid,
-}
-
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Sleeper {
-    pub seat: usize,
-    pub unknown: usize,
-    pub support_stiffness: f64,
-    pub support_damping: f64,
-    pub seating: Option<Seating>,
 }
 
 /// A beam below or beside the rail, over some of its nodes.
@@ -103,45 +89,6 @@ pub(super) struct RailPoint {
 }
 
 impl Track {
-    /// Meshes a model and assembles its matrices; fails where the model contradicts itself.
-    pub fn new(model: TrackModel) -> Result<Self, TrackError> {
-        model.check()?;
-        let nodes = place_nodes(&model);
-        let numbering = Numbering::new(&model, &nodes);
-        let half_band = numbering.half_band();
-        let order = numbering.order;
-        let mut held = Vec::new();
-        for (end, node) in [(0, 0), (1, nodes.len() - 1)] {
-            if matches!(model.rail_ends, RailEnds::Clamped | RailEnds::Pinned) {
-                held.push((numbering.rail[node], Some(end)));
-            }
-            if model.rail_ends == RailEnds::Clamped {
-                held.push((numbering.rail[node] + 1, None));
-            }
-        }
-        let zeros = SymmetricBanded::zeros(order, half_band);
-        let mut track = Self {
-            elements: rail_elements(&model, &nodes, &numbering),
-            nodes,
-            rail: numbering.rail,
-            rail_unknowns: numbering.rail_unknowns,
-            seat_nodes: numbering.seat_nodes,
-            feet: numbering.feet,
-            sleepers: numbering.sleepers,
-            slabs: numbering.slabs,
-            auxiliary_rails: numbering.auxiliary_rails,
-            stiffness: zeros.clone(),
-            damping: zeros.clone(),
-            mass: zeros,
-            weight: vec![0.0; order],
-            dead_weight: 0.0,
-            held,
-            model,
-        };
-        track.assemble();
-        Ok(track)
-    }
-
     pub fn model(&self) -> &TrackModel {
         &self.model
     }
@@ -254,32 +201,21 @@ impl Track {
         }
     }
 
-    /// Gravity on the nodes, and what pulls the rail ends to `level` where the track goes on beyond them.
-    pub(super) fn own_forces(&self, level: &TrackLevel) -> Vec<f64> {
-        let mut forces = self.weight.clone();
-        if self.model.rail_ends == RailEnds::Absorbing {
-            ends::add_forces(self, level, &mut forces);
-        }
-        forces
-    }
-
-    /// Forces on the nodes that do not change while the track stays at `level`: its own and the closed supports' levels.
-    pub(super) fn steady_forces(&self, level: &TrackLevel) -> Vec<f64> {
-        let mut forces = self.own_forces(level);
-        for sleeper in &self.sleepers {
-            forces[sleeper.unknown] +=
-                sleeper.support_stiffness * level.settlements[sleeper.seat] + sleeper.seating_loss();
-        }
-        forces
-    }
-
     pub(super) fn check_level(&self, level: &TrackLevel) -> Result<(), TrackError> {
         if level.settlements.len() != self.model.seats.len() {
             let value = level.settlements.len() as f64;
-            return Err(TrackError::Parameter { name: "settlements", value, expected: "one per seat" });
+            return Err(TrackError::Parameter {
+                name: TrackParameter::Level("settlements"),
+                value,
+                expected: "one per seat",
+            });
         }
         match level.settlements.iter().chain(&level.ends).find(|s| !s.is_finite()) {
-            Some(value) => Err(TrackError::Parameter { name: "level", value: *value, expected: "a finite number" }),
+            Some(value) => Err(TrackError::Parameter {
+                name: TrackParameter::Level("level"),
+                value: *value,
+                expected: "a finite number",
+            }),
             None => Ok(()),
         }
     }
@@ -289,163 +225,4 @@ impl Track {
         let node = self.rail.partition_point(|first| *first <= unknown);
         self.nodes[node.saturating_sub(1)]
     }
-}
-
-/// The unknowns of every part, in the order of the nodes.
-struct Numbering {
-    order: usize,
-    rail: Vec<usize>,
-    rail_unknowns: Vec<usize>,
-    /// At each node, the rotation of the rail right of it.
-    right_rotation: Vec<usize>,
-    seat_nodes: Vec<usize>,
-    feet: Vec<FootUnknown>,
-    sleepers: Vec<Sleeper>,
-    slabs: Vec<BeamMesh>,
-    auxiliary_rails: Vec<BeamMesh>,
-}
-
-impl Numbering {
-    fn new(model: &TrackModel, nodes: &[f64]) -> Self {
-        let node_at = |x: f64| nearest(nodes, x);
-        let seat_nodes: Vec<usize> = model.seats.iter().map(|seat| node_at(seat.x)).collect();
-        let joints: Vec<usize> = model.joints.iter().map(|x| node_at(*x)).collect();
-        let spans = |ends: &[(f64, f64)]| -> Vec<(usize, usize)> {
-            ends.iter().map(|(start, end)| (node_at(*start), node_at(*end))).collect()
-        };
-        let slab_spans = spans(&model.slabs.iter().map(|s| (s.start, s.end)).collect::<Vec<_>>());
-        let auxiliary_spans = spans(&model.auxiliary_rails.iter().map(|r| (r.start, r.end)).collect::<Vec<_>>());
-        let empty = |spans: &[(usize, usize)]| -> Vec<BeamMesh> {
-            spans.iter().map(|(first, _)| BeamMesh { first_node: *first, unknowns: Vec::new() }).collect()
-        };
-        let mut this = Self {
-            order: 0,
-            rail: Vec::with_capacity(nodes.len()),
-            rail_unknowns: Vec::with_capacity(2 * nodes.len()),
-            right_rotation: Vec::with_capacity(nodes.len()),
-            feet: vec![FootUnknown::Rigid; model.seats.len()],
-            sleepers: Vec::new(),
-            slabs: empty(&slab_spans),
-            auxiliary_rails: empty(&auxiliary_spans),
-            seat_nodes,
-        };
-        let mut next_seat = 0;
-        for node in 0..nodes.len() {
-            this.number_rail(joints.contains(&node));
-            let seat = Some(next_seat).filter(|seat| this.seat_nodes.get(*seat) == Some(&node));
-            next_seat += usize::from(seat.is_some());
-            this.number_sleeper(model, seat);
-            for (slab, (first, last)) in slab_spans.iter().enumerate() {
-                if (*first..=*last).contains(&node) {
-                    this.number_slab(model, slab, seat);
-                }
-            }
-            for (rail, (first, last)) in auxiliary_spans.iter().enumerate() {
-                if (*first..=*last).contains(&node) {
-                    this.auxiliary_rails[rail].unknowns.push(this.order);
-                    this.order += 2;
-                }
-            }
-        }
-        this
-    }
-
-    fn number_rail(&mut self, joint: bool) {
-        let unknowns = if joint { 3 } else { 2 };
-        self.rail.push(self.order);
-        self.rail_unknowns.extend(self.order..self.order + unknowns);
-        self.order += unknowns;
-        self.right_rotation.push(self.order - 1);
-    }
-
-    fn number_sleeper(&mut self, model: &TrackModel, seat: Option<usize>) {
-        if let Some(seat) = seat
-            && let Foot::Sleeper { support_stiffness, support_damping, seating, .. } = model.seats[seat].foot
-        {
-            self.feet[seat] = FootUnknown::Sleeper(self.sleepers.len());
-            self.sleepers.push(Sleeper { seat, unknown: self.order, support_stiffness, support_damping, seating });
-            self.order += 1;
-        }
-    }
-
-    fn number_slab(&mut self, model: &TrackModel, slab: usize, seat: Option<usize>) {
-        if let Some(seat) = seat
-            && model.seats[seat].foot == Foot::Slab
-        {
-            self.feet[seat] = FootUnknown::Slab { unknown: self.order };
-        }
-        self.slabs[slab].unknowns.push(self.order);
-        self.order += 2;
-    }
-
-    /// The largest distance of two unknowns that act on each other.
-    fn half_band(&self) -> usize {
-        let mut half_band = 3;
-        for (node, pair) in self.rail.windows(2).enumerate() {
-            half_band = half_band.max(pair[1] + 1 - pair[0]).max(pair[1] + 1 - self.right_rotation[node]);
-        }
-        for pair in self.slabs.iter().chain(&self.auxiliary_rails).flat_map(|beam| beam.unknowns.windows(2)) {
-            half_band = half_band.max(pair[1] + 1 - pair[0]);
-        }
-        for (node, foot) in self.seat_nodes.iter().zip(&self.feet) {
-            let foot = match foot {
-                FootUnknown::Sleeper(s) => self.sleepers[*s].unknown,
-                FootUnknown::Slab { unknown } => *unknown,
-                FootUnknown::Rigid => self.rail[*node],
-            };
-            half_band = half_band.max(foot - self.rail[*node]);
-            for beam in &self.auxiliary_rails {
-                let at_node = node.checked_sub(beam.first_node).and_then(|i| beam.unknowns.get(i));
-                half_band = half_band.max(at_node.map_or(0, |unknown| unknown - foot));
-            }
-        }
-        half_band
-    }
-}
-
-fn rail_elements(model: &TrackModel, nodes: &[f64], numbering: &Numbering) -> Vec<RailElement> {
-    let column_of = |unknown: usize| numbering.rail_unknowns.partition_point(|u| *u < unknown);
-    let mut elements = Vec::with_capacity(nodes.len());
-    for (node, pair) in nodes.windows(2).enumerate() {
-        let (length, middle) = (pair[1] - pair[0], 0.5 * (pair[0] + pair[1]));
-        let Some(section) = model.rail.iter().find(|s| middle <= s.end).or(model.rail.last()) else { continue };
-        let [left, right] = [numbering.rail[node], numbering.rail[node + 1]];
-        let unknowns = [left, numbering.right_rotation[node], right, right + 1];
-        let beam = Element::new(length, section.bending_stiffness, section.shear.map(|s| s.stiffness));
-        elements.push(RailElement { beam, unknowns, columns: unknowns.map(column_of) });
-    }
-    elements
-}
-
-fn place_nodes(model: &TrackModel) -> Vec<f64> {
-    let mut breaks: Vec<f64> = model.ends.to_vec();
-    breaks.extend(model.seats.iter().map(|s| s.x));
-    breaks.extend(model.rail.iter().map(|s| s.end));
-    breaks.extend(&model.joints);
-    breaks.extend(model.slabs.iter().flat_map(|s| [s.start, s.end]));
-    breaks.extend(model.auxiliary_rails.iter().flat_map(|r| [r.start, r.end]));
-    breaks.sort_by(f64::total_cmp);
-    breaks.dedup_by(|next, kept| *next - *kept <= SAME_PLACE);
-    let bay = usual_bay(model);
-
-    let mut nodes = vec![breaks[0]];
-    for pair in breaks.windows(2) {
-        let wanted = model.elements_per_bay as f64 * (pair[1] - pair[0]) / bay;
-        let count = (wanted - 1e-6).ceil().max(1.0) as usize;
-        nodes.extend((1..count).map(|i| pair[0] + (pair[1] - pair[0]) * i as f64 / count as f64));
-        nodes.push(pair[1]);
-    }
-    nodes
-}
-
-/// The median distance of neighbouring seats, m; the length of the track where there are none.
-pub(super) fn usual_bay(model: &TrackModel) -> f64 {
-    let mut bays: Vec<f64> = model.seats.windows(2).map(|pair| pair[1].x - pair[0].x).collect();
-    bays.sort_by(f64::total_cmp);
-    bays.get(bays.len() / 2).copied().unwrap_or(model.ends[1] - model.ends[0])
-}
-
-fn nearest(nodes: &[f64], x: f64) -> usize {
-    let after = nodes.partition_point(|node| *node < x).min(nodes.len() - 1);
-    if after > 0 && x - nodes[after - 1] < nodes[after] - x { after - 1 } else { after }
 }

@@ -1,6 +1,8 @@
 //! The track as numbers, before it is meshed, and the checks that a mesh relies on. Everything belongs to one rail.
 
-use super::{Irregularity, Seating, TrackError};
+use super::error::{Flaw, TrackError, TrackParameter};
+use super::irregularity::Irregularity;
+use super::support::Seating;
 use serde::{Deserialize, Serialize};
 
 /// What the track of one rail consists of; SI units.
@@ -19,7 +21,7 @@ pub struct TrackModel {
     /// Chainages at which the rail is hinged, m.
     pub joints: Vec<f64>,
     pub rail_ends: RailEnds,
-    /// Of the rail's running surface.
+    /// Unevenness of the rail's running surface.
     pub irregularity: Irregularity,
     /// Rail elements between neighbouring seats; more resolve higher frequencies. Statics are exact with one.
     pub elements_per_bay: usize,
@@ -146,8 +148,8 @@ impl AuxiliaryRail {
     }
 }
 
-fn fail(x: f64, reason: &str) -> Result<(), TrackError> {
-    Err(TrackError::Model { x, reason: reason.to_owned() })
+fn fail(x: f64, flaw: Flaw) -> Result<(), TrackError> {
+    Err(TrackError::Model { x, flaw })
 }
 
 /// Written so that a value that is not a number fails, as below.
@@ -164,20 +166,28 @@ impl TrackModel {
     pub(super) fn check(&self) -> Result<(), TrackError> {
         let [start, end] = self.ends;
         if !(start.is_finite() && positive(end - start)) {
-            return fail(start, "the right end of the track is not right of its left end");
+            return fail(start, Flaw::Ends);
         }
         if self.elements_per_bay == 0 {
-            return Err(TrackError::Parameter { name: "elements per bay", value: 0.0, expected: "of 1 or more" });
+            return Err(TrackError::Parameter {
+                name: TrackParameter::ElementsPerBay,
+                value: 0.0,
+                expected: "of 1 or more",
+            });
         }
         if !not_negative(self.gravity) {
-            return Err(TrackError::Parameter { name: "gravity", value: self.gravity, expected: "of 0 or more" });
+            return Err(TrackError::Parameter {
+                name: TrackParameter::Gravity,
+                value: self.gravity,
+                expected: "of 0 or more",
+            });
         }
         self.check_rail()?;
         self.check_slabs()?;
         self.check_seats()?;
         self.check_auxiliary_rails()?;
-        match self.irregularity.flaw() {
-            Some(x) => fail(x, "the irregularity is not a number or has a gap"),
+        match self.irregularity.flaw(SAME_PLACE) {
+            Some(x) => fail(x, Flaw::Irregularity),
             None => Ok(()),
         }
     }
@@ -187,21 +197,21 @@ impl TrackModel {
         let mut reached = start;
         for section in &self.rail {
             if (section.start - reached).abs() > SAME_PLACE || !positive(section.end - section.start) {
-                return fail(reached, "the rail sections do not follow each other");
+                return fail(reached, Flaw::RailGap);
             }
             if !positive(section.bending_stiffness) || !not_negative(section.mass) {
-                return fail(section.start, "the rail has no bending stiffness or a negative mass");
+                return fail(section.start, Flaw::Rail);
             }
             if section.shear.is_some_and(|s| !positive(s.stiffness) || !not_negative(s.rotary_inertia)) {
-                return fail(section.start, "the rail has no shear stiffness or a negative rotary inertia");
+                return fail(section.start, Flaw::RailShear);
             }
             reached = section.end;
         }
         if (reached - end).abs() > SAME_PLACE {
-            return fail(reached, "the rail sections do not reach the end of the track");
+            return fail(reached, Flaw::RailShort);
         }
         match self.joints.iter().find(|x| !(**x > start + SAME_PLACE && **x < end - SAME_PLACE)) {
-            Some(x) => fail(*x, "a joint does not lie between the ends of the rail"),
+            Some(x) => fail(*x, Flaw::Joint),
             None => Ok(()),
         }
     }
@@ -211,15 +221,14 @@ impl TrackModel {
         let mut reached = start - SAME_PLACE;
         for slab in &self.slabs {
             if slab.start < reached || !positive(slab.end - slab.start) || slab.end > end + SAME_PLACE {
-                return fail(slab.start, "a slab overlaps another one or the end of the track");
+                return fail(slab.start, Flaw::SlabOverlap);
             }
             if !positive(slab.bending_stiffness)
                 || !positive(slab.foundation_stiffness)
                 || !not_negative(slab.mass)
                 || !not_negative(slab.foundation_damping)
             {
-                let reason = "a slab lacks bending or foundation stiffness, or has a negative mass or damping";
-                return fail(slab.start, reason);
+                return fail(slab.start, Flaw::Slab);
             }
             reached = slab.end - SAME_PLACE;
         }
@@ -231,26 +240,26 @@ impl TrackModel {
         let mut reached = f64::NEG_INFINITY;
         for seat in &self.seats {
             if seat.x < start - SAME_PLACE || seat.x > end + SAME_PLACE || seat.x.is_nan() {
-                return fail(seat.x, "a seat lies outside the track");
+                return fail(seat.x, Flaw::SeatOutside);
             }
             if seat.x - reached <= SAME_PLACE {
-                return fail(seat.x, "two seats share a place or are out of order");
+                return fail(seat.x, Flaw::SeatOrder);
             }
             if !positive(seat.pad_stiffness) || !not_negative(seat.pad_damping) {
-                return fail(seat.x, "a pad has no stiffness or a negative damping");
+                return fail(seat.x, Flaw::Pad);
             }
             match seat.foot {
                 Foot::Rigid => {}
                 Foot::Sleeper { mass, support_stiffness, support_damping, seating } => {
                     let soft = |s: Seating| positive(s.stiffness) && s.stiffness <= support_stiffness;
                     if seating.is_some_and(|s| !soft(s) || !positive(s.closure)) {
-                        return fail(seat.x, "a seating is not softer than its support, or lacks stiffness or closure");
+                        return fail(seat.x, Flaw::Seating);
                     }
                     if !positive(mass) || !positive(support_stiffness) || !not_negative(support_damping) {
-                        return fail(seat.x, "a sleeper lacks mass or support stiffness, or has a negative damping");
+                        return fail(seat.x, Flaw::Sleeper);
                     }
                 }
-                Foot::Slab if self.slab_under(seat.x).is_none() => return fail(seat.x, "no slab under the seat"),
+                Foot::Slab if self.slab_under(seat.x).is_none() => return fail(seat.x, Flaw::NoSlab),
                 Foot::Slab => {}
             }
             reached = seat.x;
@@ -262,18 +271,17 @@ impl TrackModel {
         let [start, end] = self.ends;
         for rail in &self.auxiliary_rails {
             if !(rail.start >= start - SAME_PLACE && rail.end <= end + SAME_PLACE) {
-                return fail(rail.start, "an auxiliary rail reaches beyond the track");
+                return fail(rail.start, Flaw::AuxiliaryRailOutside);
             }
             if self.seats.iter().filter(|seat| rail.carries(seat.x)).count() < 2 {
-                return fail(rail.start, "an auxiliary rail lies on fewer than two seats");
+                return fail(rail.start, Flaw::AuxiliaryRailShort);
             }
             if !positive(rail.bending_stiffness)
                 || !positive(rail.pad_stiffness)
                 || !not_negative(rail.mass)
                 || !not_negative(rail.pad_damping)
             {
-                let reason = "an auxiliary rail lacks bending or pad stiffness, or has a negative mass or damping";
-                return fail(rail.start, reason);
+                return fail(rail.start, Flaw::AuxiliaryRail);
             }
         }
         Ok(())
@@ -287,5 +295,12 @@ impl TrackModel {
     /// Index of the slab under x, the right one where two meet.
     pub(super) fn slab_under(&self, x: f64) -> Option<usize> {
         self.slabs.iter().rposition(|s| s.start - SAME_PLACE <= x && x <= s.end + SAME_PLACE)
+    }
+
+    /// The median distance of neighbouring seats, m; the length of the track where there are none.
+    pub(super) fn usual_bay(&self) -> f64 {
+        let mut bays: Vec<f64> = self.seats.windows(2).map(|pair| pair[1].x - pair[0].x).collect();
+        bays.sort_by(f64::total_cmp);
+        bays.get(bays.len() / 2).copied().unwrap_or(self.ends[1] - self.ends[0])
     }
 }

@@ -6,7 +6,7 @@
 //! ξ = v_0 (exp(g t) - 1)/g,    t = ln(v_1/v_0)/g,    g = (v_1 - v_0)/(ξ_1 - ξ_0)
 //! ```
 
-use super::TrackError;
+use super::error::{TrackError, TrackParameter};
 use serde::{Deserialize, Serialize};
 
 /// The speed of a train, m/s, above 0 whatever its direction.
@@ -62,24 +62,28 @@ impl Motion {
         let fail = |name, value, expected| Err(TrackError::Parameter { name, value, expected });
         let distance = sign * (finish - start);
         if !(distance > 0.0 && distance.is_finite()) {
-            return fail("distance", distance, "above 0");
+            return fail(TrackParameter::Distance, distance, "above 0");
         }
         let points: &[(f64, f64)] = match self {
             Motion::Constant(speed) => &[(start, *speed)],
             Motion::ByChainage(points) => points,
         };
         if points.is_empty() {
-            return fail("points of a speed profile", 0.0, "of 1 or more");
+            return fail(TrackParameter::SpeedProfile("points of a speed profile"), 0.0, "of 1 or more");
         }
         if let Some((_, speed)) = points.iter().find(|(_, speed)| !(*speed > 0.0 && speed.is_finite())) {
-            return fail("speed", *speed, "above 0");
+            return fail(TrackParameter::Speed, *speed, "above 0");
         }
         // Written so that a value that is not a number fails.
         if let Some((x, _)) = points.iter().find(|(x, _)| !x.is_finite()) {
-            return fail("chainage in a speed profile", *x, "a finite number");
+            return fail(TrackParameter::SpeedProfile("chainage in a speed profile"), *x, "a finite number");
         }
         if let Some(pair) = points.windows(2).find(|pair| pair[1].0 <= pair[0].0) {
-            return fail("chainage in a speed profile", pair[1].0, "above the one before");
+            return fail(
+                TrackParameter::SpeedProfile("chainage in a speed profile"),
+                pair[1].0,
+                "above the one before",
+            );
         }
         let mut places = vec![start];
         places.extend(points.iter().map(|p| p.0).filter(|x| (start.min(finish) < *x) && (*x < start.max(finish))));

@@ -7,7 +7,7 @@
 //! M is diagonal, F_w is the force of wheel w on the rail and e_w picks the unknown that the wheel moves with. Displacements are
 //! positive down, rotations as seen in the direction of motion, so a train that runs the other way has the same matrices.
 
-use super::TrackError;
+use super::error::{TrackError, TrackParameter};
 use nalgebra::DMatrix;
 
 /// A linear vehicle, as carried by one rail.
@@ -118,18 +118,18 @@ impl Multibody {
             ("forces on a vehicle", self.forces.len()),
         ] {
             if length != order {
-                return fail(name, length as f64, "one per unknown");
+                return fail(TrackParameter::Vehicle(name), length as f64, "one per unknown");
             }
         }
         // Written so that a value that is not a number fails.
         let not_negative = |value: f64| value >= 0.0 && value.is_finite();
         for value in self.masses.iter().chain(&self.weighing) {
             if !not_negative(*value) {
-                return fail("mass of a vehicle", *value, "of 0 or more");
+                return fail(TrackParameter::Vehicle("mass of a vehicle"), *value, "of 0 or more");
             }
         }
         if let Some(value) = self.forces.iter().find(|f| !f.is_finite()) {
-            return fail("force on a vehicle", *value, "a finite number");
+            return fail(TrackParameter::Vehicle("force on a vehicle"), *value, "a finite number");
         }
         for (name, matrix) in [("stiffness of a vehicle", &self.stiffness), ("damping of a vehicle", &self.damping)] {
             let largest = matrix.iter().fold(0.0f64, |m, v| m.max(v.abs()));
@@ -138,16 +138,16 @@ impl Multibody {
                     let value = matrix[(i, j)];
                     let same = (value - matrix[(j, i)]).abs() <= 1e-12 * largest;
                     if !(value.is_finite() && same) {
-                        return fail(name, value, "finite and symmetric");
+                        return fail(TrackParameter::Vehicle(name), value, "finite and symmetric");
                     }
                 }
                 if !not_negative(matrix[(i, i)]) {
-                    return fail(name, matrix[(i, i)], "of 0 or more along each unknown");
+                    return fail(TrackParameter::Vehicle(name), matrix[(i, i)], "of 0 or more along each unknown");
                 }
             }
         }
         if self.wheels.is_empty() {
-            return fail("wheels of a vehicle", 0.0, "of 1 or more");
+            return fail(TrackParameter::Vehicle("wheels of a vehicle"), 0.0, "of 1 or more");
         }
         self.wheels.iter().try_for_each(|wheel| wheel.check(order))
     }
@@ -157,33 +157,33 @@ impl Wheel {
     fn check(&self, order: usize) -> Result<(), TrackError> {
         let fail = |name, value, expected| Err(TrackError::Parameter { name, value, expected });
         if !(self.offset >= 0.0 && self.offset.is_finite()) {
-            return fail("offset of a wheel", self.offset, "of 0 or more");
+            return fail(TrackParameter::Wheel("offset of a wheel"), self.offset, "of 0 or more");
         }
         let above = |value: f64| value > 0.0 && value.is_finite();
         match self.contact {
             WheelContact::Hertz(constant) if !above(constant) => {
-                return fail("Hertz constant of a wheel", constant, "above 0");
+                return fail(TrackParameter::Wheel("Hertz constant of a wheel"), constant, "above 0");
             }
             WheelContact::Linear { stiffness, .. } if !above(stiffness) => {
-                return fail("contact stiffness of a wheel", stiffness, "above 0");
+                return fail(TrackParameter::Wheel("contact stiffness of a wheel"), stiffness, "above 0");
             }
             WheelContact::Linear { damping, .. } if !(damping >= 0.0 && damping.is_finite()) => {
-                return fail("contact damping of a wheel", damping, "of 0 or more");
+                return fail(TrackParameter::Wheel("contact damping of a wheel"), damping, "of 0 or more");
             }
             WheelContact::Given(force) if !force.is_finite() => {
-                return fail("force of a wheel", force, "a finite number");
+                return fail(TrackParameter::Wheel("force of a wheel"), force, "a finite number");
             }
             _ => {}
         }
         match (self.unknown, self.contact) {
             (Some(unknown), WheelContact::Given(_)) => {
-                fail("unknown of a wheel", unknown as f64, "none under a given force")
+                fail(TrackParameter::Wheel("unknown of a wheel"), unknown as f64, "none under a given force")
             }
             (Some(unknown), _) if unknown >= order => {
-                fail("unknown of a wheel", unknown as f64, "below the number of unknowns")
+                fail(TrackParameter::Wheel("unknown of a wheel"), unknown as f64, "below the number of unknowns")
             }
             (None, WheelContact::Hertz(_) | WheelContact::Linear { .. }) => {
-                fail("unknowns of a wheel", 0.0, "of 1 where the force is not given")
+                fail(TrackParameter::Wheel("unknowns of a wheel"), 0.0, "of 1 where the force is not given")
             }
             _ => Ok(()),
         }

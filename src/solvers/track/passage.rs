@@ -1,17 +1,18 @@
-//! One train over one track: the time loop.
+//! One train over one track: its state, and one step of it.
 //!
 //! A step solves the linear track with all supports closed, then the contacts ([`super::interface`]), and adds what the
 //! contact forces displace. Nothing is factored and nothing allocated while it runs.
 
-use super::adaptive::Choice;
+use super::counters::Counters;
+use super::error::{TrackError, TrackParameter, Wild};
 use super::influence::Stepper;
-use super::interface::{Contact, Interface, add_scaled};
+use super::interface::{ContactIndex, Interface};
+use super::ladder::Choice;
 use super::motion::Timetable;
 use super::quasi_static::{self, Start};
 use super::running::RunningVehicle;
-
-use super::view::{Observer, StepView};
-use super::{Loads, Motion, StaticState, SupportPhase, TrackError, TrackLevel, Train, WheelContact, solve_static};
+use super::{Loads, Motion, StaticState, SupportPhase, TrackLevel, Train, WheelContact, solve_static};
+use crate::linalg::vector::add_scaled;
 use std::ops::Range;
 
 /// A displacement of the track beyond this is beyond sense, m; a rotation, rad.
@@ -35,22 +36,6 @@ pub struct Run<'a> {
     pub motion: &'a Motion,
 }
 
-/// What a passage has cost so far.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Counters {
-    pub steps: usize,
-    /// Newton iterations of the contacts.
-    pub iterations: usize,
-    /// The most iterations of one step.
-    pub most_iterations: usize,
-    /// The most supports of one step that were not closed.
-    pub most_open_supports: usize,
-    /// Steps that were taken back for shorter ones.
-    pub rejected: usize,
-    /// Steps kept although their error was above the tolerance, as no shorter one was at hand.
-    pub beyond_tolerance: usize,
-}
-
 /// A passage under way. All vectors run over the unknowns of the track unless said otherwise.
 #[derive(Debug, Clone)]
 pub struct Passage<'a> {
@@ -64,9 +49,9 @@ pub struct Passage<'a> {
     pub(super) tick_length: f64,
     pub(super) ticks_per_step: u64,
     pub(super) ticks_per_longest: u64,
-    /// Of the last step, s; of the first one at the start.
+    /// Length of the last step, s; that of the first one at the start.
     pub(super) last_step: f64,
-    planned_ticks: u64,
+    pub(super) planned_ticks: u64,
     /// How the length of a step is chosen; none where it is fixed.
     pub(super) choice: Option<Box<Choice<'a>>>,
     pub(super) displacement: Vec<f64>,
@@ -114,7 +99,11 @@ impl<'a> Passage<'a> {
     ) -> Result<Self, TrackError> {
         if !state.vehicles.is_empty() {
             let value = state.vehicles.len() as f64;
-            return Err(TrackError::Parameter { name: "vehicles", value, expected: "of 0 on a released track" });
+            return Err(TrackError::Parameter {
+                name: TrackParameter::Train("vehicles"),
+                value,
+                expected: "of 0 on a released track",
+            });
         }
         let track = &stepper.track;
         let start = Start::at_rest(track, state);
@@ -234,38 +223,9 @@ impl<'a> Passage<'a> {
         self.tick_length = self.stepper.time_step() / self.ticks_per_step as f64;
     }
 
-    /// The present state.
-    pub fn view(&self) -> StepView<'_> {
-        StepView { passage: self }
-    }
-
-    /// Runs to the finish; `observer` sees the start and every step.
-    pub fn run(&mut self, observer: &mut impl Observer) -> Result<Counters, TrackError> {
-        observer.observe(&self.view());
-        while self.tick < self.planned_ticks {
-            self.step()?;
-            observer.observe(&self.view());
-        }
-        Ok(self.counters)
-    }
-
     /// s, since the start.
     pub fn time(&self) -> f64 {
         self.tick as f64 * self.tick_length
-    }
-
-    /// One time step; after an error the state is not to be used.
-    ///
-    /// Fails where the contacts do not settle, or where the motion has grown beyond sense.
-    pub fn step(&mut self) -> Result<(), TrackError> {
-        match self.choice.take() {
-            Some(mut choice) => {
-                let outcome = self.chosen_step(&mut choice);
-                self.choice = Some(choice);
-                outcome
-            }
-            None => self.step_once(),
-        }
     }
 
     /// A step of the present length.
@@ -335,7 +295,7 @@ impl<'a> Passage<'a> {
                     (0..4).map(|k| point.shape[k] * (predicted[unknowns[k]] + share * a[unknowns[k]])).sum();
                 self.interface.points[j] = point;
                 self.interface.free_indentations[j] =
-                    vehicle.free_wheel(scheme, j - wheels.start) - rail - track.model.irregularity.at(x);
+                    vehicle.free_wheel(scheme, j - wheels.start) - rail - track.model.irregularity.depth_at(x);
             }
         }
     }
@@ -358,8 +318,8 @@ impl<'a> Passage<'a> {
             step: self.counters.steps,
             time: self.tick as f64 * self.tick_length,
             x: match contact {
-                Contact::Wheel(rank) => self.wheel_positions[self.interface.wheel_of(rank)],
-                Contact::Support(s) => track.sleepers.get(s).map_or(f64::NAN, |s| track.model.seats[s.seat].x),
+                ContactIndex::Wheel(rank) => self.wheel_positions[self.interface.wheel_of(rank)],
+                ContactIndex::Support(s) => track.sleepers.get(s).map_or(f64::NAN, |s| track.model.seats[s.seat].x),
             },
             contact: self.interface.describe(contact),
         })?;
@@ -404,8 +364,8 @@ impl<'a> Passage<'a> {
     fn check_sense(&self) -> Result<(), TrackError> {
         let mut forces = self.interface.forces.iter().zip(&self.force_limits);
         if let Some(j) = forces.position(|(force, limit)| !within(*force, *limit)) {
-            let (step, x, value) = (self.counters.steps, self.wheel_positions[j], self.interface.forces[j]);
-            return Err(TrackError::Unstable { step, time: self.time(), x, what: "a wheel force", value, unit: "N" });
+            let (step, x, force) = (self.counters.steps, self.wheel_positions[j], self.interface.forces[j]);
+            return Err(TrackError::Unstable { step, time: self.time(), x, what: Wild::WheelForce(force) });
         }
         if self.displacement.iter().fold(true, |sound, u| sound & within(*u, WILD_DISPLACEMENT)) {
             Ok(())
@@ -422,9 +382,7 @@ impl<'a> Passage<'a> {
             step: self.counters.steps,
             time,
             x: track.place_of(unknown),
-            what: "a displacement",
-            value: self.displacement[unknown],
-            unit: "m",
+            what: Wild::Displacement(self.displacement[unknown]),
         }
     }
 

@@ -7,7 +7,7 @@
 //! A vehicle cannot follow the ripple of the static states from sleeper to sleeper: followed at speed, a micrometre of it is
 //! a tenth of a car body's weight. It takes the mean slope over one bay and no acceleration.
 
-use super::mesh::{Track, usual_bay};
+use super::mesh::Track;
 use super::statics::{Inertia, solve_with_inertia};
 use super::{Loads, StaticState, SupportPhase, TrackError, TrackLevel, Train, solve_static};
 
@@ -37,7 +37,7 @@ pub(super) fn start(
     let at = |x: f64| solve_static(track, level, &Loads { train: Some((train, x)), ..Loads::default() });
     let here = at(leading)?;
     let sign = train.direction.sign();
-    let distance = if track.model.shears() { SHEARED_DISTANCE * usual_bay(&track.model) } else { DISTANCE };
+    let distance = if track.model.shears() { SHEARED_DISTANCE * track.model.usual_bay() } else { DISTANCE };
     let interval = distance / speed;
     // A wheel may stand at the very end of the track: then there is no state behind or ahead of it.
     let (behind, ahead) = (at(leading - sign * distance), at(leading + sign * distance));
@@ -47,7 +47,7 @@ pub(super) fn start(
     let second = |i: usize| (ahead.unknowns[i] - 2.0 * here.unknowns[i] + behind.unknowns[i]) / (interval * interval);
     let velocity: Vec<f64> = (0..track.order()).map(difference).collect();
     let acceleration: Vec<f64> = (0..track.order()).map(second).collect();
-    let half = 0.5 * usual_bay(&track.model);
+    let half = 0.5 * track.model.usual_bay();
     let mut vehicle_velocity: Vec<Vec<f64>> = train.vehicles.iter().map(|(v, _)| vec![0.0; v.order()]).collect();
     if let (Ok(behind), Ok(ahead)) = (at(leading - sign * half), at(leading + sign * half)) {
         for (v, velocity) in vehicle_velocity.iter_mut().enumerate() {

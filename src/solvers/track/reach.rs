@@ -5,9 +5,9 @@
 //! the square of it.
 
 use super::influence::Stepper;
-use super::interface::add_scaled;
 use super::mesh::RailPoint;
 use crate::linalg::skyline::Skyline;
+use crate::linalg::vector::add_scaled;
 use nalgebra::DMatrix;
 
 /// The compliances of the wheels at their present points. Lists run over ranks.
@@ -98,7 +98,7 @@ impl Reach {
                 let unknowns = track.element_unknowns(at.element);
                 for (column, shape) in columns.into_iter().zip(point.shape) {
                     for (unknown, other_shape) in unknowns.into_iter().zip(at.shape) {
-                        *entry += shape * other_shape * column.at(unknown);
+                        *entry += shape * other_shape * column.entry(unknown);
                     }
                 }
                 if q == rank {

@@ -1,6 +1,8 @@
 //! A vehicle in motion: one time step of it, given the forces at its wheels.
 
-use super::{Multibody, Scheme, TrackError};
+use super::error::{TrackError, TrackParameter};
+use super::multibody::Multibody;
+use super::scheme::Scheme;
 use nalgebra::DMatrix;
 
 /// A vehicle's motion and the matrices of its step. Lists run over its unknowns.
@@ -136,7 +138,7 @@ fn inverse(vehicle: &Multibody, scheme: &Scheme) -> Result<DMatrix<f64>, TrackEr
         matrix[(i, i)] += of_mass * mass;
     }
     matrix.cholesky().map(|factor| factor.inverse()).ok_or(TrackError::Parameter {
-        name: "unknowns of a vehicle",
+        name: TrackParameter::Vehicle("unknowns of a vehicle"),
         value: vehicle.order() as f64,
         expected: "that have a mass or springs to all sides",
     })

@@ -14,7 +14,7 @@
 //!
 //! Forces that are not linear take the same mean of both ends of the step as the linear ones.
 
-use super::TrackError;
+use super::error::{TrackError, TrackParameter};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -82,7 +82,11 @@ impl Scheme {
 
     fn with_means(time_step: f64, alpha_m: f64, alpha_f: f64) -> Result<Self, TrackError> {
         if !(time_step > 0.0 && time_step.is_finite()) {
-            return Err(TrackError::Parameter { name: "time step", value: time_step, expected: "above 0" });
+            return Err(TrackError::Parameter {
+                name: TrackParameter::TimeStep,
+                value: time_step,
+                expected: "above 0",
+            });
         }
         let excess = 1.0 - alpha_m + alpha_f;
         Ok(Self { time_step, alpha_m, alpha_f, beta: 0.25 * excess * excess, gamma: excess - 0.5 })
@@ -119,5 +123,9 @@ impl Scheme {
 }
 
 fn within(name: &'static str, value: f64, most: f64, expected: &'static str) -> Result<f64, TrackError> {
-    if (0.0..=most).contains(&value) { Ok(value) } else { Err(TrackError::Parameter { name, value, expected }) }
+    if (0.0..=most).contains(&value) {
+        Ok(value)
+    } else {
+        Err(TrackError::Parameter { name: TrackParameter::Damping(name), value, expected })
+    }
 }

@@ -16,7 +16,6 @@
 //! The rest of the step answers forces by a positive definite compliance, and so do the wheels with monotone laws: the sum of
 //! both is strongly monotone, and a time step has exactly one solution.
 
-use super::mesh::Sleeper;
 use serde::{Deserialize, Serialize};
 
 /// Which branch of its graph a support is on.
@@ -75,10 +74,20 @@ pub struct Seating {
     pub closure: f64,
 }
 
+/// A sleeper of the mesh, and the support that it stands on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SleeperSupport {
+    pub seat: usize,
+    pub unknown: usize,
+    pub support_stiffness: f64,
+    pub support_damping: f64,
+    pub seating: Option<Seating>,
+}
+
 /// Gaps below this are none, m.
 const GAP_TOLERANCE: f64 = 1e-14;
 
-impl Sleeper {
+impl SleeperSupport {
     /// What the seating lacks of the full stiffness, N/m, and its closure, m; both 0 where there is none.
     #[inline]
     fn seating(&self) -> (f64, f64) {
@@ -217,8 +226,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn sleeper(seating: Option<Seating>) -> Sleeper {
-        Sleeper { seat: 0, unknown: 0, support_stiffness: 50e6, support_damping: 50e3, seating }
+    fn sleeper(seating: Option<Seating>) -> SleeperSupport {
+        SleeperSupport { seat: 0, unknown: 0, support_stiffness: 50e6, support_damping: 50e3, seating }
     }
 
     #[test]

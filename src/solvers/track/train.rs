@@ -1,12 +1,13 @@
 //! Vehicles that run together.
 
-use super::{Multibody, TrackError};
+use super::error::{TrackError, TrackParameter};
+use super::multibody::Multibody;
 use serde::{Deserialize, Serialize};
 
 /// Which way a train runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Direction {
-    /// As x grows.
+    /// Towards larger x.
     Forward,
     Backward,
 }
@@ -61,7 +62,7 @@ impl Train {
             vehicle.check()?;
             if !(*offset >= 0.0 && offset.is_finite()) {
                 return Err(TrackError::Parameter {
-                    name: "offset of a vehicle",
+                    name: TrackParameter::Train("offset of a vehicle"),
                     value: *offset,
                     expected: "of 0 or more",
                 });

@@ -1,9 +1,9 @@
 //! What an observer may ask a passage at each step; every answer is a few operations on the present state.
 
-use super::SupportPhase;
-use super::mesh::FootUnknown;
-use super::passage::{Counters, Passage};
-use super::{StaticState, Track};
+use super::counters::Counters;
+use super::mesh::{FootUnknown, Track};
+use super::passage::Passage;
+use super::statics::StaticState;
 
 /// Sees the start of a passage and the end of each of its steps.
 pub trait Observer {
@@ -63,7 +63,7 @@ impl<'a> StepView<'a> {
         self.passage.time()
     }
 
-    /// Of the step that has led here, s.
+    /// Length of the step that has led here, s.
     pub fn time_step(&self) -> f64 {
         self.passage.last_step
     }
@@ -83,11 +83,6 @@ impl<'a> StepView<'a> {
         &self.passage.vehicles[vehicle].0.displacement
     }
 
-    /// Their second derivatives, m/s^2 and rad/s^2.
-    pub fn vehicle_accelerations(&self, vehicle: usize) -> &'a [f64] {
-        &self.passage.vehicles[vehicle].0.acceleration
-    }
-
     /// Force of the rail on the pad, N.
     pub fn seat_load(&self, seat: usize) -> f64 {
         let track = self.track();
@@ -104,14 +99,6 @@ impl<'a> StepView<'a> {
     pub fn contact_force(&self, seat: usize) -> Option<f64> {
         match self.track().feet[seat] {
             FootUnknown::Sleeper(s) => Some(self.passage.support_forces[s]),
-            _ => None,
-        }
-    }
-
-    /// Whether the sleeper's support carries; none for a seat without a sleeper.
-    pub fn support_phase(&self, seat: usize) -> Option<SupportPhase> {
-        match self.track().feet[seat] {
-            FootUnknown::Sleeper(s) => Some(self.passage.interface.phases[s]),
             _ => None,
         }
     }

@@ -10,7 +10,8 @@ pub use machine::{peak_memory, triad};
 pub use pile::{MOST, Pile, PileError};
 
 use crate::solvers::granular::{
-    Bed, Dashpot, DashpotMode, Failure, FrictionLimit, Gravity, Law, Laws, Linear, Real, Snapshot, Timings,
+    Bed, ContactLaw, ContactLaws, Dashpot, DashpotMode, Failure, FrictionLimit, Gravity, Linear, Real, Snapshot,
+    Timings,
 };
 use serde::Serialize;
 use std::time::{Duration, Instant};
@@ -21,8 +22,8 @@ pub const TIME_STEP: f64 = 1e-5;
 pub const DENSITY: f64 = 2700.0;
 
 /// Springs of 13 MN/m, friction 0.7 with history, a normal dashpot of 829 N s/m that may pull, none in shear.
-pub fn law() -> Law {
-    Law::Linear(Linear {
+pub fn law() -> ContactLaw {
+    ContactLaw::Linear(Linear {
         normal_stiffness: 1.3e7,
         shear_stiffness: 1.3e7,
         friction: 0.7,
@@ -39,7 +40,7 @@ pub fn gravity() -> Gravity {
 
 /// The bed of a pile as it stands before the first step.
 pub fn bed<R: Real>(pile: &Pile, copies: [u32; 2], skin: Option<f64>) -> Bed<R> {
-    let mut bed = pile.bed(copies, Laws::single(law()), DENSITY);
+    let mut bed = pile.bed(copies, ContactLaws::single(law()), DENSITY);
     bed.set_time_step(TIME_STEP);
     bed.set_gravity(gravity());
     bed.set_skin(skin);

@@ -4,7 +4,7 @@
 //! absent. The others hold `x y z r` of a sphere or `clump x y z r` of a pebble, in m; the pebbles of a clump stand together.
 
 use crate::solvers::granular::clump::{Pebble, Template};
-use crate::solvers::granular::{Bed, Domain, Laws, Placed, Real, Sphere};
+use crate::solvers::granular::{Bed, ContactLaws, Domain, Placed, Real, Sphere};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::fmt;
@@ -165,7 +165,7 @@ impl Pile {
 
     /// A bed of so many copies along x and y, at rest, on its floor, without gravity and step. Bodies of one copy follow
     /// each other, in the order of the file.
-    pub fn bed<R: Real>(&self, copies: [u32; 2], laws: Laws, density: f64) -> Bed<R> {
+    pub fn bed<R: Real>(&self, copies: [u32; 2], laws: ContactLaws, density: f64) -> Bed<R> {
         let mut domain = Domain::open();
         for (axis, (period, copies)) in self.periods.into_iter().zip(copies).enumerate() {
             if let Some(period) = period {
@@ -222,7 +222,7 @@ impl Open {
                 format!("clump {name}, which begins here, has {found} pebbles; at most {most} fit"),
             );
         }
-        match Template::of(&pebbles) {
+        match Template::from_pebbles(&pebbles) {
             Ok(template) => Ok(Piece::Clump(template)),
             Err(error) => malformed(line, format!("clump {name}, which begins here: {error}")),
         }
@@ -315,10 +315,10 @@ fn pebble(line: u64, text: &str) -> Result<(Option<u64>, Pebble), PileError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::solvers::granular::{Dashpot, DashpotMode, FrictionLimit, Law, Linear};
+    use crate::solvers::granular::{ContactLaw, Dashpot, DashpotMode, FrictionLimit, Linear};
 
-    fn laws() -> Laws {
-        Laws::single(Law::Linear(Linear {
+    fn laws() -> ContactLaws {
+        ContactLaws::single(ContactLaw::Linear(Linear {
             normal_stiffness: 1e6,
             shear_stiffness: 1e6,
             friction: 0.5,

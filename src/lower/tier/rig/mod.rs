@@ -8,7 +8,7 @@ use crate::graph::{ActuatorsNode, BedNode, Model, Node, Schedule, SensorNode, Se
 use crate::lower::Draft;
 use crate::lower::bed::{BedUse, beds, confinement};
 use crate::scenario::{Foot, Force, Given, Loading, RigLoad, Scenario, Seat, Section, SleeperBody, Target, Volume};
-use crate::solvers::granular::packing::{Layer, Recipe};
+use crate::solvers::granular::packing::{GrainLayer, Recipe};
 use crate::solvers::granular::rig::{ADDED, Load};
 use crate::units::number;
 use std::f64::consts::PI;
@@ -101,7 +101,8 @@ impl TestRig {
 
 /// Mean volume, density and pressure of each layer.
 fn rests(recipe: &Recipe, confinement: Option<f64>) -> impl Iterator<Item = [f64; 3]> {
-    let of = move |layer: &Layer| [layer.curve.mean_volume(), layer.density, confinement.unwrap_or(layer.pressure)];
+    let of =
+        move |layer: &GrainLayer| [layer.curve.mean_volume(), layer.density, confinement.unwrap_or(layer.pressure)];
     recipe.layers.iter().map(of)
 }
 

@@ -32,7 +32,7 @@ const SMALLEST: f64 = 1e-50;
 pub struct Template {
     /// In the principal frame, about the centroid, in the order given.
     pub pebbles: Vec<Pebble>,
-    /// Of the union, m³.
+    /// Volume of the union, m³.
     pub volume: f64,
     /// Principal moments of the union about its centroid for unit density, m⁵.
     pub inertia: Vector3<f64>,
@@ -45,7 +45,7 @@ pub struct Template {
 
 impl Template {
     /// The template of these pebbles, in any frame. Time grows with the pebbles and the corners that they form together.
-    pub fn of(pebbles: &[Pebble]) -> Result<Self, TemplateError> {
+    pub fn from_pebbles(pebbles: &[Pebble]) -> Result<Self, TemplateError> {
         check(pebbles)?;
         if let [pebble] = pebbles {
             return Ok(Self { centroid: pebble.centre, ..Self::ball(pebble.radius) });
@@ -68,7 +68,7 @@ impl Template {
 
     /// One sphere of `radius` (m) about the origin.
     pub fn sphere(radius: f64) -> Result<Self, TemplateError> {
-        Self::of(&[Pebble { centre: Vector3::zeros(), radius }])
+        Self::from_pebbles(&[Pebble { centre: Vector3::zeros(), radius }])
     }
 
     fn ball(radius: f64) -> Self {

@@ -49,7 +49,7 @@ fn two_spheres_have_their_closed_form() {
     {
         let [volume, centroid, along, across] = two_balls(r1, r2, distance);
         for direction in [Vector3::x(), Vector3::z(), Vector3::new(1.0, -2.0, 0.5).normalize()] {
-            let template = Template::of(&[
+            let template = Template::from_pebbles(&[
                 Pebble { centre: Vector3::zeros(), radius: r1 },
                 Pebble { centre: direction * distance, radius: r2 },
             ])
@@ -111,7 +111,7 @@ fn three_spheres_have_their_closed_form() {
         [pebble(0.1, 0.2, 0.3, 1.0), pebble(0.9, 0.1, 0.2, 0.8), pebble(0.4, 0.3, 0.9, 0.7)],
         [pebble(0.0, 0.0, 0.0, 0.02), pebble(0.0, 0.02, 0.005, 0.018), pebble(0.015, 0.004, 0.0, 0.016)],
     ] {
-        let error = relative(Template::of(&pebbles).unwrap().volume, three_balls(&pebbles));
+        let error = relative(Template::from_pebbles(&pebbles).unwrap().volume, three_balls(&pebbles));
         assert!(error < 1e-12, "{error}");
     }
 }
@@ -120,7 +120,7 @@ fn three_spheres_have_their_closed_form() {
 fn a_row_of_spheres_is_the_sum_of_its_parts() {
     // Each touches the next in a point; Huygens and Steiner.
     let row: Vec<_> = (0..5).map(|k| pebble(2.0 * f64::from(k), 0.0, 0.0, 1.0)).collect();
-    let template = Template::of(&row).unwrap();
+    let template = Template::from_pebbles(&row).unwrap();
     let ball = 4.0 / 3.0 * PI;
     assert!(relative(template.volume, 5.0 * ball) < 1e-12);
     assert!(relative(template.inertia.x, 5.0 * 0.4 * ball) < 1e-12);
@@ -134,13 +134,13 @@ fn a_long_row_loses_a_lens_at_every_neck() {
     let row: Vec<_> = (0..64).map(|k| pebble(1.147 * f64::from(k), 0.3 * f64::from(k), 0.0, 1.0)).collect();
     let overlap = 2.0 - 1.147_f64.hypot(0.3);
     let lens = PI / 12.0 * (6.0 - overlap) * overlap * overlap;
-    let error = relative(Template::of(&row).unwrap().volume, 64.0 * 4.0 / 3.0 * PI - 63.0 * lens);
+    let error = relative(Template::from_pebbles(&row).unwrap().volume, 64.0 * 4.0 / 3.0 * PI - 63.0 * lens);
     assert!(error < 1e-12, "{error}");
 }
 
 #[test]
 fn one_pebble_is_a_sphere() {
-    let template = Template::of(&[pebble(1.0, 2.0, 3.0, 0.02)]).unwrap();
+    let template = Template::from_pebbles(&[pebble(1.0, 2.0, 3.0, 0.02)]).unwrap();
     let volume = 4.0 / 3.0 * PI * 0.02 * 0.02 * 0.02;
     assert_eq!(template.volume, volume);
     assert_eq!(template.inertia, Vector3::repeat(0.4 * volume * 0.02 * 0.02));
@@ -160,7 +160,7 @@ fn a_ball_of_many_pebbles_is_nearly_the_ball() {
         let across = (1.0 - z * z).sqrt();
         pebbles.push(pebble(0.5001 * across * c, 0.5001 * across * s, 0.5001 * z, 0.5));
     }
-    let template = Template::of(&pebbles).unwrap();
+    let template = Template::from_pebbles(&pebbles).unwrap();
     let ball = 4.0 / 3.0 * PI;
     assert!(template.volume > ball && template.volume < ball * (1.0 + 3e-4));
     for k in 0..3 {
@@ -231,7 +231,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
     #[test]
     fn any_clump_agrees_with_a_sum_of_rods(pebbles in clumps()) {
-        let template = Template::of(&pebbles).unwrap();
+        let template = Template::from_pebbles(&pebbles).unwrap();
         // The rods' own errors, which fall with the square of their number across: 7e-5, 1.4e-4 and 6e-5 at worst in 50 clumps.
         let (volume, centroid, inertia) = rods(&pebbles, 400);
         prop_assert!(relative(template.volume, volume) < 3e-4);
@@ -249,7 +249,7 @@ proptest! {
         let rotation = Rotation3::new(Vector3::from(turn));
         let place = |c: Vector3<f64>| rotation * c + Vector3::from(shift);
         let moved: Vec<_> = pebbles.iter().map(|p| Pebble { centre: place(p.centre), ..*p }).collect();
-        let (before, after) = (Template::of(&pebbles).unwrap(), Template::of(&moved).unwrap());
+        let (before, after) = (Template::from_pebbles(&pebbles).unwrap(), Template::from_pebbles(&moved).unwrap());
         prop_assert!(relative(after.volume, before.volume) < 1e-11);
         prop_assert!((place(before.centroid) - after.centroid).norm() < 1e-11);
         let turned = rotation.matrix() * inertia_as_given(&before) * rotation.matrix().transpose();
@@ -262,8 +262,8 @@ proptest! {
 
     #[test]
     fn a_template_is_in_its_own_principal_frame(pebbles in clumps()) {
-        let template = Template::of(&pebbles).unwrap();
-        let again = Template::of(&template.pebbles).unwrap();
+        let template = Template::from_pebbles(&pebbles).unwrap();
+        let again = Template::from_pebbles(&template.pebbles).unwrap();
         prop_assert!(again.axes.angle() < 1e-8 && again.centroid.norm() < 1e-12);
         prop_assert!((again.inertia - template.inertia).norm() < 1e-11 * template.inertia.norm());
     }
@@ -271,7 +271,7 @@ proptest! {
     #[test]
     fn a_larger_clump_scales_by_its_powers(pebbles in clumps(), factor in 1e-3..1e3f64) {
         let larger: Vec<_> = pebbles.iter().map(|p| Pebble { centre: p.centre * factor, radius: p.radius * factor }).collect();
-        let (scaled, direct) = (Template::of(&pebbles).unwrap().scaled(factor), Template::of(&larger).unwrap());
+        let (scaled, direct) = (Template::from_pebbles(&pebbles).unwrap().scaled(factor), Template::from_pebbles(&larger).unwrap());
         prop_assert!(relative(scaled.volume, direct.volume) < 1e-12);
         prop_assert!(relative(scaled.equivalent_diameter(), direct.equivalent_diameter()) < 1e-12);
         prop_assert!(relative(scaled.bounding_radius(), direct.bounding_radius()) < 1e-12);
@@ -293,7 +293,7 @@ fn axes_that_are_principal_are_kept() {
     let cube: Vec<_> =
         (0..8).map(|k| pebble(f64::from(k & 1), f64::from(k >> 1 & 1), f64::from(k >> 2), 0.8)).collect();
     for pebbles in [row.to_vec(), cross.to_vec(), cube] {
-        assert_eq!(Template::of(&pebbles).unwrap().axes, UnitQuaternion::identity());
+        assert_eq!(Template::from_pebbles(&pebbles).unwrap().axes, UnitQuaternion::identity());
     }
 }
 
@@ -301,7 +301,8 @@ fn axes_that_are_principal_are_kept() {
 fn free_axes_do_not_hang_on_rounding() {
     // Across a row that lies aslant, any axes would do; a nudge of the last digits must not turn them.
     let row = |nudge: f64| {
-        let template = Template::of(&[pebble(0.0, 0.0, 0.0, 1.0), pebble(0.7 + nudge, 0.5, 0.6, 1.0)]).unwrap();
+        let template =
+            Template::from_pebbles(&[pebble(0.0, 0.0, 0.0, 1.0), pebble(0.7 + nudge, 0.5, 0.6, 1.0)]).unwrap();
         template.axes
     };
     assert!(row(0.0).angle_to(&row(1e-14)) < 1e-7);
@@ -310,7 +311,7 @@ fn free_axes_do_not_hang_on_rounding() {
 #[test]
 fn what_is_no_clump_is_refused() {
     let base = pebble(0.0, 0.0, 0.0, 1.0);
-    let refused = |pebbles: &[Pebble]| Template::of(pebbles).unwrap_err();
+    let refused = |pebbles: &[Pebble]| Template::from_pebbles(pebbles).unwrap_err();
     assert_eq!(refused(&[]), TemplateError::NoPebbles);
     assert_eq!(refused(&[base, pebble(0.5, 0.0, 0.0, 0.0)]), TemplateError::Radius { pebble: 1, radius: 0.0 });
     assert!(matches!(Template::sphere(f64::NAN), Err(TemplateError::Radius { pebble: 0, .. })));
@@ -323,7 +324,7 @@ fn what_is_no_clump_is_refused() {
 
 #[test]
 fn a_template_survives_a_checkpoint() {
-    let template = Template::of(&[pebble(0.1, 0.2, 0.3, 1.0), pebble(1.0, 0.1, -0.2, 0.8)]).unwrap();
+    let template = Template::from_pebbles(&[pebble(0.1, 0.2, 0.3, 1.0), pebble(1.0, 0.1, -0.2, 0.8)]).unwrap();
     let text = serde_json::to_string(&template).unwrap();
     assert_eq!(serde_json::from_str::<Template>(&text).unwrap(), template);
 }

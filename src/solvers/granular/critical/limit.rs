@@ -22,18 +22,18 @@ impl Pencil {
         Pencil { stiffness: SMatrix::zeros(), dashpots: SMatrix::zeros() }
     }
 
-    pub fn at(&self, dt: f64) -> SMatrix<f64, 6, 6> {
+    pub fn at_step(&self, dt: f64) -> SMatrix<f64, 6, 6> {
         self.stiffness * (dt * dt) + self.dashpots * (2.0 * dt)
     }
 
     /// Whether a step is below the limit.
     pub fn allows(&self, dt: f64) -> bool {
-        (SMatrix::<f64, 6, 6>::identity() * 4.0 - self.at(dt)).cholesky().is_some()
+        (SMatrix::<f64, 6, 6>::identity() * 4.0 - self.at_step(dt)).cholesky().is_some()
     }
 
     /// Factor of inertia that makes `dt` the limit; 1 is enough where it is above already.
     pub fn inertia_factor(&self, dt: f64) -> f64 {
-        self.at(dt).symmetric_eigenvalues().max() / 4.0
+        self.at_step(dt).symmetric_eigenvalues().max() / 4.0
     }
 
     /// The limit \[s\]: from above, by the mode that grows fastest at the step before, which converges as Newton's iteration.
@@ -43,7 +43,7 @@ impl Pencil {
             return f64::INFINITY;
         }
         for _ in 0..ROUNDS {
-            let eigen = self.at(dt).symmetric_eigen();
+            let eigen = self.at_step(dt).symmetric_eigen();
             let mode: SVector<f64, 6> = eigen.eigenvectors.column(eigen.eigenvalues.imax()).into_owned();
             let next = step(mode.dot(&(self.stiffness * mode)), mode.dot(&(self.dashpots * mode)));
             if (next / dt - 1.0).abs() < 1e-14 {

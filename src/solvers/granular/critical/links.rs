@@ -3,12 +3,12 @@
 use super::super::bed::Bed;
 use super::super::body::{Body, SPHERE};
 use super::super::domain::mirrored;
+use super::super::failure::Failure;
 use super::super::force::Tangent;
 use super::super::lanes::{BLOCK, Real};
 use super::super::record::Record;
 use super::super::rotation;
 use super::super::vector::{Vec3, add, cross, dot, norm, scale, sub};
-use super::super::watch::Failure;
 use nalgebra::{Matrix3, Vector3};
 
 /// Instead of a second body: a wall.
@@ -78,7 +78,7 @@ pub struct Roots {
 }
 
 impl Roots {
-    /// Of a body with `factor` times the inertia.
+    /// Roots of a body with `factor` times the inertia.
     pub fn heavier(&self, factor: f64) -> Roots {
         let share = factor.sqrt().recip();
         Roots { translation: self.translation * share, rotation: self.rotation * share }
@@ -155,7 +155,7 @@ impl<R: Real> Bed<R> {
             let normal: Vec3 = wall.pose.direction_to_space(&touch.normal).into();
             let overlap = record.radius() - touch.distance;
             let arm = self.arm(entry.pebble, scale(normal, -(record.radius() - 0.5 * overlap)));
-            let tangent = Tangent::of(law, overlap, mass, record.radius());
+            let tangent = Tangent::from_law(law, overlap, mass, record.radius());
             Link { bodies: [self.bodies[body as usize].id, GROUND], normal, arms: [arm, [0.0; 3]], tangent, mass }
         }));
     }
@@ -164,13 +164,13 @@ impl<R: Real> Bed<R> {
     fn reach(&mut self, gap: f64) -> Result<(), Failure> {
         self.refresh()?;
         // lists are good for their skin less what was gone since
-        if gap + self.build.travel <= self.build.skin {
+        if gap + self.lists.travel <= self.lists.skin {
             return Ok(());
         }
-        let fixed = self.build.fixed_skin.replace((gap + self.build.travel).max(self.build.skin));
-        self.build.outdated = true;
+        let fixed = self.lists.fixed_skin.replace((gap + self.lists.travel).max(self.lists.skin));
+        self.lists.outdated = true;
         let made = self.refresh();
-        self.build.fixed_skin = fixed;
+        self.lists.fixed_skin = fixed;
         made
     }
 
@@ -196,7 +196,7 @@ impl<R: Real> Bed<R> {
                 self.arm(a, scale(normal, -(one.radius() - 0.5 * overlap))),
                 self.arm(b, scale(normal, other.radius() - 0.5 * overlap)),
             ],
-            tangent: Tangent::of(law, overlap, mass, reduced(one.radius(), other.radius())),
+            tangent: Tangent::from_law(law, overlap, mass, reduced(one.radius(), other.radius())),
             mass,
         };
         // which of two comes first in a list is chance

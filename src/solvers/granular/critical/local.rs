@@ -36,13 +36,13 @@ impl Around {
         Around { start, links: list }
     }
 
-    pub fn of(&self, body: usize) -> &[u32] {
+    pub fn links_of(&self, body: usize) -> &[u32] {
         &self.links[self.start[body] as usize..self.start[body + 1] as usize]
     }
 
     /// The links of a body among all.
     pub fn pick<'a>(&'a self, body: usize, links: &'a [Link]) -> impl Iterator<Item = &'a Link> {
-        self.of(body).iter().map(|&number| &links[number as usize])
+        self.links_of(body).iter().map(|&number| &links[number as usize])
     }
 }
 
@@ -56,7 +56,7 @@ pub enum Weight<'a> {
 }
 
 impl Weight<'_> {
-    fn of(&self, body: usize, other: u32) -> f64 {
+    fn count(&self, body: usize, other: u32) -> f64 {
         match self {
             _ if other == super::links::GROUND => 1.0,
             Weight::Even(weight) => *weight,
@@ -72,7 +72,7 @@ pub fn pencil<'a>(body: usize, root: &Roots, links: impl IntoIterator<Item = &'a
     for link in links {
         // a body may touch its own image in a small period
         for (end, _) in link.ends().filter(|&(_, b)| b as usize == body) {
-            let share = weight.of(body, link.bodies[1 - end]);
+            let share = weight.count(body, link.bodies[1 - end]);
             let arm = Vector3::from(link.arms[end]);
             let row = |direction: Vector3<f64>| {
                 let turn = root.rotation * arm.cross(&direction);

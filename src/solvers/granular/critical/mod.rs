@@ -30,14 +30,14 @@ pub(super) use network::Network;
 
 use super::bed::Bed;
 use super::body::BodyId;
+use super::failure::Failure;
 use super::force::Tangent;
 use super::lanes::{BLOCK, Real};
 use super::record::Record;
-use super::watch::Failure;
 
 /// Where a limit comes from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Seat {
+pub struct LimitSeat {
     pub body: BodyId,
     /// \[m\]
     pub place: [f64; 3],
@@ -51,7 +51,7 @@ pub struct Seat {
 pub struct Limit {
     /// \[s\]; infinite where nothing touches.
     pub step: f64,
-    pub seat: Option<Seat>,
+    pub seat: Option<LimitSeat>,
 }
 
 /// How long a time step may be, by three rules.
@@ -108,10 +108,10 @@ impl<R: Real> Bed<R> {
         Ok(local::bound(&links, &roots, &Around::new(&links, roots.len())).0)
     }
 
-    fn seat(&self, body: u32, around: &Around) -> Seat {
+    fn seat(&self, body: u32, around: &Around) -> LimitSeat {
         let state = self.body_state(BodyId(body));
-        let contacts = around.of(body as usize).len();
-        Seat { body: state.id, place: state.place, surface: state.surface, contacts }
+        let contacts = around.links_of(body as usize).len();
+        LimitSeat { body: state.id, place: state.place, surface: state.surface, contacts }
     }
 
     /// A stable time step by the contacts of the last step, body by body and cheaply \[s\]; infinite without contacts.
@@ -133,7 +133,7 @@ impl<R: Real> Bed<R> {
             let (one, other) = (&self.records[a as usize], &self.records[b as usize]);
             let law = &self.laws.all()[usize::from(self.contacts.law[place / BLOCK])];
             let mass = links::reduced(one.mass().to_f64(), other.mass().to_f64());
-            let tangent = Tangent::of(law, overlap, mass, links::reduced(one.radius(), other.radius()));
+            let tangent = Tangent::from_law(law, overlap, mass, links::reduced(one.radius(), other.radius()));
             count(a, &tangent, 2.0);
             count(b, &tangent, 2.0);
         }
@@ -141,7 +141,11 @@ impl<R: Real> Bed<R> {
             let record = &self.records[entry.pebble as usize];
             let law = &self.laws.all()[usize::from(entry.law)];
             for slot in self.wall_contacts.slots(entry).iter().filter(|s| s.touches()) {
-                count(entry.pebble, &Tangent::of(law, slot.overlap, record.mass().to_f64(), record.radius()), 1.0);
+                count(
+                    entry.pebble,
+                    &Tangent::from_law(law, slot.overlap, record.mass().to_f64(), record.radius()),
+                    1.0,
+                );
             }
         }
         let braked = 1.0 + self.damping;

@@ -3,7 +3,8 @@
 use super::*;
 use crate::solvers::granular::clump::{Pebble, Template};
 use crate::solvers::granular::{
-    Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Law, Laws, Linear, Motion, Placed, Pose, Sphere, shape::Shape,
+    ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Linear, Placed, Pose, Sphere,
+    WallMotion, shape::Shape,
 };
 use nalgebra::{UnitQuaternion, Vector3};
 use std::f64::consts::PI;
@@ -15,8 +16,8 @@ const STIFFNESS: f64 = 1.3e7;
 /// Overlap that moves no digit of a limit.
 const TOUCH: f64 = 1e-11;
 
-pub(in super::super) fn law(shear: f64, ratios: [f64; 2]) -> Law {
-    Law::Linear(Linear {
+pub(in super::super) fn law(shear: f64, ratios: [f64; 2]) -> ContactLaw {
+    ContactLaw::Linear(Linear {
         normal_stiffness: STIFFNESS,
         shear_stiffness: shear * STIFFNESS,
         friction: 0.7,
@@ -26,8 +27,8 @@ pub(in super::super) fn law(shear: f64, ratios: [f64; 2]) -> Law {
     })
 }
 
-fn bed(law: Law) -> Bed<f64> {
-    Bed::new(Domain::open(), Laws::uniform(1, law))
+fn bed(law: ContactLaw) -> Bed<f64> {
+    Bed::new(Domain::open(), ContactLaws::uniform(1, law))
 }
 
 fn sphere(centre: [f64; 3], radius: f64) -> Sphere {
@@ -47,7 +48,7 @@ fn row(bed: &mut Bed<f64>, radii: &[f64]) {
     }
 }
 
-fn between_walls(law: Law) -> Bed<f64> {
+fn between_walls(law: ContactLaw) -> Bed<f64> {
     let mut bed = bed(law);
     row(&mut bed, &[RADIUS]);
     bed.add_plane([TOUCH, 0.0, 0.0], [1.0, 0.0, 0.0], 0);
@@ -159,7 +160,7 @@ fn chains_meet_the_closed_form() {
 fn a_clump_of_two_rocks_on_its_feet() {
     let apart = 0.9 * RADIUS;
     let pebble = |x: f64| Pebble { centre: Vector3::new(x, 0.0, 0.0), radius: RADIUS };
-    let template = Template::of(&[pebble(-apart), pebble(apart)]).unwrap();
+    let template = Template::from_pebbles(&[pebble(-apart), pebble(apart)]).unwrap();
     let mut bed = bed(law(0.0, [0.0; 2]));
     let placed = Placed {
         template: &template,
@@ -190,7 +191,7 @@ fn walls_with_faces_and_fixed_bodies_are_ground() {
     let mut block = bed(law(0.0, [0.0; 2]));
     row(&mut block, &[RADIUS]);
     let pose = Pose { position: Vector3::new(-0.1 + TOUCH, 0.0, 0.0), ..Pose::default() };
-    block.add_wall(Shape::block(Vector3::repeat(0.1)).unwrap(), pose, 0, Motion::Fixed);
+    block.add_wall(Shape::block(Vector3::repeat(0.1)).unwrap(), pose, 0, WallMotion::Fixed);
     near(&found(&mut block), 2.0 / (STIFFNESS / mass(RADIUS)).sqrt());
     let mut pair = bed(law(0.0, [0.0; 2]));
     row(&mut pair, &[RADIUS, RADIUS]);
@@ -216,11 +217,11 @@ fn without_contacts_there_is_no_limit_but_a_gap_may_count() {
 }
 
 /// Spheres of radii within a tenth, pressed into a periodic box until all is at rest.
-pub(in super::super) fn pressed(side: usize, law: Law) -> Bed<f64> {
+pub(in super::super) fn pressed(side: usize, law: ContactLaw) -> Bed<f64> {
     let spacing = 1.85 * RADIUS;
     let length = side as f64 * spacing;
     let domain = (0..3).fold(Domain::open(), |d, axis| d.periodic(axis, length));
-    let mut bed = Bed::new(domain, Laws::uniform(1, law));
+    let mut bed = Bed::new(domain, ContactLaws::uniform(1, law));
     let mut state = 88172645463325252u64;
     let mut chance = move || {
         state ^= state << 13;
@@ -247,8 +248,8 @@ pub(in super::super) fn pressed(side: usize, law: Law) -> Bed<f64> {
     bed
 }
 
-fn friction(law: &mut Law, friction: f64) {
-    if let Law::Linear(law) = law {
+fn friction(law: &mut ContactLaw, friction: f64) {
+    if let ContactLaw::Linear(law) = law {
         law.friction = friction;
     }
 }
@@ -294,7 +295,7 @@ fn a_lattice_grows_where_the_theory_says() {
     for ratio in [0.0, 0.3, 1.0] {
         let spacing = 2.0 * RADIUS * 0.999;
         let domain = (0..3).fold(Domain::open(), |d, axis| d.periodic(axis, 4.0 * spacing));
-        let mut bed = Bed::<f64>::new(domain, Laws::uniform(1, law(1.0, [ratio; 2])));
+        let mut bed = Bed::<f64>::new(domain, ContactLaws::uniform(1, law(1.0, [ratio; 2])));
         bed.change_laws(|law| friction(law, 1e9));
         for k in 0..64 {
             let id = bed.add_sphere(&sphere([k % 4, k / 4 % 4, k / 16].map(|i| f64::from(i) * spacing), RADIUS));

@@ -119,7 +119,7 @@ fn stretched(planes: &[Plane], stretch: &Matrix3<f64>) -> Vec<Plane> {
 
 /// The surface, of unit equivalent diameter about its centroid.
 fn grain(vertices: &[Vector3<f64>], triangles: Vec<[u32; 3]>) -> Option<Mesh> {
-    let solid = Solid::of(vertices, &triangles);
+    let solid = Solid::inside(vertices, &triangles);
     let scale = (PI / 6.0 / solid.volume).cbrt();
     let placed = vertices.iter().map(|v| (v - solid.centroid) * scale).collect();
     Mesh::new(placed, triangles, MeshKind::Solid).ok()

@@ -12,7 +12,7 @@
 
 use super::super::clump::Pebble;
 use super::super::shape::Mesh;
-use super::likeness::on_facets;
+use super::points::{SurfacePoint, on_facets};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -114,7 +114,7 @@ fn maximal_balls(surface: &Mesh) -> Vec<Pebble> {
     // no ball inside is wider than the surface
     let [low, high] = surface.bounds();
     let widest = 0.5 * (high - low).min();
-    let grow = |point: &super::likeness::Point| shrunk(surface, &point.at, &-point.normal, widest);
+    let grow = |point: &SurfacePoint| shrunk(surface, &point.at, &-point.normal, widest);
     let mut balls: Vec<Pebble> = on_facets(surface, POINTS).iter().filter_map(grow).collect();
     let order = |a: &Pebble, b: &Pebble| b.radius.total_cmp(&a.radius);
     balls.sort_by(order);

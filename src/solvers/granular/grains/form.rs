@@ -6,7 +6,8 @@
 
 use super::super::clump::Template;
 use super::super::shape::Mesh;
-use super::Random;
+use super::points::outside;
+use super::random::Random;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
 
@@ -20,30 +21,30 @@ const TRIES: usize = 9;
 
 /// Form of a grain.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Form {
+pub struct GrainForm {
     /// Shortest, intermediate and longest side of the smallest box, m.
     pub sides: [f64; 3],
     /// Their directions, unit.
     pub axes: [Vector3<f64>; 3],
     /// m³.
     pub volume: f64,
-    /// Of the surface, m².
+    /// Area of the surface, m².
     pub area: f64,
 }
 
-impl Form {
-    /// Of a closed surface.
+impl GrainForm {
+    /// Form of a closed surface.
     pub fn of_surface(surface: &Mesh) -> Self {
         let vertices = surface.vertices();
         let Box { sides, axes } = Box::round(|n| extent(vertices, n));
         Self { sides, axes, volume: surface.volume(), area: surface.area() }
     }
 
-    /// Of a clump; its surface is counted by points, to 1e-3 of it.
+    /// Form of a clump; its surface is counted by points, to 1e-3 of it.
     pub fn of_clump(clump: &Template) -> Self {
         let pebbles = &clump.pebbles;
         let reach = |n: &Vector3<f64>| pebbles.iter().map(|p| p.centre.dot(n) + p.radius).fold(f64::MIN, f64::max);
-        let points = super::likeness::outside(pebbles, 4000);
+        let points = outside(pebbles, 4000);
         let Box { sides, axes } = Box::round(|n| reach(n) + reach(&-n));
         Self { sides, axes, volume: clump.volume, area: points.iter().map(|point| point.area).sum() }
     }
@@ -83,7 +84,7 @@ pub struct Box {
 }
 
 impl Box {
-    /// Of a body that is known by its extent (m) along every unit vector: the best of many frames, turned until no
+    /// The box round a body that is known by its extent (m) along every unit vector: the best of many frames, turned until no
     /// small turn makes the volume less. The same for the same body.
     pub fn round(extent: impl Fn(&Vector3<f64>) -> f64) -> Self {
         let volume = |frame: &UnitQuaternion<f64>| axes(frame).iter().map(&extent).product::<f64>();
@@ -130,7 +131,7 @@ pub struct Solid {
 }
 
 impl Solid {
-    pub fn of(vertices: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Self {
+    pub fn inside(vertices: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Self {
         let tip = triangles.first().map_or_else(Vector3::zeros, |t| vertices[t[0] as usize]);
         let (mut volume, mut first, mut second) = (0.0, Vector3::zeros(), Matrix3::zeros());
         for corners in triangles {

@@ -22,6 +22,7 @@ mod bubble;
 mod form;
 mod grading;
 mod likeness;
+mod points;
 mod polyhedron;
 mod random;
 pub mod stl;
@@ -29,9 +30,9 @@ mod templates;
 
 pub use angular::{Angular, AngularError};
 pub use bubble::{Bubbles, Rule};
-pub use form::Form;
+pub use form::GrainForm;
 pub use grading::{Class, Curve, GradingError, Sample};
-pub use likeness::ShapeError;
+pub use likeness::Misfit;
 pub use templates::{ClumpShape, Fitted, Grain, Surfaces, TemplatesError, grains};
 
 pub(super) use random::Random;

@@ -48,7 +48,7 @@ pub enum Surfaces {
 pub struct Fitted {
     pub surface: Arc<Mesh>,
     pub bubbles: Bubbles,
-    /// Of the volume of the ball of diameter 1.
+    /// Clump with the volume of the ball of diameter 1.
     pub template: Template,
 }
 
@@ -101,7 +101,7 @@ impl ClumpShape {
         if found < fewest {
             return Err(TemplatesError::TooFew { surface: number, found, fewest });
         }
-        let clump = Template::of(&bubbles.pebbles).map_err(TemplatesError::Clump)?;
+        let clump = Template::from_pebbles(&bubbles.pebbles).map_err(TemplatesError::Clump)?;
         let template = clump.scaled(1.0 / clump.equivalent_diameter());
         Ok(Fitted { surface, bubbles, template })
     }

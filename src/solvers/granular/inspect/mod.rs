@@ -2,6 +2,7 @@
 
 use super::bed::Bed;
 use super::body::BodyId;
+use super::failure::Failure;
 use super::lanes::Real;
 use super::law::LawError;
 use super::motion::MotionError;
@@ -9,7 +10,6 @@ use super::record::Record;
 use super::shape::{Shape, ShapeError};
 use super::vector::{Vec3, add, norm, scale, sub};
 use super::walls::WallId;
-use super::watch::Failure;
 use std::fmt;
 
 /// Something that a run should not start with.
@@ -18,7 +18,7 @@ pub enum Finding {
     /// Nothing that could move.
     Empty,
     /// A law with a number that cannot be, and the surfaces that it is between.
-    Law {
+    ContactLaw {
         surfaces: [u16; 2],
         fault: LawError,
     },
@@ -27,7 +27,7 @@ pub enum Finding {
         wall: WallId,
         fault: ShapeError,
     },
-    Motion {
+    WallMotion {
         wall: WallId,
         fault: MotionError,
     },
@@ -130,7 +130,7 @@ impl<R: Real> Bed<R> {
             let others = (0..surfaces).filter(|&b| (used(b) && b >= a) || self.walls.iter().any(|w| w.surface == b));
             for b in others {
                 let faults = self.laws.get(a, b).faults();
-                found.extend(faults.into_iter().map(|fault| Finding::Law { surfaces: [a, b], fault }));
+                found.extend(faults.into_iter().map(|fault| Finding::ContactLaw { surfaces: [a, b], fault }));
             }
         }
     }
@@ -140,7 +140,7 @@ impl<R: Real> Bed<R> {
             let id = WallId(number as u32);
             found.extend(wall.shape.check().err().map(|fault| Finding::Shape { wall: id, fault }));
             let motion = wall.motion.check().and_then(|()| wall.pose.check());
-            found.extend(motion.err().map(|fault| Finding::Motion { wall: id, fault }));
+            found.extend(motion.err().map(|fault| Finding::WallMotion { wall: id, fault }));
         }
     }
 
@@ -304,11 +304,11 @@ impl fmt::Display for Finding {
         const AXES: [char; 3] = ['x', 'y', 'z'];
         match self {
             Finding::Empty => write!(f, "there is no body; add spheres or clumps"),
-            Finding::Law { surfaces: [a, b], fault } => {
+            Finding::ContactLaw { surfaces: [a, b], fault } => {
                 write!(f, "law between surfaces {a} and {b}: {fault}; set it before bodies of these surfaces touch")
             }
             Finding::Shape { wall, fault } => write!(f, "wall {}: {fault}", wall.0),
-            Finding::Motion { wall, fault } => write!(f, "wall {}: {fault}", wall.0),
+            Finding::WallMotion { wall, fault } => write!(f, "wall {}: {fault}", wall.0),
             Finding::Body { body, quantity, value } => {
                 write!(f, "body {}: its {quantity} is {value}; give a finite one, above 0 for mass and radius", body.0)
             }

@@ -3,12 +3,13 @@
 use super::{Finding, Other};
 use crate::solvers::granular::shape::{Mesh, MeshKind, Shape};
 use crate::solvers::granular::{
-    Bed, BodyId, Dashpot, DashpotMode, Domain, FrictionLimit, Law, Laws, Linear, Motion, Pose, Sphere, WallId,
+    Bed, BodyId, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, Linear, Pose, Sphere, WallId,
+    WallMotion,
 };
 use nalgebra::Vector3;
 
-fn law() -> Law {
-    Law::Linear(Linear {
+fn law() -> ContactLaw {
+    ContactLaw::Linear(Linear {
         normal_stiffness: 1e6,
         shear_stiffness: 1e6,
         friction: 0.5,
@@ -19,7 +20,7 @@ fn law() -> Law {
 }
 
 fn bed(domain: Domain) -> Bed<f64> {
-    let mut bed = Bed::new(domain, Laws::uniform(2, law()));
+    let mut bed = Bed::new(domain, ContactLaws::uniform(2, law()));
     bed.set_time_step(1e-6);
     bed
 }
@@ -76,12 +77,12 @@ fn bodies_in_walls_are_found() {
         let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
         let inward: Vec<[u32; 3]> = quads.iter().flat_map(|q| [[q[0], q[2], q[1]], [q[0], q[3], q[2]]]).collect();
         let mesh = Mesh::new(vertices, inward, MeshKind::Container).unwrap();
-        bed.add_wall(Shape::Mesh(mesh), Pose::default(), 1, Motion::Fixed)
+        bed.add_wall(Shape::Mesh(mesh), Pose::default(), 1, WallMotion::Fixed)
     };
     type Put<'a> = &'a dyn Fn(&mut Bed<f64>) -> WallId;
     let walls: [Put; 3] = [
         &|bed| bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 1),
-        &|bed| bed.add_wall(Shape::block(Vector3::repeat(0.5)).unwrap(), at(0.5, 0.5, -0.5), 1, Motion::Fixed),
+        &|bed| bed.add_wall(Shape::block(Vector3::repeat(0.5)).unwrap(), at(0.5, 0.5, -0.5), 1, WallMotion::Fixed),
         &container,
     ];
     for put in walls {
@@ -101,7 +102,7 @@ fn bodies_in_walls_are_found() {
 #[test]
 fn walls_and_grains_must_fit_their_periods() {
     let mut bed = bed(Domain::open().periodic(0, 0.2).periodic(1, 0.055));
-    bed.add_wall(Shape::block(Vector3::new(0.06, 0.01, 0.01)).unwrap(), at(0.1, 0.02, -0.02), 1, Motion::Fixed);
+    bed.add_wall(Shape::block(Vector3::new(0.06, 0.01, 0.01)).unwrap(), at(0.1, 0.02, -0.02), 1, WallMotion::Fixed);
     bed.add_plane([0.0, 0.0, -1.0], [0.1, 0.0, 0.99f64.sqrt()], 1);
     bed.add_sphere(&ball(0.0, 0.0, 0.1));
     let found = bed.inspect(0.05);
@@ -124,7 +125,7 @@ fn a_step_above_the_limit_is_found() {
     let found = bed.inspect(0.05);
     assert!(matches!(found[..], [Finding::Step { body: Some(_), .. }]), "{found:?}");
     says(&found[0], &["is above the limit of", "take ", "scale masses"]);
-    let mut bed = Bed::<f64>::new(Domain::open(), Laws::uniform(1, law()));
+    let mut bed = Bed::<f64>::new(Domain::open(), ContactLaws::uniform(1, law()));
     bed.add_sphere(&ball(0.0, 0.0, 0.0));
     assert_eq!(bed.inspect(0.05), [Finding::NoStep]);
 }
@@ -135,15 +136,15 @@ fn numbers_that_cannot_be_are_told_first() {
     let mut bed = bed(Domain::open());
     bed.add_sphere(&ball(0.0, 0.0, f64::NAN));
     bed.add_sphere(&Sphere { density: -1.0, ..ball(0.0, 0.0, 0.0) });
-    bed.add_wall(Shape::Block { half: Vector3::new(0.1, -0.1, 0.1) }, Pose::default(), 1, Motion::Fixed);
+    bed.add_wall(Shape::Block { half: Vector3::new(0.1, -0.1, 0.1) }, Pose::default(), 1, WallMotion::Fixed);
     bed.change_laws(|law| {
-        if let Law::Linear(law) = law {
+        if let ContactLaw::Linear(law) = law {
             law.normal_stiffness = 0.0;
         }
     });
     let found = bed.inspect(0.05);
-    assert!(matches!(found[0], Finding::Law { surfaces: [0, 0], .. }), "{found:?}");
-    assert!(matches!(found[1], Finding::Law { surfaces: [0, 1], .. }), "{found:?}");
+    assert!(matches!(found[0], Finding::ContactLaw { surfaces: [0, 0], .. }), "{found:?}");
+    assert!(matches!(found[1], Finding::ContactLaw { surfaces: [0, 1], .. }), "{found:?}");
     assert!(matches!(found[2], Finding::Shape { wall: WallId(0), .. }), "{found:?}");
     assert!(matches!(found[3], Finding::Body { body: BodyId(0), quantity: "place", .. }), "{found:?}");
     assert!(matches!(found[4], Finding::Body { body: BodyId(1), quantity: "mass", .. }), "{found:?}");

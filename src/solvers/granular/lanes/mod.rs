@@ -7,6 +7,7 @@
 // loops run over the lanes of several arrays at once
 #![allow(clippy::needless_range_loop)]
 
+mod dispatch;
 mod plain;
 #[cfg(target_arch = "x86_64")]
 mod x86;
@@ -43,7 +44,7 @@ pub trait Real:
     /// The name of the precision, for tables.
     const NAME: &'static str;
 
-    fn of(value: f64) -> Self;
+    fn from_f64(value: f64) -> Self;
     fn to_f64(self) -> f64;
     fn sqrt(self) -> Self;
     fn fma(self, factor: Self, summand: Self) -> Self;
@@ -145,14 +146,14 @@ impl<L: Lanes> Neg for Num<L> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self.of(-L::Real::of(1.0)) * self
+        self.alike(-L::Real::from_f64(1.0)) * self
     }
 }
 
 impl<L: Lanes> Num<L> {
     #[inline(always)]
     pub fn splat(lanes: L, value: f64) -> Self {
-        Num { lanes, value: lanes.splat(L::Real::of(value)) }
+        Num { lanes, value: lanes.splat(L::Real::from_f64(value)) }
     }
 
     #[inline(always)]
@@ -167,7 +168,7 @@ impl<L: Lanes> Num<L> {
 
     /// The same number in every lane.
     #[inline(always)]
-    pub fn of(self, value: L::Real) -> Self {
+    pub fn alike(self, value: L::Real) -> Self {
         Num { lanes: self.lanes, value: self.lanes.splat(value) }
     }
 
@@ -302,73 +303,5 @@ impl<L: Lanes> Sub for Vector<L> {
     #[inline(always)]
     fn sub(self, b: Self) -> Self {
         Vector([self.0[0] - b.0[0], self.0[1] - b.0[1], self.0[2] - b.0[2]])
-    }
-}
-
-impl Real for f32 {
-    type Record = super::record::Compact;
-    const NAME: &'static str = "mixed";
-
-    #[inline(always)]
-    fn of(value: f64) -> f32 {
-        value as f32
-    }
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        f64::from(self)
-    }
-    #[inline(always)]
-    fn sqrt(self) -> f32 {
-        f32::sqrt(self)
-    }
-    #[inline(always)]
-    fn fma(self, factor: f32, summand: f32) -> f32 {
-        self.mul_add(factor, summand)
-    }
-
-    #[inline(always)]
-    fn dispatch<W: Work<f32>>(work: W) -> W::Output {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if let Some(lanes) = x86::Wide::detect() {
-                return lanes.enter(work, lanes);
-            }
-            if let Some(lanes) = x86::Middle::detect() {
-                return lanes.enter(work, lanes);
-            }
-        }
-        work.run(Plain::<f32, 4>::new())
-    }
-}
-
-impl Real for f64 {
-    type Record = super::record::Full;
-    const NAME: &'static str = "f64";
-
-    #[inline(always)]
-    fn of(value: f64) -> f64 {
-        value
-    }
-    #[inline(always)]
-    fn to_f64(self) -> f64 {
-        self
-    }
-    #[inline(always)]
-    fn sqrt(self) -> f64 {
-        f64::sqrt(self)
-    }
-    #[inline(always)]
-    fn fma(self, factor: f64, summand: f64) -> f64 {
-        self.mul_add(factor, summand)
-    }
-
-    #[inline(always)]
-    fn dispatch<W: Work<f64>>(work: W) -> W::Output {
-        #[cfg(target_arch = "x86_64")]
-        if let Some(lanes) = x86::Middle::detect() {
-            // the reference is plain code; only its fused products want the instructions
-            return lanes.enter(work, Plain::<f64, 4>::new());
-        }
-        work.run(Plain::<f64, 4>::new())
     }
 }

@@ -154,7 +154,7 @@ impl<R: Real, const W: usize> Lanes for Plain<R, W> {
     fn narrow(self, a: [f64; W]) -> [R; W] {
         let mut out = [R::default(); W];
         for l in 0..W {
-            out[l] = R::of(a[l]);
+            out[l] = R::from_f64(a[l]);
         }
         out
     }

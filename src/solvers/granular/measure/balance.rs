@@ -7,18 +7,18 @@ use crate::solvers::granular::vector::{Vec3, add, norm, scale};
 
 /// Forces on a body at an instant. Local damping is no force of a contact and is not in them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Balance {
+pub struct ForceBalance {
     /// Sum of contact forces and weight, N.
     pub net: Vec3,
     /// Sum of their magnitudes, N.
     pub acting: f64,
 }
 
-/// Of all bodies in the order of making. The snapshot is one of this bed, of now.
-pub fn balance<R: Real>(bed: &Bed<R>, snapshot: &Snapshot) -> Vec<Balance> {
-    let gravity = bed.gravity.at(bed.time);
-    let at_weight = |mass| Balance { net: scale(gravity, mass), acting: norm(scale(gravity, mass)) };
-    let mut all: Vec<Balance> = bed.states().map(|state| at_weight(state.mass)).collect();
+/// Forces on all bodies in the order of making. The snapshot is one of this bed, of now.
+pub fn balance<R: Real>(bed: &Bed<R>, snapshot: &Snapshot) -> Vec<ForceBalance> {
+    let gravity = bed.gravity.value_at(bed.time);
+    let at_weight = |mass| ForceBalance { net: scale(gravity, mass), acting: norm(scale(gravity, mass)) };
+    let mut all: Vec<ForceBalance> = bed.states().map(|state| at_weight(state.mass)).collect();
     for contact in &snapshot.contacts {
         for (party, side) in [(contact.first, 1.0), (contact.second, -1.0)] {
             let Some(body) = party.body() else { continue };

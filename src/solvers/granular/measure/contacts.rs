@@ -34,12 +34,12 @@ pub fn neighbours(bodies: usize, pairs: &[(u32, u32)]) -> Vec<u32> {
 
 /// Coordination of `bodies` bodies with these touching pairs, see [`neighbours`]. 0 where there are no bodies.
 pub fn coordination(bodies: usize, pairs: &[(u32, u32)]) -> Coordination {
-    Coordination::of(&neighbours(bodies, pairs))
+    Coordination::from_neighbours(&neighbours(bodies, pairs))
 }
 
 impl Coordination {
-    /// Of bodies that touch so many others: of all that there are, or of some of them, whose neighbours may be others.
-    pub fn of(neighbours: &[u32]) -> Coordination {
+    /// Coordination of bodies that touch so many others: of all that there are, or of some of them, whose neighbours may be others.
+    pub fn from_neighbours(neighbours: &[u32]) -> Coordination {
         let held: Vec<_> = neighbours.iter().filter(|n| **n >= 2).collect();
         let [all, links] = [neighbours.iter().sum::<u32>(), held.iter().copied().sum()];
         Coordination {

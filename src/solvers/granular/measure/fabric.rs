@@ -20,8 +20,8 @@ pub struct Fabric {
 }
 
 impl Fabric {
-    /// Of unit normals.
-    pub fn of(normals: impl IntoIterator<Item = [f64; 3]>) -> Fabric {
+    /// Fabric of unit normals.
+    pub fn from_normals(normals: impl IntoIterator<Item = [f64; 3]>) -> Fabric {
         let (mut contacts, mut sum) = (0, Matrix3::zeros());
         for normal in normals.into_iter().map(Vector3::from) {
             contacts += 1;
@@ -67,8 +67,8 @@ pub struct Rose {
 }
 
 impl Rose {
-    /// Of unit normals. Zero everywhere without any.
-    pub fn of(normals: impl IntoIterator<Item = [f64; 3]>) -> Rose {
+    /// Rose of unit normals, zero everywhere without any.
+    pub fn from_normals(normals: impl IntoIterator<Item = [f64; 3]>) -> Rose {
         let mut inclination = vec![0.0; INCLINATIONS];
         let mut planes = [vec![0.0; AZIMUTHS], vec![0.0; AZIMUTHS]];
         for [x, y, z] in normals {

@@ -14,7 +14,7 @@ const SLIDES: f64 = 1e-4;
 
 /// A contact that pushes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Push {
+pub struct ContactPush {
     /// N.
     pub normal: f64,
     /// N.
@@ -48,9 +48,9 @@ pub struct ForceSpread {
 }
 
 impl ForceSpread {
-    /// Of contacts whose normal force pushes; the others are left out.
-    pub fn of(pushes: impl IntoIterator<Item = Push>) -> ForceSpread {
-        let pushes: Vec<Push> = pushes.into_iter().filter(|push| push.normal > 0.0).collect();
+    /// How the forces of contacts spread whose normal force pushes; the others are left out.
+    pub fn from_pushes(pushes: impl IntoIterator<Item = ContactPush>) -> ForceSpread {
+        let pushes: Vec<ContactPush> = pushes.into_iter().filter(|push| push.normal > 0.0).collect();
         if pushes.is_empty() {
             return ForceSpread::default();
         }

@@ -1,14 +1,17 @@
 //! The part of a straight line that lies in a region.
 
-use super::Shape;
+use super::region::{Region, RegionShape};
 
-/// Share of the line between two points, 0 .. 1. Pieces of a space that is cut into boxes add up to 1.
-pub fn share(shape: &Shape, from: &[f64; 3], to: &[f64; 3]) -> f64 {
-    let [start, end] = match shape {
-        Shape::Block { lower, upper } => within_block(lower, upper, from, to),
-        Shape::Ball { centre, radius } => within_ball(centre, *radius, from, to),
-    };
-    (end.min(1.0) - start.max(0.0)).max(0.0)
+impl Region {
+    /// Share of the straight line between two points (m) that lies inside, 0 .. 1. Pieces of a space that is cut into boxes add
+    /// up to 1.
+    pub fn share_of_line(&self, from: &[f64; 3], to: &[f64; 3]) -> f64 {
+        let [start, end] = match &self.0 {
+            RegionShape::Block { lower, upper } => within_block(lower, upper, from, to),
+            RegionShape::Ball { centre, radius } => within_ball(centre, *radius, from, to),
+        };
+        (end.min(1.0) - start.max(0.0)).max(0.0)
+    }
 }
 
 /// From where to where along the line, 0 at `from` and 1 at `to`.

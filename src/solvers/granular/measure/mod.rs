@@ -12,139 +12,14 @@ mod forces;
 mod line;
 #[cfg(test)]
 pub(super) mod packed;
+mod region;
 mod survey;
 #[cfg(test)]
 mod tests;
 
-pub use balance::{Balance, balance, unbalance};
+pub use balance::{ForceBalance, balance, unbalance};
 pub use contacts::{Contact, Coordination, coordination, neighbours, stress};
 pub use fabric::{Fabric, Rose};
-pub use forces::{ForceSpread, Push};
+pub use forces::{ContactPush, ForceSpread};
+pub use region::{Ball, NoRegion, Region};
 pub use survey::{Reading, Survey};
-
-use std::f64::consts::PI;
-use std::fmt;
-
-/// Centre (m) and radius (m) of a sphere.
-pub type Ball = ([f64; 3], f64);
-
-/// A box along the axes, or a measurement sphere.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Region(Shape);
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Shape {
-    Block { lower: [f64; 3], upper: [f64; 3] },
-    Ball { centre: [f64; 3], radius: f64 },
-}
-
-/// A region that holds no volume, or whose size is no number.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NoRegion;
-
-impl fmt::Display for NoRegion {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "expected a region of some volume")
-    }
-}
-
-impl std::error::Error for NoRegion {}
-
-impl Region {
-    /// The box between two corners, m.
-    pub fn block(lower: [f64; 3], upper: [f64; 3]) -> Result<Self, NoRegion> {
-        Self(Shape::Block { lower, upper }).checked()
-    }
-
-    /// The sphere about `centre` (m) of `radius` (m).
-    pub fn sphere(centre: [f64; 3], radius: f64) -> Result<Self, NoRegion> {
-        Self(Shape::Ball { centre, radius }).checked()
-    }
-
-    fn checked(self) -> Result<Self, NoRegion> {
-        let sound = match self.0 {
-            Shape::Block { lower, upper } => (0..3).all(|k| lower[k] < upper[k]),
-            Shape::Ball { centre, radius } => radius > 0.0 && centre.iter().all(|c| c.is_finite()),
-        };
-        if sound && self.volume().is_normal() { Ok(self) } else { Err(NoRegion) }
-    }
-
-    /// m³.
-    pub fn volume(&self) -> f64 {
-        match self.0 {
-            Shape::Block { lower, upper } => (0..3).map(|k| upper[k] - lower[k]).product(),
-            Shape::Ball { radius, .. } => 4.0 / 3.0 * PI * radius * radius * radius,
-        }
-    }
-
-    /// Whether a point lies inside. A box holds its lower faces and not its upper ones: of boxes that fill a space, one holds it.
-    pub fn holds(&self, point: &[f64; 3]) -> bool {
-        match self.0 {
-            Shape::Block { lower, upper } => (0..3).all(|k| lower[k] <= point[k] && point[k] < upper[k]),
-            Shape::Ball { centre, radius } => ball::distance(&centre, point) <= radius,
-        }
-    }
-
-    /// Its lowest and highest corner, m.
-    pub fn bounds(&self) -> [[f64; 3]; 2] {
-        match self.0 {
-            Shape::Block { lower, upper } => [lower, upper],
-            Shape::Ball { centre, radius } => [centre.map(|c| c - radius), centre.map(|c| c + radius)],
-        }
-    }
-
-    /// Share of the straight line between two points (m) that lies inside, 0 .. 1.
-    pub fn share_of_line(&self, from: &[f64; 3], to: &[f64; 3]) -> f64 {
-        line::share(&self.0, from, to)
-    }
-
-    /// Volume of a sphere inside the region, m³, in closed form; the error is about 1e-14 of the sphere.
-    pub fn share_of_sphere(&self, (centre, radius): Ball) -> f64 {
-        match self.0 {
-            Shape::Block { lower, upper } => {
-                let scale = |corner: [f64; 3]| std::array::from_fn(|k| (corner[k] - centre[k]) / radius);
-                radius * radius * radius * ball::unit_ball_in_box(&scale(lower), &scale(upper))
-            }
-            Shape::Ball { centre: middle, radius: reach } => {
-                ball::ball_in_ball(radius, reach, ball::distance(&centre, &middle))
-            }
-        }
-    }
-
-    /// Volume of a clump inside the region, m³: what several pebbles hold counts once. `volume` (m³) is that of the clump. The
-    /// error is below 1e-10 of the cube of the largest radius.
-    pub fn share_of_clump(&self, pebbles: &[Ball], volume: f64) -> f64 {
-        match pebbles {
-            [] => 0.0,
-            [sphere] => self.share_of_sphere(*sphere),
-            _ if pebbles.iter().all(|p| self.holds_ball(p)) => volume,
-            _ if pebbles.iter().all(|p| self.misses_ball(p)) => 0.0,
-            _ => clump::union_in(&self.0, pebbles),
-        }
-    }
-
-    /// Porosity, from the volumes (m³) that bodies have inside the region. What bodies overlap at their contacts counts twice, as
-    /// it does in their masses.
-    pub fn porosity(&self, shares: impl IntoIterator<Item = f64>) -> f64 {
-        1.0 - shares.into_iter().sum::<f64>() / self.volume()
-    }
-
-    fn holds_ball(&self, (centre, radius): &Ball) -> bool {
-        match &self.0 {
-            Shape::Block { lower, upper } => {
-                (0..3).all(|k| lower[k] <= centre[k] - radius && centre[k] + radius <= upper[k])
-            }
-            Shape::Ball { centre: middle, radius: reach } => ball::distance(centre, middle) + radius <= *reach,
-        }
-    }
-
-    /// Sure to miss; a ball near an edge of a box may be missed all the same.
-    fn misses_ball(&self, (centre, radius): &Ball) -> bool {
-        match &self.0 {
-            Shape::Block { lower, upper } => {
-                (0..3).any(|k| centre[k] + radius <= lower[k] || upper[k] <= centre[k] - radius)
-            }
-            Shape::Ball { centre: middle, radius: reach } => ball::distance(centre, middle) >= reach + radius,
-        }
-    }
-}

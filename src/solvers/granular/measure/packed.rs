@@ -3,9 +3,10 @@
 use super::*;
 use crate::solvers::granular::clump::Template;
 use crate::solvers::granular::grains::Curve;
-use crate::solvers::granular::packing::{Layer, Packed, Packing, Recipe, Rest, pack};
+use crate::solvers::granular::packing::{GrainLayer, Packed, Packing, Recipe, Rest, pack};
 use crate::solvers::granular::probe::{FULL, Outline, Plate, Stillness, probe};
-use crate::solvers::granular::{Bed, DashpotMode, Domain, Gravity, Laws, Party, Sphere, Surface, WallId};
+use crate::solvers::granular::{Bed, ContactLaws, DashpotMode, Domain, Gravity, Party, Sphere, Surface, WallId};
+use std::f64::consts::PI;
 use std::sync::LazyLock;
 
 const DENSITY: f64 = 2700.0;
@@ -24,7 +25,7 @@ fn surface() -> Surface {
 
 /// Spheres of 32 to 50 mm in a periodic cell.
 pub(in super::super) fn recipe() -> Recipe {
-    let layer = Layer {
+    let layer = GrainLayer {
         name: "ballast".into(),
         curve: Curve::new(&[[0.032, 0.0], [0.05, 1.0]]).unwrap(),
         templates: vec![Template::sphere(0.5).unwrap()],
@@ -65,7 +66,7 @@ const SIDE: f64 = 8.0 * RADIUS;
 /// A cubic lattice of `count` layers in a periodic column, on a floor or without one.
 fn column(count: u32, floor: bool, fall: f64) -> Bed<f64> {
     let domain = Domain::open().periodic(0, SIDE).periodic(1, SIDE);
-    let mut bed = Bed::new(domain, Laws::of(&[surface()]));
+    let mut bed = Bed::new(domain, ContactLaws::from_surfaces(&[surface()]));
     if floor {
         bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
     }
@@ -81,7 +82,7 @@ fn column(count: u32, floor: bool, fall: f64) -> Bed<f64> {
 
 fn survey(bed: &mut Bed<f64>) -> Survey {
     let snapshot = bed.snapshot().unwrap();
-    Survey::of(bed, &snapshot, &[DENSITY])
+    Survey::from_snapshot(bed, &snapshot, &[DENSITY])
 }
 
 fn block(lower: [f64; 3], upper: [f64; 3]) -> Region {

@@ -13,11 +13,11 @@
 //! In a periodic bed a region may lie anywhere and reach over borders.
 
 use super::fabric::{equivalent, rows};
-use super::forces::Push;
+use super::forces::ContactPush;
 use super::{Ball, Coordination, Fabric, Region, balance, neighbours};
 use crate::solvers::granular::bed::Bed;
 use crate::solvers::granular::lanes::Real;
-use crate::solvers::granular::law::Law;
+use crate::solvers::granular::law::ContactLaw;
 use crate::solvers::granular::snapshot::{ContactState, Party, Snapshot};
 use crate::solvers::granular::vector::{Vec3, add, dot, norm, scale, sub};
 use nalgebra::{Matrix3, Vector3};
@@ -88,11 +88,6 @@ impl Reading {
         [-self.stress[0][0], -self.stress[1][1]]
     }
 
-    /// Mean pressure p, Pa.
-    pub fn mean_pressure(&self) -> f64 {
-        -(0..3).map(|k| self.stress[k][k]).sum::<f64>() / 3.0
-    }
-
     /// Deviator q of the symmetric part, `√(3/2 s : s)`, Pa.
     pub fn deviator(&self) -> f64 {
         let symmetric = [0, 1, 2].map(|i| [0, 1, 2].map(|j| 0.5 * (self.stress[i][j] + self.stress[j][i])));
@@ -107,8 +102,8 @@ impl Reading {
 }
 
 impl Survey {
-    /// Of a bed and its snapshot of now. `densities` (kg/m3) by surface give bodies of several pebbles their volume.
-    pub fn of<R: Real>(bed: &Bed<R>, snapshot: &Snapshot, densities: &[f64]) -> Survey {
+    /// Surveys a bed by its snapshot of now. `densities` (kg/m3) by surface give bodies of several pebbles their volume.
+    pub fn from_snapshot<R: Real>(bed: &Bed<R>, snapshot: &Snapshot, densities: &[f64]) -> Survey {
         let periods = [0, 1, 2].map(|axis| bed.domain().period(axis));
         let touches = snapshot.contacts.iter().filter_map(|contact| touch(bed, contact, &periods));
         Survey { grains: grains(bed, snapshot, densities, &periods), touches: touches.collect(), periods }
@@ -132,11 +127,11 @@ impl Survey {
     }
 
     /// Forces of the contacts between bodies.
-    pub fn pushes(&self) -> impl Iterator<Item = Push> + '_ {
+    pub fn pushes(&self) -> impl Iterator<Item = ContactPush> + '_ {
         self.inner().map(|touch| {
             let normal = touch.normal_force();
             let shear = norm(sub(touch.force, scale(touch.normal, normal)));
-            Push { normal, shear, friction: touch.friction }
+            ContactPush { normal, shear, friction: touch.friction }
         })
     }
 
@@ -173,11 +168,11 @@ impl Survey {
         Reading {
             bodies: inside.len(),
             porosity: 1.0 - solid / volume,
-            coordination: Coordination::of(&counts).mean,
+            coordination: Coordination::from_neighbours(&counts).mean,
             stress: rows(&stress),
             velocity: mean(|grain| grain.velocity),
             acceleration: mean(|grain| grain.acceleration),
-            fabric: Fabric::of(normals),
+            fabric: Fabric::from_normals(normals),
         }
     }
 }
@@ -246,8 +241,8 @@ fn touch<R: Real>(bed: &Bed<R>, contact: &ContactState, periods: &[Option<f64>; 
     };
     let shift = into_period(&first.place, periods);
     let friction = match bed.laws().get(first.surface, surface) {
-        Law::Linear(law) => law.friction,
-        Law::HertzMindlin(law) => law.friction,
+        ContactLaw::Linear(law) => law.friction,
+        ContactLaw::HertzMindlin(law) => law.friction,
     };
     Some(Touch {
         centre: add(first.place, shift),

@@ -4,6 +4,7 @@ use super::*;
 use crate::solvers::granular::clump::{Pebble, Template};
 use nalgebra::{Matrix3, Vector3};
 use proptest::prelude::*;
+use std::f64::consts::PI;
 
 /// Porosity of a lattice of spheres (m) in one cell, wherever the cell begins: spheres at `sites` and their images.
 fn lattice(cell: [f64; 3], sites: &[[f64; 3]], radius: f64, start: [f64; 3]) -> f64 {
@@ -79,7 +80,7 @@ fn clump(shift: [f64; 3]) -> (Vec<Ball>, f64) {
     let balls = [([0.0, 0.0, 0.0], 1.0), ([0.8, 0.3, -0.1], 0.8), ([0.2, 0.7, 0.4], 0.9)];
     let pebbles = balls.map(|(c, radius)| Pebble { centre: Vector3::from(c), radius });
     let moved = balls.map(|(c, r)| (std::array::from_fn(|k| c[k] + shift[k]), r));
-    (moved.to_vec(), Template::of(&pebbles).unwrap().volume)
+    (moved.to_vec(), Template::from_pebbles(&pebbles).unwrap().volume)
 }
 
 fn place() -> impl Strategy<Value = [f64; 3]> {
@@ -126,7 +127,7 @@ proptest! {
         let region = Region::sphere([0.0; 3], radius).unwrap();
         let mut all: Vec<_> = pebbles.iter().map(|(c, r)| Pebble { centre: Vector3::from(*c), radius: *r }).collect();
         all.push(Pebble { centre: Vector3::zeros(), radius });
-        if let Ok(together) = Template::of(&all) {
+        if let Ok(together) = Template::from_pebbles(&all) {
             let expected = volume + region.volume() - together.volume;
             prop_assert!((region.share_of_clump(&pebbles, volume) - expected).abs() < 1e-9);
         }
@@ -155,7 +156,7 @@ fn a_clump_inside_is_whole_and_one_outside_is_nothing() {
 fn symmetry_planes_cut_a_clump_in_equal_parts() {
     let pebbles = [([-0.4, 0.0, 0.0], 0.5), ([0.4, 0.0, 0.0], 0.5), ([0.0, 0.0, 0.0], 0.6)];
     let whole = pebbles.map(|(c, radius)| Pebble { centre: Vector3::from(c), radius });
-    let volume = Template::of(&whole).unwrap().volume;
+    let volume = Template::from_pebbles(&whole).unwrap().volume;
     for octant in boxes(&[[0.0, 9.0]; 3]).into_iter().filter(|b| b.share_of_sphere(pebbles[2]) > 0.0) {
         let error = octant.share_of_clump(&pebbles, volume) - volume / 8.0;
         assert!(error.abs() < 1e-11, "{error}");
@@ -263,22 +264,22 @@ fn even(count: u32) -> impl Iterator<Item = [f64; 3]> + Clone {
 
 #[test]
 fn even_directions_have_no_fabric_and_lattices_have_theirs() {
-    let found = Fabric::of(even(20_000));
+    let found = Fabric::from_normals(even(20_000));
     assert!(found.deviator() < 1e-4 && found.contacts == 20_000, "{}", found.deviator());
-    let rose = Rose::of(even(20_000));
+    let rose = Rose::from_normals(even(20_000));
     for density in rose.inclination.iter().chain(&rose.along).chain(&rose.across) {
         assert!((density - 1.0).abs() < 0.02, "{rose:?}");
     }
     // simple cubic and face-centred lattices are isotropic to second order, a column is all in one direction
     let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-    assert!(Fabric::of(axes).deviator() < 1e-15);
+    assert!(Fabric::from_normals(axes).deviator() < 1e-15);
     let h = 0.5_f64.sqrt();
     let close = [[h, h, 0.0], [h, -h, 0.0], [h, 0.0, h], [h, 0.0, -h], [0.0, h, h], [0.0, h, -h]];
-    assert!(Fabric::of(close).deviator() < 1e-15);
-    let column = Fabric::of([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]);
+    assert!(Fabric::from_normals(close).deviator() < 1e-15);
+    let column = Fabric::from_normals([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]);
     assert!((column.deviator() - 1.0).abs() < 1e-15 && (column.anisotropy() - 7.5).abs() < 1e-14);
-    assert_eq!(Rose::of([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]).inclination[1..], [0.0; 8]);
-    assert_eq!((Fabric::of([]).contacts, Fabric::of([]).deviator()), (0, 0.0));
+    assert_eq!(Rose::from_normals([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]).inclination[1..], [0.0; 8]);
+    assert_eq!((Fabric::from_normals([]).contacts, Fabric::from_normals([]).deviator()), (0, 0.0));
 }
 
 #[test]
@@ -288,7 +289,7 @@ fn a_known_anisotropy_is_found_again() {
     let weight = |z: f64| 1.0 + amplitude * 0.5 * (3.0 * z * z - 1.0);
     // a direction as often as it weighs
     let normals = even(4000).flat_map(|n| std::iter::repeat_n(n, (50.0 * weight(n[2])).round() as usize));
-    let found = Fabric::of(normals);
+    let found = Fabric::from_normals(normals);
     assert!((found.deviator() / (amplitude / 5.0) - 1.0).abs() < 5e-3, "{}", found.deviator());
     assert!((found.anisotropy() / (1.5 * amplitude) - 1.0).abs() < 5e-3, "{}", found.anisotropy());
 }
@@ -298,8 +299,8 @@ fn exponential_forces_are_known_as_such() {
     // quantiles of an exponential of mean 7 N, half of its friction used by each
     let count = 100_000;
     let force = |k: i32| -7.0 * (1.0 - (f64::from(k) + 0.5) / f64::from(count)).ln();
-    let pushes = (0..count).map(|k| Push { normal: force(k), shear: 0.25 * force(k), friction: 0.5 });
-    let found = ForceSpread::of(pushes);
+    let pushes = (0..count).map(|k| ContactPush { normal: force(k), shear: 0.25 * force(k), friction: 0.5 });
+    let found = ForceSpread::from_pushes(pushes);
     assert!((found.mean / 7.0 - 1.0).abs() < 1e-4, "{}", found.mean);
     assert!((found.decay.unwrap() - 1.0).abs() < 1e-3, "{:?}", found.decay);
     let e = 1.0_f64.exp();
@@ -316,13 +317,13 @@ fn exponential_forces_are_known_as_such() {
 
 #[test]
 fn contacts_at_their_friction_slide_and_equal_forces_have_no_tail() {
-    let at = |shear: f64, friction: f64| Push { normal: 2.0, shear, friction };
-    let found = ForceSpread::of([at(1.0, 0.5), at(0.5, 0.5), at(0.0, 0.5), at(0.0, 0.0)]);
+    let at = |shear: f64, friction: f64| ContactPush { normal: 2.0, shear, friction };
+    let found = ForceSpread::from_pushes([at(1.0, 0.5), at(0.5, 0.5), at(0.0, 0.5), at(0.0, 0.0)]);
     assert_eq!((found.sliding, found.mobilised), (Some(1.0 / 3.0), Some(0.5)));
     assert_eq!((found.decay, found.above, found.largest), (None, 0.0, 1.0));
-    let smooth = ForceSpread::of([at(0.0, 0.0)]);
+    let smooth = ForceSpread::from_pushes([at(0.0, 0.0)]);
     assert_eq!((smooth.sliding, smooth.mobilised), (None, None));
-    assert_eq!(ForceSpread::of([]), ForceSpread::default());
+    assert_eq!(ForceSpread::from_pushes([]), ForceSpread::default());
 }
 
 proptest! {

@@ -1,6 +1,6 @@
 //! A force that an actuator applies, as it goes in time.
 
-use super::{MotionError, require};
+use super::error::{MotionError, require};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -29,7 +29,7 @@ pub enum Push {
 
 impl Push {
     /// At a time, s.
-    pub fn at(&self, time: f64) -> f64 {
+    pub fn force_at(&self, time: f64) -> f64 {
         match self {
             Push::Constant(force) => *force,
             Push::Cyclic { low, high, frequency, start, ramp } if time >= *start || *ramp == 0.0 => {

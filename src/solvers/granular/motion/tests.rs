@@ -4,7 +4,7 @@ use super::*;
 use proptest::prelude::*;
 
 /// Where a wall is after a time in steps of dt.
-fn moved(motion: &Motion, dt: f64, steps: u32) -> Pose {
+fn moved(motion: &WallMotion, dt: f64, steps: u32) -> Pose {
     let mut pose = Pose::default();
     for step in 0..steps {
         let (linear, angular) = motion.velocity(f64::from(step) * dt, dt, &Felt::default());
@@ -17,7 +17,7 @@ fn moved(motion: &Motion, dt: f64, steps: u32) -> Pose {
 fn a_harmonic_motion_reaches_its_amplitude() {
     let axis = Vector3::new(0.0, 0.6, 0.8);
     let at = |phase, dt: f64, steps| {
-        let motion = Motion::Harmonic { axis, amplitude: 2e-3, frequency: 5.0, phase };
+        let motion = WallMotion::Harmonic { axis, amplitude: 2e-3, frequency: 5.0, phase };
         motion.check().unwrap();
         moved(&motion, dt, steps).position.dot(&axis)
     };
@@ -35,8 +35,10 @@ fn a_harmonic_motion_reaches_its_amplitude() {
 #[test]
 fn a_table_holds_before_and_after_and_its_knots_need_not_meet_steps() {
     let velocity = |vx: f64| Vector3::new(vx, 0.0, -vx);
-    let motion =
-        Motion::Table { times: vec![1.0, 2.0, 2.5], velocities: vec![velocity(1.0), velocity(3.0), velocity(-1.0)] };
+    let motion = WallMotion::Table {
+        times: vec![1.0, 2.0, 2.5],
+        velocities: vec![velocity(1.0), velocity(3.0), velocity(-1.0)],
+    };
     motion.check().unwrap();
     let mean = |time, dt| motion.velocity(time, dt, &Felt::default()).0.x;
     assert_eq!((mean(-5.0, 1.0), mean(9.0, 1.0), mean(2.5, 0.1)), (1.0, -1.0, -1.0));
@@ -46,14 +48,14 @@ fn a_table_holds_before_and_after_and_its_knots_need_not_meet_steps() {
         let end = moved(&motion, 4.0 / f64::from(steps), steps).position;
         assert!((end - velocity(2.0)).norm() < 1e-13, "{end}");
     }
-    let constant = Motion::Table { times: vec![0.0], velocities: vec![velocity(0.2)] };
+    let constant = WallMotion::Table { times: vec![0.0], velocities: vec![velocity(0.2)] };
     assert!((moved(&constant, 0.01, 100).position.x - 0.2).abs() < 1e-15);
 }
 
 #[test]
 fn a_turning_pose_stays_one() {
     let angular = Vector3::new(0.3, -2.0, 1.1);
-    let motion = Motion::Velocity { linear: Vector3::new(0.1, 0.0, 0.0), angular };
+    let motion = WallMotion::Velocity { linear: Vector3::new(0.1, 0.0, 0.0), angular };
     let pose = moved(&motion, 1e-3, 100_000);
     pose.check().unwrap();
     let length = pose.orientation.iter().map(|q| q * q).sum::<f64>().sqrt();
@@ -62,7 +64,7 @@ fn a_turning_pose_stays_one() {
     let expected = nalgebra::Rotation3::new(angular * 100.0) * Vector3::new(1.0, 2.0, 3.0);
     assert!((pose.direction_to_space(&Vector3::new(1.0, 2.0, 3.0)) - expected).norm() < 1e-9);
     assert!((pose.position.x - 10.0).abs() < 1e-10);
-    assert_eq!(moved(&Motion::Fixed, 1e-3, 100), Pose::default());
+    assert_eq!(moved(&WallMotion::Fixed, 1e-3, 100), Pose::default());
 }
 
 proptest! {
@@ -91,7 +93,7 @@ proptest! {
 /// Errors of force, step by step, of a servo that presses down on a massless spring from 1 N too little.
 fn errors(gain: f64, steps: usize) -> Vec<f64> {
     let (stiffness, target, dt) = (1e6, 100.0, 1e-4);
-    let servo = Motion::Servo { axis: Vector3::z(), force: target, speed_limit: 1e9, gain };
+    let servo = WallMotion::Servo { axis: Vector3::z(), force: target, speed_limit: 1e9, gain };
     let mut height = -(target - 1.0) / stiffness;
     let mut errors = Vec::new();
     for step in 0..steps {
@@ -125,7 +127,7 @@ fn a_servo_relaxes_by_one_less_its_gain() {
 fn a_servo_finds_its_contact_and_loads_a_bed_with_mass() {
     // ten bodies on springs with dashpots under a plate: the plate seeks them, then holds the force
     let (n, mass, k, c, dt) = (10, 0.05, 1.3e7, 480.0, 1e-5);
-    let servo = Motion::servo(Vector3::z(), 2000.0, 0.2);
+    let servo = WallMotion::servo(Vector3::z(), 2000.0, 0.2);
     let (mut plate, mut speed) = (1e-4, 0.0);
     let (mut x, mut v) = (vec![0.0; n], vec![0.0; n]);
     let mut forces = Vec::new();
@@ -166,30 +168,30 @@ fn a_servo_finds_its_contact_and_loads_a_bed_with_mass() {
 #[test]
 fn a_servo_without_contact_moves_to_where_force_comes_from() {
     let free = Felt::default();
-    let speed = |force| Motion::servo(Vector3::x(), force, 0.3).velocity(0.0, 1e-5, &free).0.x;
+    let speed = |force| WallMotion::servo(Vector3::x(), force, 0.3).velocity(0.0, 1e-5, &free).0.x;
     assert_eq!((speed(10.0), speed(-10.0), speed(0.0)), (-0.3, 0.3, 0.0));
     // with contact the limit holds as well
     let felt = Felt { force: Vector3::x() * 1e6, stiffness: 1e6, contacts: 4, ..Felt::default() };
-    assert_eq!(Motion::servo(Vector3::x(), 10.0, 0.3).velocity(0.0, 1e-5, &felt).0.x, 0.3);
+    assert_eq!(WallMotion::servo(Vector3::x(), 10.0, 0.3).velocity(0.0, 1e-5, &felt).0.x, 0.3);
 }
 
 #[test]
 fn numbers_out_of_range_are_named() {
-    let servo = |force, speed_limit, gain| Motion::Servo { axis: Vector3::z(), force, speed_limit, gain };
-    let harmonic = |axis, frequency| Motion::Harmonic { axis, amplitude: 1.0, frequency, phase: 0.0 };
+    let servo = |force, speed_limit, gain| WallMotion::Servo { axis: Vector3::z(), force, speed_limit, gain };
+    let harmonic = |axis, frequency| WallMotion::Harmonic { axis, amplitude: 1.0, frequency, phase: 0.0 };
     let zero = Vector3::zeros();
     let wrong = [
         (servo(1.0, 1.0, 0.0), "gain of a servo"),
         (servo(1.0, 1.0, 1.5), "gain of a servo"),
         (servo(1.0, 0.0, 0.5), "speed limit of a servo"),
         (servo(f64::NAN, 1.0, 0.5), "force of a servo"),
-        (Motion::servo(zero, 1.0, 1.0), "axis of a servo"),
+        (WallMotion::servo(zero, 1.0, 1.0), "axis of a servo"),
         (harmonic(Vector3::z(), -1.0), "frequency of a harmonic motion"),
         (harmonic(Vector3::z() * 2.0, 1.0), "axis of a harmonic motion"),
-        (Motion::Velocity { linear: zero, angular: zero.add_scalar(f64::INFINITY) }, "angular velocity of a wall"),
-        (Motion::Table { times: vec![], velocities: vec![] }, "times of a table of velocities"),
-        (Motion::Table { times: vec![0.0, 0.0], velocities: vec![zero; 2] }, "times of a table of velocities"),
-        (Motion::Table { times: vec![0.0], velocities: vec![zero; 2] }, "number of velocities of a table"),
+        (WallMotion::Velocity { linear: zero, angular: zero.add_scalar(f64::INFINITY) }, "angular velocity of a wall"),
+        (WallMotion::Table { times: vec![], velocities: vec![] }, "times of a table of velocities"),
+        (WallMotion::Table { times: vec![0.0, 0.0], velocities: vec![zero; 2] }, "times of a table of velocities"),
+        (WallMotion::Table { times: vec![0.0], velocities: vec![zero; 2] }, "number of velocities of a table"),
     ];
     for (motion, name) in wrong {
         assert_eq!(motion.check().unwrap_err().name, name);
@@ -202,14 +204,14 @@ fn numbers_out_of_range_are_named() {
 #[test]
 fn motions_come_back_from_a_file() {
     let motions = [
-        Motion::Fixed,
-        Motion::servo(Vector3::z(), 1.0 / 3.0, 0.1),
-        Motion::Table { times: vec![0.1, 0.7], velocities: vec![Vector3::x(), Vector3::y()] },
+        WallMotion::Fixed,
+        WallMotion::servo(Vector3::z(), 1.0 / 3.0, 0.1),
+        WallMotion::Table { times: vec![0.1, 0.7], velocities: vec![Vector3::x(), Vector3::y()] },
     ];
     for motion in motions {
         let text = serde_json::to_string(&motion).unwrap();
-        assert_eq!(serde_json::from_str::<Motion>(&text).unwrap(), motion);
+        assert_eq!(serde_json::from_str::<WallMotion>(&text).unwrap(), motion);
     }
     let text = r#"{"Servo":{"axis":[0.0,0.0,1.0],"force":1.0,"speed_limit":0.1}}"#;
-    assert_eq!(serde_json::from_str::<Motion>(text).unwrap(), Motion::servo(Vector3::z(), 1.0, 0.1));
+    assert_eq!(serde_json::from_str::<WallMotion>(text).unwrap(), WallMotion::servo(Vector3::z(), 1.0, 0.1));
 }

@@ -1,10 +1,11 @@
 //! Why there is no bed.
 
+use super::super::failure::Failure;
 use super::super::grains::GradingError;
-use super::super::watch::Failure;
-use super::{Layer, Recipe};
+use super::describe::StageKind;
 use std::fmt;
 
+/// Why a bed was not packed.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PackingError {
     /// A number of the recipe, and what it should be.
@@ -35,26 +36,23 @@ pub enum PackingError {
     },
     /// The plate has not reached its pressure in time.
     Pressure {
-        stage: String,
+        stage: StageKind,
         reached: f64,
         target: f64,
         time: f64,
     },
     /// Forces are not in balance after the time that a stage may take.
     Restless {
-        stage: String,
+        stage: StageKind,
         unbalance: f64,
         limit: f64,
         time: f64,
     },
     Failure {
-        stage: String,
+        stage: StageKind,
         failure: Failure,
     },
 }
-
-/// Greatest part of the shorter side of the plan that a grain may take: a third, or it would meet itself.
-const GRAIN: f64 = 1.0 / 3.0;
 
 impl fmt::Display for PackingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -107,59 +105,4 @@ impl From<GradingError> for PackingError {
     fn from(error: GradingError) -> Self {
         PackingError::Grading(error)
     }
-}
-
-/// The first thing that no bed can be made of.
-pub(super) fn check(recipe: &Recipe) -> Result<(), PackingError> {
-    let number = |quantity, value: f64, fine: bool, expected| match value.is_finite() && fine {
-        true => Ok(()),
-        false => Err(PackingError::Number { layer: None, quantity, value, expected }),
-    };
-    if recipe.layers.is_empty() {
-        return Err(PackingError::NoLayers);
-    }
-    for side in recipe.plan {
-        number("side of the cell", side, side > 0.0, "above 0 m")?;
-    }
-    number("gravity", recipe.gravity, recipe.gravity > 0.0, "above 0 m/s2")?;
-    number("local damping", recipe.local_damping, (0.0..1.0).contains(&recipe.local_damping), "from 0 to below 1")?;
-    for (quantity, value) in [
-        ("force out of balance of a lift", recipe.rest.lift),
-        ("force out of balance of the bed", recipe.rest.bed),
-        ("share by which the pressure may be missed", recipe.rest.pressure),
-        ("longest time of a stage", recipe.rest.longest),
-    ] {
-        number(quantity, value, value > 0.0, "above 0")?;
-    }
-    recipe.layers.iter().try_for_each(|layer| check_layer(recipe, layer))
-}
-
-fn check_layer(recipe: &Recipe, layer: &Layer) -> Result<(), PackingError> {
-    let number = |quantity, value: f64, fine: bool, expected| match value.is_finite() && fine {
-        true => Ok(()),
-        false => Err(PackingError::Number { layer: Some(layer.name.clone()), quantity, value, expected }),
-    };
-    number("density", layer.density, layer.density > 0.0, "above 0 kg/m3")?;
-    number("thickness", layer.thickness, layer.thickness > 0.0, "above 0 m")?;
-    number("number of lifts", f64::from(layer.lifts), layer.lifts > 0, "1 or more")?;
-    number("number of templates", layer.templates.len() as f64, !layer.templates.is_empty(), "1 or more")?;
-    number("pressure", layer.pressure, layer.pressure > 0.0, "above 0 Pa")?;
-    let damping = layer.packing.local_damping;
-    number("local damping while packed", damping, (0.0..1.0).contains(&damping), "from 0 to below 1")?;
-    for law in [layer.surface.meet(&layer.surface)] {
-        if let Some(fault) = law.faults().first() {
-            number(fault.quantity, fault.value, false, fault.expected)?;
-        }
-    }
-    // a clump is longer than its size
-    let widest = layer.templates.iter().map(|t| 2.0 * t.bounding_radius()).fold(0.0, f64::max);
-    let (diameter, shortest) = (layer.curve.ends()[1] * widest, recipe.plan[0].min(recipe.plan[1]));
-    if diameter > GRAIN * shortest {
-        return Err(PackingError::LargeGrain { layer: layer.name.clone(), diameter, side: shortest });
-    }
-    if layer.curve.ends()[1] > layer.thickness {
-        let diameter = layer.curve.ends()[1];
-        return Err(PackingError::ThinLayer { layer: layer.name.clone(), diameter, thickness: layer.thickness });
-    }
-    Ok(())
 }

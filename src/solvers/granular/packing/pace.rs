@@ -2,9 +2,9 @@
 //! forces at rest do not know inertia.
 
 use super::super::bed::{Bed, BodyState};
+use super::super::failure::Failure;
 use super::super::lanes::Real;
-use super::super::watch::Failure;
-use super::Recipe;
+use super::recipe::Recipe;
 
 /// The step over sqrt(m / k) of a mean grain.
 const PACE: f64 = 0.6;
@@ -22,18 +22,18 @@ pub(super) struct Pace {
     step: f64,
     /// What a body bears, over sqrt(m / k).
     bearable: f64,
-    /// Of contacts between grains of each layer, N/m.
+    /// Stiffness of contacts between grains of each layer, N/m.
     stiffness: Vec<f64>,
 }
 
 impl Pace {
-    pub fn of(recipe: &Recipe) -> Pace {
+    pub fn without_friction(recipe: &Recipe) -> Pace {
         Pace { step: PACE * recipe.mean_step(), bearable: BEARABLE, stiffness: recipe.stiffness() }
     }
 
     /// For beds with friction, and without dashpots between grains.
     pub fn with_friction(recipe: &Recipe) -> Pace {
-        Pace { bearable: WITH_FRICTION, ..Pace::of(recipe) }
+        Pace { bearable: WITH_FRICTION, ..Pace::without_friction(recipe) }
     }
 
     /// Some steps at this pace. Contacts that form on the way may be more than a light body bears: then these steps are taken again

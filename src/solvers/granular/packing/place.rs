@@ -27,7 +27,7 @@ pub(super) struct Room {
 pub(super) struct Loose {
     /// Scaled to its size.
     pub template: Template,
-    /// Of the centroid, m.
+    /// Place of the centroid, m.
     pub centre: Vec3,
     pub attitude: UnitQuaternion<f64>,
 }

@@ -1,15 +1,19 @@
 //! The plate that presses a bed, and the stages that it goes through.
 
-use super::super::bed::Bed;
-use super::super::grains::Grain;
+use super::super::bed::{Bed, Placed};
+use super::super::failure::Failure;
+use super::super::grains::{Grain, Random};
 use super::super::lanes::Real;
-use super::super::measure::unbalance;
-use super::super::motion::{Motion, Pose};
+use super::super::motion::{Pose, WallMotion};
+use super::super::rest::{Criterion, Look, Waiting, until_rest};
 use super::super::shape::Shape;
 use super::super::walls::WallId;
+use super::describe::{BedState, Stage, StageKind};
+use super::error::PackingError;
 use super::pace::{Pace, SAFE};
-use super::place::{Room, set_loose};
-use super::{PackingError, Progress, Recipe, Stage, State, chance, put};
+use super::place::{Loose, Room, set_loose};
+use super::progress::Progress;
+use super::recipe::{GrainLayer, Recipe};
 use nalgebra::Vector3;
 
 /// Steps between looks at forces and at the time step.
@@ -18,7 +22,7 @@ const LOOK: u64 = 200;
 const CALM: usize = 3;
 /// At which loose grains fall and the plate comes down to them, m/s.
 const FALL: f64 = 1.0;
-/// Of the plate once it bears, m/s.
+/// Speed of the plate once it bears, m/s.
 const SLOW: f64 = 0.2;
 /// At which it goes away, m/s.
 const LIFT: f64 = 0.05;
@@ -33,9 +37,6 @@ const GONE: f64 = 0.01;
 
 /// Stages after those of the lifts.
 pub(super) const LAST: usize = 3;
-const EASED: &str = "plate eased";
-const RESTORED: &str = "friction restored";
-const LIFTED: &str = "plate lifted";
 
 /// A bed under a plate.
 pub(super) struct Press<'a, R: Real, T> {
@@ -56,7 +57,7 @@ pub(super) struct Press<'a, R: Real, T> {
 /// What a stage waits for.
 #[derive(Clone, Copy)]
 struct Goal {
-    /// Of the plate, Pa.
+    /// Pressure of the plate, Pa.
     pressure: Option<f64>,
     unbalance: f64,
 }
@@ -65,7 +66,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
     pub fn new(recipe: &'a Recipe, tell: T) -> Self {
         let mut bed = recipe.ground();
         let normal = Vector3::new(0.0, 0.0, -1.0);
-        let plate = bed.add_wall(Shape::Plane { normal }, Pose::default(), recipe.wall_surface(), Motion::Fixed);
+        let plate = bed.add_wall(Shape::Plane { normal }, Pose::default(), recipe.wall_surface(), WallMotion::Fixed);
         let lifts: u32 = recipe.layers.iter().map(|layer| layer.lifts_that_fit()).sum();
         let [length, width] = recipe.plan;
         let mut press = Press {
@@ -75,7 +76,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
             recipe,
             area: length * width,
             level: 0.0,
-            pace: Some(Pace::of(recipe)),
+            pace: Some(Pace::without_friction(recipe)),
             count: lifts as usize + LAST,
             tell,
         };
@@ -83,7 +84,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         press
     }
 
-    /// Of the plate when it last pressed, m.
+    /// Level of the plate when it last pressed, m.
     pub fn level(&self) -> f64 {
         self.level
     }
@@ -99,7 +100,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         put(&mut self.bed, &loose, layer, number as u16, FALL);
         self.bed.set_damping(layer.packing.local_damping);
         self.lower_from(top, layer.pressure, FALL);
-        let stage = format!("{}, lift {} of {}", layer.name, lift + 1, layer.lifts_that_fit());
+        let stage = StageKind::Lift { layer: layer.name.clone(), lift: lift + 1, lifts: layer.lifts_that_fit() };
         let goal = Goal { pressure: Some(layer.pressure), unbalance: recipe.rest.lift };
         self.until_rest(&stage, goal, top)?;
         self.level = self.height();
@@ -111,27 +112,27 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
     /// `weight` is that of the bed over its area, Pa: half of it is what the plate presses with, as the bed's own weight does inside.
     pub fn finish(&mut self, recipe: &Recipe, weight: f64) -> Result<(), PackingError> {
         let pressure = recipe.layers.last().map(|layer| layer.pressure.min(0.5 * weight));
-        self.until_rest(EASED, Goal { pressure, unbalance: recipe.rest.lift }, self.level)?;
+        self.until_rest(&StageKind::Eased, Goal { pressure, unbalance: recipe.rest.lift }, self.level)?;
         let unbalance = recipe.rest.bed;
         self.pace = None;
         self.bed.unscale_masses();
         self.bed.set_laws(recipe.laws());
         self.bed.set_damping(recipe.local_damping);
-        self.until_rest(RESTORED, Goal { pressure, unbalance }, self.level)?;
+        self.until_rest(&StageKind::Restored, Goal { pressure, unbalance }, self.level)?;
         self.level = self.height();
         self.lift()?;
-        self.until_rest(LIFTED, Goal { pressure: None, unbalance }, self.level)
+        self.until_rest(&StageKind::Lifted, Goal { pressure: None, unbalance }, self.level)
     }
 
     /// The plate goes up until it all but presses no more.
     fn lift(&mut self) -> Result<(), PackingError> {
         let (pressure, level) = (self.pressure(), self.level);
-        let up = Motion::Velocity { linear: Vector3::new(0.0, 0.0, LIFT), angular: Vector3::zeros() };
+        let up = WallMotion::Velocity { linear: Vector3::new(0.0, 0.0, LIFT), angular: Vector3::zeros() };
         self.bed.set_motion(self.plate, up);
         // the springs under it give way long before it is a grain's size away
         let clear = level + self.recipe.layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
         while self.pressure() > GONE * pressure && self.height() < clear {
-            self.advance(LIFTED)?;
+            self.advance(LOOK).map_err(|failure| failed(&StageKind::Lifted, failure))?;
         }
         self.away();
         Ok(())
@@ -153,7 +154,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
     /// Out of reach of every grain, at rest.
     fn away(&mut self) {
         let high = 10.0 * (1.0 + self.recipe.layers.iter().map(|layer| layer.thickness).sum::<f64>());
-        self.bed.set_motion(self.plate, Motion::Fixed);
+        self.bed.set_motion(self.plate, WallMotion::Fixed);
         self.bed.stand(self.plate, [0.0, 0.0, high]);
     }
 
@@ -164,60 +165,117 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
 
     fn drive(&mut self, pressure: f64, speed_limit: f64) {
         let axis = Vector3::new(0.0, 0.0, 1.0);
-        self.bed.set_motion(self.plate, Motion::Servo { axis, force: pressure * self.area, speed_limit, gain: GAIN });
+        self.bed
+            .set_motion(self.plate, WallMotion::Servo { axis, force: pressure * self.area, speed_limit, gain: GAIN });
     }
 
-    /// Some steps, each as long as it may be.
-    fn advance(&mut self, stage: &str) -> Result<(), PackingError> {
-        let failed = |failure| PackingError::Failure { stage: stage.to_owned(), failure };
+    /// Does some steps, each as long as it may be.
+    fn advance(&mut self, steps: u64) -> Result<(), Failure> {
         if let Some(pace) = &mut self.pace {
-            return pace.run(&mut self.bed, LOOK).map_err(failed);
+            return pace.run(&mut self.bed, steps);
         }
-        let step = self.bed.bound_time_step(0.0).map_err(failed)?;
+        let step = self.bed.bound_time_step(0.0)?;
         self.bed.set_time_step(SAFE * step.min(self.recipe.mean_step()));
-        self.bed.run(LOOK).map_err(failed)
+        self.bed.run(steps)
     }
 
     /// Runs until forces are in balance and the plate presses as it should.
-    fn until_rest(&mut self, stage: &str, goal: Goal, top: f64) -> Result<(), PackingError> {
-        let start = self.bed.time();
+    fn until_rest(&mut self, stage: &StageKind, goal: Goal, top: f64) -> Result<(), PackingError> {
         // loose grains need their time to fall, and grains under a lower pressure more time to find their places
         let slower = goal.pressure.map_or(1.0, |pressure| (USUAL / pressure).sqrt().max(1.0));
-        let longest = slower * self.recipe.rest.longest + top / FALL;
-        let (mut calm, mut bears) = (0, false);
-        loop {
-            self.advance(stage)?;
-            let pressure = self.pressure();
-            if let Some(target) = goal.pressure.filter(|target| !bears && pressure > BEARS * target) {
-                bears = true;
-                self.drive(target, SLOW);
-            }
-            let missed = goal.pressure.map_or(0.0, |target| (pressure / target - 1.0).abs());
-            let snapshot =
-                self.bed.snapshot().map_err(|failure| PackingError::Failure { stage: stage.to_owned(), failure })?;
-            let unbalance = unbalance(&self.bed, &snapshot);
-            calm = if unbalance <= goal.unbalance && missed <= self.recipe.rest.pressure { calm + 1 } else { 0 };
-            let took = self.bed.time() - start;
-            self.say(stage, (took / longest).min(1.0));
-            if calm >= CALM {
-                let state = State::of(&self.bed, &snapshot, unbalance);
-                let level = goal.pressure.map(|_| self.height());
-                self.stages.push(Stage { name: stage.to_owned(), time: took, pressure, level, state });
-                return Ok(());
-            }
-            if took > longest {
-                let stage = stage.to_owned();
-                return Err(match goal.pressure.filter(|_| missed > self.recipe.rest.pressure) {
-                    Some(target) => PackingError::Pressure { stage, reached: pressure, target, time: took },
-                    None => PackingError::Restless { stage, unbalance, limit: goal.unbalance, time: took },
-                });
-            }
+        let criterion = Criterion {
+            unbalance: goal.unbalance,
+            missed: self.recipe.rest.pressure,
+            every: LOOK,
+            looks: CALM,
+            longest: slower * self.recipe.rest.longest + top / FALL,
+            look_first: false,
+        };
+        let longest = criterion.longest;
+        let start = self.bed.time();
+        let look = until_rest(&mut Pressing { press: self, stage, goal, longest, bears: false }, &criterion, start)?;
+        let state = BedState::from_snapshot(&self.bed, &look.snapshot, look.unbalance);
+        let (pressure, level) = (self.pressure(), goal.pressure.map(|_| self.height()));
+        self.stages.push(Stage { name: stage.to_string(), time: look.time, pressure, level, state });
+        Ok(())
+    }
+
+    fn say(&mut self, stage: &StageKind, share: f64) {
+        let share = (self.stages.len() as f64 + share) / self.count as f64;
+        let progress = Progress { stage: stage.to_string(), share, bodies: self.bed.len(), steps: self.bed.steps() };
+        (self.tell)(&progress);
+    }
+}
+
+/// A stage under way.
+struct Pressing<'p, 'a, R: Real, T> {
+    press: &'p mut Press<'a, R, T>,
+    stage: &'p StageKind,
+    goal: Goal,
+    /// Time that it may take, s.
+    longest: f64,
+    /// Whether the plate bears already, and goes slowly.
+    bears: bool,
+}
+
+impl<R: Real, T: FnMut(&Progress)> Waiting<R> for Pressing<'_, '_, R, T> {
+    type Error = PackingError;
+
+    fn bed(&mut self) -> &mut Bed<R> {
+        &mut self.press.bed
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+        self.press.advance(steps)?;
+        let pressure = self.press.pressure();
+        if let Some(target) = self.goal.pressure.filter(|target| !self.bears && pressure > BEARS * target) {
+            self.bears = true;
+            self.press.drive(target, SLOW);
+        }
+        Ok(())
+    }
+
+    fn missed(&self) -> f64 {
+        self.goal.pressure.map_or(0.0, |target| (self.press.pressure() / target - 1.0).abs())
+    }
+
+    fn hear(&mut self, look: &Look) {
+        self.press.say(self.stage, (look.time / self.longest).min(1.0));
+    }
+
+    fn restless(&self, look: &Look) -> PackingError {
+        let (stage, time) = (self.stage.clone(), look.time);
+        match self.goal.pressure.filter(|_| look.missed > self.press.recipe.rest.pressure) {
+            Some(target) => PackingError::Pressure { stage, reached: self.press.pressure(), target, time },
+            None => PackingError::Restless { stage, unbalance: look.unbalance, limit: self.goal.unbalance, time },
         }
     }
 
-    fn say(&mut self, stage: &str, share: f64) {
-        let share = (self.stages.len() as f64 + share) / self.count as f64;
-        let progress = Progress { stage: stage.to_owned(), share, bodies: self.bed.len(), steps: self.bed.steps() };
-        (self.tell)(&progress);
+    fn failed(&self, failure: Failure) -> PackingError {
+        failed(self.stage, failure)
     }
+}
+
+fn failed(stage: &StageKind, failure: Failure) -> PackingError {
+    PackingError::Failure { stage: stage.clone(), failure }
+}
+
+/// Puts grains into a bed, falling.
+fn put<R: Real>(bed: &mut Bed<R>, loose: &[Loose], layer: &GrainLayer, surface: u16, fall: f64) {
+    for grain in loose {
+        let placed = Placed {
+            template: &grain.template,
+            centre: grain.centre,
+            attitude: grain.attitude,
+            density: layer.density,
+            surface,
+        };
+        let body = bed.add_clump(&placed);
+        bed.set_velocity(body, [0.0, 0.0, -fall], [0.0; 3]);
+    }
+}
+
+/// Numbers by chance of one lift.
+fn chance(recipe: &Recipe, layer: usize, lift: u32) -> Random {
+    Random::new(recipe.seed, 1 << 48 | (layer as u64) << 32 | u64::from(lift))
 }

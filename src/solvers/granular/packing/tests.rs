@@ -1,6 +1,9 @@
 //! Beds that are packed, and what refuses to be one.
 
-use super::super::law::DashpotMode;
+use super::super::bed::Bed;
+use super::super::clump::Template;
+use super::super::grains::{Curve, Random, grains};
+use super::super::law::{DashpotMode, Surface};
 use super::*;
 
 /// Spheres of 32 to 50 mm in a small cell.
@@ -12,7 +15,7 @@ fn small() -> Recipe {
         damping: [0.3; 2],
         mode: DashpotMode::default(),
     };
-    let layer = Layer {
+    let layer = GrainLayer {
         name: "ballast".into(),
         curve: Curve::new(&[[0.032, 0.0], [0.05, 1.0]]).unwrap(),
         templates: vec![Template::sphere(0.5).unwrap()],
@@ -84,7 +87,7 @@ fn a_layer_of_one_lift_is_as_thick_as_asked() {
 
 #[test]
 fn lifts_are_as_thick_as_the_largest_grain() {
-    let with = |thickness, lifts| Layer { thickness, lifts, ..small().layers[0].clone() }.lifts_that_fit();
+    let with = |thickness, lifts| GrainLayer { thickness, lifts, ..small().layers[0].clone() }.lifts_that_fit();
     assert_eq!([with(0.2, 2), with(0.2, 4), with(0.2, 5), with(0.149, 5), with(0.05, 3)], [2, 4, 4, 2, 1]);
 }
 

@@ -9,13 +9,16 @@
 
 use super::super::bed::Bed;
 use super::super::body::BodyId;
+use super::super::failure::Failure;
 use super::super::grains::Random;
 use super::super::lanes::Real;
-use super::super::measure::unbalance;
-use super::super::snapshot::Snapshot;
-use super::super::watch::Failure;
+use super::super::rest::{Criterion, Look, Waiting, until_rest};
+use super::describe::StageKind;
+use super::error::PackingError;
 use super::pace::Pace;
-use super::{Packed, PackingError, Progress, Recipe};
+use super::packed::Packed;
+use super::progress::Progress;
+use super::recipe::Recipe;
 use serde::{Deserialize, Serialize};
 
 /// The cell of each bay.
@@ -94,12 +97,11 @@ pub fn lay<R: Real>(
     recipe: &Recipe,
     mut tell: impl FnMut(&Progress),
 ) -> Result<TrackBed<R>, PackingError> {
-    let failed = |failure| PackingError::Failure { stage: LAID.to_owned(), failure };
     let mut beds: Vec<Bed<R>> = cells.iter().map(|cell| cell.bed.clone()).collect();
     let bays = with_ends(&order.0);
     let all = Bed::side_by_side(&mut beds, &bays, -1, |_, _| true).map_err(failed)?;
     let sizes: Vec<usize> = bays.iter().map(|&cell| beds[cell].len()).collect();
-    let parts = Parts::of(all, &sizes).map_err(failed)?;
+    let parts = Parts::sorted(all, &sizes).map_err(failed)?;
     // numbers of `all` go bay by bay, body by body
     let starts: Vec<usize> = sizes.iter().scan(0, |next, size| Some(std::mem::replace(next, *next + size))).collect();
     let role = |bay: usize, body: BodyId| parts.roles[starts[bay] + body.0 as usize];
@@ -122,9 +124,6 @@ pub fn lay<R: Real>(
     Ok(TrackBed { bed, account })
 }
 
-/// The name of the stage.
-const LAID: &str = "cells side by side";
-
 /// With a further bay at each end, of the cell that stands there.
 fn with_ends(order: &[usize]) -> Vec<usize> {
     [&order[..1], order, &order[order.len() - 1..]].concat()
@@ -139,7 +138,7 @@ enum Role {
 }
 
 struct Parts {
-    /// Of every body of every bay.
+    /// Role of every body of every bay.
     roles: Vec<Role>,
     removed: usize,
     /// Share of the mass.
@@ -147,8 +146,8 @@ struct Parts {
 }
 
 impl Parts {
-    /// Of bays with so many bodies, the first and the last beyond the ends.
-    fn of<R: Real>(mut all: Bed<R>, sizes: &[usize]) -> Result<Parts, Failure> {
+    /// Sorts the bodies of bays with so many of them each, the first and the last bay beyond the ends.
+    fn sorted<R: Real>(mut all: Bed<R>, sizes: &[usize]) -> Result<Parts, Failure> {
         let inside = sizes[0]..all.len() - sizes[sizes.len() - 1];
         let mut roles = vec![Role::Out; all.len()];
         roles[inside.clone()].fill(Role::Free);
@@ -234,35 +233,64 @@ fn settle<R: Real>(
     unlike: bool,
     tell: &mut impl FnMut(&Progress),
 ) -> Result<f64, PackingError> {
-    let failed = |failure| PackingError::Failure { stage: LAID.to_owned(), failure };
     // where unlike cells meet, grains find their places for a second and more: as calm as a lift is calm enough there
-    let (start, limit) = (bed.time(), if unlike { recipe.rest.lift } else { recipe.rest.bed });
-    let mut pace = Pace::with_friction(recipe);
+    let unbalance = if unlike { recipe.rest.lift } else { recipe.rest.bed };
+    let longest = recipe.rest.longest;
+    // copies of one cell lie as they did, and need no step
+    let criterion = Criterion { unbalance, missed: 0.0, every: LOOK, looks: CALM, longest, look_first: true };
+    let pace = Pace::with_friction(recipe);
     bed.set_laws(recipe.laws_without_dashpots());
     bed.set_damping(DAMPING);
+    let start = bed.time();
     if unlike {
         push_apart(bed, &pace).map_err(failed)?;
     }
-    let (mut calm, mut first) = (0, None);
-    loop {
-        let snapshot: Snapshot = bed.snapshot().map_err(failed)?;
-        let unbalance = unbalance(bed, &snapshot);
-        calm = if unbalance <= limit { calm + 1 } else { 0 };
-        let took = bed.time() - start;
-        // copies of one cell lie as they did, and need no second look
-        if calm >= CALM || calm > 0 && took == 0.0 {
-            bed.unscale_masses();
-            bed.set_laws(recipe.laws());
-            bed.set_damping(recipe.local_damping);
-            return Ok(unbalance);
-        }
-        if took > recipe.rest.longest {
-            return Err(PackingError::Restless { stage: LAID.to_owned(), unbalance, limit, time: took });
-        }
-        // forces out of balance fade about as exp(-t)
-        let far = (unbalance / limit).ln().max(0.0);
-        let share = 1.0 - (far / *first.get_or_insert(far.max(1.0))).min(1.0);
-        tell(&Progress { stage: LAID.to_owned(), share, bodies: bed.len(), steps: bed.steps() });
-        pace.run(bed, LOOK).map_err(failed)?;
+    let look = until_rest(&mut Settling { bed, pace, limit: unbalance, first: None, tell }, &criterion, start)?;
+    bed.unscale_masses();
+    bed.set_laws(recipe.laws());
+    bed.set_damping(recipe.local_damping);
+    Ok(look.unbalance)
+}
+
+/// Cells side by side on their way to rest.
+struct Settling<'s, R: Real, T> {
+    bed: &'s mut Bed<R>,
+    pace: Pace,
+    limit: f64,
+    /// How far from rest the first look found the bed.
+    first: Option<f64>,
+    tell: &'s mut T,
+}
+
+impl<R: Real, T: FnMut(&Progress)> Waiting<R> for Settling<'_, R, T> {
+    type Error = PackingError;
+
+    fn bed(&mut self) -> &mut Bed<R> {
+        self.bed
     }
+
+    fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+        self.pace.run(self.bed, steps)
+    }
+
+    fn hear(&mut self, look: &Look) {
+        // forces out of balance fade about as exp(-t)
+        let far = (look.unbalance / self.limit).ln().max(0.0);
+        let share = 1.0 - (far / *self.first.get_or_insert(far.max(1.0))).min(1.0);
+        let (bodies, steps) = (self.bed.len(), self.bed.steps());
+        (self.tell)(&Progress { stage: StageKind::SideBySide.to_string(), share, bodies, steps });
+    }
+
+    fn restless(&self, look: &Look) -> PackingError {
+        let &Look { unbalance, time, .. } = look;
+        PackingError::Restless { stage: StageKind::SideBySide, unbalance, limit: self.limit, time }
+    }
+
+    fn failed(&self, failure: Failure) -> PackingError {
+        failed(failure)
+    }
+}
+
+fn failed(failure: Failure) -> PackingError {
+    PackingError::Failure { stage: StageKind::SideBySide, failure }
 }

@@ -1,6 +1,6 @@
 //! Why a plate load test gave nothing.
 
-use super::super::watch::Failure;
+use super::super::failure::Failure;
 use std::fmt;
 
 #[derive(Debug, Clone, PartialEq)]

@@ -10,9 +10,10 @@ mod tests;
 pub use error::ProbeError;
 
 use super::bed::Bed;
+use super::failure::Failure;
 use super::lanes::Real;
-use super::measure::unbalance;
-use super::motion::{Motion, Pose};
+use super::motion::{Pose, WallMotion};
+use super::rest::{Criterion, Look, Waiting, until_rest};
 use super::shape::{Mesh, Shape};
 use super::stride::Stride;
 use super::vector::Vec3;
@@ -41,7 +42,7 @@ pub enum Outline {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Plate {
     pub outline: Outline,
-    /// Of its middle in plan, m.
+    /// Place of its middle in plan, m.
     pub centre: [f64; 2],
     /// Largest pressure, Pa.
     pub pressure: f64,
@@ -69,7 +70,7 @@ impl Default for Stillness {
     }
 }
 
-/// Of the largest pressure, at which the plate counts as seated: DIN 18134 seats it with 10 kPa.
+/// Share of the largest pressure at which the plate counts as seated: DIN 18134 seats it with 10 kPa.
 pub const SEAT: f64 = 0.05;
 /// Pressures of the test over the largest one: first loading, back, second loading, back.
 const STEPS: [f64; 12] = [SEAT, 0.25, 0.5, 0.75, 1.0, 0.5, SEAT, 0.25, 0.5, 0.75, 1.0, SEAT];
@@ -79,9 +80,9 @@ const AGAIN: [usize; 2] = [6, 10];
 /// How many steps are done when the first full pressure is at rest.
 pub const FULL: usize = FIRST[1] + 1;
 
-/// Of the copy: a test wants states of rest, not how fast they are reached.
+/// Local damping of the copy: a test wants states of rest, not how fast they are reached.
 const LOCAL_DAMPING: f64 = 0.7;
-/// Of the plate, m/s; and the gain of its servo, as under the plate of the packing.
+/// Largest speed of the plate, m/s; and the gain of its servo, as under the plate of the packing.
 const SPEED: f64 = 0.02;
 const GAIN: f64 = 0.2;
 /// Inertia that may be added meanwhile, over all mass: states of rest do not know it.
@@ -92,7 +93,7 @@ const CALM: usize = 2;
 
 /// A step of the test as it ended.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Point {
+pub struct LoadPoint {
     /// Pa.
     #[serde(rename = "pressure_Pa")]
     pub pressure: f64,
@@ -107,7 +108,7 @@ pub struct Stiffness {
     /// m2.
     pub area: f64,
     /// Step after step.
-    pub curve: Vec<Point>,
+    pub curve: Vec<LoadPoint>,
     /// Force over settlement from the seat to the full pressure, first and second loading, N/m.
     pub first: f64,
     pub again: f64,
@@ -127,7 +128,7 @@ impl Outline {
 
     /// Modulus, Pa, of a half-space that carries a rigid plate with `stiffness`, N/m; `None` for one without an edge.
     ///
-    /// Of a circle it is `E = 1.5 r Δσ/Δs` (DIN 18134): Boussinesq's `(1 - ν²) F/(2 r s)` with `1 - ν² = 3/π`. A rectangle of
+    /// For a circle it is `E = 1.5 r Δσ/Δs` (DIN 18134): Boussinesq's `(1 - ν²) F/(2 r s)` with `1 - ν² = 3/π`. A rectangle of
     /// half sides a >= b has `F/s = E a/(1 - ν²) (0.73 + 1.54 (b/a)^0.75)` (Gazetas 1991, Foundation Engineering Handbook,
     /// Table 15.1), with the same ν: 1.5 % less than exact for a square.
     pub fn modulus(&self, stiffness: f64) -> Option<f64> {
@@ -187,7 +188,7 @@ pub fn probe<R: Real>(
 ) -> Result<Stiffness, ProbeError> {
     plate.check(bed)?;
     let mut test = Test::new(bed.clone(), plate)?;
-    let mut curve: Vec<Point> = Vec::new();
+    let mut curve: Vec<LoadPoint> = Vec::new();
     for (number, share) in STEPS.iter().enumerate() {
         let seat = curve.first().map(|_| test.seat);
         let point = test.until_rest(share * plate.pressure, seat)?;
@@ -248,13 +249,13 @@ impl<'a, R: Real> Test<'a, R> {
         let (shape, depth) = plate.outline.shape()?;
         let [x, y] = plate.centre;
         let pose = Pose { position: Vector3::new(x, y, top + depth), ..Pose::default() };
-        let wall = bed.add_wall(shape, pose, plate.surface, Motion::Fixed);
+        let wall = bed.add_wall(shape, pose, plate.surface, WallMotion::Fixed);
         bed.set_damping(LOCAL_DAMPING);
         let stride = Stride::with_added(&mut bed, ADDED).map_err(ProbeError::Failure)?;
         Ok(Test { bed, plate, wall, depth, seat: top, stride })
     }
 
-    /// Of the lower face, m.
+    /// Level of the lower face, m.
     fn level(&self) -> f64 {
         self.bed.wall(self.wall).pose(self.bed.domain()).position.z - self.depth
     }
@@ -264,31 +265,58 @@ impl<'a, R: Real> Test<'a, R> {
     }
 
     /// Presses with `target` (Pa) until forces are in balance.
-    fn until_rest(&mut self, target: f64, seat: Option<f64>) -> Result<Point, ProbeError> {
-        let Stillness { unbalance: limit, pressure: share, longest, deepest } = self.plate.rest;
+    fn until_rest(&mut self, target: f64, seat: Option<f64>) -> Result<LoadPoint, ProbeError> {
+        let Stillness { unbalance, pressure: missed, longest, .. } = self.plate.rest;
+        let criterion = Criterion { unbalance, missed, every: LOOK, looks: CALM, longest, look_first: false };
         let axis = Vector3::new(0.0, 0.0, 1.0);
         let force = target * self.plate.outline.area();
-        self.bed.set_motion(self.wall, Motion::Servo { axis, force, speed_limit: SPEED, gain: GAIN });
+        self.bed.set_motion(self.wall, WallMotion::Servo { axis, force, speed_limit: SPEED, gain: GAIN });
         let (start, from) = (self.bed.time(), seat.unwrap_or(self.seat));
-        let mut calm = 0;
-        loop {
-            self.stride.run_steps(&mut self.bed, &[], LOOK).map_err(ProbeError::Failure)?;
-            let snapshot = self.bed.snapshot().map_err(ProbeError::Failure)?;
-            let (pressure, settlement) = (self.pressure(), from - self.level());
-            let missed = (pressure - target).abs() / self.plate.pressure;
-            let out = unbalance(&self.bed, &snapshot);
-            calm = if out <= limit && missed <= share { calm + 1 } else { 0 };
-            if calm >= CALM {
-                return Ok(Point { pressure, settlement: if seat.is_some() { settlement } else { 0.0 } });
-            }
-            if settlement > deepest {
-                return Err(ProbeError::Sunk { pressure, settlement, target: self.plate.pressure });
-            }
-            if self.bed.time() - start > longest {
-                let target = self.plate.pressure;
-                return Err(ProbeError::Restless { pressure, target, unbalance: out, limit, time: longest });
-            }
+        until_rest(&mut Step { test: self, target, from }, &criterion, start)?;
+        let settlement = if seat.is_some() { from - self.level() } else { 0.0 };
+        Ok(LoadPoint { pressure: self.pressure(), settlement })
+    }
+}
+
+/// A step of the pressure under way.
+struct Step<'s, 'a, R: Real> {
+    test: &'s mut Test<'a, R>,
+    /// Pa.
+    target: f64,
+    /// Level from which settlement counts, m.
+    from: f64,
+}
+
+impl<R: Real> Waiting<R> for Step<'_, '_, R> {
+    type Error = ProbeError;
+
+    fn bed(&mut self) -> &mut Bed<R> {
+        &mut self.test.bed
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+        self.test.stride.run_steps(&mut self.test.bed, &[], steps)
+    }
+
+    fn missed(&self) -> f64 {
+        (self.test.pressure() - self.target).abs() / self.test.plate.pressure
+    }
+
+    fn worth_waiting(&self, _: &Look) -> Result<(), ProbeError> {
+        let (pressure, settlement) = (self.test.pressure(), self.from - self.test.level());
+        if settlement > self.test.plate.rest.deepest {
+            return Err(ProbeError::Sunk { pressure, settlement, target: self.test.plate.pressure });
         }
+        Ok(())
+    }
+
+    fn restless(&self, look: &Look) -> ProbeError {
+        let Plate { pressure: target, rest: Stillness { unbalance: limit, longest: time, .. }, .. } = *self.test.plate;
+        ProbeError::Restless { pressure: self.test.pressure(), target, unbalance: look.unbalance, limit, time }
+    }
+
+    fn failed(&self, failure: Failure) -> ProbeError {
+        ProbeError::Failure(failure)
     }
 }
 

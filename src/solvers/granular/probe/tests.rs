@@ -1,6 +1,6 @@
 //! Plates on beds whose stiffness has a closed form, and plates that are none.
 
-use super::super::law::{DashpotMode, Laws, Surface};
+use super::super::law::{ContactLaws, DashpotMode, Surface};
 use super::super::measure::packed::{bed, recipe};
 use super::super::packing::Packed;
 use super::super::{Domain, Sphere};
@@ -20,7 +20,7 @@ fn studs() -> Bed<f64> {
         damping: [0.3; 2],
         mode: DashpotMode::default(),
     };
-    let mut bed = Bed::new(Domain::open().periodic(0, SIDE).periodic(1, SIDE), Laws::of(&[surface]));
+    let mut bed = Bed::new(Domain::open().periodic(0, SIDE).periodic(1, SIDE), ContactLaws::from_surfaces(&[surface]));
     bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
     for k in 0..16 {
         let at = |n: i32| (f64::from(n) + 0.5) * SIDE / 4.0;

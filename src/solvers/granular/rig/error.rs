@@ -1,13 +1,14 @@
 //! Why a test has no answer.
 
-use super::super::watch::Failure;
+use super::super::failure::Failure;
 use std::fmt;
 
+/// Why a test on a rig has no answer.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RigError {
     /// Forces are not in balance after the time that a stage may take.
     Restless {
-        stage: &'static str,
+        stage: Resting,
         unbalance: f64,
         limit: f64,
         /// Share of the force on the sleepers that the bed does not carry.
@@ -18,6 +19,24 @@ pub enum RigError {
     Sunk { sleeper: usize, depth: f64, cycle: u64 },
     /// The motion of grains has run away.
     Failure { cycle: u64, failure: Failure },
+}
+
+/// What comes to rest before a test begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Resting {
+    /// The sleepers under their own weight.
+    Sleepers,
+    /// A specimen under the pressure on its sides.
+    Specimen,
+}
+
+impl fmt::Display for Resting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Resting::Sleepers => "sleepers set down",
+            Resting::Specimen => "specimen under the pressure on its sides",
+        })
+    }
 }
 
 impl fmt::Display for RigError {
@@ -44,3 +63,8 @@ impl fmt::Display for RigError {
 }
 
 impl std::error::Error for RigError {}
+
+/// A failure in a cycle.
+pub(super) fn in_cycle(cycle: u64) -> impl Fn(Failure) -> RigError {
+    move |failure| RigError::Failure { cycle, failure }
+}

@@ -15,7 +15,7 @@ pub struct Sensor {
 
 /// What a sensor reads at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Reading {
+pub struct SensorReading {
     /// Index into [`super::Rig::sensors`].
     pub sensor: usize,
     pub cycle: u64,
@@ -33,7 +33,7 @@ pub struct Reading {
 
 impl Sensor {
     /// Reads the bed, all but its porosity, which costs more than all the rest.
-    pub(super) fn read<R: Real>(&self, bed: &Bed<R>, snapshot: &Snapshot) -> Reading {
+    pub(super) fn read<R: Real>(&self, bed: &Bed<R>, snapshot: &Snapshot) -> SensorReading {
         let domain = bed.domain();
         let contacts = snapshot.contacts.iter().map(|contact| Contact {
             force: contact.force,
@@ -56,7 +56,7 @@ impl Sensor {
             }
         }
         let per = |sum: f64, of: f64| if of > 0.0 { sum / of } else { 0.0 };
-        Reading {
+        SensorReading {
             sensor: 0,
             cycle: 0,
             phase: 0.0,

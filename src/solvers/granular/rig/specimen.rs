@@ -5,21 +5,22 @@
 //! the height. Strains count from the end of consolidation, over the lengths of then.
 
 use super::super::bed::Bed;
+use super::super::failure::Failure;
 use super::super::lanes::Real;
-use super::super::measure::unbalance;
-use super::super::motion::Motion;
+use super::super::motion::WallMotion;
+use super::super::rest::{Criterion, Look, Waiting, until_rest};
 use super::super::stride::Stride;
 use super::super::walls::WallId;
-use super::RigError;
-use super::set_down::{ADDED, CALM, CARRIED, DAMPING, LONGEST, LOOK, REST};
+use super::calm::{AT_REST, calmed, restless};
+use super::error::{Resting, RigError, in_cycle};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Of the sides, m/s; and the gain of their servos, the usual one: with less they lag behind a specimen that dilates.
+/// Largest speed of the sides, m/s; and the gain of their servos, the usual one: with less they lag behind a specimen that dilates.
 const SPEED: f64 = 0.1;
 const GAIN: f64 = 0.5;
-/// Share of its pressure that a side may miss when consolidation is over.
-const MISSED: f64 = 0.02;
+/// When consolidation is over: a side may miss a fiftieth of its pressure.
+const CONSOLIDATED: Criterion = Criterion { missed: 0.02, ..AT_REST };
 
 /// The walls that give way, and what they press with.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +42,7 @@ pub(super) struct Size {
 
 /// A specimen at an instant of a cycle that is kept.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct State {
+pub struct SpecimenState {
     pub cycle: u64,
     /// Share of the cycle that is over, 0 .. 1.
     pub phase: f64,
@@ -54,13 +55,13 @@ pub struct State {
     pub lateral_stress: f64,
 }
 
-impl State {
+impl SpecimenState {
     /// Pa.
     pub fn deviator(&self) -> f64 {
         self.axial_stress - self.lateral_stress
     }
 
-    /// Of Mohr's circle through the origin: sin phi = (s1 - s3)/(s1 + s3), rad.
+    /// Mobilised angle of friction, by Mohr's circle through the origin: sin phi = (s1 - s3)/(s1 + s3), rad.
     pub fn mobilised_friction(&self) -> f64 {
         (self.deviator() / (self.axial_stress + self.lateral_stress)).asin()
     }
@@ -90,7 +91,7 @@ impl Specimen {
     pub(super) fn hold<R: Real>(&self, bed: &mut Bed<R>, size: &Size) {
         for (axis, side, outward) in self.each() {
             let force = self.pressure * area_of_side(size, axis);
-            bed.set_motion(side, Motion::Servo { axis: outward, force, speed_limit: SPEED, gain: GAIN });
+            bed.set_motion(side, WallMotion::Servo { axis: outward, force, speed_limit: SPEED, gain: GAIN });
         }
     }
 
@@ -100,45 +101,24 @@ impl Specimen {
         bed: &mut Bed<R>,
         plate: WallId,
         face: f64,
-        mut push: impl FnMut(&mut Bed<R>, f64),
-        mut tell: impl FnMut(f64),
+        push: impl FnMut(&mut Bed<R>, f64),
+        tell: impl FnMut(f64),
     ) -> Result<Size, RigError> {
-        let failed = |failure| RigError::Failure { cycle: 0, failure };
-        let (start, damping) = (bed.time(), bed.damping);
-        bed.set_damping(DAMPING);
-        let stride = Stride::with_added(bed, ADDED).map_err(failed)?;
-        let mut calm = 0;
-        loop {
-            let size = self.size(bed, bed.wall(plate).pose(bed.domain()).position.z - face);
-            if calm == CALM {
-                bed.unscale_masses();
-                bed.set_damping(damping);
-                return Ok(size);
-            }
-            self.hold(bed, &size);
-            push(bed, self.pressure * size.area());
-            stride.run_steps(bed, &[plate], LOOK).map_err(failed)?;
-            let snapshot = bed.snapshot().map_err(failed)?;
-            let unbalance = unbalance(bed, &snapshot);
-            let axial = bed.wall(plate).felt().force.z / size.area();
-            let uncarried = self.pressures(bed, &size).into_iter().map(|p| (p / self.pressure - 1.0).abs());
-            let uncarried = uncarried.fold((axial / self.pressure - 1.0).abs(), f64::max);
-            calm = if unbalance <= REST && uncarried <= MISSED.max(CARRIED) { calm + 1 } else { 0 };
-            let time = bed.time() - start;
-            tell((time / LONGEST).min(1.0));
-            if calm < CALM && time > LONGEST {
-                let stage = "specimen under the pressure on its sides";
-                return Err(RigError::Restless { stage, unbalance, limit: REST, uncarried, time });
-            }
-        }
+        let level = |bed: &Bed<R>| bed.wall(plate).pose(bed.domain()).position.z - face;
+        calmed(bed, |bed, stride| {
+            let (start, size) = (bed.time(), self.size(bed, level(bed)));
+            let mut waiting = Consolidation { specimen: self, bed, plate, level, size, stride, push, tell };
+            until_rest(&mut waiting, &CONSOLIDATED, start)?;
+            Ok(self.size(waiting.bed, level(waiting.bed)))
+        })
     }
 
     /// What is read of it, against the size that it had.
-    pub(super) fn state<R: Real>(&self, bed: &Bed<R>, plate: WallId, face: f64, rest: &Size) -> State {
+    pub(super) fn state<R: Real>(&self, bed: &Bed<R>, plate: WallId, face: f64, rest: &Size) -> SpecimenState {
         let plate = bed.wall(plate);
         let size = self.size(bed, plate.pose(bed.domain()).position.z - face);
         let vertical = 0.5 * (plate.felt().force.z - bed.wall(self.floor).felt().force.z);
-        State {
+        SpecimenState {
             cycle: 0,
             phase: 0.0,
             axial_strain: 1.0 - size.height / rest.height,
@@ -161,7 +141,57 @@ impl Specimen {
     }
 }
 
-/// Of one that stands across an axis, m2.
+/// Area of a side that stands across an axis, m2.
 fn area_of_side(size: &Size, axis: usize) -> f64 {
     size.plan[1 - axis] * size.height
+}
+
+/// A specimen on its way to rest under the pressure on its sides.
+struct Consolidation<'s, R: Real, L, P, T> {
+    specimen: &'s Specimen,
+    bed: &'s mut Bed<R>,
+    plate: WallId,
+    /// Gives the level of the plate's face, m.
+    level: L,
+    /// Size of the specimen before the last steps.
+    size: Size,
+    stride: Stride,
+    push: P,
+    tell: T,
+}
+
+impl<R: Real, L: Fn(&Bed<R>) -> f64, P: FnMut(&mut Bed<R>, f64), T: FnMut(f64)> Waiting<R>
+    for Consolidation<'_, R, L, P, T>
+{
+    type Error = RigError;
+
+    fn bed(&mut self) -> &mut Bed<R> {
+        self.bed
+    }
+
+    fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+        self.size = self.specimen.size(self.bed, (self.level)(self.bed));
+        self.specimen.hold(self.bed, &self.size);
+        (self.push)(self.bed, self.specimen.pressure * self.size.area());
+        self.stride.run_steps(self.bed, &[self.plate], steps)
+    }
+
+    fn missed(&self) -> f64 {
+        let pressure = self.specimen.pressure;
+        let axial = self.bed.wall(self.plate).felt().force.z / self.size.area();
+        let sides = self.specimen.pressures(self.bed, &self.size).into_iter().map(|p| (p / pressure - 1.0).abs());
+        sides.fold((axial / pressure - 1.0).abs(), f64::max)
+    }
+
+    fn hear(&mut self, look: &Look) {
+        (self.tell)((look.time / CONSOLIDATED.longest).min(1.0));
+    }
+
+    fn restless(&self, look: &Look) -> RigError {
+        restless(Resting::Specimen, look)
+    }
+
+    fn failed(&self, failure: Failure) -> RigError {
+        in_cycle(0)(failure)
+    }
 }

@@ -1,7 +1,7 @@
 //! Sleepers on small beds: what they press on the bed, how far they go, and that nothing depends on threads or pauses.
 
 use super::super::measure::Region;
-use super::super::packing::{Layer, Packing, Recipe, Rest, pack};
+use super::super::packing::{GrainLayer, Packing, Recipe, Rest, pack};
 use super::super::{Bed, DashpotMode, Surface, clump::Template, grains::Curve};
 use super::*;
 use std::sync::OnceLock;
@@ -19,7 +19,7 @@ fn recipe(plan: [f64; 2], thickness: f64, sizes: [f64; 2], friction: f64, boxed:
         plan,
         walls: true,
         ends: boxed,
-        layers: vec![Layer {
+        layers: vec![GrainLayer {
             name: "stone".into(),
             curve: Curve::new(&[[sizes[0], 0.0], [sizes[1], 1.0]]).unwrap(),
             templates: vec![Template::sphere(0.5).unwrap()],

@@ -2,12 +2,16 @@
 
 use super::super::bed::Bed;
 use super::super::lanes::Real;
-use super::super::motion::{Motion, Push};
+use super::super::motion::{Push, WallMotion};
 use super::super::stride::Stride;
 use super::super::walls::WallId;
-use super::set_down::{DAMPING, in_cycle, motion, place, until_rest};
-use super::specimen::{Size, State as SpecimenState};
-use super::{Cycle, Load, Reading, Rig, RigError, Sample};
+use super::answer::{Cycle, CycleSample};
+use super::calm::DAMPING;
+use super::description::{Load, Rig};
+use super::error::{RigError, in_cycle};
+use super::sensor::SensorReading;
+use super::set_down::{motion, place, until_rest};
+use super::specimen::{Size, SpecimenState};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
@@ -24,28 +28,28 @@ const SUNK: f64 = 0.5;
 pub struct Trial<'a, R: Real> {
     pub bed: Bed<R>,
     pub(super) rig: &'a Rig,
-    pub(super) state: State,
+    pub(super) state: TrialState,
 }
 
 /// What a test knows beside its bed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct State {
+pub(super) struct TrialState {
     pub walls: Vec<WallId>,
-    /// Of the sleepers' middles as they rest under their own weight, or under the pressure on a specimen, m.
+    /// Level of the sleepers' middles as they rest under their own weight, or under the pressure on a specimen, m.
     pub rest: Vec<f64>,
-    /// Of a specimen that is consolidated.
+    /// Size of a specimen that is consolidated.
     pub size: Option<Size>,
     pub specimen: Vec<SpecimenState>,
     /// Time at which the first ramp begins, s.
     pub start: f64,
     pub pieces: u64,
     pub steps: u64,
-    /// That the bed is held at, s.
+    /// Step that the bed is held at, s.
     pub stride: f64,
     pub current: Vec<Current>,
     pub cycles: Vec<Cycle>,
-    pub samples: Vec<Sample>,
-    pub readings: Vec<Reading>,
+    pub samples: Vec<CycleSample>,
+    pub readings: Vec<SensorReading>,
 }
 
 /// The cycle that a sleeper is in.
@@ -64,10 +68,10 @@ impl<'a, R: Real> Trial<'a, R> {
     pub fn new(mut bed: Bed<R>, rig: &'a Rig, mut tell: impl FnMut(f64)) -> Result<Self, RigError> {
         let before = bed.steps();
         let walls = place(&mut bed, rig);
-        until_rest(&mut bed, &walls, "sleepers set down", &mut tell)?;
+        until_rest(&mut bed, &walls, &mut tell)?;
         let size = consolidated(&mut bed, rig, &walls, tell)?;
         let rest = walls.iter().map(|wall| bed.wall(*wall).pose(bed.domain()).position.z).collect();
-        let state = State {
+        let state = TrialState {
             start: bed.time(),
             pieces: 0,
             steps: bed.steps() - before,
@@ -101,8 +105,8 @@ impl<'a, R: Real> Trial<'a, R> {
         }
     }
 
-    /// Of a sleeper under a weight, N.
-    fn motion(&self, number: usize, weight: f64) -> Motion {
+    /// Motion of a sleeper under a weight, N.
+    fn motion(&self, number: usize, weight: f64) -> WallMotion {
         let sleeper = &self.rig.sleepers[number];
         let ramp = RAMP as f64 * self.piece();
         let start = self.state.start + (RAMP + self.delay(number)) as f64 * self.piece();
@@ -118,13 +122,13 @@ impl<'a, R: Real> Trial<'a, R> {
                 let time = self.rig.period - 0.5 * self.piece();
                 let speed = share * (self.state.rest[number] - sleeper.size[2] / 2.0) / time;
                 let velocities = vec![Vector3::zeros(), -speed * Vector3::z()];
-                return Motion::Table { times: vec![start, start + self.piece()], velocities };
+                return WallMotion::Table { times: vec![start, start + self.piece()], velocities };
             }
         };
         motion(sleeper, weight, self.bed.damping, push)
     }
 
-    /// Of a specimen as it is.
+    /// Size of the specimen as it is.
     fn size(&self) -> Option<Size> {
         let [plate] = self.state.walls[..] else { return None };
         let level = self.bed.wall(plate).pose(self.bed.domain()).position.z - self.face();
@@ -170,7 +174,7 @@ impl<'a, R: Real> Trial<'a, R> {
         &self.state.cycles
     }
 
-    pub fn samples(&self) -> &[Sample] {
+    pub fn samples(&self) -> &[CycleSample] {
         &self.state.samples
     }
 
@@ -179,7 +183,7 @@ impl<'a, R: Real> Trial<'a, R> {
         &self.state.specimen
     }
 
-    pub fn readings(&self) -> &[Reading] {
+    pub fn readings(&self) -> &[SensorReading] {
         &self.state.readings
     }
 
@@ -213,7 +217,7 @@ impl<'a, R: Real> Trial<'a, R> {
         let (depth, contact_force) = (self.state.rest[sleeper] - level, wall.felt().force.z);
         let velocity = -wall.velocity().0[2];
         let force = match wall.motion() {
-            Motion::Loaded { push, .. } => push.at(self.bed.time()),
+            WallMotion::Loaded { push, .. } => push.force_at(self.bed.time()),
             // a plate that is driven: what it presses with, on top of the pressure on a specimen
             _ => contact_force - self.rig.specimen.zip(self.size()).map_or(0.0, |(s, size)| s.pressure * size.area()),
         };
@@ -235,7 +239,7 @@ impl<'a, R: Real> Trial<'a, R> {
         current.work = if part == 1 { 0.0 } else { current.work } + 0.5 * (before + force) * moved;
         if self.rig.kept.contains(&cycle) {
             let phase = part as f64 / PIECES as f64;
-            self.state.samples.push(Sample { sleeper, cycle, phase, force, contact_force, depth, velocity });
+            self.state.samples.push(CycleSample { sleeper, cycle, phase, force, contact_force, depth, velocity });
         }
         if part == PIECES {
             self.state.cycles.push(self.ended(sleeper, cycle));
@@ -279,7 +283,7 @@ impl<'a, R: Real> Trial<'a, R> {
             let porosity = (part == PIECES).then(|| sensor.porosity(&self.bed, &self.rig.densities));
             let phase = part as f64 / PIECES as f64;
             let reading = sensor.read(&self.bed, &snapshot);
-            self.state.readings.push(Reading { sensor: number, cycle, phase, porosity, ..reading });
+            self.state.readings.push(SensorReading { sensor: number, cycle, phase, porosity, ..reading });
         }
         Ok(())
     }

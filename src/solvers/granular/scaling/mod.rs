@@ -10,10 +10,10 @@
 use super::bed::{Bed, BodyState};
 use super::body::{BodyId, SPHERE};
 use super::critical::{Around, Network, Weight, pencil};
+use super::failure::Failure;
 use super::lanes::Real;
 use super::record::Record;
 use super::vector::scale;
-use super::watch::Failure;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -45,7 +45,7 @@ pub struct Scaling {
 pub struct HeldEnergy {
     pub all: f64,
     pub scaled: f64,
-    /// Of the added mass alone: what is not there in nature.
+    /// Energy of the added mass alone: what is not there in nature.
     pub added: f64,
 }
 

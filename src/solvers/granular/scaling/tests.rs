@@ -2,14 +2,14 @@
 
 use crate::solvers::granular::clump::{Pebble, Template};
 use crate::solvers::granular::{
-    Bed, BodyId, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Law, Laws, Linear, Placed, Sphere,
+    Bed, BodyId, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Linear, Placed, Sphere,
 };
 use nalgebra::Vector3;
 
 const STIFFNESS: f64 = 1e6;
 
-fn law(ratio: f64) -> Law {
-    Law::Linear(Linear {
+fn law(ratio: f64) -> ContactLaw {
+    ContactLaw::Linear(Linear {
         normal_stiffness: STIFFNESS,
         shear_stiffness: STIFFNESS,
         friction: 0.5,
@@ -22,11 +22,11 @@ fn law(ratio: f64) -> Law {
 /// Spheres of two sizes and clumps over a floor, walled in by periods, that fall and come to rest.
 fn mixed() -> Bed<f64> {
     let length = 0.2;
-    let mut bed = Bed::new(Domain::open().periodic(0, length).periodic(1, length), Laws::uniform(1, law(0.3)));
+    let mut bed = Bed::new(Domain::open().periodic(0, length).periodic(1, length), ContactLaws::uniform(1, law(0.3)));
     bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
     bed.set_gravity(Gravity::EARTH);
     let pebble = |x: f64| Pebble { centre: Vector3::new(x, 0.0, 0.0), radius: 0.015 };
-    let template = Template::of(&[pebble(-0.01), pebble(0.01)]).unwrap();
+    let template = Template::from_pebbles(&[pebble(-0.01), pebble(0.01)]).unwrap();
     for k in 0..4 * 4 * 4 {
         let [i, j, l] = [k % 4, k / 4 % 4, k / 16];
         let centre =
@@ -68,9 +68,9 @@ fn weight(bed: &Bed<f64>) -> f64 {
 
 #[test]
 fn a_lone_sphere_gets_just_the_inertia_that_it_needs() {
-    let mut bed = Bed::<f64>::new(Domain::open(), Laws::uniform(1, law(0.0)));
+    let mut bed = Bed::<f64>::new(Domain::open(), ContactLaws::uniform(1, law(0.0)));
     bed.change_laws(|l| {
-        if let Law::Linear(l) = l {
+        if let ContactLaw::Linear(l) = l {
             l.shear_stiffness = 0.0
         }
     });
@@ -92,7 +92,7 @@ fn a_lone_sphere_gets_just_the_inertia_that_it_needs() {
 
 #[test]
 fn a_scaled_sphere_falls_as_any_other() {
-    let mut bed = Bed::<f64>::new(Domain::open(), Laws::uniform(1, law(0.0)));
+    let mut bed = Bed::<f64>::new(Domain::open(), ContactLaws::uniform(1, law(0.0)));
     let add = |bed: &mut Bed<f64>, x: f64| {
         bed.add_sphere(&Sphere { centre: [x, 0.0, 0.01], radius: 0.01, density: 2700.0, surface: 0 })
     };
@@ -101,7 +101,7 @@ fn a_scaled_sphere_falls_as_any_other() {
     let scaling = bed.scale_masses(1.5 * limit, 0.0).unwrap();
     assert_eq!(scaling.bodies, 2);
     bed.change_laws(|l| {
-        if let Law::Linear(l) = l {
+        if let ContactLaw::Linear(l) = l {
             l.normal_stiffness = 1e-6
         }
     });

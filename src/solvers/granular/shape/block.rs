@@ -1,6 +1,6 @@
 //! A sphere on a solid block: one contact, with the face, edge or corner whose region of space holds the centre.
 
-use super::Touch;
+use super::touch::Touch;
 use nalgebra::Vector3;
 
 /// Which of the 26 regions round the block: along each axis below (0), beside (1) or above (2) it. 13 is the inside.

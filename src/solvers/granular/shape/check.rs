@@ -1,7 +1,6 @@
 //! Faults of a mesh, all of them at once, each with its count, the first few places and a way out.
 
-use super::MeshKind;
-use super::inside::winding;
+use super::triangles::{MeshKind, area_vector, half_edges, volume, winding};
 use nalgebra::Vector3;
 use std::fmt;
 
@@ -17,12 +16,12 @@ const MOST_FACETS: usize = 600_000_000;
 /// Why triangles make no mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshError {
-    pub faults: Vec<Fault>,
+    pub faults: Vec<MeshFault>,
 }
 
 /// Everything of one kind that is wrong.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Fault {
+pub struct MeshFault {
     pub kind: FaultKind,
     pub count: usize,
     /// The first few.
@@ -62,46 +61,6 @@ pub struct Place {
     pub at: Vector3<f64>,
 }
 
-/// Area times the unit normal, m2.
-pub(super) fn area_vector(vertices: &[Vector3<f64>], corners: &[u32; 3]) -> Vector3<f64> {
-    let [a, b, c] = corners.map(|v| vertices[v as usize]);
-    (b - a).cross(&(c - a)) / 2.0
-}
-
-/// Sum of tetrahedra over the facets, m3, with their tip at a corner of the mesh: far from the origin it stays exact.
-pub(super) fn volume<'a>(vertices: &[Vector3<f64>], mut facets: impl Iterator<Item = &'a [u32; 3]>) -> f64 {
-    let Some(first) = facets.next() else { return 0.0 };
-    let tip = vertices[first[0] as usize];
-    let tetrahedron = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|v| vertices[v as usize] - tip);
-        a.dot(&b.cross(&c)) / 6.0
-    };
-    facets.map(tetrahedron).sum()
-}
-
-/// An edge as one facet sees it.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct HalfEdge {
-    /// The lower vertex first.
-    pub ends: [u32; 2],
-    pub facet: u32,
-    pub slot: usize,
-    /// Whether the facet runs from the lower vertex to the higher.
-    pub forward: bool,
-}
-
-/// All sides of all triangles, those of one edge side by side.
-pub(super) fn half_edges(triangles: &[[u32; 3]]) -> Vec<HalfEdge> {
-    let side = |facet: usize, corners: &[u32; 3], slot: usize| {
-        let (a, b) = (corners[slot], corners[(slot + 1) % 3]);
-        HalfEdge { ends: [a.min(b), a.max(b)], facet: facet as u32, slot, forward: a < b }
-    };
-    let mut sides: Vec<_> =
-        triangles.iter().enumerate().flat_map(|(f, t)| [0, 1, 2].map(|slot| side(f, t, slot))).collect();
-    sides.sort_unstable_by_key(|s| (s.ends, s.facet, s.slot));
-    sides
-}
-
 /// Faults of triangles as given; `places` names the first vertex at the place of each.
 pub(super) fn check(
     vertices: &[Vector3<f64>],
@@ -110,10 +69,10 @@ pub(super) fn check(
     kind: MeshKind,
 ) -> Result<(), MeshError> {
     if triangles.is_empty() {
-        return Err(MeshError::of(FaultKind::Empty));
+        return Err(MeshError::single(FaultKind::Empty));
     }
     if triangles.len() > MOST_FACETS || vertices.len() > MOST_FACETS {
-        return Err(MeshError::of(FaultKind::TooMany));
+        return Err(MeshError::single(FaultKind::TooMany));
     }
     let mut found = Found::default();
     for (i, v) in vertices.iter().enumerate().filter(|(_, v)| !v.iter().all(|x| x.is_finite())) {
@@ -139,13 +98,13 @@ pub(super) fn check(
 
 #[derive(Default)]
 struct Found {
-    faults: Vec<Fault>,
+    faults: Vec<MeshFault>,
 }
 
 impl Found {
     fn add(&mut self, kind: FaultKind, number: u32, at: Vector3<f64>) {
         let known = self.faults.iter().position(|fault| fault.kind == kind).unwrap_or_else(|| {
-            self.faults.push(Fault { kind, count: 0, places: Vec::new() });
+            self.faults.push(MeshFault { kind, count: 0, places: Vec::new() });
             self.faults.len() - 1
         });
         let fault = &mut self.faults[known];
@@ -254,8 +213,8 @@ fn connected(vertices: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Vec<Part> {
 }
 
 impl MeshError {
-    pub(super) fn of(kind: FaultKind) -> Self {
-        Self { faults: vec![Fault { kind, count: 1, places: Vec::new() }] }
+    pub(super) fn single(kind: FaultKind) -> Self {
+        Self { faults: vec![MeshFault { kind, count: 1, places: Vec::new() }] }
     }
 }
 

@@ -4,8 +4,10 @@
 //! corner where (c - q).u <= 0 along all edges that leave it. Each test has a slack above round-off, so that no place falls
 //! between two of them; what two of them find is one contact, the face before the edge before the corner.
 
+use super::mesh::Mesh;
 use super::topology::{Facet, NONE};
-use super::{Mesh, MeshKind, Touch};
+use super::touch::Touch;
+use super::triangles::MeshKind;
 use nalgebra::Vector3;
 
 /// Slack of a test, as a part of the largest coordinate.
@@ -151,7 +153,7 @@ impl Mesh {
 }
 
 impl Facet {
-    /// Of a point above the plane.
+    /// Height of a point above the plane.
     fn height(&self, point: &Vector3<f64>) -> f64 {
         self.normal.dot(&(point - self.places[0]))
     }

@@ -1,6 +1,6 @@
 //! How far a point is from a mesh, and the nearest place of it.
 
-use super::Mesh;
+use super::mesh::Mesh;
 use super::topology::Facet;
 use nalgebra::Vector3;
 use std::cell::Cell;

@@ -1,6 +1,8 @@
 //! Meshes of simple bodies, solid, round the origin.
 
-use super::{FaultKind, Mesh, MeshError, MeshKind};
+use super::check::{FaultKind, MeshError};
+use super::mesh::Mesh;
+use super::triangles::MeshKind;
 use nalgebra::Vector3;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
@@ -22,7 +24,7 @@ impl Mesh {
     /// `subdivisions` times.
     pub fn sphere(radius: f64, subdivisions: u32) -> Result<Self, MeshError> {
         if subdivisions > MOST_SUBDIVISIONS {
-            return Err(MeshError::of(FaultKind::TooMany));
+            return Err(MeshError::single(FaultKind::TooMany));
         }
         let g = (1.0 + 5.0f64.sqrt()) / 2.0;
         let mut vertices: Vec<Vector3<f64>> = Vec::new();
@@ -39,7 +41,7 @@ impl Mesh {
     /// A cylinder along z (radius and height in m) over a polygon of `sides` corners on its circle.
     pub fn cylinder(radius: f64, height: f64, sides: u32) -> Result<Self, MeshError> {
         if sides > 20 << (2 * MOST_SUBDIVISIONS) {
-            return Err(MeshError::of(FaultKind::TooMany));
+            return Err(MeshError::single(FaultKind::TooMany));
         }
         let half = height / 2.0;
         let mut vertices = vec![Vector3::new(0.0, 0.0, -half), Vector3::new(0.0, 0.0, half)];

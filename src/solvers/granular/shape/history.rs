@@ -1,6 +1,6 @@
 //! Which contact of this step goes on with the shear force of which contact of the last.
 
-use super::Touch;
+use super::touch::Touch;
 use nalgebra::Vector3;
 
 /// Cosine of the largest turn of the normal, 30 degrees, over which a contact is taken for the same.

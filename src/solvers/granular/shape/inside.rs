@@ -1,8 +1,8 @@
 //! Whether a point lies inside a closed mesh: how often its surface winds round the point.
 
-use super::{Mesh, MeshKind};
+use super::mesh::Mesh;
+use super::triangles::{MeshKind, winding};
 use nalgebra::Vector3;
-use std::f64::consts::PI;
 
 /// Directions in which a ray is sent, none along an axis or a common diagonal.
 const DIRECTIONS: [[f64; 3]; 4] =
@@ -68,19 +68,4 @@ fn crossing(places: &[Vector3<f64>; 3], point: &Vector3<f64>, direction: &Vector
         return Some(0);
     }
     (least > CERTAIN && ahead > CERTAIN * scale).then_some(if across > 0.0 { 1 } else { -1 })
-}
-
-/// The same from all solid angles, which is slower but always certain off the surface (van Oosterom and Strackee 1983,
-/// equation 8).
-pub(super) fn winding<'a>(
-    vertices: &[Vector3<f64>],
-    triangles: impl Iterator<Item = &'a [u32; 3]>,
-    point: &Vector3<f64>,
-) -> i64 {
-    let half_angle = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|v| vertices[v as usize] - point);
-        let (la, lb, lc) = (a.norm(), b.norm(), c.norm());
-        a.dot(&b.cross(&c)).atan2(la * lb * lc + a.dot(&b) * lc + b.dot(&c) * la + c.dot(&a) * lb)
-    };
-    (triangles.map(half_angle).sum::<f64>() / (2.0 * PI)).round() as i64
 }

@@ -1,25 +1,12 @@
 //! A surface of triangles: checked once, with its edges, corners and search tree built once.
 
-use super::check::{self, MeshError};
-use super::topology::Surface;
+use super::check::{MeshError, check};
+use super::topology::MeshSurface;
 use super::tree::Tree;
+use super::triangles::{MeshKind, area_vector, volume};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
-
-/// What a surface of triangles bounds. Normals follow the right hand along a triangle's corners.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum MeshKind {
-    /// A closed body, normals outward; spheres touch it from outside. Several bodies may make one mesh as long as they do
-    /// not cut each other.
-    Solid,
-    /// A closed cavity, normals inward; spheres live in it.
-    Container,
-    /// An open sheet with solid behind its normals. Its border is touched from all sides.
-    OneSided,
-    /// An open sheet without thickness, touched from both sides.
-    TwoSided,
-}
 
 /// Triangles without faults. A facet keeps the number of its triangle. Sheets need not share vertices where they join:
 /// borders closer than a millionth of the largest coordinate are taken for joined.
@@ -29,7 +16,7 @@ pub struct Mesh {
     pub(super) kind: MeshKind,
     pub(super) vertices: Vec<Vector3<f64>>,
     pub(super) triangles: Vec<[u32; 3]>,
-    pub(super) surface: Surface,
+    pub(super) surface: MeshSurface,
     pub(super) tree: Tree,
     /// The largest coordinate, m: round-off is measured by it.
     pub(super) extent: f64,
@@ -62,7 +49,7 @@ impl Mesh {
     /// that no triangle uses are left out. Fails with all faults at once.
     pub fn new(vertices: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>, kind: MeshKind) -> Result<Self, MeshError> {
         let places = weld(&vertices);
-        check::check(&vertices, &triangles, &places, kind)?;
+        check(&vertices, &triangles, &places, kind)?;
         let mut number = vec![u32::MAX; vertices.len()];
         for corner in triangles.iter().flatten() {
             number[places[*corner as usize] as usize] = 0;
@@ -78,7 +65,7 @@ impl Mesh {
 
     /// From parts without faults.
     fn build(vertices: Vec<Vector3<f64>>, triangles: Vec<[u32; 3]>, kind: MeshKind) -> Self {
-        let surface = Surface::new(&vertices, &triangles);
+        let surface = MeshSurface::new(&vertices, &triangles);
         let tree = Tree::new(&vertices, &triangles);
         let extent = vertices.iter().fold(0.0, |m: f64, v| m.max(v.amax()));
         Self { kind, vertices, triangles, surface, tree, extent }
@@ -116,12 +103,12 @@ impl Mesh {
 
     /// Area of the facets, m2, one side of a sheet.
     pub fn area(&self) -> f64 {
-        self.triangles.iter().map(|t| check::area_vector(&self.vertices, t).norm()).sum()
+        self.triangles.iter().map(|t| area_vector(&self.vertices, t).norm()).sum()
     }
 
     /// Volume that the facets enclose, m3: positive for a solid, negative for a container, without meaning for a sheet.
     pub fn volume(&self) -> f64 {
-        check::volume(&self.vertices, self.triangles.iter())
+        volume(&self.vertices, self.triangles.iter())
     }
 }
 

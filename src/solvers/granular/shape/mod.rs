@@ -14,16 +14,20 @@ mod inside;
 mod mesh;
 mod plane;
 mod topology;
+mod touch;
 mod tree;
+mod triangles;
 
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-pub use check::{Fault, FaultKind, MeshError, Place};
+pub use check::{FaultKind, MeshError, MeshFault, Place};
 pub use distance::Nearest;
 pub use history::inherit;
-pub use mesh::{Mesh, MeshKind};
+pub use mesh::Mesh;
+pub use touch::Touch;
+pub use triangles::MeshKind;
 
 #[cfg(test)]
 mod tests;
@@ -37,18 +41,6 @@ pub enum Shape {
     Block { half: Vector3<f64> },
     /// Triangles: a solid, a container, or an open sheet.
     Mesh(Mesh),
-}
-
-/// One contact of a sphere with a surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
-    /// Unit, from the surface to the sphere's centre; out of the solid where the centre lies inside it.
-    pub normal: Vector3<f64>,
-    /// From the surface to the centre along the normal, m; negative where the centre lies behind the surface. A sphere of
-    /// radius r overlaps by r - distance.
-    pub distance: f64,
-    /// The face, edge or corner that is touched: the same number for the same place of the same shape.
-    pub feature: u32,
 }
 
 /// A plane or a block whose numbers describe none.
@@ -93,7 +85,7 @@ impl Shape {
     /// Every distinct contact of a sphere of radius `reach` (m) whose centre is there, into `out`, which is emptied first:
     /// nearest first, in an order that does not depend on that of `facets`.
     ///
-    /// Of a mesh, `facets` must hold all that `near` finds with this reach, and may hold more; a plane and a block need
+    /// For a mesh, `facets` must hold all that `near` finds with this reach, and may hold more; a plane and a block need
     /// none. A centre inside gets one contact, the way out: at any depth of a plane or a block, to a depth of `reach` of a
     /// mesh or a one-sided sheet.
     pub fn touches(&self, centre: &Vector3<f64>, reach: f64, facets: &[u32], out: &mut Vec<Touch>) {

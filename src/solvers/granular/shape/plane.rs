@@ -1,6 +1,6 @@
 //! A sphere on a plane through the origin, the solid behind its normal.
 
-use super::Touch;
+use super::touch::Touch;
 use nalgebra::Vector3;
 
 pub(super) fn touch(normal: &Vector3<f64>, centre: &Vector3<f64>, reach: f64) -> Option<Touch> {

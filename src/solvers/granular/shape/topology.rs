@@ -1,6 +1,6 @@
 //! Facets, edges and corners of a surface: who lies beside whom, and the directions that decide which of them is touched.
 
-use super::check::{area_vector, half_edges};
+use super::triangles::{area_vector, half_edges};
 use nalgebra::Vector3;
 
 /// No facet beyond the border of a sheet.
@@ -11,10 +11,10 @@ pub(super) const NONE: u32 = u32::MAX;
 const FLAT: f64 = 1e-13;
 
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Surface {
+pub(super) struct MeshSurface {
     pub facets: Vec<Facet>,
     pub edges: Vec<Edge>,
-    pub corners: Vec<Corner>,
+    pub corners: Vec<MeshCorner>,
     /// Edges that leave a corner, those of one corner side by side.
     pub spokes: Vec<Spoke>,
 }
@@ -46,7 +46,7 @@ pub(super) struct Edge {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Corner {
+pub(super) struct MeshCorner {
     pub place: Vector3<f64>,
     /// Range in the spokes.
     pub spokes: [u32; 2],
@@ -63,7 +63,7 @@ pub(super) struct Spoke {
     pub direction: Vector3<f64>,
 }
 
-impl Surface {
+impl MeshSurface {
     pub fn new(vertices: &[Vector3<f64>], triangles: &[[u32; 3]]) -> Self {
         let mut facets: Vec<_> = triangles.iter().map(|t| facet(vertices, *t)).collect();
         let mut edges = Vec::with_capacity(3 * triangles.len() / 2);
@@ -114,14 +114,14 @@ fn corners(
     facets: &[Facet],
     edges: &[Edge],
     ends: &[[u32; 2]],
-) -> (Vec<Corner>, Vec<Spoke>) {
+) -> (Vec<MeshCorner>, Vec<Spoke>) {
     let mut leaving: Vec<_> = (0..edges.len()).flat_map(|e| [(ends[e][0], e, 1.0), (ends[e][1], e, -1.0)]).collect();
     leaving.sort_unstable_by_key(|(corner, e, _)| (*corner, *e));
     let corner = |(number, place): (usize, &Vector3<f64>)| {
         let start = leaving.partition_point(|(corner, ..)| (*corner as usize) < number);
         let end = leaving.partition_point(|(corner, ..)| (*corner as usize) <= number);
         let around = || leaving[start..end].iter().map(|(_, e, _)| &edges[*e]);
-        Corner {
+        MeshCorner {
             place: *place,
             spokes: [start as u32, end as u32],
             normal: Vector3::zeros(),

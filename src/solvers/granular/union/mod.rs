@@ -8,20 +8,10 @@
 mod arcs;
 mod moments;
 mod patch;
+mod pebble;
 mod quadrature;
 
 pub use arcs::{Arcs, Trig};
 pub use moments::moments;
 pub use patch::{Cap, Patch};
-
-use nalgebra::Vector3;
-use serde::{Deserialize, Serialize};
-
-/// One sphere of a clump.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Pebble {
-    /// m.
-    pub centre: Vector3<f64>,
-    /// m.
-    pub radius: f64,
-}
+pub use pebble::Pebble;

@@ -24,8 +24,8 @@ pub fn moments(pebbles: &[Pebble]) -> Moments {
     let tolerance = std::array::from_fn(|k| TOLERANCE * reach.powi(1 + order(k)));
     let mut sum = [0.0; 10];
     for (i, pebble) in scaled.iter().enumerate() {
-        let part =
-            Patch::of(&scaled, i).integrate(&tolerance, |height, radius, trig| flux(pebble, height, radius, trig));
+        let part = Patch::of_pebble(&scaled, i)
+            .integrate(&tolerance, |height, radius, trig| flux(pebble, height, radius, trig));
         (0..10).for_each(|k| sum[k] += part[k]);
     }
     let [v, x, y, z, xx, yy, zz, xy, yz, zx] = sum;

@@ -27,7 +27,7 @@ pub struct Patch {
 
 impl Patch {
     /// What shows of pebble `i` of a union.
-    pub fn of(pebbles: &[Pebble], i: usize) -> Self {
+    pub fn of_pebble(pebbles: &[Pebble], i: usize) -> Self {
         let mut patch = Self::default();
         for (_, other) in pebbles.iter().enumerate().filter(|(j, _)| *j != i) {
             patch.cut_by(&pebbles[i], other);

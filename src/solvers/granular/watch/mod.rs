@@ -1,4 +1,4 @@
-//! What a healthy run never does, and what is said when one does.
+//! What a healthy run never does: it is looked for every now and then.
 //!
 //! Too long a step makes a body and its neighbours turn round in every step, and what they gain between two looks they lose
 //! as contacts open: such a bed need not fly apart, it boils. So every now and then the bodies are seen in two steps, one
@@ -6,15 +6,18 @@
 //! reaches in a step, allow the step is a matter of six numbers (see `critical`), and only if they do not, look after look,
 //! the whole network is asked. So nothing but a step above the limit ends a run as growth.
 
+pub(super) mod memory;
+#[cfg(test)]
+mod tests;
+
 use super::bed::Bed;
-use super::body::{BodyId, SPHERE};
+use super::body::{Body, BodyId, SPHERE};
 use super::critical::{Around, Network, Weight, bound, pencil};
-use super::fault::Fault;
+use super::failure::{Culprit, Failure, Limits};
 use super::lanes::Real;
 use super::record::Record;
 use super::vector::{Vec3, dot, norm};
-use serde::{Deserialize, Serialize};
-use std::fmt;
+use memory::Good;
 
 /// Looks in a row at which a body is suspected before the network is asked, and asked again.
 const PATIENCE: u32 = 8;
@@ -26,126 +29,6 @@ const RISE: f64 = 16.0;
 const ESTIMATES: u64 = 16;
 /// Relative tolerance of the network's limit.
 const TOLERANCE: f64 = 5e-3;
-
-/// Bounds that stop a run.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Limits {
-    /// Overlap over the smaller radius.
-    pub overlap: f64,
-    /// Way of a pebble in one step over its radius.
-    pub stride: f64,
-    /// Steps between looks at overlaps and at bodies that turn round.
-    pub every: u64,
-    /// Whether a run stops where its step is above the limit of its contacts and a body turns round in every step.
-    pub growth: bool,
-}
-
-impl Default for Limits {
-    fn default() -> Self {
-        Limits { overlap: 0.2, stride: 0.1, every: 64, growth: true }
-    }
-}
-
-/// Why a run cannot go on.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Failure {
-    /// No time step has been set.
-    NoTimeStep,
-    /// Something in the bed cannot be; nothing was moved.
-    Fault(Fault),
-    /// The state of a body is no number any more.
-    Lost(Culprit),
-    /// A body goes too far in a step.
-    Stride { culprit: Culprit, share: f64 },
-    /// Two bodies are too deep in each other.
-    Overlap { culprit: Culprit, share: f64 },
-    /// A body turns round in every step, and the step is above the limit of the contacts.
-    Growth(Culprit),
-    /// Neighbours more than one cell apart: a period or a bay is too short for its bodies.
-    CellTooSmall,
-}
-
-/// The body at which a failure showed, and what would have been stable.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Culprit {
-    pub body: BodyId,
-    /// \[m\]
-    pub place: [f64; 3],
-    pub step: u64,
-    pub time: f64,
-    pub dt: f64,
-    /// A stable time step \[s\]: the limit of the network of contacts now where growth was found, else when all was well.
-    pub stable_dt: f64,
-}
-
-impl fmt::Display for Failure {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        match self {
-            Failure::NoTimeStep => write!(f, "no time step has been set; the limit of the contacts times 0.9 is one"),
-            Failure::Fault(fault) => fault.fmt(f),
-            Failure::CellTooSmall => {
-                write!(f, "a period or bay is shorter than its bodies reach; make it longer than twice the largest")
-            }
-            Failure::Lost(c) => write!(f, "the motion of {c} is no number any more{}", c.advice()),
-            Failure::Stride { culprit, share } => {
-                write!(f, "{culprit} moves by {share:.2} of its radius in one step{}", culprit.advice())
-            }
-            Failure::Overlap { culprit, share } => {
-                write!(f, "{culprit} is {share:.2} of the smaller radius deep in its neighbour{}", culprit.advice())
-            }
-            Failure::Growth(c) => write!(f, "{c} turns round in every step{}", c.advice()),
-        }
-    }
-}
-
-impl std::error::Error for Failure {}
-
-impl fmt::Display for Culprit {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let [x, y, z] = self.place;
-        write!(f, "body {} at ({x:.4}, {y:.4}, {z:.4}) m, step {}, {:.4e} s", self.body.0, self.step, self.time)
-    }
-}
-
-impl Culprit {
-    fn advice(&self) -> String {
-        let (dt, stable) = (self.dt, self.stable_dt);
-        if dt > stable {
-            format!(
-                ": the step of {dt:.3e} s is above the stable {stable:.3e} s of its contacts; take 0.9 of that, or scale masses"
-            )
-        } else {
-            format!(
-                ": the step of {dt:.3e} s is stable, so it was pushed too hard or set in too deep; start with less overlap, or push more slowly"
-            )
-        }
-    }
-}
-
-/// What is kept between looks.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Watch {
-    /// The bed when all was still well.
-    good: Good,
-    /// Velocity and spin of every body one step ago, and which lists they belong to.
-    before: Vec<[f32; 6]>,
-    lists: u64,
-    /// Looks in a row with a suspect.
-    suspected: u32,
-    /// Up to which energy of turning \[J\] and for which step the network is known to be stable.
-    cleared: (f64, f64),
-}
-
-/// Where everything was, in the order of making.
-#[derive(Debug, Clone, Default)]
-struct Good {
-    cells: Vec<[i32; 3]>,
-    /// Offsets of pebbles \[m\].
-    pebbles: Vec<Vec3>,
-    clumps: Vec<(Vec3, [f64; 4])>,
-    /// Gap up to which contacts open and close \[m\].
-    gap: f64,
-}
 
 /// A body that turned round in the last step.
 #[derive(Debug, Clone, Copy)]
@@ -185,7 +68,7 @@ impl<R: Real> Bed<R> {
             }
             if self.limits.growth {
                 self.watch.before = self.bodies.iter().map(motion).collect();
-                self.watch.lists = self.build.count;
+                self.watch.lists = self.lists.count;
             }
         }
         if self.limits.growth && self.steps % every == 1 {
@@ -200,7 +83,7 @@ impl<R: Real> Bed<R> {
 
     /// Fails where a body turns round in every step because the step is too long.
     fn look_for_growth(&mut self) -> Result<(), Failure> {
-        if self.watch.lists != self.build.count || self.watch.before.len() != self.bodies.len() {
+        if self.watch.lists != self.lists.count || self.watch.before.len() != self.bodies.len() {
             return Ok(());
         }
         if self.watch.cleared.1 != self.dt {
@@ -344,7 +227,7 @@ impl<R: Real> Bed<R> {
                 (clump.centre, clump.attitude) = *clumps.next()?;
             }
         }
-        bed.build.outdated = true;
+        bed.lists.outdated = true;
         bed.limit_of_network(good.gap).ok().filter(|limit| limit.is_finite())
     }
 
@@ -358,10 +241,7 @@ impl<R: Real> Bed<R> {
     }
 }
 
-fn motion(body: &super::body::Body) -> [f32; 6] {
+fn motion(body: &Body) -> [f32; 6] {
     let ([a, b, c], [p, q, r]) = (body.velocity, body.spin);
     [a, b, c, p, q, r].map(|x| x as f32)
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,13 +1,13 @@
 //! Runs that must stop, and runs that must not.
 
 use crate::solvers::granular::critical::tests::{law, pressed};
-use crate::solvers::granular::{Bed, Domain, Failure, Gravity, Law, Laws, Limits, Real, Sphere};
+use crate::solvers::granular::{Bed, ContactLaw, ContactLaws, Domain, Failure, Gravity, Limits, Real, Sphere};
 
 /// Layers of spheres of two sizes over a floor in a periodic column, that will fall.
 fn falling<R: Real>(shear: f64, ratios: [f64; 2]) -> Bed<R> {
     let length = 0.24;
     let domain = Domain::open().periodic(0, length).periodic(1, length);
-    let mut bed = Bed::new(domain, Laws::uniform(1, law(shear, ratios)));
+    let mut bed = Bed::new(domain, ContactLaws::uniform(1, law(shear, ratios)));
     bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
     for k in 0..5 * 5 * 6 {
         let [i, j, l] = [k % 5, k / 5 % 5, k / 25].map(f64::from);
@@ -21,7 +21,7 @@ fn falling<R: Real>(shear: f64, ratios: [f64; 2]) -> Bed<R> {
 fn settle<R: Real>(bed: &mut Bed<R>) {
     let friction = |bed: &mut Bed<R>, friction| {
         bed.change_laws(|law| {
-            if let Law::Linear(law) = law {
+            if let ContactLaw::Linear(law) = law {
                 law.friction = friction
             }
         })

@@ -8,12 +8,14 @@
 //! w is the rail under the wheel without the train and C its compliance there. Linearised, `δ = rest + F/F'`, the system is
 //! symmetric and quasi-definite; vehicle by vehicle it is a skyline as wide as the wheels that feel each other.
 
-use super::{Inertia, subtract_stiffness};
+use super::loads::Inertia;
+use super::stiffness::subtract_stiffness;
 use crate::linalg::banded::BandedFactor;
 use crate::linalg::skyline::Skyline;
 use crate::solvers::track::contact::WheelLaw;
+use crate::solvers::track::error::{TrackError, TrackParameter};
 use crate::solvers::track::mesh::{RailPoint, Track};
-use crate::solvers::track::{Multibody, SupportPhase, TrackError, TrackLevel, Train};
+use crate::solvers::track::{Multibody, SupportPhase, TrackLevel, Train};
 
 const NEWTON_LIMIT: usize = 60;
 /// Wheel forces are converged to this part of the mean one.
@@ -28,7 +30,7 @@ pub(super) struct StandingTrain {
     leading: f64,
     bodies: Vec<Body>,
     pub points: Vec<RailPoint>,
-    /// Of the running surface under the wheel, m.
+    /// Unevenness of the running surface under the wheel, m.
     unevenness: Vec<f64>,
     laws: Vec<WheelLaw>,
     pub forces: Vec<f64>,
@@ -74,7 +76,7 @@ impl StandingTrain {
             let wheel_load = vehicle.wheel_load(track.model.gravity);
             if vehicle.order() > 0 && wheel_load <= 0.0 {
                 return Err(TrackError::Parameter {
-                    name: "weight of a vehicle",
+                    name: TrackParameter::Vehicle("weight of a vehicle"),
                     value: wheel_load,
                     expected: "above 0: gravity or a force that holds it down",
                 });
@@ -94,7 +96,7 @@ impl StandingTrain {
         }
         for x in train.wheel_positions(leading) {
             standing.points.push(track.rail_point(x)?);
-            standing.unevenness.push(track.model.irregularity.at(x));
+            standing.unevenness.push(track.model.irregularity.depth_at(x));
         }
         Ok(standing)
     }

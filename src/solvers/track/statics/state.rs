@@ -40,7 +40,7 @@ pub struct StaticState {
 pub struct Balance {
     /// Gravity on rails, sleepers and vehicles, and the point loads; a slab lies at rest under its own weight already.
     pub loads: f64,
-    /// Of the sleepers' supports.
+    /// Force of the sleepers' supports.
     pub sleeper_supports: f64,
     pub rigid_seats: f64,
     /// Beyond the slabs' own weight.

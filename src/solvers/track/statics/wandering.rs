@@ -4,8 +4,10 @@
 //! for it begins does not matter: it begins with those of the last place, which neighbours mostly share, and with it the
 //! factorised stiffness.
 
+use super::loads::{Inertia, Loads};
+use super::solve::solve_static;
 use super::standing::StandingTrain;
-use super::{Inertia, Loads, factor, solve_static};
+use super::stiffness::factor;
 use crate::linalg::banded::BandedFactor;
 use crate::solvers::track::mesh::Track;
 use crate::solvers::track::support::SupportPhase;

@@ -83,7 +83,7 @@ impl<'a> Plain<'a> {
             if let Some(unknown) = self.unknowns[w] {
                 direction[n + unknown] = 1.0;
             }
-            (direction, point.local_compliance, self.track.model.irregularity.at(*x))
+            (direction, point.local_compliance, self.track.model.irregularity.depth_at(*x))
         };
         positions.iter().enumerate().map(direction).collect()
     }

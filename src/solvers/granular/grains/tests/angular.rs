@@ -50,7 +50,7 @@ fn grains_are_known_by_seed_and_number() {
 fn rounder_grains_are_nearer_to_balls() {
     let sphericity = |roundness: f64| {
         let indices = Angular { flatness: 0.9, elongation: 0.9, roundness };
-        (0..4).map(|n| Form::of_surface(&indices.surface(1, n).unwrap()).sphericity()).sum::<f64>() / 4.0
+        (0..4).map(|n| GrainForm::of_surface(&indices.surface(1, n).unwrap()).sphericity()).sum::<f64>() / 4.0
     };
     let found = [0.0, 0.2, 0.4, 0.6].map(sphericity);
     assert!(found.windows(2).all(|pair| pair[1] > pair[0] + 0.01), "{found:?}");
@@ -73,11 +73,11 @@ proptest! {
         flatness in 0.3..1.0f64, elongation in 0.3..1.0f64, roundness in 0.0..0.6f64, seed in 0u64..10_000,
     ) {
         let surface = Angular { flatness, elongation, roundness }.surface(seed, 0).unwrap();
-        let form = Form::of_surface(&surface);
+        let form = GrainForm::of_surface(&surface);
         prop_assert!((form.flatness() / flatness - 1.0).abs() < TOLERANCE, "{} {flatness}", form.flatness());
         prop_assert!((form.elongation() / elongation - 1.0).abs() < TOLERANCE, "{} {elongation}", form.elongation());
         prop_assert!((form.volume / (PI / 6.0) - 1.0).abs() < 1e-9);
         // the ball that rounds its edges is the asked share of the largest that fits into it
-        prop_assert!(Form::of_surface(&surface).sphericity() < 1.0);
+        prop_assert!(GrainForm::of_surface(&surface).sphericity() < 1.0);
     }
 }

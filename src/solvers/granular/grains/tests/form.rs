@@ -19,7 +19,7 @@ fn turn() -> Rotation3<f64> {
 #[test]
 fn a_turned_block_has_its_sides() {
     let block = Mesh::block(Vector3::new(0.02, 0.05, 0.03)).unwrap();
-    let form = Form::of_surface(&moved(&block, |v| turn() * v + Vector3::new(1.0, 2.0, 3.0)));
+    let form = GrainForm::of_surface(&moved(&block, |v| turn() * v + Vector3::new(1.0, 2.0, 3.0)));
     for (found, side) in form.sides.iter().zip([0.04, 0.06, 0.10]) {
         assert!((found / side - 1.0).abs() < 1e-4, "{:?}", form.sides);
     }
@@ -33,9 +33,9 @@ fn an_ellipsoid_has_its_axes_and_its_moments() {
     let half = Vector3::new(1.0, 0.75, 0.5);
     let ball = Mesh::sphere(1.0, 4).unwrap();
     let surface = moved(&ball, |v| turn() * v.component_mul(&half));
-    let form = Form::of_surface(&surface);
+    let form = GrainForm::of_surface(&surface);
     assert!((form.flatness() - 2.0 / 3.0).abs() < 2e-3 && (form.elongation() - 0.75).abs() < 2e-3, "{form:?}");
-    let solid = Solid::of(surface.vertices(), surface.triangles());
+    let solid = Solid::inside(surface.vertices(), surface.triangles());
     let volume = 4.0 / 3.0 * PI * half.product();
     assert!((solid.volume / volume - 1.0).abs() < 3e-3 && solid.centroid.norm() < 1e-9);
     let own = Matrix3::from_diagonal(&half.component_mul(&half)) * (volume / 5.0);
@@ -45,16 +45,16 @@ fn an_ellipsoid_has_its_axes_and_its_moments() {
 
 #[test]
 fn a_ball_is_round_as_a_surface_and_as_a_clump() {
-    let form = Form::of_surface(&Mesh::sphere(0.03, 4).unwrap());
+    let form = GrainForm::of_surface(&Mesh::sphere(0.03, 4).unwrap());
     assert!((form.sphericity() - 1.0).abs() < 2e-3 && form.flatness() > 0.99 && form.elongation() > 0.99);
-    let form = Form::of_clump(&Template::sphere(0.03).unwrap());
+    let form = GrainForm::of_clump(&Template::sphere(0.03).unwrap());
     assert!((form.sphericity() - 1.0).abs() < 1e-9 && (form.sides[0] - 0.06).abs() < 1e-12);
 }
 
 #[test]
 fn two_pebbles_are_as_long_as_they_are() {
     let pebble = |x: f64| Pebble { centre: turn() * Vector3::new(x, 0.0, 0.0), radius: 1.0 };
-    let form = Form::of_clump(&Template::of(&[pebble(-0.6), pebble(0.6)]).unwrap());
+    let form = GrainForm::of_clump(&Template::from_pebbles(&[pebble(-0.6), pebble(0.6)]).unwrap());
     assert!((form.sides[2] - 3.2).abs() < 1e-4 && (form.sides[0] - 2.0).abs() < 1e-12);
     // two balls less two caps of height 0.4
     assert!((form.area / (2.0 * (4.0 * PI - 2.0 * PI * 0.4)) - 1.0).abs() < 1e-3);

@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 
 #[test]
 fn a_ball_is_like_a_ball() {
-    let error = ShapeError::between(&Mesh::sphere(0.03, 5).unwrap(), &Template::sphere(1.0).unwrap());
+    let error = Misfit::between(&Mesh::sphere(0.03, 5).unwrap(), &Template::sphere(1.0).unwrap());
     assert!(error.volume < 5e-3 && error.mean_distance < 1e-3 && error.largest_distance < 2e-3, "{error:?}");
     assert!(error.inertia < 1e-3);
 }
@@ -15,7 +15,7 @@ fn a_ball_is_like_a_ball() {
 #[test]
 fn a_ball_in_place_of_a_cube_is_wrong_by_what_it_must() {
     let cube = Mesh::block(Vector3::repeat(0.5)).unwrap();
-    let error = ShapeError::between(&cube, &Template::sphere(0.1).unwrap());
+    let error = Misfit::between(&cube, &Template::sphere(0.1).unwrap());
     // R³ = 3/4π: six caps of the ball stand out, and as much of the cube's corners is missing
     let radius = 0.620_350_490_899_4_f64;
     let height = radius - 0.5;
@@ -32,7 +32,7 @@ fn more_pebbles_are_more_like_the_surface() {
         let shape =
             ClumpShape { rule: Rule { pebbles: [pebbles; 2], ..ClumpShape::default().rule }, ..ClumpShape::default() };
         let fitted = shape.fitted(1).unwrap();
-        let error = |f: &Fitted| ShapeError::between(&f.surface, &f.template);
+        let error = |f: &Fitted| Misfit::between(&f.surface, &f.template);
         let sum =
             fitted.iter().map(error).fold([0.0; 3], |s, e| [s[0] + e.volume, s[1] + e.mean_distance, s[2] + e.inertia]);
         sum.map(|s| s / fitted.len() as f64)

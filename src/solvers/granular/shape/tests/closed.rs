@@ -1,6 +1,6 @@
 //! Bodies and containers: the same contacts as a block, the way out of what is solid, what lies inside.
 
-use super::super::inside::winding;
+use super::super::triangles::winding;
 use super::*;
 
 #[test]

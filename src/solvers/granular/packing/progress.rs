@@ -1,0 +1,11 @@
+//! What people hear who wait for a bed.
+
+/// How far packing is, for people who wait.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Progress {
+    pub stage: String,
+    /// Share of all stages that is done, 0 .. 1; an estimate.
+    pub share: f64,
+    pub bodies: usize,
+    pub steps: u64,
+}

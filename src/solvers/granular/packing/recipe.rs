@@ -1,0 +1,182 @@
+//! What a bed is made of and how it is packed, and what follows from that: its laws, its walls and its first step.
+
+use super::super::bed::Bed;
+use super::super::clump::Template;
+use super::super::domain::Domain;
+use super::super::grains::Curve;
+use super::super::gravity::Gravity;
+use super::super::lanes::Real;
+use super::super::law::{ContactLaw, ContactLaws, Surface};
+use super::super::walls::WallId;
+use serde::{Deserialize, Serialize};
+
+/// What is packed, and how.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Recipe {
+    /// Sides of the cell along x and across, m.
+    pub plan: [f64; 2],
+    /// Whether walls stand at both ends across; else the bed is periodic there too.
+    pub walls: bool,
+    /// Whether walls stand at both ends along too.
+    pub ends: bool,
+    /// From the floor upwards.
+    pub layers: Vec<GrainLayer>,
+    /// Downwards, m/s2.
+    pub gravity: f64,
+    /// Local damping of the finished bed.
+    pub local_damping: f64,
+    pub rest: Rest,
+    pub seed: u64,
+}
+
+/// A layer of one material.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GrainLayer {
+    pub name: String,
+    pub curve: Curve,
+    /// Clumps of unit size; grains are copies of them, as often of one as of another.
+    pub templates: Vec<Template>,
+    /// Density of a grain, kg/m3.
+    pub density: f64,
+    /// Surface of the grains in the finished bed.
+    pub surface: Surface,
+    /// To walls, floor and plate.
+    pub wall_friction: f64,
+    /// m.
+    pub thickness: f64,
+    pub lifts: u32,
+    /// On each lift, Pa.
+    pub pressure: f64,
+    /// While it is packed.
+    pub packing: Packing,
+}
+
+/// How a layer is damped while it is packed.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Packing {
+    pub friction: f64,
+    pub local_damping: f64,
+    /// Share of critical damping of contacts.
+    pub viscous_damping: f64,
+}
+
+/// When a stage is at its end.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Rest {
+    /// Force out of balance over the forces that act, mean over all bodies, of a lift under its plate.
+    pub lift: f64,
+    /// The same of the finished bed.
+    pub bed: f64,
+    /// Share by which the plate may miss its pressure.
+    pub pressure: f64,
+    /// Time that a stage may take, s; under less than 200 kPa longer by the root of that.
+    pub longest: f64,
+}
+
+impl Default for Rest {
+    fn default() -> Self {
+        Rest { lift: 0.01, bed: 1e-3, pressure: 0.02, longest: 4.0 }
+    }
+}
+
+/// Number of lifts of a layer so thick (m), none thinner than its largest grain, which would bear the plate alone; at most as many as asked for.
+pub fn lifts_that_fit(asked: u32, thickness: f64, curve: &Curve) -> u32 {
+    let most = (thickness / curve.ends()[1] + 1e-9).floor().max(1.0);
+    asked.min(most as u32)
+}
+
+impl GrainLayer {
+    /// Number of lifts that it is pressed in, at most as many as asked for.
+    pub fn lifts_that_fit(&self) -> u32 {
+        lifts_that_fit(self.lifts, self.thickness, &self.curve)
+    }
+}
+
+impl Recipe {
+    /// Laws of the finished bed: surface `i` is layer `i`, the last one is walls, floor and plate, as stiff as the grains.
+    pub fn laws(&self) -> ContactLaws {
+        self.between(|layer| (layer.surface, layer.wall_friction))
+    }
+
+    /// The same without dashpots, which forces at rest do not know.
+    pub(super) fn laws_without_dashpots(&self) -> ContactLaws {
+        self.between(|layer| (Surface { damping: [0.0; 2], ..layer.surface }, layer.wall_friction))
+    }
+
+    /// Laws while it is packed.
+    fn packing_laws(&self) -> ContactLaws {
+        self.between(|layer| {
+            let Packing { friction, viscous_damping, .. } = layer.packing;
+            // without friction nothing holds against sliding, and steps may be longer
+            let shear_stiffness = if friction > 0.0 { layer.surface.shear_stiffness } else { 0.0 };
+            let surface = Surface { friction, shear_stiffness, damping: [viscous_damping; 2], ..layer.surface };
+            (surface, friction.min(layer.wall_friction))
+        })
+    }
+
+    fn between(&self, of: impl Fn(&GrainLayer) -> (Surface, f64)) -> ContactLaws {
+        let surfaces: Vec<(Surface, f64)> = self.layers.iter().map(of).collect();
+        let mut all: Vec<Surface> = surfaces.iter().map(|(surface, _)| *surface).collect();
+        all.extend(all.last().copied());
+        let mut laws = ContactLaws::from_surfaces(&all);
+        for (number, (surface, friction)) in surfaces.iter().enumerate() {
+            let mut law = surface.meet(surface);
+            if let ContactLaw::Linear(law) = &mut law {
+                law.friction = *friction;
+            }
+            laws.set(number as u16, self.wall_surface(), law);
+        }
+        laws
+    }
+
+    /// Stiffness of contacts between grains of each layer, N/m: two bodies in series.
+    pub(super) fn stiffness(&self) -> Vec<f64> {
+        self.layers.iter().map(|layer| 0.5 * layer.surface.normal_stiffness).collect()
+    }
+
+    /// The least sqrt(m / k) of a mean grain of any layer, s.
+    pub(super) fn mean_step(&self) -> f64 {
+        let of = |(layer, k): (&GrainLayer, f64)| (layer.density * layer.curve.mean_volume() / k).sqrt();
+        self.layers.iter().zip(self.stiffness()).map(of).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The surface of walls, floor and plate.
+    pub fn wall_surface(&self) -> u16 {
+        self.layers.len() as u16
+    }
+
+    /// Area of flat surfaces around a layer of this height (m) to its volume, 1/m. What the plate loosens on one layer the next one fills.
+    pub(super) fn flat(&self, layer: usize, height: f64) -> f64 {
+        let pair = |present: bool, distance: f64| if present { 2.0 / distance } else { 0.0 };
+        pair(layer == 0, height) + pair(self.walls, self.plan[1]) + pair(self.ends, self.plan[0])
+    }
+
+    /// An empty bed of this plan, with floor and walls, as it is packed.
+    pub(super) fn ground<R: Real>(&self) -> Bed<R> {
+        let [length, width] = self.plan;
+        let domain = if self.ends { Domain::open() } else { Domain::open().periodic(0, length) };
+        let domain = if self.walls { domain } else { domain.periodic(1, width) };
+        let mut bed = Bed::new(domain, self.packing_laws());
+        bed.set_gravity(Gravity::Constant([0.0, 0.0, -self.gravity]));
+        bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], self.wall_surface());
+        if self.walls {
+            bed.add_plane([0.0; 3], [0.0, 1.0, 0.0], self.wall_surface());
+            bed.add_plane([0.0, width, 0.0], [0.0, -1.0, 0.0], self.wall_surface());
+        }
+        if self.ends {
+            bed.add_plane([0.0; 3], [1.0, 0.0, 0.0], self.wall_surface());
+            bed.add_plane([length, 0.0, 0.0], [-1.0, 0.0, 0.0], self.wall_surface());
+        }
+        bed
+    }
+
+    /// The walls of a box, the lower and the upper one along and across. `None` of a bed that goes on.
+    pub fn sides(&self) -> Option<[[WallId; 2]; 2]> {
+        // in the order of `ground`
+        (self.walls && self.ends).then_some([[WallId(3), WallId(4)], [WallId(1), WallId(2)]])
+    }
+
+    pub fn floor(&self) -> WallId {
+        WallId(0)
+    }
+}

@@ -1,0 +1,100 @@
+//! One support under one law: what it has carried, and how far it has settled.
+//!
+//! A law's parameters stand beside what that law remembers, so that no law can meet what another has written.
+
+use super::guerin::Guerin;
+use super::hardening::HardeningState;
+use super::hettler::Hettler;
+use super::law::{CyclePer, Form, Law, Peak};
+use super::nasrollahi::Nasrollahi;
+use super::power::Power;
+use super::sato::Sato;
+use super::shenton::Shenton;
+use super::varandas::{Varandas, VarandasState};
+use serde::{Deserialize, Serialize};
+
+/// A support under a [`Law`], with all that its future depends on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SupportState {
+    cycle_per: CyclePer,
+    memory: Memory,
+}
+
+/// The form of a law, and what it remembers: a settlement, m, where that is all there is to know.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+enum Memory {
+    Varandas(Varandas, VarandasState),
+    Nasrollahi(Nasrollahi, f64),
+    Guerin(Guerin, f64),
+    Sato(Sato, HardeningState),
+    Shenton(Shenton, HardeningState),
+    Hettler(Hettler, HardeningState),
+    Power(Power, HardeningState),
+}
+
+impl Law {
+    /// A support that has carried nothing yet.
+    pub fn fresh(&self) -> SupportState {
+        let memory = match self.form {
+            Form::Varandas(law) => Memory::Varandas(law, VarandasState::default()),
+            Form::Nasrollahi(law) => Memory::Nasrollahi(law, 0.0),
+            Form::Guerin(law) => Memory::Guerin(law, 0.0),
+            Form::Sato(law) => Memory::Sato(law, HardeningState::default()),
+            Form::Shenton(law) => Memory::Shenton(law, HardeningState::default()),
+            Form::Hettler(law) => Memory::Hettler(law, HardeningState::default()),
+            Form::Power(law) => Memory::Power(law, HardeningState::default()),
+        };
+        SupportState { cycle_per: self.cycle_per, memory }
+    }
+}
+
+impl SupportState {
+    /// Lets `trains` equal trains pass: `wheels` holds the peak of each wheel of one of them, the leading one first. A cycle
+    /// whose force is not positive settles nothing.
+    pub fn load(&mut self, wheels: &[Peak], trains: u64) {
+        let cycles = wheels
+            .chunks(self.cycle_per.axles())
+            .map(|of_one| of_one.iter().copied().fold(Peak::default(), Peak::max))
+            .filter(|peak| peak.force > 0.0 && peak.force.is_finite());
+        let forces = cycles.clone().map(|peak| peak.force);
+        match &mut self.memory {
+            Memory::Varandas(_, state) => forces.for_each(|force| state.add_cycles(force, trains)),
+            Memory::Nasrollahi(law, settlement) => {
+                *settlement = law.after(*settlement, &forces.collect::<Vec<f64>>(), trains as f64);
+            }
+            Memory::Guerin(law, settlement) => {
+                *settlement += cycles.map(|peak| law.of_cycle(peak.deflection)).sum::<f64>() * trains as f64;
+            }
+            Memory::Sato(law, state) => state.load(law, &forces.collect::<Vec<f64>>(), trains),
+            Memory::Shenton(law, state) => state.load(law, &forces.collect::<Vec<f64>>(), trains),
+            Memory::Hettler(law, state) => state.load(law, &forces.collect::<Vec<f64>>(), trains),
+            Memory::Power(law, state) => state.load(law, &forces.collect::<Vec<f64>>(), trains),
+        }
+    }
+
+    /// The law under which the support settles.
+    pub fn law(&self) -> Law {
+        let form = match self.memory {
+            Memory::Varandas(law, _) => Form::Varandas(law),
+            Memory::Nasrollahi(law, _) => Form::Nasrollahi(law),
+            Memory::Guerin(law, _) => Form::Guerin(law),
+            Memory::Sato(law, _) => Form::Sato(law),
+            Memory::Shenton(law, _) => Form::Shenton(law),
+            Memory::Hettler(law, _) => Form::Hettler(law),
+            Memory::Power(law, _) => Form::Power(law),
+        };
+        Law { form, cycle_per: self.cycle_per }
+    }
+
+    /// Settlement since the support was fresh, m, positive down.
+    pub fn settlement(&self) -> f64 {
+        match &self.memory {
+            Memory::Varandas(law, state) => law.settlement(state),
+            Memory::Nasrollahi(_, settlement) | Memory::Guerin(_, settlement) => *settlement,
+            Memory::Sato(_, state)
+            | Memory::Shenton(_, state)
+            | Memory::Hettler(_, state)
+            | Memory::Power(_, state) => state.settlement(),
+        }
+    }
+}

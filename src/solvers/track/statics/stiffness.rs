@@ -1,0 +1,25 @@
+//! The stiffness of a track whose supports are in given phases.
+
+use crate::linalg::banded::BandedFactor;
+use crate::solvers::track::mesh::Track;
+use crate::solvers::track::support::SupportPhase;
+
+/// Factors the stiffness that the supports have in their phases; fails with the row of a mechanism.
+pub(super) fn factor(track: &Track, phases: &[SupportPhase]) -> Result<BandedFactor, usize> {
+    let mut stiffness = track.stiffness.clone();
+    for (sleeper, phase) in track.sleepers.iter().zip(phases) {
+        stiffness.add(sleeper.unknown, sleeper.unknown, -sleeper.lacking_stiffness(*phase));
+    }
+    for (unknown, _) in &track.held {
+        stiffness.pin(*unknown);
+    }
+    stiffness.factor().map_err(|e| e.row)
+}
+
+/// Computes `y -= K u` with the supports in their phases, without the held unknowns' reactions.
+pub(super) fn subtract_stiffness(track: &Track, phases: &[SupportPhase], u: &[f64], y: &mut [f64]) {
+    track.stiffness.subtract_product(u, y);
+    for (sleeper, phase) in track.sleepers.iter().zip(phases) {
+        y[sleeper.unknown] += sleeper.lacking_stiffness(*phase) * u[sleeper.unknown];
+    }
+}
