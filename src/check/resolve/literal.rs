@@ -1,6 +1,6 @@
 //! Numbers as literals that read back to the same bits.
 
-use crate::check::value::Number;
+use crate::check::evaluate::number::Number;
 use crate::scenario::Origin;
 use crate::schema::Form;
 use crate::units::{Dimension, parse_unit};
