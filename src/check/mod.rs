@@ -2,13 +2,13 @@
 //!
 //! Everything is checked, whatever else is wrong: a value that could not be understood is marked and hides only what
 //! depends on it. The rooms in the order of the flow, each of which uses those before it: `text` reads files, `evaluate` makes
-//! typed records of their declarations, `places` says where on the track something lies, `build` makes the parts of the scenario,
+//! typed records of their declarations, `places` says where on the track something lies, `parts` makes the parts of the scenario,
 //! `ask` reads what is asked of them; `scene` goes through all of it once, and `resolve` writes it out again.
 
 mod ask;
-mod build;
 mod evaluate;
 mod findings;
+mod parts;
 mod places;
 mod resolve;
 mod scene;
@@ -47,8 +47,8 @@ pub fn check(name: &str, text: &str, modules: &dyn Modules, overrides: &[Overrid
 
 /// Checks a text, and asks something of what was found out about it.
 ///
-/// Of the library only what the user's texts name is read. Where anything is amiss the whole of it is: what was meant may
-/// stand there.
+/// Only what the user's texts name is read of the library. Where anything is amiss the whole of it is: what was meant may stand
+/// there.
 fn with_evaluator<T>(
     name: &str,
     text: &str,

@@ -2,18 +2,18 @@
 
 use super::ask::reader::{Counting, questions};
 use super::ask::study::studies;
-use super::build::asked::Asked;
-use super::build::layout::layout;
-use super::build::loads::{cycles, loads};
-use super::build::records::kept;
-use super::build::solve::solve;
-use super::build::tamping::tampings;
-use super::build::tier::waits_for_grains;
-use super::build::track::track;
-use super::build::trackform::shear_stiffnesses;
-use super::build::traffic::traffic;
 use super::evaluate::evaluator::Evaluator;
 use super::evaluate::value::{Record, Val};
+use super::parts::asked::Asked;
+use super::parts::layout::layout;
+use super::parts::loads::{cycles, loads};
+use super::parts::rails::shear_stiffnesses;
+use super::parts::records::kept;
+use super::parts::solve::solve;
+use super::parts::tamping::tampings;
+use super::parts::tier::waits_for_grains;
+use super::parts::track::track;
+use super::parts::traffic::traffic;
 use super::text::scope::MAIN_FILE;
 use crate::diag::{self, Code, Diagnostic, Span};
 use crate::scenario::response::Expectation;

@@ -1,10 +1,9 @@
 //! Comparisons of responses: `17.6 kN m < max(rail_moment) < 17.7 kN m`.
 
 use super::reader::Reader;
-use crate::check::build::traffic::{axle_count, whole};
-use crate::check::evaluate::number::Number;
-use crate::check::evaluate::number::Raw;
+use crate::check::evaluate::number::{Number, Raw};
 use crate::check::evaluate::written::looks_like;
+use crate::check::parts::traffic::{axle_count, whole};
 use crate::check::text::scope::ScopeId;
 use crate::diag::{Code, Diagnostic, Span, or_list};
 use crate::scenario::Measured;
@@ -30,6 +29,7 @@ const BASES: [(&str, f64); 7] = [
 const MOST_OPERANDS: usize = 10_000;
 
 impl Reader<'_, '_> {
+    /// Reads a comparison; `None` where a diagnostic has been given.
     pub fn comparison(&mut self, value: &Value, scope: ScopeId) -> Option<Expectation> {
         let ValueKind::Compare { operands, operators } = &value.kind else {
             self.eval.findings.report(
@@ -72,7 +72,8 @@ impl Reader<'_, '_> {
         Some(Measured { text, expression, unit: (unit, size) })
     }
 
-    pub fn expression(&mut self, value: &Value, scope: ScopeId) -> Option<Typed> {
+    /// Reads an expression with its dimension; `None` where a diagnostic has been given.
+    pub(super) fn expression(&mut self, value: &Value, scope: ScopeId) -> Option<Typed> {
         *self.operands += 1;
         if *self.operands > MOST_OPERANDS {
             if *self.operands == MOST_OPERANDS + 1 {

@@ -1,9 +1,9 @@
 //! The questions of expectations and studies, read once places and counts mean something.
 
-use crate::check::build::traffic::Counted;
 use crate::check::evaluate::evaluator::Evaluator;
 use crate::check::evaluate::value::{Record, Slot, Val};
-use crate::check::places::places::Places;
+use crate::check::parts::traffic::Counted;
+use crate::check::places::chainage::Places;
 use crate::diag::Span;
 use crate::scenario::response::Expectation;
 use crate::scenario::{Axis, Measured, Setting};
@@ -45,18 +45,22 @@ impl Questions {
         self.0.get(field).into_iter().flatten()
     }
 
+    /// The comparisons that a field asks for.
     pub fn comparisons(&self, field: &str) -> impl Iterator<Item = Expectation> {
         self.under(field).filter_map(|q| if let Question::Comparison(c) = q { Some(c.clone()) } else { None })
     }
 
+    /// The expressions that a field asks for.
     pub fn measured(&self, field: &str) -> impl Iterator<Item = Measured> {
         self.under(field).filter_map(|q| if let Question::Measured(m) = q { Some(m.clone()) } else { None })
     }
 
-    pub fn axes(&self) -> Option<Vec<Axis>> {
+    /// What a study varies; `None` where it is not understood.
+    pub(super) fn axes(&self) -> Option<Vec<Axis>> {
         self.under("vary").find_map(|q| if let Question::Axes(axes) = q { Some(axes.clone()) } else { None })
     }
 
+    /// What a study sets in every point; `None` where it says nothing, or is not understood.
     pub fn settings(&self) -> Option<Vec<Setting>> {
         self.under("set").find_map(|q| if let Question::Settings(set) = q { Some(set.clone()) } else { None })
     }

@@ -6,7 +6,8 @@ use crate::check::evaluate::shape::ShapeKind;
 use crate::check::evaluate::value::Val;
 use crate::check::evaluate::written::looks_like;
 use crate::check::text::scope::ScopeId;
-use crate::diag::{Code, Diagnostic, nearest::nearest};
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic};
 use crate::scenario::response::{Expression, Measure, Place, Reduction, Response};
 use crate::schema::{self, Varies};
 use crate::syntax::tree::{Argument, Item, Name, ValueKind};
@@ -24,7 +25,7 @@ const fn of(unit: &'static str) -> schema::Measure {
 
 impl Reader<'_, '_> {
     /// Whether a call reduces a response. `max` and `min` of anything else are functions of numbers.
-    pub fn reduces(&self, word: &Name, arguments: &[Argument], scope: ScopeId) -> bool {
+    pub(super) fn reduces(&self, word: &Name, arguments: &[Argument], scope: ScopeId) -> bool {
         if !REDUCTIONS.contains(&word.text.as_str()) {
             return false;
         }

@@ -5,11 +5,10 @@ use super::expression::one_line;
 use super::reader::Reader;
 use crate::check::evaluate::number::Raw;
 use crate::check::evaluate::records::object_kind;
-use crate::check::evaluate::written::looks_like;
-use crate::check::evaluate::written::with_unit;
-use crate::check::text::scope::ItemId;
-use crate::check::text::scope::ScopeId;
-use crate::diag::{Code, Diagnostic, Span, nearest::nearest, or_list};
+use crate::check::evaluate::written::{looks_like, with_unit};
+use crate::check::text::scope::{ItemId, ScopeId};
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, Span, or_list};
 use crate::scenario::{Axis, Choice, Setting, Spread, Values};
 use crate::schema::{self, Form, Kind};
 use crate::syntax::tree::{Argument, Entry, Item, Name, Path, UnitText, Value, ValueKind};
@@ -36,7 +35,7 @@ struct Suffix {
 
 impl Reader<'_, '_> {
     /// `[path: values]`
-    pub fn axes(&mut self, value: &Value, scope: ScopeId) -> Option<Vec<Axis>> {
+    pub(super) fn axes(&mut self, value: &Value, scope: ScopeId) -> Option<Vec<Axis>> {
         let pairs = self.paths(value, "values")?;
         let axes: Vec<Option<Axis>> = pairs
             .into_iter()

@@ -1,9 +1,9 @@
 //! Numbers: literals with units, arithmetic with checked dimensions, and the paths that lead to numbers.
 
 use super::evaluator::Evaluator;
+use super::number::Raw;
 use super::value::Val;
-use crate::check::evaluate::number::Raw;
-use crate::check::evaluate::written::looks_like;
+use super::written::looks_like;
 use crate::check::text::scope::ScopeId;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Argument, BinaryOp, Name, Path, UnitText, Value, ValueKind};

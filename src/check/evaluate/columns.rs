@@ -1,13 +1,12 @@
 //! Profiles from data files: which columns hold the places and the values, and whether they fit the field.
 
 use super::evaluator::Evaluator;
-use super::number::Number;
-use super::number::Raw;
+use super::number::{Number, Raw};
 use super::shape::ShapeKind;
-use super::written::Per;
-use super::written::looks_like;
+use super::written::{Per, looks_like};
 use crate::check::text::table::{Cell, Table};
-use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, Span};
 use crate::schema::{Form, Measure};
 use crate::syntax::tree::{Argument, Name, Value, ValueKind};
 use crate::units::Dimension;

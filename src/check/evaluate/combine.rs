@@ -4,10 +4,8 @@
 //! evaluated, held against the field and pointed at like any other.
 
 use super::evaluator::Evaluator;
-use super::written::with_unit;
-use super::written::{bare, is_profile};
-use crate::check::text::scope::ItemId;
-use crate::check::text::scope::ScopeId;
+use super::written::{bare, is_profile, with_unit};
+use crate::check::text::scope::{ItemId, ScopeId};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Argument, BinaryOp, Entry, Item, Path, UnitText, Value, ValueKind};
 
@@ -64,7 +62,7 @@ impl Evaluator<'_> {
     }
 
     /// A value that varies, with its arithmetic moved inside: a word or a list of places and nothing around it.
-    pub fn worked(&mut self, value: &Value, scope: ScopeId) -> Option<Value> {
+    pub(super) fn worked(&mut self, value: &Value, scope: ScopeId) -> Option<Value> {
         self.deeper(1, value.span, |c| c.worked_out(value, scope))
     }
 

@@ -31,7 +31,8 @@ impl Evaluator<'_> {
         full
     }
 
-    pub fn complete_slot(&mut self, slot: &mut Slot) {
+    /// Puts defaults into whatever a slot holds.
+    pub(super) fn complete_slot(&mut self, slot: &mut Slot) {
         match &mut slot.value {
             Val::Record(inner) => *inner = Rc::new(self.complete(inner)),
             Val::Word { word, arguments } => {
@@ -91,7 +92,7 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Of ways that say different things one is enough.
+    /// Refuses two ways that say different things.
     fn one_way(&mut self, record: &Record, alternative: &'static Alternative) {
         let fields = alternative.ways.iter().flat_map(|way| way.iter());
         let given: Vec<(&str, Span)> = fields.filter_map(|path| Some((*path, record.slot(path)?.span))).collect();

@@ -51,6 +51,7 @@ const DEEPEST: usize = 1_200;
 const NAME: usize = 20;
 
 impl<'m> Evaluator<'m> {
+    /// Begins with what has been loaded: nothing of it is evaluated yet.
     pub fn new(loaded: Loaded<'m>) -> Evaluator<'m> {
         let Loaded { files, scopes, main, standard, diagnostics } = loaded;
         let lost = |d: &&Diagnostic| matches!(d.code, Code::E0101 | Code::E0104 | Code::E0106);
@@ -153,7 +154,7 @@ impl<'m> Evaluator<'m> {
     }
 
     /// Whether an item is being evaluated.
-    pub fn follows(&self, id: ItemId) -> bool {
+    pub(super) fn follows(&self, id: ItemId) -> bool {
         self.stack.iter().any(|(item, _)| *item == id)
     }
 
@@ -170,6 +171,7 @@ impl<'m> Evaluator<'m> {
         })
     }
 
+    /// Where a value that stands in a scope comes from.
     pub fn origin(&self, span: Span, scope: ScopeId) -> Origin {
         if scope == self.standard {
             Origin::Default

@@ -2,11 +2,8 @@
 
 use super::evaluator::Evaluator;
 use super::value::{Slot, Val};
-use super::written::is_profile;
-use super::written::looks_like;
-use crate::check::evaluate::written::with_unit;
-use crate::check::text::scope::MAIN_FILE;
-use crate::check::text::scope::ScopeId;
+use super::written::{is_profile, looks_like, with_unit};
+use crate::check::text::scope::{MAIN_FILE, ScopeId};
 use crate::diag::{Code, Diagnostic, Label, Span, or_list};
 use crate::scenario::Origin;
 use crate::schema::{self, Form, Measure, Varies};
@@ -211,7 +208,8 @@ impl Evaluator<'_> {
         }
     }
 
-    pub fn wrong_form(&mut self, form: &Form, found: &str, span: Span) {
+    /// Refuses a value of another form, with what to write instead.
+    pub(super) fn wrong_form(&mut self, form: &Form, found: &str, span: Span) {
         let instead = self.instead(form, found, span);
         // what was said of the signs inside leads to another text of the same wrong form
         self.superseded.push(span);

@@ -1,12 +1,12 @@
 //! Numbers held against a measure: dimension, basis and range; intervals, places and spans.
 
 use super::evaluator::Evaluator;
-use super::number::Number;
-use super::number::Raw;
+use super::number::{Number, Raw};
 use super::value::Val;
 use super::written::looks_like;
 use crate::check::text::scope::ScopeId;
-use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, Span};
 use crate::schema::{Form, Measure};
 use crate::syntax::tree::{Value, ValueKind};
 use crate::units::{Dimension, Quantity, number, parse_unit};
@@ -22,6 +22,7 @@ const ALSO_CALLED: [(&str, &str); 6] = [
 ];
 
 impl Evaluator<'_> {
+    /// A number that a measure takes.
     pub fn number(&mut self, measure: &'static Measure, value: &Value, scope: ScopeId) -> Option<Number> {
         let raw = self.raw(value, scope)?;
         self.hold(measure, raw)
@@ -87,6 +88,7 @@ impl Evaluator<'_> {
         None
     }
 
+    /// What a value is `per`, and the factor from there to one rail.
     pub fn basis(&mut self, measure: &'static Measure, raw: &Raw) -> Option<(Option<&'static str>, f64)> {
         match (measure.basis, &raw.basis) {
             (None, None) => Some((None, 1.0)),
@@ -128,7 +130,8 @@ impl Evaluator<'_> {
         }
     }
 
-    pub fn wrong_dimension(&mut self, raw: &Raw, measure: &Measure, expected: &str) {
+    /// Refuses a value of another dimension, or without its unit.
+    pub(super) fn wrong_dimension(&mut self, raw: &Raw, measure: &Measure, expected: &str) {
         let dimension = Dimension::of(measure.unit);
         let text = self.files.sources.text(raw.span).to_string();
         if raw.bare && raw.dimension.is_none() {
@@ -146,7 +149,8 @@ impl Evaluator<'_> {
         );
     }
 
-    pub fn integer(&mut self, min: u32, max: u32, value: &Value, scope: ScopeId) -> Option<Number> {
+    /// A whole number within a range.
+    pub(super) fn integer(&mut self, min: u32, max: u32, value: &Value, scope: ScopeId) -> Option<Number> {
         let raw = self.raw(value, scope)?;
         self.of_one_thing(&raw)?;
         if !raw.dimension.is_none() {
@@ -182,6 +186,7 @@ impl Evaluator<'_> {
         Some((a?, b))
     }
 
+    /// A range of values that a measure takes.
     pub fn interval(&mut self, measure: &'static Measure, value: &Value, scope: ScopeId) -> Option<Val> {
         let (range, basis) = match &value.kind {
             ValueKind::Per(inner, basis) => (&**inner, Some((basis.text.clone(), basis.span))),
@@ -197,7 +202,7 @@ impl Evaluator<'_> {
         self.ascending(a?, b?, value.span)
     }
 
-    pub fn ascending(&mut self, a: Number, b: Number, span: Span) -> Option<Val> {
+    fn ascending(&mut self, a: Number, b: Number, span: Span) -> Option<Val> {
         if a.of_rail() <= b.of_rail() {
             return Some(Val::Range(a, b));
         }
@@ -212,12 +217,13 @@ impl Evaluator<'_> {
         None
     }
 
+    /// A place in `m` or `sleepers`.
     pub fn place(&mut self, value: &Value, scope: ScopeId) -> Option<Number> {
         let raw = self.raw(value, scope)?;
         self.hold_place(raw)
     }
 
-    pub fn hold_place(&mut self, raw: Raw) -> Option<Number> {
+    fn hold_place(&mut self, raw: Raw) -> Option<Number> {
         if raw.dimension == Dimension::LENGTH || raw.dimension == Dimension::SLEEPERS {
             self.of_one_thing(&raw)?;
             return Some(raw.into());
@@ -238,6 +244,7 @@ impl Evaluator<'_> {
         None
     }
 
+    /// A span of places in `m` or `sleepers`.
     pub fn span(&mut self, from: &Value, to: &Value, scope: ScopeId) -> Option<Val> {
         let (a, b) = self.ends(from, to, scope)?;
         let whole = from.span.to(to.span);

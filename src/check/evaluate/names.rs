@@ -2,9 +2,9 @@
 
 use super::evaluator::Evaluator;
 use super::value::{Slot, Val};
-use crate::check::text::scope::ItemId;
-use crate::check::text::scope::ScopeId;
-use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
+use crate::check::text::scope::{ItemId, ScopeId};
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Item, Name, Path};
 
 /// What a path names, and how many of its names are left to follow inside.

@@ -17,7 +17,8 @@ pub struct Raw {
 }
 
 impl Raw {
-    pub fn basis_name(&self) -> Option<&str> {
+    /// What it is `per`.
+    pub(super) fn basis_name(&self) -> Option<&str> {
         self.basis.as_ref().map(|(name, _)| name.as_str())
     }
 

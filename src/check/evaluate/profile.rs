@@ -2,26 +2,25 @@
 //! places lie is for `seats` to find, once the track is laid out.
 
 use super::evaluator::Evaluator;
-use super::number::Number;
-use super::number::Raw;
+use super::number::{Number, Raw};
 use super::shape::{Random, Reach, Shape, ShapeKind};
 use super::value::Val;
-use super::written::looks_like;
-use super::written::with_unit;
-use crate::check::evaluate::written::PROFILES;
-use crate::check::evaluate::written::Per;
-use crate::check::evaluate::written::bare;
-use crate::check::evaluate::written::is_profile;
-use crate::check::text::scope::ItemId;
-use crate::check::text::scope::ScopeId;
-use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
+use super::written::{PROFILES, Per, bare, is_profile, looks_like, with_unit};
+use crate::check::text::scope::{ItemId, ScopeId};
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, Span};
 use crate::schema::{Form, Measure, Varies};
 use crate::syntax::tree::{Argument, Entry, Item, Name, UnitText, Value, ValueKind};
 use crate::units::Dimension;
 
 impl Evaluator<'_> {
     /// A number, or where the field may vary along the track a profile.
-    pub fn number_or_profile(&mut self, measure: &'static Measure, value: &Value, scope: ScopeId) -> Option<Val> {
+    pub(super) fn number_or_profile(
+        &mut self,
+        measure: &'static Measure,
+        value: &Value,
+        scope: ScopeId,
+    ) -> Option<Val> {
         if !self.varies(value, scope) {
             if measure.varies == Varies::Yes && self.misspelt_profile(value) {
                 return None;
@@ -176,7 +175,7 @@ impl Evaluator<'_> {
     }
 
     /// Refuses arguments that a word does not have: one by its place, and these by name.
-    pub fn arguments_of(&mut self, word: &Name, arguments: &[Argument], named: &[&str]) -> Option<()> {
+    pub(super) fn arguments_of(&mut self, word: &Name, arguments: &[Argument], named: &[&str]) -> Option<()> {
         let mut seen: Vec<&str> = Vec::new();
         for (i, argument) in arguments.iter().enumerate() {
             let name = argument.name.as_ref().map_or("", |n| n.text.as_str());
@@ -282,7 +281,7 @@ impl Evaluator<'_> {
     }
 
     /// A profile read elsewhere, held against another field.
-    pub fn rehold(&mut self, measure: &'static Measure, shape: &Shape, span: Span) -> Option<Shape> {
+    pub(super) fn rehold(&mut self, measure: &'static Measure, shape: &Shape, span: Span) -> Option<Shape> {
         let mut hold = |n: Number| {
             let basis = n.basis.map(|b| (b.to_string(), span));
             self.hold(measure, Raw { value: n.value, dimension: n.dimension, basis, span, bare: false })

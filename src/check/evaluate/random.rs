@@ -1,12 +1,10 @@
 //! `random(mean, cov = 10 %)`: a value that scatters along the track.
 
 use super::evaluator::Evaluator;
-use super::number::Number;
-use super::number::Raw;
-use super::shape::ShapeKind;
+use super::number::{Number, Raw};
+use super::shape::{Random, ShapeKind};
 use super::value::{Slot, Val};
 use super::written::Per;
-use crate::check::evaluate::shape::Random;
 use crate::check::text::scope::ScopeId;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::Origin;
@@ -15,6 +13,7 @@ use crate::syntax::tree::{Argument, Field, Item, Name, Value, ValueKind};
 use crate::units::Dimension;
 
 impl Evaluator<'_> {
+    /// Reads `random(...)`; `None` where a diagnostic has been given.
     pub fn random(
         &mut self,
         measure: &'static Measure,

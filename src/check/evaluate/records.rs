@@ -2,9 +2,9 @@
 
 use super::evaluator::Evaluator;
 use super::value::{Change, Record, Slot, Val};
-use crate::check::text::scope::ItemId;
-use crate::check::text::scope::ScopeId;
-use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
+use crate::check::text::scope::{ItemId, ScopeId};
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::Origin;
 use crate::schema::{self, Form, Kind, PLANNED_KINDS};
 use crate::syntax::tree::{Declaration, Field, Item, Name, Path, ValueKind};

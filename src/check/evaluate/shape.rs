@@ -71,7 +71,7 @@ pub struct Random {
     /// m.
     pub correlation: f64,
     pub log_normal: bool,
-    /// That of the scene where none is given.
+    /// The seed of the scene counts where none is given.
     pub seed: Option<u64>,
     /// The path of the field in which it is written: what it is drawn for, whatever else stands in the file.
     pub path: String,

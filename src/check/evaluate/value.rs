@@ -103,6 +103,7 @@ impl Record {
         }
     }
 
+    /// The slot of a field.
     pub fn get(&self, name: &str) -> Option<&Slot> {
         self.fields.get(name)
     }
@@ -118,6 +119,7 @@ impl Record {
         }
     }
 
+    /// The number at a dotted path.
     pub fn number(&self, name: &str) -> Option<Number> {
         match self.slot(name)?.value {
             Val::Number(n) => Some(n),
@@ -125,6 +127,7 @@ impl Record {
         }
     }
 
+    /// The object at a dotted path.
     pub fn record(&self, name: &str) -> Option<&Rc<Record>> {
         match &self.slot(name)?.value {
             Val::Record(r) => Some(r),
@@ -132,6 +135,7 @@ impl Record {
         }
     }
 
+    /// The text at a dotted path.
     pub fn text(&self, name: &str) -> Option<&str> {
         match &self.slot(name)?.value {
             Val::Text(t) => Some(t),

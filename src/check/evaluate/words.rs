@@ -3,13 +3,15 @@
 use super::evaluator::Evaluator;
 use super::value::{Slot, Val};
 use crate::check::text::scope::ScopeId;
-use crate::diag::{Code, Diagnostic, nearest::nearest, or_list};
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, or_list};
 use crate::scenario::response::Response;
 use crate::schema::Word;
 use crate::syntax::tree::{Argument, Name, ValueKind};
 use std::collections::BTreeMap;
 
 impl Evaluator<'_> {
+    /// The response of that name.
     pub fn response(&mut self, name: &Name) -> Option<Response> {
         let found = Response::of_name(&name.text);
         if found.is_none() {
@@ -32,7 +34,8 @@ impl Evaluator<'_> {
         found
     }
 
-    pub fn rule(&mut self, name: &Name) -> Option<Val> {
+    /// The name of a physics rule.
+    pub(super) fn rule(&mut self, name: &Name) -> Option<Val> {
         if Code::of_rule(&name.text).is_some() {
             return Some(Val::Text(name.text.clone()));
         }
@@ -47,7 +50,8 @@ impl Evaluator<'_> {
         None
     }
 
-    pub fn unknown_word(&mut self, name: &Name, words: &[&'static Word]) {
+    /// Refuses a word that a form does not know.
+    pub(super) fn unknown_word(&mut self, name: &Name, words: &[&'static Word]) {
         let known: Vec<&str> = words.iter().filter(|w| !w.planned).map(|w| w.name).collect();
         let help = nearest(&name.text, known.iter().copied()).map(|n| format!("did you mean `{n}`?"));
         let quoted: Vec<String> = known.iter().map(|w| format!("`{w}`")).collect();

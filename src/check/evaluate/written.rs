@@ -17,7 +17,8 @@ pub fn bare(value: &Value) -> (&Value, Per) {
     }
 }
 
-pub fn is_profile(value: &Value) -> bool {
+/// Whether a value is written as a profile.
+pub(super) fn is_profile(value: &Value) -> bool {
     match &bare(value).0.kind {
         ValueKind::Call { word, .. } => PROFILES.contains(&word.text.as_str()),
         ValueKind::List { entries, .. } => entries.iter().any(|e| e.key.is_some()),

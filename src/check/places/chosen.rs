@@ -1,14 +1,13 @@
 //! Seats that a scene names: at places, over a span, from one transition or mirrored at several.
 
+use super::chainage::{Places, TINY};
 use crate::check::evaluate::number::Number;
 use crate::check::evaluate::value::{Record, Slot, Val};
 use crate::check::findings::Findings;
-use crate::check::places::places::Places;
-use crate::check::places::places::TINY;
 use crate::diag::{Code, Diagnostic, Span};
 
 /// The transitions that `from` names, each once; where nothing is named the only one. `place` counts from them.
-pub fn transitions_named(record: &Record, places: &Places, place: Span, findings: &mut Findings) -> Option<Vec<usize>> {
+fn transitions_named(record: &Record, places: &Places, place: Span, findings: &mut Findings) -> Option<Vec<usize>> {
     let names = match record.get("from").map(|slot| &slot.value) {
         None => return places.transition(None, place, findings).map(|only| vec![only]),
         Some(Val::List(names)) => names,

@@ -4,10 +4,9 @@
 //! one in sleepers ends one spacing beyond its last. On a track of one section the sleepers stand in the middle of
 //! their bays.
 
+use super::chainage::{Places, TINY};
 use crate::check::evaluate::number::Number;
 use crate::check::findings::Findings;
-use crate::check::places::places::Places;
-use crate::check::places::places::TINY;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Side, Transition};
 use crate::units::{Dimension, number};
@@ -28,7 +27,7 @@ pub struct Plan {
 
 impl Plan {
     /// Seats that it may hold at most.
-    pub fn most_seats(&self) -> usize {
+    pub(super) fn most_seats(&self) -> usize {
         let most = if self.length.dimension == Dimension::SLEEPERS { 1.0 } else { CLOSEST };
         (self.length.value / most).ceil() as usize
     }
@@ -45,8 +44,10 @@ enum Edge {
     Seated,
 }
 
+/// Seats of one track.
 pub const MOST_SEATS: usize = 1_000_000;
-pub const CLOSEST: f64 = 0.3; // m: the least spacing of the language
+/// The least spacing of the language, m.
+pub const CLOSEST: f64 = 0.3;
 
 /// Places sections and seats; sides are one a boundary.
 pub fn lay_out(plans: &[Plan], sides: &[(String, Side)], seed: u64, findings: &mut Findings) -> Option<Places> {

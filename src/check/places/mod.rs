@@ -2,9 +2,10 @@
 //! chainages out.
 
 pub mod along;
+pub mod chainage;
 pub mod chosen;
+pub mod cover;
 pub mod geometry;
-pub mod places;
 pub mod random_field;
 pub mod scatter;
 pub mod spacing;

@@ -1,10 +1,10 @@
 //! Lays a random field along the track, and holds its values against the range of what they are drawn for.
 
+use super::cover::Cover;
 use super::random_field::RandomField;
 use crate::check::evaluate::number::Number;
 use crate::check::evaluate::shape::Random;
 use crate::check::findings::Findings;
-use crate::check::places::along::Cover;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::Curve;
 use crate::units::{number, parse_unit};

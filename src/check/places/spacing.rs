@@ -4,16 +4,15 @@
 //! Places are where the bays before them lead, so that a profile is read before the track is laid out: leniently here, with its end
 //! values beyond its places. Once the seats lie, it is laid along them as any other, and what it does not say is told.
 
+use super::along::lay_profile;
+use super::chainage::{Places, TINY};
+use super::cover::Cover;
+use super::geometry::{CLOSEST, MOST_SEATS, Plan};
 use super::random_field::RandomField;
 use crate::check::evaluate::number::Number;
 use crate::check::evaluate::shape::{Reach, Shape, ShapeKind};
 use crate::check::evaluate::value::{Record, Val};
 use crate::check::findings::Findings;
-use crate::check::places::along::Cover;
-use crate::check::places::along::lay_profile;
-use crate::check::places::geometry::{CLOSEST, MOST_SEATS, Plan};
-use crate::check::places::places::Places;
-use crate::check::places::places::TINY;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Given, Seat, Side};
 use crate::units::{Dimension, number};

@@ -9,10 +9,10 @@ mod inline;
 mod literal;
 mod text;
 
-use super::evaluate::evaluator::Evaluator;
-use super::evaluate::value::{Record, Slot, Val};
-use super::text::scope::ItemId;
 use super::{Modules, Override, with_evaluator};
+use crate::check::evaluate::evaluator::Evaluator;
+use crate::check::evaluate::value::{Record, Slot, Val};
+use crate::check::text::scope::ItemId;
 use crate::diag::{self, Span};
 use crate::scenario::Origin;
 use crate::schema::{self, Field, Form, KINDS, Kind, Role};

@@ -23,6 +23,7 @@ pub struct Files<'m> {
 }
 
 impl<'m> Files<'m> {
+    /// Begins with the texts that have been loaded.
     pub fn new(sources: Sources, modules: &'m dyn Modules) -> Files<'m> {
         Files { sources, modules, tables: HashMap::new(), surfaces: HashMap::new() }
     }

@@ -1,7 +1,8 @@
 //! Headers of declarations that say one thing wrong: what the rest of the declaration shows to have been meant is put in its place,
 //! so that one slip is one mistake.
 
-use crate::diag::{Code, Diagnostic, nearest::nearest};
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic};
 use crate::schema::{self, Kind, Role};
 use crate::syntax::tree::{Declaration, Item, Tree};
 use std::collections::BTreeMap;

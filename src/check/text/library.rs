@@ -95,7 +95,7 @@ impl Part {
     }
 
     /// A module's text, with blanks in the place of what is not read: what is read keeps its place.
-    pub fn text_of(&self, module: &'static str, text: &'static str) -> Cow<'static, str> {
+    pub(super) fn text_of(&self, module: &'static str, text: &'static str) -> Cow<'static, str> {
         if let Part::Whole = self {
             return Cow::Borrowed(text);
         }

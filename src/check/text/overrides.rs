@@ -1,6 +1,7 @@
 //! `--set path=value`: acts as if that line of the main file had been edited, before anything is checked.
 
-use crate::diag::{Code, Diagnostic, Sources, Span, nearest::nearest};
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, Sources, Span};
 use crate::schema::{self, Role};
 use crate::syntax::parse;
 use crate::syntax::tree::{Argument, Declaration, Field, Item, Name, Path, Tree, Value, ValueKind};

@@ -13,6 +13,7 @@ pub struct Table {
     cells: Vec<Cell>,
 }
 
+/// A column of a data file, by its header.
 pub struct Column {
     pub name: String,
     pub unit: Unit,
@@ -42,6 +43,7 @@ impl Table {
         (table, reader.mistakes)
     }
 
+    /// Row by row, as many cells as columns.
     pub fn rows(&self) -> impl Iterator<Item = &[Cell]> {
         self.cells.chunks(self.columns.len())
     }

@@ -2,14 +2,11 @@
 
 use super::asked::Asked;
 use super::given::given;
-use super::traffic::Counted;
-use crate::check::build::traffic::between_trains;
-use crate::check::build::traffic::not_counted;
-use crate::check::build::traffic::whole;
+use super::traffic::{Counted, between_trains, not_counted, whole};
 use crate::check::evaluate::value::{Record, Slot, Val};
 use crate::check::findings::Findings;
+use crate::check::places::chainage::Places;
 use crate::check::places::chosen::kept_seats;
-use crate::check::places::places::Places;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::response::{Place, Response};
 use crate::scenario::{Record as Kept, Volume, VolumeRecord};
@@ -117,7 +114,7 @@ pub fn volume(record: &Record) -> Option<Volume> {
 }
 
 /// Notes what a run without grains does not answer.
-pub fn without_grains(quantity: Response, span: Span, findings: &mut Findings) {
+fn without_grains(quantity: Response, span: Span, findings: &mut Findings) {
     let message = format!("`{}` is a response of grains, and this scene runs without them", quantity.name());
     findings.report(
         Diagnostic::new(Code::E0422, message)

@@ -1,18 +1,16 @@
 //! What stretches make of the seats under them, and of the auxiliary rails beside these.
 
 use super::ground::{Regrade, Under};
-use super::stretch::Instance;
+use super::groundwork::has_ground;
+use super::rails::auxiliary_rails;
+use super::seats::lay_seats;
+use super::stretch::{Instance, extended_by};
 use super::support::Supports;
-use crate::check::build::groundwork::has_ground;
-use crate::check::build::springs::lay_seats;
-use crate::check::build::stretch::extended_by;
-use crate::check::build::trackform::auxiliary_rails;
-use crate::check::build::trackform::trackform;
+use super::trackform::trackform;
 use crate::check::evaluate::evaluator::Evaluator;
 use crate::check::evaluate::value::{Change, Record, Val};
 use crate::check::findings::Findings;
-use crate::check::places::places::Places;
-use crate::check::places::places::TINY;
+use crate::check::places::chainage::{Places, TINY};
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{AuxiliaryRailSpan, Layer, Seat};
 use std::ops::Range;

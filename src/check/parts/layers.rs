@@ -6,9 +6,9 @@ use super::strata::Thickness;
 use super::trackform::Built;
 use crate::check::evaluate::value::Record;
 use crate::check::findings::Findings;
-use crate::check::places::along::lay;
-use crate::check::places::along::{Along, Cover};
-use crate::check::places::places::Places;
+use crate::check::places::along::{Along, lay};
+use crate::check::places::chainage::Places;
+use crate::check::places::cover::Cover;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{
     Base, Bed, BedEnds, Curve, Given, Granular, Layer, Material, Origin, Piece, Profile, Soil, Varying,

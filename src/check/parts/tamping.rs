@@ -1,12 +1,11 @@
 //! Tamping: at which counts, of which sleepers, and how much of their settlement stays.
 
 use super::asked::Asked;
-use super::traffic::Counted;
-use crate::check::build::traffic::between_trains;
+use super::traffic::{Counted, between_trains};
 use crate::check::evaluate::value::{Record, Val};
 use crate::check::findings::Findings;
+use crate::check::places::chainage::Places;
 use crate::check::places::chosen::seats_over;
-use crate::check::places::places::Places;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Tamping, Track};
 

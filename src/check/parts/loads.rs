@@ -1,13 +1,13 @@
 //! Test loads: where they act, and with which force.
 
 use super::asked::Asked;
+use super::force::force_history;
 use super::given::given;
-use crate::check::build::force::force_history;
 use crate::check::evaluate::number::Number;
 use crate::check::evaluate::value::{Record, Val};
 use crate::check::findings::Findings;
+use crate::check::places::chainage::Places;
 use crate::check::places::chosen::chainages_at;
-use crate::check::places::places::Places;
 use crate::check::text::files::Files;
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{Force, Given, RigLoad, Target, Wave};

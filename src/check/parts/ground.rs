@@ -1,13 +1,12 @@
 //! The support of each seat from the layers under it, and what stretches make of these.
 
 use super::asked::Asked;
+use super::layers::lay_strata;
 use super::strata::Stratum;
-use super::support::Supports;
-use super::support::{Carried, Stack, bearing};
+use super::support::{Carried, Stack, Supports, bearing};
 use super::trackform::Built;
-use crate::check::build::layers::lay_strata;
 use crate::check::findings::Findings;
-use crate::check::places::places::Places;
+use crate::check::places::chainage::Places;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{ApproachSlab, Layer, Material};
 use crate::solvers::foundation::{self, FoundationError};
@@ -16,7 +15,7 @@ use std::ops::Range;
 /// The ground of some seats.
 #[derive(Clone, Copy)]
 pub enum Under<'a> {
-    /// That of their section; `None` where it is not understood.
+    /// The layers of their section; `None` where they are not understood.
     Section(Option<&'a [Layer]>),
     Regraded(&'a Regrade<'a>),
 }

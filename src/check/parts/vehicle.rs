@@ -1,14 +1,12 @@
 //! From the objects of vehicles and trains to those of the scenario. Whole vehicles are halved: the scenario is of one
 //! rail.
 
-use super::given::given;
-use crate::check::build::given::agree;
+use super::given::{agree, given};
 use crate::check::evaluate::value::{Record, Val};
 use crate::check::findings::Findings;
-use crate::check::places::along::along;
-use crate::check::places::along::lay_profile;
-use crate::check::places::along::{Along, Cover};
-use crate::check::places::places::Places;
+use crate::check::places::along::{Along, along, lay_profile};
+use crate::check::places::chainage::Places;
+use crate::check::places::cover::Cover;
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{Direction, Given, Origin, Profile, Train, Vehicle};
 use crate::units::{Dimension, number};
@@ -149,7 +147,8 @@ fn speed(record: &Record, places: Option<&Places>, findings: &mut Findings) -> O
     }
 }
 
-pub fn train(record: &Record, places: Option<&Places>, findings: &mut Findings) -> Option<Train> {
+/// A train, from a complete record; `None` where a diagnostic has been given.
+pub(super) fn train(record: &Record, places: Option<&Places>, findings: &mut Findings) -> Option<Train> {
     let speed = speed(record, places, findings);
     let Val::Pairs(pairs) = &record.get("vehicles")?.value else { return None };
     let mut vehicles = Vec::new();

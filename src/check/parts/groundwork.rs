@@ -1,18 +1,13 @@
 //! What stretches do to the ground along the track: layers of their own, and approach slabs in them.
 
 use super::asked::Asked;
-use super::layers::{TOLERANCE, depth, mm};
-use super::stretch::Instance;
-use super::trackform::Built;
-use crate::check::build::layers::hold_their_grains;
-use crate::check::build::layers::lay_strata;
-use crate::check::build::stretch::extended_by;
-use crate::check::build::trackform::trackform;
+use super::layers::{TOLERANCE, depth, hold_their_grains, lay_strata, mm};
+use super::stretch::{Instance, extended_by};
+use super::trackform::{Built, trackform};
 use crate::check::evaluate::evaluator::Evaluator;
 use crate::check::evaluate::value::Record;
 use crate::check::findings::Findings;
-use crate::check::places::places::Places;
-use crate::check::places::places::TINY;
+use crate::check::places::chainage::{Places, TINY};
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{Groundwork, Layer};
 use std::ops::Range;

@@ -19,7 +19,7 @@ pub fn given(record: &Record, field: &str) -> Option<Given> {
     }
 }
 
-/// As [`given`], among the arguments of a word.
+/// A number of one rail among the arguments of a word, with its origin.
 pub fn argument(arguments: &Arguments, name: &str) -> Option<Given> {
     match arguments.get(name)? {
         Slot { value: Val::Number(n), origin, .. } => Some(Given { value: n.of_rail(), origin: *origin }),

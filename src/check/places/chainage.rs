@@ -2,7 +2,8 @@
 
 use crate::check::evaluate::number::Number;
 use crate::check::findings::Findings;
-use crate::diag::{Code, Diagnostic, Span, nearest::nearest};
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Side, Transition};
 use crate::units::{Dimension, number};
 use std::ops::Range;

@@ -1,9 +1,6 @@
 //! Refuses what a scene asks of models of grains and this version cannot run.
 
-use super::asked::Asked;
-use crate::check::build::asked::forms;
-use crate::check::build::asked::stands_on_grains;
-use crate::check::build::asked::tier;
+use super::asked::{Asked, forms, stands_on_grains, tier};
 use crate::check::evaluate::value::{Record, Slot, Val};
 use crate::check::findings::Findings;
 use crate::diag::{Code, Diagnostic};

@@ -1,17 +1,17 @@
 //! How the answer is computed: the words of `solve`.
 
+use super::asked::tier;
 use super::given::given;
-use crate::check::build::asked::tier;
-use crate::check::build::law::laws;
-use crate::check::build::traffic::whole_axles;
+use super::law::laws;
+use super::traffic::whole_axles;
 use crate::check::evaluate::number::Number;
 use crate::check::evaluate::value::{Record, Slot, Val};
 use crate::check::findings::Findings;
-use crate::check::places::places::Places;
+use crate::check::places::chainage::Places;
 use crate::diag::{Code, Diagnostic, Span};
-use crate::scenario::Grains;
-use crate::scenario::{Beam, Given, Integrator, Solve, TimeStep, Update};
+use crate::scenario::{Beam, Given, Grains, Integrator, Solve, TimeStep, Update};
 
+/// How the answer is computed, from a complete `solve`.
 pub fn solve(record: &Record, places: Option<&Places>, findings: &mut Findings) -> Option<Solve> {
     let laws = record.get("law").and_then(|slot| laws(slot, findings));
     let update = record.get("update_every")?;

@@ -122,6 +122,7 @@ fn solve(asked: &Asked, footing: &mut Footing, stack: &[Layer]) -> Found {
 }
 
 impl Supports {
+    /// Begins without any answer.
     pub fn new(asked: Asked, damping_time: Option<Given>) -> Supports {
         Supports { asked, damping_time, found: HashMap::new(), footings: HashMap::new() }
     }

@@ -1,14 +1,13 @@
 //! Surfaces of grains: read from files, or taken from the library, and closed.
 
-use crate::check::build::given::Arguments;
-use crate::check::build::given::argument;
+use super::given::{Arguments, argument};
 use crate::check::evaluate::value::{Slot, Val};
 use crate::check::findings::Findings;
 use crate::check::text::files::Files;
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{Surface, Surfaces};
 use crate::schema::{Need, Word};
-use crate::solvers::granular::grains::stl::{self};
+use crate::solvers::granular::grains::stl;
 use std::sync::Arc;
 
 /// Surfaces of the library by the words that name them.

@@ -5,7 +5,7 @@ use super::ground::Under;
 use super::groundwork::groundworks;
 use super::layers::{bed, lay_layers};
 use super::layout::Layout;
-use super::springs::{lay_seats, usual_damping_time};
+use super::seats::{lay_seats, usual_damping_time};
 use super::stretch::{Instance, described, stand};
 use super::support::Supports;
 use super::trackform::Built;
@@ -13,8 +13,9 @@ use super::under_stretches::{Unchanged, auxiliary_spans, change_seats};
 use crate::check::evaluate::evaluator::Evaluator;
 use crate::check::evaluate::value::Record;
 use crate::check::findings::Findings;
-use crate::check::places::along::{Along, Cover, along, lay_profile};
-use crate::check::places::places::Places;
+use crate::check::places::along::{Along, along, lay_profile};
+use crate::check::places::chainage::Places;
+use crate::check::places::cover::Cover;
 use crate::check::places::spacing::{sleepers_apart, usual_spacing};
 use crate::scenario::{
     AuxiliaryRailSpan, Curve, Given, Groundwork, Layer, Origin, Piece, Profile, RailEnds, Seat, Section, Track,

@@ -1,13 +1,12 @@
 //! Stretches: what differs over a span of the track. Each extends the trackform under it with the fields that it sets; where
 //! two overlap they must set different things, so that their order means nothing.
 
-use crate::check::build::plate::approach_slab;
+use super::plate::approach_slab;
 use crate::check::evaluate::evaluator::Evaluator;
 use crate::check::evaluate::records::object_kind;
 use crate::check::evaluate::value::{Change, Record, Slot, Val};
 use crate::check::findings::Findings;
-use crate::check::places::places::Places;
-use crate::check::places::places::TINY;
+use crate::check::places::chainage::{Places, TINY};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{ApproachSlab, Stretch};
 use crate::schema::{self, Kind};
@@ -32,19 +31,22 @@ pub struct Instance {
 }
 
 impl Instance {
+    /// Whether it changes a field of the trackform.
     pub fn sets(&self, field: &str) -> bool {
         self.stretch.changes.iter().any(|c| c.field.path.names[0].text == field)
     }
 
     /// Whether it changes what lies under the sleepers.
-    pub fn regrades(&self) -> bool {
+    pub(super) fn regrades(&self) -> bool {
         self.sets("layers") || self.plate.is_some()
     }
 
+    /// Where its span stands, or itself.
     pub fn over(&self) -> Span {
         self.stretch.get("over").map_or(self.stretch.span, |slot| slot.span)
     }
 
+    /// The seats that it shares with others, if any.
     pub fn common(&self, seats: &Range<usize>) -> Option<Range<usize>> {
         let common = self.seats.start.max(seats.start)..self.seats.end.min(seats.end);
         (!common.is_empty()).then_some(common)
@@ -248,7 +250,7 @@ fn settle(slot: &mut Slot, ground: &Instance) {
 }
 
 /// Two stretches that put a plate under the same seats.
-pub fn two_plates(first: &Instance, later: &Instance, seats: &str) -> Diagnostic {
+fn two_plates(first: &Instance, later: &Instance, seats: &str) -> Diagnostic {
     Diagnostic::new(Code::E0512, format!("two approach slabs lie in one place at {seats}"))
         .at(later.over(), format!("that of `{}`", later.stretch.name))
         .at(first.over(), format!("that of `{}`", first.stretch.name))

@@ -1,7 +1,6 @@
 //! The layers of a trackform as written, before they are laid along the track.
 
-use super::material::Ground;
-use crate::check::build::material::ground;
+use super::material::{Ground, ground};
 use crate::check::evaluate::value::{Record, Slot, Val};
 use crate::check::findings::Findings;
 use crate::check::places::along::Along;
@@ -29,7 +28,7 @@ pub enum Thickness {
 
 impl Stratum {
     /// Whether its support cannot be computed.
-    pub fn modulus_unknown(&self) -> bool {
+    pub(super) fn modulus_unknown(&self) -> bool {
         matches!(self.ground, Ground::Granular(_, None))
     }
 

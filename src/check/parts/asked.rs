@@ -40,6 +40,7 @@ impl Default for Asked {
 }
 
 impl Asked {
+    /// Reads what a scene asks from its complete records.
     pub fn by_scene(solve: &Record, track: &Record, traffic: bool, loads: &[Record]) -> Asked {
         let tier = tier(solve);
         let by_layers = tier == Tier::Auto && forms(track).any(stands_on_grains);
@@ -74,7 +75,7 @@ fn method(solve: &Record) -> Option<Method> {
     }
 }
 
-pub fn has_layers(form: &Record) -> bool {
+fn has_layers(form: &Record) -> bool {
     matches!(form.get("layers").map(|slot| &slot.value), Some(Val::Pairs(pairs)) if !pairs.is_empty())
 }
 

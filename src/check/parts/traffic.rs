@@ -1,10 +1,10 @@
 //! Trains, their shares of the traffic, and the counts of axles or of mass that a run goes through.
 
-use crate::check::build::vehicle::train;
+use super::vehicle::train;
 use crate::check::evaluate::number::Number;
 use crate::check::evaluate::value::{Record, Slot, Val};
 use crate::check::findings::Findings;
-use crate::check::places::places::Places;
+use crate::check::places::chainage::Places;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Given, Order, Sequence, Traffic, Train};
 use crate::units::{Dimension, Quantity, number};
@@ -17,12 +17,13 @@ const ROUNDING: f64 = 1e-9;
 pub struct Counted {
     sequence: Sequence,
     mixed: bool,
-    /// As written.
+    /// All traffic, as written.
     total: Number,
     /// Axles of the whole run.
     pub axles: u64,
 }
 
+/// Reads the traffic over the track, and what counts mean in it.
 pub fn traffic(record: &Record, places: Option<&Places>, findings: &mut Findings) -> Option<(Traffic, Counted)> {
     let slot = record.get("trains")?;
     let Val::Pairs(pairs) = &slot.value else { return None };
@@ -159,6 +160,7 @@ pub fn whole_axles(axles: f64, span: Span, findings: &mut Findings) -> Option<u6
     whole(axles, "axles", span, findings)
 }
 
+/// A count, which is a whole number.
 pub fn whole(count: f64, what: &str, span: Span, findings: &mut Findings) -> Option<u64> {
     if count.fract() != 0.0 {
         findings.report(

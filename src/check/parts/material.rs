@@ -1,14 +1,11 @@
 //! Granular materials and soils, from complete records.
 
-use super::given::given;
-use crate::check::build::given::agree;
-use crate::check::build::given::argument;
-use crate::check::build::grading::grading;
-use crate::check::build::surface::grain_surfaces;
+use super::given::{agree, argument, given};
+use super::grading::grading;
+use super::surface::grain_surfaces;
 use crate::check::evaluate::value::{Record, Val};
 use crate::check::findings::Findings;
-use crate::check::places::along::Along;
-use crate::check::places::along::along;
+use crate::check::places::along::{Along, along};
 use crate::check::text::files::Files;
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{Bond, Contact, Given, Granular, Packing, Shape, Strength};

@@ -3,8 +3,7 @@
 use super::given::given;
 use crate::check::evaluate::value::{Record, Val};
 use crate::check::findings::Findings;
-use crate::check::places::places::Places;
-use crate::check::places::places::TINY;
+use crate::check::places::chainage::{Places, TINY};
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::ApproachSlab;
 use crate::units::number;

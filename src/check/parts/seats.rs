@@ -1,29 +1,20 @@
 //! The seats of a section: where a field varies along the track, each seat takes the value of its place.
 
-use super::ground::Under;
+use super::ground::{Under, carried};
+use super::spring::{LaidSpring, lay_spring, pad_at, spring_at};
 use super::support::Supports;
-use super::trackform::{Base, Bed, Built, Cushion, Damped};
-use crate::check::build::given::agree;
-use crate::check::build::ground::carried;
+use super::trackform::{Base, Bed, Built, Cushion};
 use crate::check::evaluate::evaluator::Evaluator;
-use crate::check::evaluate::value::{Record, Val};
+use crate::check::evaluate::value::Val;
 use crate::check::findings::Findings;
-use crate::check::places::along::lay;
-use crate::check::places::along::{Along, Cover, Laid};
-use crate::check::places::places::Places;
+use crate::check::places::along::{Laid, lay};
+use crate::check::places::chainage::Places;
+use crate::check::places::cover::Cover;
 use crate::diag::{Code, Diagnostic};
-use crate::scenario::{Foot, Given, Origin, Pad, Seat, Seating, Support, Usp};
+use crate::scenario::{Foot, Given, Origin, Seat, Seating, Support, Usp};
 use crate::schema;
 use crate::units::number;
 use std::ops::Range;
-
-/// A [`Damped`] laid along the track.
-pub struct LaidSpring<'a> {
-    record: &'a Record,
-    stiffness: Laid,
-    damping: Option<Laid>,
-    time: Option<Given>,
-}
 
 /// A [`Base`] laid along the track.
 enum LaidFoot<'a> {
@@ -103,7 +94,7 @@ pub fn lay_seats(
             }
             LaidFoot::Fixed(foot) => foot.clone(),
         };
-        let (initial_settlement, sleeper) = (*settlement.at(x), built.sleeper_body());
+        let (initial_settlement, sleeper) = (*settlement.value_at(x), built.sleeper_body());
         let onto_subgrade = carried.get(i).map(|carried| carried.onto_subgrade);
         seats.push(Seat { number, transition, x, section, pad, foot, sleeper, initial_settlement, onto_subgrade });
     }
@@ -160,7 +151,8 @@ fn seats_softly(
     mut seats: impl Iterator<Item = f64>,
     findings: &mut Findings,
 ) -> bool {
-    let Some(stiffness) = seats.find_map(|x| Some(support.stiffness.at(x)).filter(|k| **k < *seating.stiffness)) else {
+    let Some(stiffness) = seats.find_map(|x| Some(support.stiffness.value_at(x)).filter(|k| **k < *seating.stiffness))
+    else {
         return true;
     };
     let shown = |given: Given| format!("{} MN/m per seat", number(*given / 1e6));
@@ -175,54 +167,9 @@ fn seats_softly(
     false
 }
 
-fn lay_spring<'a>(
-    spring: &'a Damped,
-    places: &Places,
-    part: &str,
-    cover: &dyn Fn(&str) -> Cover,
-    findings: &mut Findings,
-) -> Option<LaidSpring<'a>> {
-    let stiffness = lay(&spring.stiffness, places, &cover(&format!("{part} stiffness")), findings);
-    let damping = match &spring.damping {
-        Some(damping) => Some(lay(damping, places, &cover(&format!("{part} damping")), findings)?),
-        None => None,
-    };
-    Some(LaidSpring { record: &spring.record, stiffness: stiffness?, damping, time: spring.time })
-}
-
-fn pad_at(pad: &LaidSpring<'_>, x: f64, findings: &mut Findings) -> Option<Pad> {
-    let (stiffness, damping) = spring_at(pad, x, findings)?;
-    Some(Pad { stiffness, damping })
-}
-
-/// Stiffness and damping at a chainage; a damping time goes with the stiffness there.
-pub fn spring_at(spring: &LaidSpring<'_>, x: f64, findings: &mut Findings) -> Option<(Given, Given)> {
-    let stiffness = spring.stiffness.at(x);
-    let by_time = spring.time.map(|time| Given { value: *time * *stiffness, origin: time.origin });
-    let damping = spring.damping.as_ref().map(|damping| damping.at(x));
-    let ways = [("damping", damping), ("damping_time * stiffness", by_time)];
-    let damping = agree(spring.record, "damping", &ways, "kN s/m", findings)?;
-    Some((stiffness, damping))
-}
-
-impl Damped {
-    /// Without a place; `None` where it varies.
-    pub fn laid_anywhere(&self) -> Option<LaidSpring<'_>> {
-        let fixed = |along: &Along| match along {
-            Along::Fixed(given) => Some(Laid::Fixed(*given)),
-            Along::Varies(..) => None,
-        };
-        let damping = match &self.damping {
-            Some(damping) => Some(fixed(damping)?),
-            None => None,
-        };
-        Some(LaidSpring { record: &self.record, stiffness: fixed(&self.stiffness)?, damping, time: self.time })
-    }
-}
-
 impl Cushion {
     fn at(&self, modulus: &Laid, x: f64) -> Usp {
-        let modulus = modulus.at(x);
+        let modulus = modulus.value_at(x);
         let stiffness = Given { value: *modulus * self.half_area, origin: modulus.origin };
         let damping = Given { value: *self.time * *stiffness, origin: Origin::Derived };
         Usp { stiffness, damping, thickness: self.thickness }
