@@ -1,8 +1,9 @@
 //! Comparisons as written, with what their names stand for in the place of the names.
 
 use super::{Resolver, literal};
-use crate::check::modules::ScopeId;
-use crate::check::value::{Number, Val};
+use crate::check::evaluate::number::Number;
+use crate::check::evaluate::value::Val;
+use crate::check::text::scope::ScopeId;
 use crate::diag::Span;
 use crate::scenario::response::Response;
 use crate::schema::Form;
@@ -13,11 +14,11 @@ impl Resolver<'_, '_> {
     /// The comparison that stands at a place of some file.
     pub(super) fn comparison(&mut self, span: Span) -> String {
         let scope = self.scope_of(span);
-        let text = format!("let comparison = {}", self.checker.loader.sources.text(span));
+        let text = format!("let comparison = {}", self.eval.files.sources.text(span));
         let (tree, _) = parse(span.file, &text);
         match tree.items.first() {
             Some(Item::Let(binding)) => self.inline(&binding.value, scope),
-            _ => self.checker.loader.sources.text(span).to_string(),
+            _ => self.eval.files.sources.text(span).to_string(),
         }
     }
 
@@ -67,12 +68,12 @@ impl Resolver<'_, '_> {
             return path.text();
         }
         // a name of its own, or a word such as that of a transition
-        if path.names.len() == 1 && !self.checker.scopes[scope].names.contains_key(&path.names[0].text) {
+        if path.names.len() == 1 && !self.eval.scopes[scope].names.contains_key(&path.names[0].text) {
             return path.text();
         }
-        let Some(target) = self.checker.resolve(path, scope, &[]) else { return path.text() };
+        let Some(target) = self.eval.resolve(path, scope, &[]) else { return path.text() };
         if target.is_let {
-            let tree = self.checker.scopes[target.id.scope].tree.clone();
+            let tree = self.eval.scopes[target.id.scope].tree.clone();
             let Item::Let(binding) = &tree.items[target.id.item] else { return path.text() };
             let value = self.inline(&binding.value, target.id.scope);
             // one that is in brackets, or one word, needs no others
@@ -82,7 +83,7 @@ impl Resolver<'_, '_> {
             );
             return if alone { value } else { format!("({value})") };
         }
-        match self.checker.slot_at(&target, path).map(|slot| slot.value) {
+        match self.eval.slot_at(&target, path).map(|slot| slot.value) {
             Some(Val::Number(Number { value, dimension, basis, factor })) => {
                 literal::number(Number { value, dimension, basis, factor }, &Form::Text)
             }
@@ -91,7 +92,7 @@ impl Resolver<'_, '_> {
     }
 
     fn scope_of(&self, span: Span) -> ScopeId {
-        self.checker.scopes.iter().position(|scope| scope.tree.file == span.file).unwrap_or(self.main)
+        self.eval.scopes.iter().position(|scope| scope.tree.file == span.file).unwrap_or(self.eval.main)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Numbers as literals that read back to the same bits.
 
-use crate::check::value::Number;
+use crate::check::evaluate::number::Number;
 use crate::scenario::Origin;
 use crate::schema::Form;
 use crate::units::{Dimension, parse_unit};
@@ -13,7 +13,7 @@ pub(super) struct Literal {
 
 impl Literal {
     /// The shortest one in the unit of a form that reads back to the same bits, else one in SI.
-    pub fn of(number: Number, form: &Form) -> Literal {
+    pub fn new(number: Number, form: &Form) -> Literal {
         let usual = number.dimension.usual_unit();
         let si = number.dimension.si_unit();
         let units = unit_in(form, number.dimension).into_iter().chain([usual.as_str(), si.as_str()]);
@@ -34,12 +34,12 @@ impl Literal {
 
 /// `40 MN/m per seat`
 pub(super) fn number(number: Number, form: &Form) -> String {
-    format!("{}{}", Literal::of(number, form).text(), per(number))
+    format!("{}{}", Literal::new(number, form).text(), per(number))
 }
 
 /// `-20 .. -1 sleepers`, `5 .. 60 kN per sleeper`
 pub(super) fn range(from: Number, to: Number, form: &Form) -> String {
-    let (a, b) = (Literal::of(from, form), Literal::of(to, form));
+    let (a, b) = (Literal::new(from, form), Literal::new(to, form));
     let first = if a.unit == b.unit { a.digits } else { a.text() };
     format!("{first} .. {}{}", b.text(), per(to))
 }
@@ -103,13 +103,13 @@ mod tests {
         ])) {
             let dimension = Dimension::of(unit);
             let number = Number { value, dimension, basis: None, factor: 1.0 };
-            let literal = Literal::of(number, &Form::Text);
+            let literal = Literal::new(number, &Form::Text);
             let factor = parse_unit(&literal.unit).map_or(1.0, |u| u.factor);
             prop_assert_eq!(literal.digits.parse::<f64>().unwrap() * factor, value);
             let form = Form::Number(crate::schema::Measure {
                 unit, min: 0.0, max: 1.0, basis: None, varies: crate::schema::Varies::No,
             });
-            let literal = Literal::of(number, &form);
+            let literal = Literal::new(number, &form);
             let factor = parse_unit(&literal.unit).map_or(1.0, |u| u.factor);
             prop_assert_eq!(literal.digits.parse::<f64>().unwrap() * factor, value);
         }

@@ -9,10 +9,10 @@ mod inline;
 mod literal;
 mod text;
 
-use super::modules::ScopeId;
-use super::names::ItemId;
-use super::value::{Record, Slot, Val};
-use super::{Checker, Modules, Override, with_checker};
+use super::{Modules, Override, with_evaluator};
+use crate::check::evaluate::evaluator::Evaluator;
+use crate::check::evaluate::value::{Record, Slot, Val};
+use crate::check::text::scope::ItemId;
 use crate::diag::{self, Span};
 use crate::scenario::Origin;
 use crate::schema::{self, Field, Form, KINDS, Kind, Role};
@@ -24,19 +24,18 @@ use std::rc::Rc;
 /// The text that [`super::check`] takes, as one file with everything written out; `None` where it has errors or no track. A
 /// data file that it names must lie where it lies for the original.
 pub fn resolve(name: &str, text: &str, modules: &dyn Modules, overrides: &[Override]) -> Option<String> {
-    let (_, resolved) = with_checker(name, text, modules, overrides, |checker, main| {
-        if diag::has_errors(&checker.diagnostics) || !checker.declares(main, "track") {
+    let (_, resolved) = with_evaluator(name, text, modules, overrides, |eval| {
+        if diag::has_errors(&eval.findings.diagnostics) || !eval.declares("track") {
             return None;
         }
-        Some(Resolver::new(checker, main).file(name))
+        Some(Resolver::new(eval).file(name))
     });
     resolved.map(|text| syntax::format(&text).unwrap_or(text))
 }
 
 /// Writes objects, each once.
 struct Resolver<'c, 'm> {
-    checker: &'c mut Checker<'m>,
-    main: ScopeId,
+    eval: &'c mut Evaluator<'m>,
     /// Declarations by the place of their header.
     headers: HashMap<Span, ItemId>,
     /// Names that are given, or that would mean something else.
@@ -47,31 +46,25 @@ struct Resolver<'c, 'm> {
     written: Vec<(&'static Kind, String)>,
 }
 
-impl Checker<'_> {
-    fn declares(&self, scope: ScopeId, kind: &str) -> bool {
-        self.scopes[scope].tree.items.iter().any(|item| matches!(item, Item::Declaration(d) if d.kind.text == kind))
-    }
-}
-
 /// The place by which a declaration is known.
 fn header(declaration: &Declaration) -> Span {
     declaration.name.as_ref().map_or(declaration.kind.span, |name| declaration.kind.span.to(name.span))
 }
 
 impl<'c, 'm> Resolver<'c, 'm> {
-    fn new(checker: &'c mut Checker<'m>, main: ScopeId) -> Self {
+    fn new(eval: &'c mut Evaluator<'m>) -> Self {
         let mut headers = HashMap::new();
         let mut taken = BTreeSet::new();
-        for (scope, here) in checker.scopes.iter().enumerate() {
+        for (scope, here) in eval.scopes.iter().enumerate() {
             for (item, declared) in here.tree.items.iter().enumerate() {
                 let Item::Declaration(d) = declared else { continue };
                 headers.insert(header(d), ItemId { scope, item });
-                if scope == main {
+                if scope == eval.main {
                     taken.insert(d.name.as_ref().unwrap_or(&d.kind).text.clone());
                 }
             }
         }
-        Resolver { checker, main, headers, taken, named: Vec::new(), written: Vec::new() }
+        Resolver { eval, headers, taken, named: Vec::new(), written: Vec::new() }
     }
 
     /// The whole file, unformatted.
@@ -80,7 +73,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
         // in the order of the vocabulary; objects of a kind stay as they came
         self.written.sort_by_key(|(kind, _)| KINDS.iter().position(|k| k.name == kind.name));
         let head = format!("// {name}, with everything written out that it uses or leaves to a default\n");
-        let left_out = self.checker.declares(self.main, "study");
+        let left_out = self.eval.declares("study");
         let studies = if left_out { "// its studies stay there: they edit its lines\n" } else { "" };
         let written: Vec<String> = self.written.into_iter().map(|(_, text)| text).collect();
         format!("{head}{studies}\n{}", written.join("\n"))
@@ -88,21 +81,21 @@ impl<'c, 'm> Resolver<'c, 'm> {
 
     /// What acts by itself, and with it all that it names.
     fn roots(&mut self) {
-        let tree = self.checker.scopes[self.main].tree.clone();
+        let tree = self.eval.scopes[self.eval.main].tree.clone();
         for (item, declared) in tree.items.iter().enumerate() {
             let Item::Declaration(d) = declared else { continue };
             let acts = matches!(schema::kind(&d.kind.text).map(|k| k.role), Some(Role::Scene { .. }));
             if !acts || d.kind.text == "study" {
                 continue;
             }
-            if let Some(record) = self.checker.record(ItemId { scope: self.main, item }, d.span) {
+            if let Some(record) = self.eval.record(ItemId { scope: self.eval.main, item }, d.span) {
                 let name = record.name.clone();
                 self.declare(&record, &name);
             }
         }
         // both hold for every scene, said or not
         for kind in ["scenario", "solve"].into_iter().filter_map(schema::kind) {
-            if !self.checker.declares(self.main, kind.name) {
+            if !self.eval.declares(kind.name) {
                 let span = Span::new(diag::FileId(0), 0, 0);
                 self.declare(&Rc::new(Record::empty(kind, kind.name, span)), kind.name);
             }
@@ -130,7 +123,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
             let lines = self.fields(record);
             return if lines.is_empty() { "{}".into() } else { format!("{{{after}\n{lines}}}") };
         }
-        let mine = declared.is_some_and(|id| id.scope == self.main);
+        let mine = declared.is_some_and(|id| id.scope == self.eval.main);
         let name = if mine { record.name.clone() } else { self.free_name(record) };
         self.taken.insert(name.clone());
         self.named.push((record.clone(), name.clone()));
@@ -141,7 +134,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
     /// The declaration that an object is, unless something in it was replaced on the way.
     fn declaration(&self, record: &Rc<Record>) -> Option<ItemId> {
         let id = *self.headers.get(&record.span)?;
-        let same = self.checker.records.get(&id)?.as_ref().is_some_and(|known| Rc::ptr_eq(known, record));
+        let same = self.eval.known(id).is_some_and(|known| Rc::ptr_eq(known, record));
         same.then_some(id)
     }
 
@@ -157,7 +150,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
 
     /// The lines of an object's fields, each with its origin.
     fn fields(&mut self, record: &Record) -> String {
-        let full = self.checker.complete(record);
+        let full = self.eval.complete(record);
         let mut out = String::new();
         for field in record.kind.fields {
             if let Some(slot) = record.get(field.name).or_else(|| full.get(field.name)) {
@@ -182,7 +175,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
 
     /// A scene without a title is called as its file.
     fn title(&self) -> String {
-        let name = &self.checker.loader.sources.get(diag::FileId(0)).name;
+        let name = &self.eval.files.sources.get(diag::FileId(0)).name;
         let stem = name.rsplit(['/', '\\']).next().unwrap_or(name).trim_end_matches(".track");
         format!("title = {}  // the file's name\n", text::quoted(stem))
     }
@@ -225,7 +218,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
         for (i, change) in changes.iter().enumerate() {
             let path = change.field.path.text();
             if changes[i + 1..].iter().all(|later| later.field.path.text() != path) {
-                let slot = self.checker.fit(form, &change.field.value, change.scope);
+                let slot = self.eval.fit(form, &change.field.value, change.scope);
                 let line = self.line(&path, form, &slot);
                 out.push_str(&line);
             }
@@ -249,7 +242,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
 
     /// `line 12` of the main file, `std/pads.track:14` of others.
     fn place(&self, span: Span) -> String {
-        let sources = &self.checker.loader.sources;
+        let sources = &self.eval.files.sources;
         let (name, line) = (&sources.get(span.file).name, sources.position(span.file, span.start).line);
         if span.file == diag::FileId(0) {
             format!("line {line}")
@@ -263,16 +256,16 @@ impl<'c, 'm> Resolver<'c, 'm> {
     /// What an object extends, as a comment behind its bracket.
     fn after(&self, record: &Record) -> String {
         let replaced_in = self.headers.contains_key(&record.span) && {
-            let known = self.headers.get(&record.span).and_then(|id| self.checker.records.get(id)?.as_ref());
+            let known = self.headers.get(&record.span).and_then(|id| self.eval.known(*id));
             known.is_some_and(|known| !std::ptr::eq(&**known, record))
         };
         let base = if replaced_in { Some(&record.span) } else { record.bases.first() };
         let Some(id) = base.and_then(|span| self.headers.get(span)) else { return String::new() };
-        let scope = &self.checker.scopes[id.scope];
+        let scope = &self.eval.scopes[id.scope];
         let Item::Declaration(d) = &scope.tree.items[id.item] else { return String::new() };
         let name = &d.name.as_ref().unwrap_or(&d.kind).text;
-        let file = &self.checker.loader.sources.get(scope.tree.file).name;
-        match id.scope == self.main {
+        let file = &self.eval.files.sources.get(scope.tree.file).name;
+        match id.scope == self.eval.main {
             true => format!("  // extends {name}"),
             false => format!("  // extends {}.{name}", file.trim_start_matches("std/").trim_end_matches(".track")),
         }
@@ -281,7 +274,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
     /// The `///` lines above the declaration of an object.
     fn docs(&self, record: &Record) -> Vec<String> {
         let Some(id) = self.headers.get(&record.span) else { return Vec::new() };
-        match &self.checker.scopes[id.scope].tree.items[id.item] {
+        match &self.eval.scopes[id.scope].tree.items[id.item] {
             Item::Declaration(d) => d.docs.clone(),
             _ => Vec::new(),
         }

@@ -2,9 +2,9 @@
 
 use super::Resolver;
 use super::literal::{number, range};
-use crate::check::profile::{Reach, Shape, ShapeKind};
-use crate::check::random::Random;
-use crate::check::value::{Number, Slot, Val};
+use crate::check::evaluate::number::Number;
+use crate::check::evaluate::shape::{Random, Reach, Shape, ShapeKind};
+use crate::check::evaluate::value::{Slot, Val};
 use crate::schema::{Field, Form, Word};
 use crate::units::Dimension;
 use std::collections::BTreeMap;
@@ -37,12 +37,10 @@ impl Resolver<'_, '_> {
             Val::Range(a, b) => range(*a, *b, form),
             Val::Profile(shape) => self.profile(form, shape),
             Val::Response(response) => response.name().to_string(),
-            Val::Comparison(comparison) => self.comparison(comparison.span),
+            Val::Written(..) if matches!(form, Form::Comparison) => self.comparison(slot.span),
             Val::Hole => "?".into(),
             // studies are left out, and a sound file has nothing unreadable
-            Val::Measured(_) | Val::Axes(_) | Val::Settings(_) | Val::Error => {
-                self.checker.loader.sources.text(slot.span).to_string()
-            }
+            Val::Written(..) | Val::Error => self.eval.files.sources.text(slot.span).to_string(),
         }
     }
 
@@ -59,7 +57,7 @@ impl Resolver<'_, '_> {
     fn argument(&mut self, field: &'static Field, arguments: &BTreeMap<&'static str, Slot>) -> Option<String> {
         let slot = match (arguments.get(field.name), field.need) {
             (Some(slot), _) => slot.clone(),
-            (None, crate::schema::Need::Default(text)) => self.checker.default_value(&field.form, text),
+            (None, crate::schema::Need::Default(text)) => self.eval.default_value(&field.form, text),
             (None, _) => return None,
         };
         Some(format!("{} = {}", field.name, self.value(&field.form, &slot)))
@@ -87,7 +85,7 @@ impl Resolver<'_, '_> {
             ShapeKind::Random(field) => random(field, form),
             ShapeKind::Table { column, rows, ends } => {
                 let basis = rows.first().and_then(|(_, n)| n.basis).map_or(String::new(), |b| format!(" per {b}"));
-                let file = quoted(&self.checker.loader.sources.get(ends[0].file).name);
+                let file = quoted(&self.eval.files.sources.get(ends[0].file).name);
                 // one that is no name is the only one, and needs none
                 let named = column.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
                 let column = if named { format!(", column = {column}") } else { String::new() };

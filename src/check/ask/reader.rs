@@ -1,0 +1,111 @@
+//! The questions of expectations and studies, read once places and counts mean something.
+
+use crate::check::evaluate::evaluator::Evaluator;
+use crate::check::evaluate::value::{Record, Slot, Val};
+use crate::check::parts::traffic::Counted;
+use crate::check::places::chainage::Places;
+use crate::diag::Span;
+use crate::scenario::response::Expectation;
+use crate::scenario::{Axis, Measured, Setting};
+use crate::schema::Form;
+use std::borrow::Borrow;
+use std::collections::{BTreeMap, HashMap};
+
+/// What places and counts mean in a scene, as far as its track and its traffic are understood.
+#[derive(Clone, Copy, Default)]
+pub struct Counting<'a> {
+    pub places: Option<&'a Places>,
+    /// Whether trains run: what is counted is axles.
+    pub traffic: bool,
+    pub counted: Option<&'a Counted>,
+}
+
+/// Reads expressions of responses, and what studies vary.
+pub struct Reader<'a, 'm> {
+    pub eval: &'a mut Evaluator<'m>,
+    pub counting: Counting<'a>,
+    /// Operands of the comparison that is being read.
+    pub operands: &'a mut usize,
+}
+
+/// What is asked at one place.
+#[derive(Clone)]
+pub enum Question {
+    Comparison(Expectation),
+    Measured(Measured),
+    Axes(Vec<Axis>),
+    Settings(Vec<Setting>),
+}
+
+/// What one record asks, by field; without what is not understood.
+pub struct Questions(BTreeMap<&'static str, Vec<Question>>);
+
+impl Questions {
+    fn under(&self, field: &str) -> impl Iterator<Item = &Question> {
+        self.0.get(field).into_iter().flatten()
+    }
+
+    /// The comparisons that a field asks for.
+    pub fn comparisons(&self, field: &str) -> impl Iterator<Item = Expectation> {
+        self.under(field).filter_map(|q| if let Question::Comparison(c) = q { Some(c.clone()) } else { None })
+    }
+
+    /// The expressions that a field asks for.
+    pub fn measured(&self, field: &str) -> impl Iterator<Item = Measured> {
+        self.under(field).filter_map(|q| if let Question::Measured(m) = q { Some(m.clone()) } else { None })
+    }
+
+    /// What a study varies; `None` where it is not understood.
+    pub(super) fn axes(&self) -> Option<Vec<Axis>> {
+        self.under("vary").find_map(|q| if let Question::Axes(axes) = q { Some(axes.clone()) } else { None })
+    }
+
+    /// What a study sets in every point; `None` where it says nothing, or is not understood.
+    pub fn settings(&self) -> Option<Vec<Setting>> {
+        self.under("set").find_map(|q| if let Question::Settings(set) = q { Some(set.clone()) } else { None })
+    }
+}
+
+/// What records ask. A field that several of them inherit is read once, so that a mistake in it stays one for all of them.
+pub fn questions(records: &[impl Borrow<Record>], eval: &mut Evaluator<'_>, counting: Counting<'_>) -> Vec<Questions> {
+    let mut operands = 0;
+    let mut reader = Reader { eval, counting, operands: &mut operands };
+    let mut known: HashMap<Span, Vec<Question>> = HashMap::new();
+    let mut of_record = |record: &Record| {
+        let mut fields: Vec<(&'static str, &Slot)> = record.fields.iter().map(|(name, slot)| (*name, slot)).collect();
+        // in the order of the text
+        fields.sort_by_key(|(_, slot)| slot.span);
+        let mut asked = BTreeMap::new();
+        for (name, slot) in fields {
+            let Some(field) = record.kind.field(name).filter(|field| asks(&field.form)) else { continue };
+            let read = known.entry(slot.span).or_insert_with(|| reader.read(&field.form, slot));
+            asked.insert(name, read.clone());
+        }
+        Questions(asked)
+    };
+    records.iter().map(|record| of_record(record.borrow())).collect()
+}
+
+/// Whether a form holds questions.
+fn asks(form: &Form) -> bool {
+    match form {
+        Form::Comparison | Form::Expression | Form::Axes | Form::Settings => true,
+        Form::List(item) => asks(item),
+        _ => false,
+    }
+}
+
+impl Reader<'_, '_> {
+    /// The questions in a value of a form, without those that are not understood.
+    pub fn read(&mut self, form: &Form, slot: &Slot) -> Vec<Question> {
+        let question = match (form, &slot.value) {
+            (Form::List(item), Val::List(slots)) => return slots.iter().flat_map(|s| self.read(item, s)).collect(),
+            (Form::Comparison, Val::Written(value, scope)) => self.comparison(value, *scope).map(Question::Comparison),
+            (Form::Expression, Val::Written(value, scope)) => self.measured(value, *scope).map(Question::Measured),
+            (Form::Axes, Val::Written(value, scope)) => self.axes(value, *scope).map(Question::Axes),
+            (Form::Settings, Val::Written(value, scope)) => self.settings(value, *scope).map(Question::Settings),
+            _ => None,
+        };
+        question.into_iter().collect()
+    }
+}

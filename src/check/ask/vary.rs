@@ -1,0 +1,582 @@
+//! What a study varies: `open.pad.stiffness: 20 .. 80 MN/m`. Every path must lead to a field or a `let` of the file, and
+//! every value is held against the form of that field, as if it stood there.
+
+use super::expression::one_line;
+use super::reader::Reader;
+use crate::check::evaluate::number::Raw;
+use crate::check::evaluate::records::object_kind;
+use crate::check::evaluate::written::{looks_like, with_unit};
+use crate::check::text::scope::{ItemId, ScopeId};
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, Span, or_list};
+use crate::scenario::{Axis, Choice, Setting, Spread, Values};
+use crate::schema::{self, Form, Kind};
+use crate::syntax::tree::{Argument, Entry, Item, Name, Path, UnitText, Value, ValueKind};
+use crate::units::{number, parse_unit};
+
+const DISTRIBUTIONS: [&str; 4] = ["steps", "uniform", "normal", "log_normal"];
+/// Levels that `steps` may make.
+const MOST_STEPS: f64 = 1e4;
+/// Kinds that say what is asked, not what the scene is.
+const NOT_OF_THE_SCENE: [&str; 2] = ["study", "scenario"];
+
+/// Where a path leads.
+#[derive(Clone, Copy)]
+enum Target {
+    Field(&'static Form),
+    Let(ItemId),
+}
+
+/// The unit and basis that an axis states once for all its numbers.
+struct Suffix {
+    unit: Option<UnitText>,
+    per: Option<Name>,
+}
+
+impl Reader<'_, '_> {
+    /// `[path: values]`
+    pub(super) fn axes(&mut self, value: &Value, scope: ScopeId) -> Option<Vec<Axis>> {
+        let pairs = self.paths(value, "values")?;
+        let axes: Vec<Option<Axis>> = pairs
+            .into_iter()
+            .map(|(path, entry)| {
+                let target = self.target(path, scope)?;
+                let (unit, values) = self.values(target, &entry.value, scope)?;
+                Some(Axis { path: path.text(), span: path.span, unit, values })
+            })
+            .collect();
+        axes.into_iter().collect()
+    }
+
+    /// `[path: value]`
+    pub fn settings(&mut self, value: &Value, scope: ScopeId) -> Option<Vec<Setting>> {
+        let pairs = self.paths(value, "value")?;
+        let settings: Vec<Option<Setting>> = pairs
+            .into_iter()
+            .map(|(path, entry)| {
+                let target = self.target(path, scope)?;
+                self.may_stand(target, &entry.value, scope)?;
+                let value = one_line(self.eval.files.sources.text(entry.value.span));
+                Some(Setting { path: path.text(), value, span: path.span })
+            })
+            .collect();
+        settings.into_iter().collect()
+    }
+
+    /// Pairs whose keys are paths.
+    fn paths<'v>(&mut self, value: &'v Value, what: &str) -> Option<Vec<(&'v Path, &'v Entry)>> {
+        let help = format!("write `[path: {what}]`, such as `[open.pad.stiffness: [20, 40] MN/m]`");
+        let ValueKind::List { entries, unit: None } = &value.kind else {
+            self.eval.findings.report(
+                Diagnostic::new(Code::E0406, format!("expected a list of pairs, found {}", looks_like(&value.kind)))
+                    .at(value.span, "names no path")
+                    .help(help),
+            );
+            return None;
+        };
+        let mut pairs = Vec::with_capacity(entries.len());
+        for entry in entries {
+            match entry.key.as_ref().map(|key| (&key.kind, key.span)) {
+                Some((ValueKind::Path(path), _)) => pairs.push((path, entry)),
+                found => {
+                    let place = found.map_or(entry.value.span, |(_, span)| span);
+                    self.eval.findings.report(
+                        Diagnostic::new(Code::E0406, format!("expected `path: {what}`"))
+                            .at(place, "no path")
+                            .help(&help),
+                    );
+                }
+            }
+        }
+        if entries.is_empty() {
+            self.eval
+                .findings
+                .report(Diagnostic::new(Code::E0406, "the list is empty").at(value.span, "varies nothing").help(&help));
+        }
+        (!pairs.is_empty() && pairs.len() == entries.len()).then_some(pairs)
+    }
+
+    /// What a path of this file names.
+    fn target(&mut self, path: &Path, scope: ScopeId) -> Option<Target> {
+        let first = &path.names[0];
+        let Some(&item) = self.eval.scopes[scope].names.get(&first.text) else {
+            self.nothing_there(path, scope);
+            return None;
+        };
+        let tree = self.eval.scopes[scope].tree.clone();
+        let declaration = match &tree.items[item] {
+            Item::Declaration(declaration) => declaration,
+            Item::Let(_) if path.names.len() == 1 => return Some(Target::Let(ItemId { scope, item })),
+            _ => {
+                let text = format!("there is nothing inside `{}` to vary", first.text);
+                self.eval.findings.report(Diagnostic::new(Code::E0704, text).at(path.names[1].span, "inside a `let`"));
+                return None;
+            }
+        };
+        let kind = schema::kind(&declaration.kind.text)?;
+        if NOT_OF_THE_SCENE.contains(&kind.name) {
+            let text = format!("a study cannot vary a {}", kind.name);
+            self.eval.findings.report(Diagnostic::new(Code::E0704, text).at(first.span, "not a part of the scene"));
+            return None;
+        }
+        let [_, fields @ ..] = path.names.as_slice() else { return None };
+        if fields.is_empty() {
+            let example = kind.fields.first().map(|f| format!("such as `{}.{}`", first.text, f.name));
+            self.eval.findings.report(
+                Diagnostic::new(Code::E0704, format!("`{}` is a whole {}", first.text, kind.name))
+                    .at(path.span, "name a field of it")
+                    .maybe_help(example),
+            );
+            return None;
+        }
+        self.field_at(kind, fields).map(Target::Field)
+    }
+
+    /// The first name of a path leads nowhere.
+    fn nothing_there(&mut self, path: &Path, scope: ScopeId) {
+        let first = &path.names[0];
+        if self.eval.unread_word(first) || self.eval.scopes[scope].broken.contains(&first.text) {
+            return;
+        }
+        let (message, help) = if self.eval.scopes[scope].modules.contains_key(&first.text) {
+            let own = path.names.get(1).map_or("name", |n| n.text.as_str());
+            let message = format!("a study varies what its own file declares, and `{}` is a module", first.text);
+            (message, Some(format!("declare `kind {own} : {}.{own}` here and vary `{own}`", first.text)))
+        } else {
+            let near = nearest(&first.text, self.eval.scopes[scope].names.keys().map(String::as_str));
+            let message = format!("this file declares nothing called `{}` to vary", first.text);
+            (message, near.map(|n| format!("did you mean `{n}`?")))
+        };
+        self.eval
+            .findings
+            .report(Diagnostic::new(Code::E0704, message).at(first.span, "unknown here").maybe_help(help));
+    }
+
+    /// Follows fields into a kind, at last into an argument of a word or a pair by its key.
+    fn field_at(&mut self, kind: &'static Kind, names: &[Name]) -> Option<&'static Form> {
+        let [name, rest @ ..] = names else { return None };
+        let Some(field) = kind.field(&name.text) else {
+            if kind.planned.contains(&name.text.as_str()) {
+                self.eval.field_of(kind, name);
+                return None;
+            }
+            let near = nearest(&name.text, kind.fields.iter().map(|f| f.name)).map(|n| format!("did you mean `{n}`?"));
+            self.eval.findings.report(
+                Diagnostic::new(Code::E0704, format!("a {} has no `{}` to vary", kind.name, name.text))
+                    .at(name.span, "unknown field")
+                    .help(near.unwrap_or_else(|| format!("`trackbed docs {}` lists its fields", kind.name))),
+            );
+            return None;
+        };
+        let [next, ..] = rest else { return Some(&field.form) };
+        if let Some(inner) = object_kind(&field.form) {
+            return self.field_at(inner, rest);
+        }
+        let arguments = || field.form.words().into_iter().flat_map(|w| w.arguments);
+        if let Some(argument) = arguments().find(|a| a.name == next.text) {
+            return Some(&argument.form);
+        }
+        if let Form::Pairs { value, .. } = &field.form {
+            return Some(value);
+        }
+        let near = nearest(&next.text, arguments().map(|a| a.name)).map(|n| format!("did you mean `{n}`?"));
+        self.eval.findings.report(
+            Diagnostic::new(Code::E0704, format!("there is no `{}` inside `{}` to vary", next.text, field.name))
+                .at(next.span, "not found")
+                .maybe_help(near),
+        );
+        None
+    }
+
+    /// Whether a value may stand where the path leads.
+    fn may_stand(&mut self, target: Target, value: &Value, scope: ScopeId) -> Option<()> {
+        let before = self.eval.findings.errors();
+        match target {
+            Target::Field(form) => {
+                let slot = self.eval.fit(form, value, scope);
+                self.read(form, &slot);
+            }
+            Target::Let(id) => self.like_the_let(id, value, scope),
+        }
+        (self.eval.findings.errors() == before).then_some(())
+    }
+
+    /// A number for a `let` that is a number has its dimension.
+    fn like_the_let(&mut self, id: ItemId, value: &Value, scope: ScopeId) {
+        let tree = self.eval.scopes[id.scope].tree.clone();
+        let Item::Let(binding) = &tree.items[id.item] else { return };
+        if !is_number(value) || !is_number(&binding.value) {
+            self.eval.units_in(value);
+            return;
+        }
+        // what stands there may be wrong itself, and has been told then
+        let told = self.eval.findings.diagnostics.iter().filter(|d| d.is_error()).filter_map(|d| d.labels.first());
+        if told.map(|label| label.span).any(|span| binding.value.span.covers(span)) {
+            return;
+        }
+        if let (Some(own), Some(raw)) = (self.eval.raw(&binding.value, id.scope), self.eval.raw(value, scope))
+            && own.dimension != raw.dimension
+        {
+            let code = if raw.dimension.is_none() { Code::E0301 } else { Code::E0302 };
+            self.eval.findings.report(
+                Diagnostic::new(
+                    code,
+                    format!("expected {}, found {}", own.dimension.describe(), raw.dimension.describe()),
+                )
+                .at(value.span, "of another dimension")
+                .at(binding.value.span, "than what it replaces"),
+            );
+        }
+    }
+
+    /// The values of an axis, and what stands behind its numbers.
+    fn values(&mut self, target: Target, value: &Value, scope: ScopeId) -> Option<(String, Values)> {
+        let (inner, per) = match &value.kind {
+            ValueKind::Per(inner, per) => (&**inner, Some(per.clone())),
+            _ => (value, None),
+        };
+        match &inner.kind {
+            ValueKind::List { entries, unit } if !entries.is_empty() => {
+                self.choices(target, entries, Suffix { unit: unit.clone(), per }, scope)
+            }
+            ValueKind::Range(from, to) => {
+                let (unit, [from, to]) = self.ends_of(target, from, to, per.as_ref(), scope)?;
+                Some((unit, Values::Spread(Spread::Uniform { from, to })))
+            }
+            ValueKind::Call { word, arguments } if DISTRIBUTIONS.contains(&word.text.as_str()) => {
+                self.distribution(target, word, arguments, per.as_ref(), scope)
+            }
+            other => {
+                let near = match other {
+                    ValueKind::Call { word, .. } => nearest(&word.text, DISTRIBUTIONS),
+                    _ => None,
+                };
+                let words: Vec<String> = DISTRIBUTIONS.iter().map(|w| format!("`{w}`")).collect();
+                let expected =
+                    format!("expected a list, `from .. to`, {}, found {}", or_list(&words), looks_like(other));
+                self.eval.findings.report(
+                    Diagnostic::new(Code::E0406, expected)
+                        .at(inner.span, "not several values")
+                        .help(near.map_or("write `[value, value]`".into(), |n| format!("did you mean `{n}`?"))),
+                );
+                None
+            }
+        }
+    }
+
+    fn choices(
+        &mut self,
+        target: Target,
+        entries: &[Entry],
+        suffix: Suffix,
+        scope: ScopeId,
+    ) -> Option<(String, Values)> {
+        let mut choices = Vec::with_capacity(entries.len());
+        let (mut sound, mut common) = (true, None);
+        let mut wrong_unit = false;
+        for entry in entries {
+            let bare = unit_of_all(&entry.value);
+            if wrong_unit && bare {
+                continue;
+            }
+            let value = wrapped(with_unit(&entry.value, suffix.unit.as_ref()), suffix.per.as_ref());
+            if let Some(key) = &entry.key {
+                self.eval
+                    .findings
+                    .report(Diagnostic::new(Code::E0406, "expected a value, found a pair").at(key.span, "a key"));
+                sound = false;
+                continue;
+            }
+            let stands = self.may_stand(target, &value, scope).is_some();
+            sound &= stands;
+            // what the list says once of all its numbers is told once
+            wrong_unit |= !stands
+                && bare
+                && matches!(
+                    self.eval.findings.diagnostics.last().map(|d| d.code),
+                    Some(Code::E0301 | Code::E0302 | Code::E0304)
+                );
+            let raw = if sound && is_number(&value) { self.eval.raw(&value, scope) } else { None };
+            let unit = suffix_of(&value, raw.as_ref());
+            let number = raw.and_then(|raw| Some((raw.value / unit_size(&unit)?, unit.clone())));
+            let text = one_line(self.eval.files.sources.text(entry.value.span));
+            let behind = if bare { suffix.text() } else { suffix.per_text() };
+            choices.push((text + &behind, number, entry.value.span));
+            common.get_or_insert(unit);
+        }
+        // numbers are told in one unit, where they have one
+        let common = common?;
+        let same = choices.iter().all(|(_, number, _)| number.as_ref().is_some_and(|(_, unit)| *unit == common));
+        let choices = choices
+            .into_iter()
+            .map(|(text, number, span)| Choice { text, number: number.filter(|_| same).map(|(n, _)| n), span })
+            .collect();
+        sound.then_some((if same { common } else { String::new() }, Values::Listed(choices)))
+    }
+
+    /// Both ends of a range in its unit, each held against the target.
+    fn ends_of(
+        &mut self,
+        target: Target,
+        from: &Value,
+        to: &Value,
+        per: Option<&Name>,
+        scope: ScopeId,
+    ) -> Option<(String, [f64; 2])> {
+        let unit = unit_text(to);
+        let from = with_unit(from, unit.as_ref());
+        let held = [&from, to].map(|end| self.may_stand(target, &wrapped(end.clone(), per), scope));
+        let (a, b) = self.eval.ends(&from, to, scope)?;
+        held[0].and(held[1])?;
+        if a.dimension != b.dimension {
+            self.unlike(&a, &b);
+            return None;
+        }
+        if a.value >= b.value {
+            let whole = from.span.to(to.span);
+            self.eval.findings.report(
+                Diagnostic::new(Code::E0505, "a range must ascend").at(whole, "its first end is not the smaller"),
+            );
+            return None;
+        }
+        let suffix = suffix_of(&wrapped(to.clone(), per), Some(&b));
+        let size = unit_size(&suffix)?;
+        Some((suffix, [a.value / size, b.value / size]))
+    }
+
+    fn unlike(&mut self, a: &Raw, b: &Raw) {
+        self.eval.findings.report(
+            Diagnostic::new(Code::E0305, "both need the same dimension")
+                .at(a.span, a.dimension.describe())
+                .at(b.span, b.dimension.describe()),
+        );
+    }
+
+    fn distribution(
+        &mut self,
+        target: Target,
+        word: &Name,
+        arguments: &[Argument],
+        per: Option<&Name>,
+        scope: ScopeId,
+    ) -> Option<(String, Values)> {
+        let (arguments, per) = bare(arguments, per);
+        let (arguments, per) = (arguments.as_slice(), per.as_ref());
+        let named = |i: usize, names: &[&str]| {
+            let by_name = arguments.iter().find(|a| a.name.as_ref().is_some_and(|n| names.contains(&n.text.as_str())));
+            by_name.or_else(|| arguments.get(i).filter(|a| a.name.is_none())).map(|a| &a.value)
+        };
+        let spread = |unit: String, spread: Spread| Some((unit, Values::Spread(spread)));
+        match (word.text.as_str(), arguments) {
+            ("uniform", [Argument { name: None, value: Value { kind: ValueKind::Range(from, to), .. } }]) => {
+                let (unit, [from, to]) = self.ends_of(target, from, to, per, scope)?;
+                spread(unit, Spread::Uniform { from, to })
+            }
+            ("steps", [Argument { name: None, value: range }, Argument { name: Some(how), value: step }]) => {
+                let ValueKind::Range(from, to) = &range.kind else {
+                    return self.malformed(word);
+                };
+                self.steps(target, (from, to), (how, step), per, scope)
+            }
+            ("normal", [_, _]) => {
+                let (Some(mean), Some(sd)) = (named(0, &["mean"]), named(1, &["sd"])) else {
+                    return self.malformed(word);
+                };
+                self.may_stand(target, &wrapped(mean.clone(), per), scope)?;
+                let (m, s) = (self.eval.raw(mean, scope)?, self.eval.raw(sd, scope)?);
+                if m.dimension != s.dimension {
+                    self.unlike(&m, &s);
+                    return None;
+                }
+                self.positive(s.value, sd.span)?;
+                let unit = suffix_of(&wrapped(mean.clone(), per), Some(&m));
+                let size = unit_size(&unit)?;
+                spread(unit, Spread::Normal { mean: m.value / size, deviation: s.value / size })
+            }
+            ("log_normal", [_, _]) => {
+                let (Some(median), Some(cov)) = (named(0, &["median"]), named(1, &["cov"])) else {
+                    return self.malformed(word);
+                };
+                self.may_stand(target, &wrapped(median.clone(), per), scope)?;
+                let (m, c) = (self.eval.raw(median, scope)?, self.eval.raw(cov, scope)?);
+                if !c.dimension.is_none() {
+                    let found = c.dimension.describe();
+                    let text = format!("expected a share such as `20 %`, found {found}");
+                    self.eval.findings.report(Diagnostic::new(Code::E0302, text).at(cov.span, found));
+                    return None;
+                }
+                self.positive(c.value, cov.span)?;
+                self.positive(m.value, median.span)?;
+                let unit = suffix_of(&wrapped(median.clone(), per), Some(&m));
+                let sigma = (1.0 + c.value * c.value).ln().sqrt();
+                let size = unit_size(&unit)?;
+                spread(unit, Spread::LogNormal { median: m.value / size, sigma })
+            }
+            _ => self.malformed(word),
+        }
+    }
+
+    fn positive(&mut self, value: f64, span: Span) -> Option<()> {
+        if value > 0.0 {
+            return Some(());
+        }
+        self.eval.findings.report(Diagnostic::new(Code::E0405, "expected a value above zero").at(span, "out of range"));
+        None
+    }
+
+    fn malformed(&mut self, word: &Name) -> Option<(String, Values)> {
+        let form = match word.text.as_str() {
+            "steps" => "steps(20 .. 80 MN/m, by = 20 MN/m)` or `steps(20 .. 80 MN/m, count = 4)",
+            "uniform" => "uniform(20 .. 80 MN/m)",
+            "normal" => "normal(40 MN/m, sd = 5 MN/m)",
+            _ => "log_normal(40 MN/m, cov = 20 %)",
+        };
+        self.eval.findings.report(
+            Diagnostic::new(Code::E0406, format!("`{}` has other arguments", word.text))
+                .at(word.span, "not understood")
+                .help(format!("write something like `{form}`")),
+        );
+        None
+    }
+
+    fn steps(
+        &mut self,
+        target: Target,
+        (from, to): (&Value, &Value),
+        (how, step): (&Name, &Value),
+        per: Option<&Name>,
+        scope: ScopeId,
+    ) -> Option<(String, Values)> {
+        let (unit, [a, b]) = self.ends_of(target, from, to, per, scope)?;
+        let size = unit_size(&unit)?;
+        let raw =
+            self.eval.raw(&with_unit(step, if how.text == "by" { unit_text(to) } else { None }.as_ref()), scope)?;
+        let intervals = match how.text.as_str() {
+            "by" => {
+                let end = self.eval.ends(from, to, scope)?.1;
+                if raw.dimension != end.dimension {
+                    self.unlike(&raw, &end);
+                    return None;
+                }
+                self.positive(raw.value, step.span)?;
+                (b - a) / (raw.value / size)
+            }
+            "count" => raw.value - 1.0,
+            _ => {
+                self.malformed(&Name { text: "steps".into(), span: how.span });
+                return None;
+            }
+        };
+        let whole = intervals.round();
+        if (intervals - whole).abs() > 1e-6 * whole.max(1.0) || !(1.0..MOST_STEPS).contains(&whole) {
+            let message = format!("{} steps do not lead from {} to {} {unit}", number(intervals), number(a), number(b));
+            self.eval.findings.report(
+                Diagnostic::new(Code::E0706, message.trim_end().to_string())
+                    .at(step.span, "not a whole number of steps")
+                    .help("write `count = 5` for five values, both ends included"),
+            );
+            return None;
+        }
+        let span = from.span.to(to.span);
+        let level = |i: usize| a + (b - a) * i as f64 / whole;
+        let choice = |x: f64| Choice { text: with_suffix(x, &unit), number: Some(rounded(x)), span };
+        Some((unit.clone(), Values::Listed((0..=whole as usize).map(|i| choice(level(i))).collect())))
+    }
+}
+
+impl Suffix {
+    fn text(&self) -> String {
+        self.unit.as_ref().map_or(String::new(), |unit| format!(" {}", unit.text)) + &self.per_text()
+    }
+
+    fn per_text(&self) -> String {
+        self.per.as_ref().map_or(String::new(), |per| format!(" per {}", per.text))
+    }
+}
+
+/// A number as it is told: six digits.
+fn rounded(x: f64) -> f64 {
+    number(x).parse().unwrap_or(x)
+}
+
+/// `40 MN/m per seat`
+fn with_suffix(x: f64, suffix: &str) -> String {
+    format!("{} {suffix}", number(x)).trim_end().to_string()
+}
+
+/// Arguments without the basis that they all share: it may stand at each of them as well as behind the whole.
+fn bare(arguments: &[Argument], per: Option<&Name>) -> (Vec<Argument>, Option<Name>) {
+    let mut per = per.cloned();
+    let strip = |argument: &Argument| match &argument.value.kind {
+        ValueKind::Per(inner, name) if per.get_or_insert_with(|| name.clone()).text == name.text => {
+            Argument { name: argument.name.clone(), value: (**inner).clone() }
+        }
+        _ => argument.clone(),
+    };
+    let arguments = arguments.iter().map(strip).collect();
+    (arguments, per)
+}
+
+fn wrapped(value: Value, per: Option<&Name>) -> Value {
+    match per {
+        Some(per) => {
+            let span = value.span;
+            Value { kind: ValueKind::Per(Box::new(value), per.clone()), span }
+        }
+        None => value,
+    }
+}
+
+/// Whether it is written as a number, so that reading it as one is no surprise.
+fn is_number(value: &Value) -> bool {
+    match &value.kind {
+        ValueKind::Number { .. } => true,
+        ValueKind::Negate(inner) | ValueKind::Per(inner, _) => is_number(inner),
+        ValueKind::Binary(left, _, right) => is_number(left) && is_number(right),
+        _ => false,
+    }
+}
+
+/// Whether the unit after a list goes to this entry.
+fn unit_of_all(value: &Value) -> bool {
+    match &value.kind {
+        ValueKind::Number { unit, .. } => unit.is_none(),
+        ValueKind::Negate(inner) => unit_of_all(inner),
+        ValueKind::Range(_, to) => unit_of_all(to),
+        _ => false,
+    }
+}
+
+/// The unit written in a number.
+fn unit_text(value: &Value) -> Option<UnitText> {
+    match &value.kind {
+        ValueKind::Number { unit, .. } => unit.clone(),
+        ValueKind::Negate(inner) | ValueKind::Per(inner, _) => unit_text(inner),
+        ValueKind::Binary(left, _, right) => unit_text(left).or_else(|| unit_text(right)),
+        _ => None,
+    }
+}
+
+/// What stands behind numbers like this one: its unit, and `per` what.
+fn suffix_of(value: &Value, raw: Option<&Raw>) -> String {
+    let Some(raw) = raw else { return String::new() };
+    let written = unit_text(value).map(|u| u.text).filter(|u| {
+        let unit = parse_unit(u);
+        unit.is_ok_and(|u| u.dimension == raw.dimension)
+    });
+    let unit = written.unwrap_or_else(|| raw.dimension.usual_unit());
+    let per = match &value.kind {
+        ValueKind::Per(_, per) => format!(" per {}", per.text),
+        _ => raw.basis.as_ref().map_or(String::new(), |(name, _)| format!(" per {name}")),
+    };
+    (unit + &per).trim().to_string()
+}
+
+/// Size in SI of the unit in front of `per`.
+fn unit_size(suffix: &str) -> Option<f64> {
+    let unit = match suffix.split_once("per ") {
+        Some((unit, _)) => unit.trim(),
+        None => suffix,
+    };
+    parse_unit(unit).ok().map(|u| u.factor)
+}

@@ -1,0 +1,154 @@
+//! Makes an object complete: defaults where nothing is given, and a diagnostic for everything that must be.
+
+use super::evaluator::Evaluator;
+use super::value::{Record, Slot, Val};
+use crate::diag::{Code, Diagnostic, Span, or_list};
+use crate::schema::{Alternative, Field, Form, Need};
+use crate::syntax::tree::{Item, Value};
+use std::rc::Rc;
+
+impl Evaluator<'_> {
+    /// The record with every default in place, itself and everything inside it.
+    pub fn complete(&mut self, record: &Record) -> Record {
+        let mut full = record.clone();
+        for field in record.kind.fields {
+            if let Some(slot) = full.fields.get_mut(field.name) {
+                self.complete_slot(slot);
+                continue;
+            }
+            match field.need {
+                Need::Required => self.missing(&full, &format!("`{}`", field.name)),
+                Need::Default(text) => {
+                    let slot = self.default_slot(field, text);
+                    full.fields.insert(field.name, slot);
+                }
+                Need::Optional | Need::Alternative => {}
+            }
+        }
+        for alternative in record.kind.alternatives {
+            self.complete_alternative(&mut full, alternative);
+        }
+        full
+    }
+
+    /// Puts defaults into whatever a slot holds.
+    pub(super) fn complete_slot(&mut self, slot: &mut Slot) {
+        match &mut slot.value {
+            Val::Record(inner) => *inner = Rc::new(self.complete(inner)),
+            Val::Word { word, arguments } => {
+                arguments.values_mut().for_each(|argument| self.complete_slot(argument));
+                let mut missing = Vec::new();
+                for argument in word.arguments {
+                    if arguments.contains_key(argument.name) {
+                        continue;
+                    }
+                    match argument.need {
+                        Need::Default(text) => {
+                            let slot = self.default_slot(argument, text);
+                            arguments.insert(argument.name, slot);
+                        }
+                        Need::Required => missing.push(argument.name),
+                        Need::Optional | Need::Alternative => {}
+                    }
+                }
+                if !missing.is_empty() {
+                    let (what, names) = (missing.join("` and `"), missing.join(" = ..., "));
+                    self.findings.report(
+                        Diagnostic::new(Code::E0403, format!("`{}` needs `{what}`", word.name))
+                            .at(slot.span, format!("without `{what}`"))
+                            .help(format!("write `{}({names} = ...)`", word.name)),
+                    );
+                }
+            }
+            Val::List(slots) => slots.iter_mut().for_each(|s| self.complete_slot(s)),
+            Val::Pairs(pairs) => pairs.iter_mut().for_each(|(k, v)| {
+                self.complete_slot(k);
+                self.complete_slot(v);
+            }),
+            _ => {}
+        }
+    }
+
+    fn complete_alternative(&mut self, record: &mut Record, alternative: &'static Alternative) {
+        let given = |path: &&str| record.slot(path).is_some() || hidden_by_error(record, path);
+        if alternative.exclusive {
+            self.one_way(record, alternative);
+        }
+        if alternative.ways.iter().any(|way| way.iter().all(given)) {
+            return;
+        }
+        match alternative.default {
+            Some((name, text)) => {
+                if let Some(field) = record.kind.field(name) {
+                    let slot = self.default_slot(field, text);
+                    record.fields.insert(field.name, slot);
+                }
+            }
+            None => {
+                let ways: Vec<String> =
+                    alternative.ways.iter().map(|way| format!("`{}`", way.join("` and `"))).collect();
+                self.missing(record, &or_list(&ways));
+            }
+        }
+    }
+
+    /// Refuses two ways that say different things.
+    fn one_way(&mut self, record: &Record, alternative: &'static Alternative) {
+        let fields = alternative.ways.iter().flat_map(|way| way.iter());
+        let given: Vec<(&str, Span)> = fields.filter_map(|path| Some((*path, record.slot(path)?.span))).collect();
+        if let [(first, one), (second, other), ..] = given[..] {
+            self.findings.report(
+                Diagnostic::new(Code::E0404, format!("`{first}` and `{second}` say two things where one can hold"))
+                    .at(other, "")
+                    .at(one, "")
+                    .help("keep one of the two"),
+            );
+        }
+    }
+
+    fn missing(&mut self, record: &Record, what: &str) {
+        let who = if record.name == record.kind.name {
+            format!("this {}", record.kind.name)
+        } else {
+            format!("{} `{}`", record.kind.name, record.name)
+        };
+        let mistake = Diagnostic::new(Code::E0403, format!("{who} needs {what}"))
+            .at(record.span, "not given")
+            .help(format!("`trackbed docs {}` says what it means", record.kind.name));
+        record.lacks(what, mistake, &mut self.findings);
+    }
+
+    fn default_slot(&mut self, field: &'static Field, text: &'static str) -> Slot {
+        let mut slot = self.default_value(&field.form, text);
+        self.complete_slot(&mut slot);
+        slot
+    }
+
+    /// A default, written in the language, read like everything else.
+    pub fn default_value(&mut self, form: &'static Form, text: &'static str) -> Slot {
+        let value = self.default_text(text);
+        self.fit(form, &value, self.standard)
+    }
+
+    fn default_text(&mut self, text: &'static str) -> Rc<Value> {
+        if let Some(known) = self.defaults.get(text) {
+            return known.clone();
+        }
+        let source = format!("let default = {text}");
+        let file = self.files.sources.add("default", source.as_str(), true);
+        let tree = self.files.modules.parsed(file, &source).tree;
+        let value = match tree.items.first() {
+            Some(Item::Let(binding)) => binding.value.clone(),
+            _ => Value { kind: crate::syntax::tree::ValueKind::Error, span: Span::new(file, 0, 0) },
+        };
+        let value = Rc::new(value);
+        self.defaults.insert(text, value.clone());
+        value
+    }
+}
+
+/// Whether something on the way to a path could not be understood, so that nobody knows what stands there.
+fn hidden_by_error(record: &Record, path: &str) -> bool {
+    record.unknown(path)
+        || path.split_once('.').is_some_and(|(first, _)| record.get(first).is_none() || record.unknown(first))
+}

@@ -1,0 +1,148 @@
+//! The declarations of files: each evaluated, those of a kind complete, and those that nothing asks for.
+
+use super::evaluator::Evaluator;
+use super::value::Record;
+use crate::check::text::scope::{ItemId, ScopeId};
+use crate::diag::{Code, Diagnostic, FileId, Span};
+use crate::scenario::{Evidence, LibraryEntry};
+use crate::schema::{self, Role};
+use crate::syntax::tree::Item;
+use std::rc::Rc;
+
+/// Kinds that ask something of the scene: those of modules wait until the main file names them.
+const ASKING: [&str; 2] = ["expect", "study"];
+
+impl Evaluator<'_> {
+    /// Evaluates declarations, the main file's last, and returns those that act by themselves. What asks something of the
+    /// scene waits.
+    pub fn evaluate_all(&mut self) -> Vec<ItemId> {
+        let mut roots = Vec::new();
+        let mine: Vec<ScopeId> = (0..self.scopes.len()).filter(|s| !self.scopes[*s].library).collect();
+        for scope in mine {
+            let tree = self.scopes[scope].tree.clone();
+            for (item, declaration) in tree.items.iter().enumerate() {
+                let Item::Declaration(d) = declaration else { continue };
+                let id = ItemId { scope, item };
+                let acts = matches!(schema::kind(&d.kind.text).map(|k| k.role), Some(Role::Scene { .. }));
+                if acts && scope == self.main {
+                    roots.push(id);
+                }
+                if !ASKING.contains(&d.kind.text.as_str()) {
+                    let used = self.used.contains(&id);
+                    self.record(id, d.span);
+                    if !used && !acts {
+                        self.used.remove(&id);
+                    }
+                }
+            }
+        }
+        roots
+    }
+
+    /// Objects of the main file that ask something of the scene, in its order.
+    pub fn asking(&mut self) -> Vec<Rc<Record>> {
+        let tree = self.scopes[self.main].tree.clone();
+        let mut found = Vec::new();
+        for (item, declaration) in tree.items.iter().enumerate() {
+            if let Item::Declaration(d) = declaration
+                && ASKING.contains(&d.kind.text.as_str())
+            {
+                found.extend(self.record(ItemId { scope: self.main, item }, d.span));
+            }
+        }
+        found
+    }
+
+    /// Bindings that nothing asks for may have unknown units all the same.
+    pub fn idle_lets(&mut self) {
+        for scope in (0..self.scopes.len()).filter(|s| !self.scopes[*s].library).collect::<Vec<_>>() {
+            let tree = self.scopes[scope].tree.clone();
+            for (item, thing) in tree.items.iter().enumerate() {
+                if let Item::Let(binding) = thing
+                    && !self.used.contains(&ItemId { scope, item })
+                {
+                    self.units_in(&binding.value);
+                }
+            }
+        }
+    }
+
+    /// Whether the main file declares an object of a kind.
+    pub fn declares(&self, kind: &str) -> bool {
+        let items = &self.scopes[self.main].tree.items;
+        items.iter().any(|item| matches!(item, Item::Declaration(d) if d.kind.text == kind))
+    }
+
+    /// Every object of a kind in the main file, complete.
+    pub fn all(&mut self, kind: &str) -> Vec<Record> {
+        let tree = self.scopes[self.main].tree.clone();
+        let mut found = Vec::new();
+        for (item, declaration) in tree.items.iter().enumerate() {
+            let Item::Declaration(d) = declaration else { continue };
+            if d.kind.text != kind {
+                continue;
+            }
+            if let Some(record) = self.record(ItemId { scope: self.main, item }, d.span) {
+                found.push(self.complete(&record));
+            }
+        }
+        found
+    }
+
+    /// The object of a kind of which the main file has one, complete.
+    pub fn only(&mut self, kind: &str) -> Option<Record> {
+        self.all(kind).into_iter().next()
+    }
+
+    /// `solve` of a scene that says nothing about it.
+    pub fn default_solve(&mut self) -> Record {
+        let Some(kind) = schema::kind("solve") else { unreachable!("the vocabulary has `solve`") };
+        let span = Span::new(FileId(0), 0, 0);
+        self.complete(&Record::empty(kind, "solve", span))
+    }
+
+    /// Entries of the standard library that the scene names or leaves to a default, with their evidence.
+    pub fn library_entries(&self) -> Vec<LibraryEntry> {
+        let entry = |(id, span): (&ItemId, &Option<Span>)| {
+            let record = self.records.get(id)?.as_ref()?;
+            let evidence = match record.word("evidence")? {
+                "read" => Evidence::Read,
+                "derived" => Evidence::Derived,
+                _ => Evidence::Unchecked,
+            };
+            let file = &self.files.sources.get(record.span.file).name;
+            let module = file.trim_start_matches("std/").trim_end_matches(".track");
+            let source = record.text("source").unwrap_or_default().to_string();
+            Some(LibraryEntry { name: format!("{module}.{}", record.name), source, evidence, span: *span })
+        };
+        self.library_uses.iter().filter_map(entry).collect()
+    }
+
+    /// Warns of declarations of the main file that nothing asks for.
+    pub fn unused(&mut self, roots: &[ItemId]) {
+        let tree = self.scopes[self.main].tree.clone();
+        for (item, thing) in tree.items.iter().enumerate() {
+            let id = ItemId { scope: self.main, item };
+            let (name, span) = match thing {
+                Item::Declaration(d) => match &d.name {
+                    Some(name) => (name.text.clone(), name.span),
+                    None => (d.kind.text.clone(), d.kind.span),
+                },
+                Item::Let(l) => (l.name.text.clone(), l.name.span),
+                Item::Use(_) => continue,
+            };
+            let declared = self.scopes[self.main].names.get(&name) == Some(&item);
+            if declared
+                && !roots.contains(&id)
+                && !self.used.contains(&id)
+                && !matches!(self.records.get(&id), Some(None))
+            {
+                self.findings.report(
+                    Diagnostic::new(Code::E0412, format!("nothing uses `{name}`"))
+                        .at(span, "declared here")
+                        .help("take it out, or use it"),
+                );
+            }
+        }
+    }
+}

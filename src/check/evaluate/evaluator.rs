@@ -1,0 +1,194 @@
+//! The state of evaluation: the scopes, what has been evaluated of them, and how deep it is being followed.
+
+use super::number::Raw;
+use super::value::Record;
+use crate::check::findings::Findings;
+use crate::check::text::files::Files;
+use crate::check::text::loader::Loaded;
+use crate::check::text::scope::{ItemId, Scope, ScopeId};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::scenario::Origin;
+use crate::syntax::tree::{Item, Name, Value};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::rc::Rc;
+
+/// Turns the text of declarations into records, each once.
+pub struct Evaluator<'m> {
+    pub files: Files<'m>,
+    pub findings: Findings,
+    pub scopes: Vec<Scope>,
+    /// The main file.
+    pub main: ScopeId,
+    /// Where defaults are read: every module of the standard library is known there.
+    pub standard: ScopeId,
+    /// Where the text could not be read.
+    pub(super) unreadable: Vec<Span>,
+    /// Objects evaluated so far.
+    pub(super) records: HashMap<ItemId, Option<Rc<Record>>>,
+    /// Values of lets that are numbers.
+    pub(super) numbers: HashMap<ItemId, Option<Raw>>,
+    /// Defaults of the schema, parsed.
+    pub(super) defaults: HashMap<&'static str, Rc<Value>>,
+    /// Items being evaluated, with the place that asked.
+    stack: Vec<(ItemId, Span)>,
+    /// Values inside values at this moment, against [`DEEPEST`].
+    depth: usize,
+    /// Circles of names reported so far.
+    circles: BTreeSet<Vec<ItemId>>,
+    /// Items that something asked for.
+    pub(super) used: BTreeSet<ItemId>,
+    /// Entries of the standard library that are named outside of it, and where; nowhere for a default.
+    pub(super) library_uses: BTreeMap<ItemId, Option<Span>>,
+    /// Files that name modules of the standard library without bringing it in.
+    pub(super) without_library: BTreeSet<ScopeId>,
+    /// Values of another form: what was said of foreign signs in them is not worth following.
+    pub(super) superseded: Vec<Span>,
+}
+
+/// Values that lead to values: deeper than people write, shallow enough for any stack.
+const DEEPEST: usize = 1_200;
+/// What following a name costs of that.
+const NAME: usize = 20;
+
+impl<'m> Evaluator<'m> {
+    /// Begins with what has been loaded: nothing of it is evaluated yet.
+    pub fn new(loaded: Loaded<'m>) -> Evaluator<'m> {
+        let Loaded { files, scopes, main, standard, diagnostics } = loaded;
+        let lost = |d: &&Diagnostic| matches!(d.code, Code::E0101 | Code::E0104 | Code::E0106);
+        let unreadable = diagnostics.iter().filter(lost).filter_map(|d| Some(d.labels.first()?.span)).collect();
+        Evaluator {
+            files,
+            findings: Findings::new(diagnostics),
+            scopes,
+            main,
+            standard,
+            unreadable,
+            records: HashMap::new(),
+            numbers: HashMap::new(),
+            defaults: HashMap::new(),
+            stack: Vec::new(),
+            depth: 0,
+            circles: BTreeSet::new(),
+            used: BTreeSet::new(),
+            library_uses: BTreeMap::new(),
+            without_library: BTreeSet::new(),
+            superseded: Vec::new(),
+        }
+    }
+
+    /// Drops what was said of foreign signs in values that are of another form as a whole.
+    pub fn drop_superseded(&mut self) {
+        let within = |d: &Diagnostic, outer: &Span| {
+            d.labels
+                .first()
+                .is_some_and(|l| l.span.file == outer.file && l.span.start >= outer.start && l.span.start < outer.end)
+        };
+        let superseded = &self.superseded;
+        self.findings.diagnostics.retain(|d| d.code != Code::E0105 || !superseded.iter().any(|span| within(d, span)));
+    }
+
+    /// Goes a step further down, unless that is too deep for the machine.
+    pub fn deeper<T>(&mut self, steps: usize, span: Span, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        if self.depth + steps > DEEPEST {
+            self.findings.report(
+                Diagnostic::new(Code::E0103, "values lead to values that lead to values, too far to follow")
+                    .at(span, "given up here")
+                    .help("write the value itself"),
+            );
+            return None;
+        }
+        self.depth += steps;
+        let result = f(self);
+        self.depth -= steps;
+        result
+    }
+
+    /// Runs `f` inside an item, so that a circle of names is found and what it uses is noted. Mistakes found inside a
+    /// `let` get the place of use as their second label.
+    pub fn within<T>(&mut self, id: ItemId, place: Span, f: impl FnOnce(&mut Self) -> Option<T>) -> Option<T> {
+        self.used.insert(id);
+        if let Some(start) = self.stack.iter().position(|(item, _)| *item == id) {
+            // one circle is one mistake, wherever it is entered
+            let mut members: Vec<ItemId> = self.stack[start..].iter().map(|(item, _)| *item).collect();
+            members.sort_unstable();
+            if !self.circles.insert(members) {
+                return None;
+            }
+            let names: Vec<String> =
+                self.stack[start..].iter().map(|(item, _)| *item).chain([id]).map(|i| self.item_name(i)).collect();
+            let mut mistake =
+                Diagnostic::new(Code::E0203, format!("{} need each other", and_list(&names[..names.len() - 1])))
+                    .at(place, "closes the circle")
+                    .help(format!("the circle is {}", names.join(" -> ")));
+            if names.len() == 2 {
+                mistake.message = format!("`{}` needs itself", names[0]);
+            }
+            self.findings.report(mistake);
+            return None;
+        }
+        self.stack.push((id, place));
+        let before = self.findings.diagnostics.len();
+        let result = self.deeper(NAME, place, f);
+        self.stack.pop();
+        if matches!(self.scopes[id.scope].tree.items[id.item], Item::Let(_)) {
+            for diagnostic in &mut self.findings.diagnostics[before..] {
+                if diagnostic.labels.iter().all(|l| l.span != place) {
+                    diagnostic.labels.push(crate::diag::Label { span: place, text: "used here".into() });
+                }
+            }
+        }
+        result
+    }
+
+    fn item_name(&self, id: ItemId) -> String {
+        match &self.scopes[id.scope].tree.items[id.item] {
+            Item::Let(l) => l.name.text.clone(),
+            Item::Declaration(d) => d.name.as_ref().unwrap_or(&d.kind).text.clone(),
+            Item::Use(u) => u.path.text(),
+        }
+    }
+
+    /// The object of a declaration, if it has been evaluated and understood.
+    pub fn known(&self, id: ItemId) -> Option<&Rc<Record>> {
+        self.records.get(&id)?.as_ref()
+    }
+
+    /// Whether an item is being evaluated.
+    pub(super) fn follows(&self, id: ItemId) -> bool {
+        self.stack.iter().any(|(item, _)| *item == id)
+    }
+
+    /// Whether something inside a span could not be read as text.
+    pub fn unread(&self, span: Span) -> bool {
+        self.unreadable.iter().any(|s| s.file == span.file && s.start >= span.start && s.end <= span.end)
+    }
+
+    /// Whether a name may have been declared where the text could not be read.
+    pub fn unread_word(&self, name: &Name) -> bool {
+        let word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+        self.unreadable.iter().any(|s| {
+            s.file == name.span.file && self.files.sources.text(*s).split(|c| !word(c)).any(|w| w == name.text)
+        })
+    }
+
+    /// Where a value that stands in a scope comes from.
+    pub fn origin(&self, span: Span, scope: ScopeId) -> Origin {
+        if scope == self.standard {
+            Origin::Default
+        } else if self.scopes[scope].library {
+            Origin::Library(span)
+        } else {
+            Origin::Written(span)
+        }
+    }
+}
+
+/// `a`, `b` and `c`
+fn and_list(names: &[String]) -> String {
+    let quoted: Vec<String> = names.iter().map(|n| format!("`{n}`")).collect();
+    match quoted.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, first)) => format!("{} and {last}", first.join(", ")),
+        None => String::new(),
+    }
+}

@@ -1,0 +1,274 @@
+//! Numbers held against a measure: dimension, basis and range; intervals, places and spans.
+
+use super::evaluator::Evaluator;
+use super::number::{Number, Raw};
+use super::value::Val;
+use super::written::looks_like;
+use crate::check::text::scope::ScopeId;
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, Span};
+use crate::schema::{Form, Measure};
+use crate::syntax::tree::{Value, ValueKind};
+use crate::units::{Dimension, Quantity, number, parse_unit};
+
+/// What engineers call the parts of which a value is.
+const ALSO_CALLED: [(&str, &str); 6] = [
+    ("axle", "wheelset"),
+    ("half_sleeper", "seat"),
+    ("rail_seat", "seat"),
+    ("wagon", "vehicle"),
+    ("car", "vehicle"),
+    ("grain", "particle"),
+];
+
+impl Evaluator<'_> {
+    /// A number that a measure takes.
+    pub fn number(&mut self, measure: &'static Measure, value: &Value, scope: ScopeId) -> Option<Number> {
+        let raw = self.raw(value, scope)?;
+        self.hold(measure, raw)
+    }
+
+    /// Checks dimension, basis and range.
+    pub fn hold(&mut self, measure: &'static Measure, raw: Raw) -> Option<Number> {
+        let expected = Dimension::of(measure.unit);
+        if raw.dimension != expected {
+            self.wrong_dimension(&raw, measure, &format!("expected {}", Form::Number(*measure).describe()));
+            return None;
+        }
+        let (basis, factor) = self.basis(measure, &raw)?;
+        let unit = parse_unit(measure.unit).map_or(1.0, |u| u.factor);
+        let range_factor = measure.basis.map_or(1.0, |b| b.names[0].1);
+        let shown = raw.value * factor / range_factor / unit;
+        let slack = 1e-9 * shown.abs();
+        if shown < measure.min - slack || shown > measure.max + slack {
+            let per = measure.basis.map_or(String::new(), |b| format!(" per {}", b.names[0].0));
+            let unit = if measure.unit.is_empty() { String::new() } else { format!(" {}", measure.unit) };
+            self.findings.report(
+                Diagnostic::new(
+                    Code::E0405,
+                    format!(
+                        "expected {} .. {}{unit}{per}, found {}{unit}{per}",
+                        number(measure.min),
+                        number(measure.max),
+                        number(shown)
+                    ),
+                )
+                .at(raw.span, "out of range")
+                .maybe_help(self.in_range(measure, &raw, shown)),
+            );
+            return None;
+        }
+        Some(Number { value: raw.value, dimension: raw.dimension, basis, factor })
+    }
+
+    /// What was probably meant by a value out of range: a share without its sign, a sign too many, another prefix.
+    fn in_range(&self, measure: &Measure, raw: &Raw, shown: f64) -> Option<String> {
+        let fits = |x: f64| (measure.min..=measure.max).contains(&x);
+        let per = measure.basis.map_or(String::new(), |b| format!(" per {}", b.names[0].0));
+        if raw.bare && measure.unit == "%" && fits(raw.value) {
+            return Some(format!("write `{} %`", number(raw.value)));
+        }
+        if shown < 0.0 && fits(-shown) {
+            return Some(format!("write `{} {}{per}`, without the sign", number(-shown), measure.unit));
+        }
+        let thousands = [1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9].into_iter().map(|step| shown * step).find(|x| fits(*x))?;
+        let there = format!("{} {}{per}", number(thousands), measure.unit);
+        (!measure.unit.is_empty()).then(|| format!("`{there}` would be in range: is the prefix of the unit right?"))
+    }
+
+    /// Refuses `per` of a value that is of one thing only.
+    fn of_one_thing(&mut self, raw: &Raw) -> Option<()> {
+        let Some((name, span)) = &raw.basis else { return Some(()) };
+        let text = self.files.sources.text(raw.span).to_string();
+        self.findings.report(
+            Diagnostic::new(Code::E0304, format!("`per {name}` says nothing here: the value is of one thing only"))
+                .at(*span, "leave it out")
+                .help(format!("write `{text}`")),
+        );
+        None
+    }
+
+    /// What a value is `per`, and the factor from there to one rail.
+    pub fn basis(&mut self, measure: &'static Measure, raw: &Raw) -> Option<(Option<&'static str>, f64)> {
+        match (measure.basis, &raw.basis) {
+            (None, None) => Some((None, 1.0)),
+            (None, Some(_)) => {
+                self.of_one_thing(raw)?;
+                None
+            }
+            (Some(basis), Some((name, span))) => match basis.names.iter().find(|(n, _)| n == name) {
+                Some((known, factor)) => Some((Some(known), *factor)),
+                None => {
+                    let text = self.files.sources.text(raw.span).to_string();
+                    let known = || basis.names.iter().map(|(n, _)| *n);
+                    let called = ALSO_CALLED.iter().find(|(theirs, _)| theirs == name).map(|(_, ours)| *ours);
+                    let meant = called.filter(|ours| known().any(|n| n == *ours)).or_else(|| nearest(name, known()));
+                    let help = match meant {
+                        Some(meant) => format!("did you mean `{text} per {meant}`?"),
+                        None => format!("write `{text} per {}`, if that is what it is", basis.names[0].0),
+                    };
+                    self.findings.report(
+                        Diagnostic::new(Code::E0304, format!("expected {}, found `per {name}`", basis.list()))
+                            .at(*span, "not of this")
+                            .help(help),
+                    );
+                    None
+                }
+            },
+            (Some(basis), None) => match basis.assumed {
+                Some(name) => Some((Some(name), basis.factor(name)?)),
+                None => {
+                    let text = self.files.sources.text(raw.span).to_string();
+                    self.findings.report(
+                        Diagnostic::new(Code::E0304, format!("expected {}, found none of them", basis.list()))
+                            .at(raw.span, "could be of a half or of the whole")
+                            .help(format!("write `{text} per {}`, if that is what it is", basis.names[0].0)),
+                    );
+                    None
+                }
+            },
+        }
+    }
+
+    /// Refuses a value of another dimension, or without its unit.
+    pub(super) fn wrong_dimension(&mut self, raw: &Raw, measure: &Measure, expected: &str) {
+        let dimension = Dimension::of(measure.unit);
+        let text = self.files.sources.text(raw.span).to_string();
+        if raw.bare && raw.dimension.is_none() {
+            self.findings.report(
+                Diagnostic::new(Code::E0301, format!("{expected}, found a number without a unit"))
+                    .at(raw.span, "its unit is missing")
+                    .help(format!("write `{text} {}`, if that is the unit you meant", measure.unit)),
+            );
+            return;
+        }
+        self.findings.report(
+            Diagnostic::new(Code::E0302, format!("{expected}, found {}", raw.dimension.describe()))
+                .at(raw.span, Quantity::new(raw.value, raw.dimension).show(&raw.dimension.usual_unit()))
+                .help(crate::units::compare(dimension, raw.dimension)),
+        );
+    }
+
+    /// A whole number within a range.
+    pub(super) fn integer(&mut self, min: u32, max: u32, value: &Value, scope: ScopeId) -> Option<Number> {
+        let raw = self.raw(value, scope)?;
+        self.of_one_thing(&raw)?;
+        if !raw.dimension.is_none() {
+            self.findings.report(
+                Diagnostic::new(Code::E0302, format!("expected a whole number, found {}", raw.dimension.describe()))
+                    .at(raw.span, "has a unit"),
+            );
+            return None;
+        }
+        if raw.value.fract() != 0.0 || raw.value < f64::from(min) || raw.value > f64::from(max) {
+            self.findings.report(
+                Diagnostic::new(
+                    Code::E0405,
+                    format!("expected a whole number from {min} to {max}, found {}", number(raw.value)),
+                )
+                .at(raw.span, "out of range"),
+            );
+            return None;
+        }
+        Some(raw.into())
+    }
+
+    /// `from .. to`; a bare first end takes the unit of the second, `per` holds for both.
+    pub fn ends(&mut self, from: &Value, to: &Value, scope: ScopeId) -> Option<(Raw, Raw)> {
+        let (mut a, b) = (self.raw(from, scope), self.raw(to, scope)?);
+        if let (Some(raw), ValueKind::Number { unit: Some(unit), .. }) = (&mut a, unsigned(to))
+            && raw.bare
+        {
+            raw.value *= parse_unit(&unit.text).map_or(1.0, |u| u.factor);
+            raw.dimension = b.dimension;
+            raw.bare = false;
+        }
+        Some((a?, b))
+    }
+
+    /// A range of values that a measure takes.
+    pub fn interval(&mut self, measure: &'static Measure, value: &Value, scope: ScopeId) -> Option<Val> {
+        let (range, basis) = match &value.kind {
+            ValueKind::Per(inner, basis) => (&**inner, Some((basis.text.clone(), basis.span))),
+            _ => (value, None),
+        };
+        let ValueKind::Range(from, to) = &range.kind else {
+            self.wrong_form(&Form::Interval(*measure), looks_like(&value.kind), value.span);
+            return None;
+        };
+        let (a, b) = self.ends(from, to, scope)?;
+        let a = self.hold(measure, Raw { basis: basis.clone().or(a.basis.clone()), ..a });
+        let b = self.hold(measure, Raw { basis: basis.or(b.basis.clone()), ..b });
+        self.ascending(a?, b?, value.span)
+    }
+
+    fn ascending(&mut self, a: Number, b: Number, span: Span) -> Option<Val> {
+        if a.of_rail() <= b.of_rail() {
+            return Some(Val::Range(a, b));
+        }
+        let text = self.files.sources.text(span).to_string();
+        let swapped =
+            text.split_once("..").map(|(x, y)| format!("write the smaller end first: `{} .. {}`", y.trim(), x.trim()));
+        self.findings.report(
+            Diagnostic::new(Code::E0505, "a span must ascend")
+                .at(span, "its first end is the greater one")
+                .maybe_help(swapped),
+        );
+        None
+    }
+
+    /// A place in `m` or `sleepers`.
+    pub fn place(&mut self, value: &Value, scope: ScopeId) -> Option<Number> {
+        let raw = self.raw(value, scope)?;
+        self.hold_place(raw)
+    }
+
+    fn hold_place(&mut self, raw: Raw) -> Option<Number> {
+        if raw.dimension == Dimension::LENGTH || raw.dimension == Dimension::SLEEPERS {
+            self.of_one_thing(&raw)?;
+            return Some(raw.into());
+        }
+        let text = self.files.sources.text(raw.span).to_string();
+        let mistake = if raw.bare {
+            Diagnostic::new(Code::E0301, "expected a place in `m` or `sleepers`, found a number without a unit")
+                .at(raw.span, "its unit is missing")
+                .help(format!("write `{text} sleepers` or `{text} m`"))
+        } else {
+            Diagnostic::new(
+                Code::E0302,
+                format!("expected a place in `m` or `sleepers`, found {}", raw.dimension.describe()),
+            )
+            .at(raw.span, "not a place")
+        };
+        self.findings.report(mistake);
+        None
+    }
+
+    /// A span of places in `m` or `sleepers`.
+    pub fn span(&mut self, from: &Value, to: &Value, scope: ScopeId) -> Option<Val> {
+        let (a, b) = self.ends(from, to, scope)?;
+        let whole = from.span.to(to.span);
+        if a.bare && b.bare {
+            // one unit is missing, for both
+            self.hold_place(Raw { span: whole, ..b.clone() })?;
+        }
+        let (a, b) = (self.hold_place(a), self.hold_place(b));
+        let (a, b) = (a?, b?);
+        if a.dimension != b.dimension {
+            self.findings.report(
+                Diagnostic::new(Code::E0305, "both ends of a span are in `m`, or both in `sleepers`")
+                    .at(whole, "mixed")
+                    .help("a sleeper lies at its number times the spacing: write both ends in one of the two"),
+            );
+            return None;
+        }
+        self.ascending(a, b, whole)
+    }
+}
+
+fn unsigned(value: &Value) -> &ValueKind {
+    match &value.kind {
+        ValueKind::Negate(inner) => unsigned(inner),
+        kind => kind,
+    }
+}

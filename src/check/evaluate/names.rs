@@ -1,0 +1,169 @@
+//! Looks names up: what a path means in the file in which it stands.
+
+use super::evaluator::Evaluator;
+use super::value::{Slot, Val};
+use crate::check::text::scope::{ItemId, ScopeId};
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, Span};
+use crate::syntax::tree::{Item, Name, Path};
+
+/// What a path names, and how many of its names are left to follow inside.
+pub struct Target {
+    pub id: ItemId,
+    pub is_let: bool,
+    pub taken: usize,
+}
+
+impl Evaluator<'_> {
+    /// The declaration or let that a path starts with; a diagnostic where there is none. `words` are what could have
+    /// stood there besides names.
+    pub fn resolve(&mut self, path: &Path, scope: ScopeId, words: &[&str]) -> Option<Target> {
+        let first = &path.names[0];
+        // where a name is that of a module too, which has been reported, the longer path decides
+        if let (Some(&module), Some(second)) = (self.scopes[scope].modules.get(&first.text), path.names.get(1))
+            && let Some(target) = self.lookup(module, second, 2)
+        {
+            self.note_library(target.id, path.span, scope);
+            return Some(target);
+        }
+        if let Some(target) = self.lookup(scope, first, 1) {
+            return Some(target);
+        }
+        if self.scopes[scope].broken.contains(&first.text) {
+            return None;
+        }
+        if let Some(&module) = self.scopes[scope].modules.get(&first.text) {
+            let Some(second) = path.names.get(1) else {
+                self.findings.report(
+                    Diagnostic::new(Code::E0201, format!("`{}` is a module, not a value", first.text))
+                        .at(path.span, "name something in it")
+                        .maybe_help(
+                            self.scopes[module].names.keys().next().map(|n| format!("such as `{}.{n}`", first.text)),
+                        ),
+                );
+                return None;
+            };
+            let names: Vec<&str> = self.scopes[module].names.keys().map(String::as_str).collect();
+            let help = match nearest(&second.text, names.iter().copied()) {
+                Some(near) => format!("did you mean `{}.{near}`?", first.text),
+                None => format!("it has {}", names.join(", ")),
+            };
+            self.findings.report(
+                Diagnostic::new(Code::E0201, format!("module `{}` has no `{}`", first.text, second.text))
+                    .at(second.span, "not found")
+                    .help(help),
+            );
+            return None;
+        }
+        self.unknown_name(first, scope, words);
+        None
+    }
+
+    /// Notes where the user's files, or a default, name an entry of the standard library.
+    fn note_library(&mut self, id: ItemId, span: Span, scope: ScopeId) {
+        let of_library = |scope: ScopeId| self.scopes[scope].library;
+        if scope == self.standard {
+            self.library_uses.entry(id).or_insert(None);
+        } else if of_library(id.scope) && !of_library(scope) {
+            self.library_uses.entry(id).or_insert(Some(span)).get_or_insert(span);
+        }
+    }
+
+    fn lookup(&self, scope: ScopeId, name: &Name, taken: usize) -> Option<Target> {
+        let item = *self.scopes[scope].names.get(&name.text)?;
+        let is_let = matches!(self.scopes[scope].tree.items.get(item), Some(Item::Let(_)));
+        Some(Target { id: ItemId { scope, item }, is_let, taken })
+    }
+
+    fn unknown_name(&mut self, name: &Name, scope: ScopeId, words: &[&str]) {
+        if self.unread_word(name) {
+            return;
+        }
+        let here = &self.scopes[scope];
+        let candidates = here.names.keys().chain(here.modules.keys()).map(String::as_str).chain(words.iter().copied());
+        let near = nearest(&name.text, candidates).map(|n| format!("did you mean `{n}`?"));
+        let library = crate::check::text::library::MODULES.iter().any(|(m, _)| *m == name.text);
+        let help = if library && !here.modules.contains_key(&name.text) {
+            // one line is missing, however many modules it would have brought in
+            if !self.without_library.insert(scope) || self.wanted_library(name.span) {
+                return;
+            }
+            Some("it is a module of the standard library: begin the file with `use std`".to_string())
+        } else if let Some(entry) = self.entry_called(&name.text).filter(|_| near.is_none()) {
+            Some(format!("did you mean `{entry}` of the standard library?"))
+        } else if near.is_none() && crate::units::parse_unit(&name.text).is_ok() {
+            Some(format!("is `{}` a unit? it stands without blanks around `/` and `*`: `km/h`, `kN s/m`", name.text))
+        } else if near.is_none() && !words.is_empty() {
+            let words: Vec<String> = words.iter().map(|w| format!("`{w}`")).collect();
+            Some(format!("expected {}", crate::diag::or_list(&words)))
+        } else {
+            near
+        };
+        self.findings.report(
+            Diagnostic::new(Code::E0201, format!("nothing is called `{}`", name.text))
+                .at(name.span, "unknown name")
+                .maybe_help(help),
+        );
+    }
+
+    /// Whether a line of that file which has been reported was to bring the standard library in: `import std`.
+    fn wanted_library(&self, place: Span) -> bool {
+        let lost =
+            self.findings.diagnostics.iter().filter(|d| matches!(d.code, Code::E0101 | Code::E0105 | Code::E0204));
+        let mut labels = lost.filter_map(|d| d.labels.first()).filter(|label| label.span.file == place.file);
+        let text = &self.files.sources.get(place.file).text;
+        labels.any(|label| {
+            let start = text[..label.span.start as usize].rfind('\n').map_or(0, |i| i + 1);
+            let line = text[start..].lines().next().unwrap_or_default();
+            line.contains("std") && !line.contains('=')
+        })
+    }
+
+    /// The entry of the standard library with that name, else one with a name near to it, with its module.
+    fn entry_called(&self, name: &str) -> Option<String> {
+        let modules = &self.scopes[self.standard].modules;
+        let entries = modules.iter().flat_map(|(module, scope)| {
+            let names = self.scopes[*scope].names.keys();
+            names.map(move |entry| (module, entry))
+        });
+        let exact = entries.clone().find(|(_, entry)| *entry == name);
+        let found = exact.or_else(|| {
+            let near = nearest(name, entries.clone().map(|(_, entry)| entry.as_str())).filter(|_| name.len() > 3)?;
+            entries.clone().find(|(_, entry)| *entry == near)
+        });
+        found.map(|(module, entry)| format!("{module}.{entry}"))
+    }
+
+    /// The slot that the rest of a path names inside a declaration.
+    pub fn slot_at(&mut self, target: &Target, path: &Path) -> Option<Slot> {
+        let record = self.record(target.id, path.span)?;
+        let mut slot = Slot { value: Val::Record(record), span: path.span, origin: crate::scenario::Origin::Derived };
+        for name in &path.names[target.taken..] {
+            let Val::Record(record) = &slot.value else {
+                self.findings.report(
+                    Diagnostic::new(Code::E0201, format!("there is nothing inside a value to call `{}`", name.text))
+                        .at(name.span, "not an object"),
+                );
+                return None;
+            };
+            let record = record.clone();
+            match record.get(&name.text) {
+                Some(inner) => slot = inner.clone(),
+                None => {
+                    if self.field_of(record.kind, name).is_some() && !record.partial {
+                        self.findings.report(
+                            Diagnostic::new(
+                                Code::E0403,
+                                format!("`{}` says nothing about `{}`", record.name, name.text),
+                            )
+                            .at(name.span, "not given there")
+                            .at(record.span, "declared here"),
+                        );
+                    }
+                    return None;
+                }
+            }
+        }
+        Some(slot)
+    }
+}

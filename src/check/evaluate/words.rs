@@ -1,0 +1,112 @@
+//! Words that a field knows: enumerations, variants with arguments, responses and rules.
+
+use super::evaluator::Evaluator;
+use super::value::{Slot, Val};
+use crate::check::text::scope::ScopeId;
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic, or_list};
+use crate::scenario::response::Response;
+use crate::schema::Word;
+use crate::syntax::tree::{Argument, Name, ValueKind};
+use std::collections::BTreeMap;
+
+impl Evaluator<'_> {
+    /// The response of that name.
+    pub fn response(&mut self, name: &Name) -> Option<Response> {
+        let found = Response::of_name(&name.text);
+        if found.is_none() {
+            let near = nearest(&name.text, Response::ALL.iter().map(|r| r.name()));
+            let help = near.map_or_else(
+                || {
+                    format!(
+                        "the responses are {}",
+                        Response::ALL.iter().map(|r| r.name()).collect::<Vec<_>>().join(", ")
+                    )
+                },
+                |n| format!("did you mean `{n}`?"),
+            );
+            self.findings.report(
+                Diagnostic::new(Code::E0408, format!("no response is called `{}`", name.text))
+                    .at(name.span, "unknown")
+                    .help(help),
+            );
+        }
+        found
+    }
+
+    /// The name of a physics rule.
+    pub(super) fn rule(&mut self, name: &Name) -> Option<Val> {
+        if Code::of_rule(&name.text).is_some() {
+            return Some(Val::Text(name.text.clone()));
+        }
+        let rules: Vec<&str> = Code::ALL.iter().filter_map(|c| c.rule()).collect();
+        let help = nearest(&name.text, rules.iter().copied())
+            .map_or_else(|| format!("the rules are {}", rules.join(", ")), |n| format!("did you mean `{n}`?"));
+        self.findings.report(
+            Diagnostic::new(Code::E0408, format!("no rule is called `{}`", name.text))
+                .at(name.span, "unknown")
+                .help(help),
+        );
+        None
+    }
+
+    /// Refuses a word that a form does not know.
+    pub(super) fn unknown_word(&mut self, name: &Name, words: &[&'static Word]) {
+        let known: Vec<&str> = words.iter().filter(|w| !w.planned).map(|w| w.name).collect();
+        let help = nearest(&name.text, known.iter().copied()).map(|n| format!("did you mean `{n}`?"));
+        let quoted: Vec<String> = known.iter().map(|w| format!("`{w}`")).collect();
+        self.findings.report(
+            Diagnostic::new(Code::E0408, format!("expected {}, found `{}`", or_list(&quoted), name.text))
+                .at(name.span, "unknown word")
+                .maybe_help(help),
+        );
+    }
+
+    /// A word with its arguments, by place or by name.
+    pub fn word(&mut self, word: &'static Word, arguments: &[Argument], name: &Name, scope: ScopeId) -> Option<Val> {
+        if word.planned {
+            self.findings.report(
+                Diagnostic::new(Code::E0411, format!("this version does not know `{}` yet", word.name))
+                    .at(name.span, "planned"),
+            );
+            return None;
+        }
+        let mut slots = BTreeMap::new();
+        // what could not be read may have run on into the next argument
+        let mut unknown = arguments.iter().any(|argument| argument.value.kind == ValueKind::Error);
+        for (i, argument) in arguments.iter().enumerate() {
+            let field = match &argument.name {
+                Some(name) => word.arguments.iter().find(|a| a.name == name.text),
+                None => word.arguments.get(i),
+            };
+            let Some(field) = field else {
+                let names: Vec<String> = word.arguments.iter().map(|a| format!("`{}`", a.name)).collect();
+                let place = argument.name.as_ref().map_or(argument.value.span, |n| n.span);
+                let help =
+                    if names.is_empty() { "it takes none".into() } else { format!("it takes {}", or_list(&names)) };
+                self.findings.report(
+                    Diagnostic::new(Code::E0402, format!("`{}` has no such argument", word.name))
+                        .at(place, "unknown argument")
+                        .help(help),
+                );
+                unknown = true;
+                continue;
+            };
+            let slot = self.fit(&field.form, &argument.value, scope);
+            if slots.insert(field.name, slot).is_some() {
+                self.findings.report(
+                    Diagnostic::new(Code::E0404, format!("`{}` of `{}` is given twice", field.name, word.name))
+                        .at(argument.value.span, "again here"),
+                );
+            }
+        }
+        if unknown {
+            // it may stand for one that seems to be missing
+            let origin = self.origin(name.span, scope);
+            for argument in word.arguments {
+                slots.entry(argument.name).or_insert(Slot { value: Val::Error, span: name.span, origin });
+            }
+        }
+        Some(Val::Word { word, arguments: slots })
+    }
+}

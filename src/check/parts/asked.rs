@@ -1,0 +1,93 @@
+//! What the scene asks of the model under the sleepers, and what its parts have to bring along for it.
+
+use crate::check::evaluate::value::{Record, Val};
+use crate::scenario::Tier;
+use crate::solvers::foundation::Method;
+
+/// What the parts of a track have to bring along.
+#[derive(Debug, Clone, Copy)]
+pub struct Asked {
+    /// Grains give the stiffness of the supports: layers without a modulus do instead of a `support`.
+    pub layers_do: bool,
+    /// By which layers with a modulus become the support of a sleeper.
+    pub support_method: Method,
+    /// The lowest layer goes on without end.
+    pub quiet_base: bool,
+    /// Only test loads on sleepers, or on the bed itself, act: a rail is not needed.
+    pub rig: bool,
+    /// A plate lies on the bed: sleepers are not needed either.
+    pub plate: bool,
+    /// Trains run: what is counted is axles.
+    pub traffic: bool,
+}
+
+/// The tier that `solve` names.
+pub fn tier(solve: &Record) -> Tier {
+    match solve.word("substructure") {
+        Some("law") => Tier::Law,
+        Some("cells") => Tier::Cells,
+        Some("zone") => Tier::Zone,
+        Some("full") => Tier::Full,
+        _ => Tier::Auto,
+    }
+}
+
+impl Default for Asked {
+    fn default() -> Self {
+        let support_method = Method::StressCone;
+        Asked { layers_do: false, support_method, quiet_base: false, rig: false, plate: false, traffic: false }
+    }
+}
+
+impl Asked {
+    /// Reads what a scene asks from its complete records.
+    pub fn by_scene(solve: &Record, track: &Record, traffic: bool, loads: &[Record]) -> Asked {
+        let tier = tier(solve);
+        let by_layers = tier == Tier::Auto && forms(track).any(stands_on_grains);
+        let layers_do = tier.has_grains() || by_layers;
+        let on = |load: &Record, words: &[&str]| load.word("on").is_some_and(|word| words.contains(&word));
+        let under_load = !loads.is_empty() && loads.iter().all(|load| on(load, &["sleepers", "bed"]));
+        let rig = layers_do && !traffic && under_load;
+        let plate = rig && loads.iter().all(|load| on(load, &["bed"]));
+        let support_method = method(solve).unwrap_or(Method::StressCone);
+        let quiet_base = track.word("base") == Some("quiet");
+        Asked { layers_do, support_method, quiet_base, rig, plate, traffic }
+    }
+}
+
+/// The trackforms of a track, section by section.
+pub fn forms(track: &Record) -> impl Iterator<Item = &Record> {
+    let pairs = match track.get("sections").map(|slot| &slot.value) {
+        Some(Val::Pairs(pairs)) => pairs.as_slice(),
+        _ => &[],
+    };
+    pairs.iter().filter_map(|(form, _)| if let Val::Record(form) = &form.value { Some(&**form) } else { None })
+}
+
+fn method(solve: &Record) -> Option<Method> {
+    let Val::Word { word, arguments } = &solve.get("support_method")?.value else { return None };
+    if word.name == "stress_cone" {
+        return Some(Method::StressCone);
+    }
+    match arguments.get("neighbours")?.value {
+        Val::Number(n) => Some(Method::LayeredElastic { neighbours: n.value }),
+        _ => None,
+    }
+}
+
+fn has_layers(form: &Record) -> bool {
+    matches!(form.get("layers").map(|slot| &slot.value), Some(Val::Pairs(pairs)) if !pairs.is_empty())
+}
+
+/// Whether a trackform has layers and nothing else that carries its sleepers.
+pub fn stands_on_layers(form: &Record) -> bool {
+    let none = |field: &str| matches!(form.get(field).map(|s| &s.value), None | Some(Val::Word { .. }));
+    has_layers(form) && none("slab") && none("support") && form.word("support") != Some("rigid")
+}
+
+/// Whether only grains can say how stiff those layers are.
+pub fn stands_on_grains(form: &Record) -> bool {
+    let Some(Val::Pairs(pairs)) = form.get("layers").map(|slot| &slot.value) else { return false };
+    let without = |record: &Record| record.kind.name == "granular" && record.get("youngs_modulus").is_none();
+    stands_on_layers(form) && pairs.iter().any(|(key, _)| matches!(&key.value, Val::Record(r) if without(r)))
+}

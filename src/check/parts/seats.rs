@@ -1,0 +1,177 @@
+//! The seats of a section: where a field varies along the track, each seat takes the value of its place.
+
+use super::ground::{Under, carried};
+use super::spring::{LaidSpring, lay_spring, pad_at, spring_at};
+use super::support::Supports;
+use super::trackform::{Base, Bed, Built, Cushion};
+use crate::check::evaluate::evaluator::Evaluator;
+use crate::check::evaluate::value::Val;
+use crate::check::findings::Findings;
+use crate::check::places::along::{Laid, lay};
+use crate::check::places::chainage::Places;
+use crate::check::places::cover::Cover;
+use crate::diag::{Code, Diagnostic};
+use crate::scenario::{Foot, Given, Origin, Seat, Seating, Support, Usp};
+use crate::schema;
+use crate::units::number;
+use std::ops::Range;
+
+/// A [`Base`] laid along the track.
+enum LaidFoot<'a> {
+    Sleeper { mass: Given, support: LaidSupport<'a>, seating: Option<Seating>, usp: Option<(&'a Cushion, Laid)> },
+    Fixed(Foot),
+}
+
+/// What carries sleepers.
+enum LaidSupport<'a> {
+    Stated(LaidSpring<'a>),
+    /// Computed from the layers of each seat; damping over stiffness is that of a support that does not say it.
+    OfLayers {
+        time: Given,
+    },
+}
+
+fn scaled(given: Given, by: f64) -> Given {
+    if by == 1.0 { given } else { Given { value: by * *given, ..given } }
+}
+
+/// Some seats of a section, each with the values of its place. Whatever varies is laid out, even beside parts that are not
+/// understood.
+pub fn lay_seats(
+    built: &Built,
+    places: &Places,
+    section: usize,
+    range: Range<usize>,
+    under: Under<'_>,
+    supports: &mut Supports,
+    findings: &mut Findings,
+) -> Option<Vec<Seat>> {
+    let (start, end) = places.sections[section];
+    let cover = |what: &str| Cover {
+        what: format!("the {what} of trackform `{}`", built.name),
+        start,
+        end,
+        seats: Some(range.clone()),
+        smooth: false,
+    };
+    let pad = match &built.pad {
+        Some(Some(pad)) => lay_spring(pad, places, "pad", &cover, findings).map(Some),
+        Some(None) => Some(None),
+        None => None,
+    };
+    let settlement = built.settlement.as_ref().and_then(|along| lay(along, places, &cover("settlement"), findings));
+    let foot = match built.foot.as_ref() {
+        Some(Base::Sleeper(bed)) => lay_bed(built, bed, places, range.clone(), &cover, supports, findings),
+        Some(Base::Rigid) => Some(LaidFoot::Fixed(Foot::Rigid)),
+        Some(Base::Slab) => Some(LaidFoot::Fixed(Foot::Slab)),
+        None => None,
+    };
+    let carried = carried(built, places, section, range.clone(), under, supports, findings);
+    let (pad, settlement, foot, carried) = (pad?, settlement?, foot?, carried?);
+    let mut seats = Vec::with_capacity(range.len());
+    for (i, &(x, section, transition, number)) in places.seats[range].iter().enumerate() {
+        let pad = match &pad {
+            Some(pad) => Some(pad_at(pad, x, findings)?),
+            None => None,
+        };
+        let foot = match &foot {
+            LaidFoot::Sleeper { mass, support, seating, usp } => {
+                let support = match support {
+                    LaidSupport::Stated(spring) => {
+                        let by = carried.get(i).map_or(1.0, |carried| carried.change);
+                        let (stiffness, damping) = spring_at(spring, x, findings)?;
+                        let (stiffness, damping) = (scaled(stiffness, by), scaled(damping, by));
+                        Some(Support { stiffness, damping, seating: *seating })
+                    }
+                    LaidSupport::OfLayers { time } => carried.get(i).map(|carried| {
+                        let stiffness = Given::derived(carried.stiffness);
+                        let damping = Given { value: **time * *stiffness, origin: time.origin };
+                        Support { stiffness, damping, seating: *seating }
+                    }),
+                };
+                let usp = usp.as_ref().map(|(usp, modulus)| usp.at(modulus, x));
+                Foot::Sleeper { mass: *mass, support, usp }
+            }
+            LaidFoot::Fixed(foot) => foot.clone(),
+        };
+        let (initial_settlement, sleeper) = (*settlement.value_at(x), built.sleeper_body());
+        let onto_subgrade = carried.get(i).map(|carried| carried.onto_subgrade);
+        seats.push(Seat { number, transition, x, section, pad, foot, sleeper, initial_settlement, onto_subgrade });
+    }
+    Some(seats)
+}
+
+fn lay_bed<'a>(
+    built: &Built,
+    bed: &'a Bed,
+    places: &Places,
+    seats: Range<usize>,
+    cover: &dyn Fn(&str) -> Cover,
+    supports: &Supports,
+    findings: &mut Findings,
+) -> Option<LaidFoot<'a>> {
+    let support = match &bed.support {
+        _ if bed.by_layers => supports.damping_time.map(|time| LaidSupport::OfLayers { time }),
+        Some(support) => lay_spring(support, places, "support", cover, findings).map(LaidSupport::Stated),
+        None => None,
+    };
+    let usp = match &bed.usp {
+        Some(Some(usp)) => {
+            lay(&usp.bedding_modulus, places, &cover("bedding modulus"), findings).map(|laid| Some((usp, laid)))
+        }
+        Some(None) => Some(None),
+        None => None,
+    };
+    let soft = match (bed.seating, &support) {
+        (Some(Some(seating)), Some(LaidSupport::Stated(support))) => {
+            let seats = places.seats[seats].iter().map(|seat| seat.0);
+            seats_softly(built, seating, support, seats, findings)
+        }
+        _ => true,
+    };
+    let (mass, support, seating, usp) = (bed.mass?, support?, bed.seating?, usp?);
+    soft.then_some(LaidFoot::Sleeper { mass, support, seating, usp })
+}
+
+/// The default of a support's `damping_time`.
+pub fn usual_damping_time(eval: &mut Evaluator<'_>) -> Option<Given> {
+    let support = schema::kind("support")?;
+    let (name, text) = support.alternatives.iter().find_map(|alternative| alternative.default)?;
+    match eval.default_value(&support.field(name)?.form, text).value {
+        Val::Number(time) => Some(Given { value: time.value, origin: Origin::Default }),
+        _ => None,
+    }
+}
+
+/// A support grows stiffer as it closes up, never softer.
+fn seats_softly(
+    built: &Built,
+    seating: Seating,
+    support: &LaidSpring<'_>,
+    mut seats: impl Iterator<Item = f64>,
+    findings: &mut Findings,
+) -> bool {
+    let Some(stiffness) = seats.find_map(|x| Some(support.stiffness.value_at(x)).filter(|k| **k < *seating.stiffness))
+    else {
+        return true;
+    };
+    let shown = |given: Given| format!("{} MN/m per seat", number(*given / 1e6));
+    let message = format!("the support of trackform `{}` seats itself more stiffly than it carries", built.name);
+    let mut mistake = Diagnostic::new(Code::E0407, message);
+    for (given, what) in [(seating.stiffness, "while it seats itself"), (stiffness, "under load")] {
+        if let Some(span) = given.origin.span() {
+            mistake = mistake.at(span, format!("{} {what}", shown(given)));
+        }
+    }
+    findings.report(mistake.help("ballast closes up under load: give `seating` the smaller stiffness"));
+    false
+}
+
+impl Cushion {
+    fn at(&self, modulus: &Laid, x: f64) -> Usp {
+        let modulus = modulus.value_at(x);
+        let stiffness = Given { value: *modulus * self.half_area, origin: modulus.origin };
+        let damping = Given { value: *self.time * *stiffness, origin: Origin::Derived };
+        Usp { stiffness, damping, thickness: self.thickness }
+    }
+}

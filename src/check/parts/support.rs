@@ -1,0 +1,187 @@
+//! The support of a seat from what lies under it: a function of plain data, each answer computed once.
+
+use super::asked::Asked;
+use crate::scenario::{ApproachSlab, Given, SleeperBody};
+use crate::solvers::foundation::{Bearing, Below, Footing, FoundationError, Layer};
+use rayon::prelude::*;
+use std::collections::{BTreeMap, HashMap};
+
+/// Poisson's ratio of concrete.
+const CONCRETE: f64 = 0.2;
+/// Odemark's correction for a plate on softer ground.
+const ODEMARK: f64 = 0.9;
+/// What lies under one seat, SI.
+pub struct Stack {
+    /// How half of the sleeper lies, and how far its neighbours are.
+    pub bearing: Bearing,
+    /// Downwards.
+    pub layers: Vec<Layer>,
+    /// An approach slab in these layers, and how far the seat is from its hinge, as share of its length.
+    pub plate: Option<(ApproachSlab, f64)>,
+    /// The layers with which the stated support of the seat goes, where a stretch has replaced them.
+    pub before: Option<Vec<Layer>>,
+}
+
+/// What layers are to one seat.
+#[derive(Debug, Clone, Copy)]
+pub struct Carried {
+    /// N/m.
+    pub stiffness: f64,
+    /// Pressure on the lowest layer for each newton on the seat, 1/m^2.
+    pub onto_subgrade: f64,
+    /// Stiffness over that of the layers before.
+    pub change: f64,
+}
+
+/// Stiffness, N/m, and pressure on the lowest layer for each newton, 1/m^2.
+type Found = Result<(f64, f64), FoundationError>;
+
+/// A sleeper's half on a stack of layers.
+type Stacked = (Bearing, Vec<Layer>);
+
+/// A question that has no answer yet, under its key.
+type Question<'a> = (&'a Vec<u64>, &'a Stacked);
+
+/// How supports are computed, and what has been: seats under several stretches are asked for again.
+pub struct Supports {
+    pub asked: Asked,
+    /// Damping over stiffness of a support that layers make, s.
+    pub damping_time: Option<Given>,
+    /// Answers by the bits of what was asked.
+    found: HashMap<Vec<u64>, Found>,
+    footings: HashMap<Vec<u64>, Footing>,
+}
+
+/// How half a sleeper lies: its bearing area under the seat as far as the sleeper reaches.
+pub fn bearing(body: &SleeperBody, spacings: [f64; 2]) -> Bearing {
+    let half = 0.5 * body.length;
+    let length = (0.5 * body.base_area / body.base_width).min(half);
+    let to_centre = (0.5 * (body.seat_distance - length)).clamp(0.0, half - length);
+    Bearing { width: body.base_width, length, spacings, to_centre: Some(to_centre) }
+}
+
+/// Thickness of the ground that spreads a load as a plate on it does, m: `0.9 t (E / E_ground)^(1/3)` (Odemark 1949).
+fn equivalent(plate: &ApproachSlab, ground: f64) -> f64 {
+    *plate.thickness * (ODEMARK * (*plate.youngs_modulus / ground).cbrt()).max(1.0)
+}
+
+/// Layers with a plate in them that displaces what it fills. Of its own compliance the ground below keeps the share `yields`.
+///
+/// In the stress cone it spreads the load as its [`equivalent`] of the ground below. A hinge keeps its end in place. A stiff
+/// plate that turns about it moves by s / L of its far end at a distance s, and a load there turns it by s / L of what it
+/// would at the far end: the compliance of the ground below goes with `(s / L)^2`.
+fn with_plate(layers: Vec<Layer>, plate: &ApproachSlab, yields: f64) -> Vec<Layer> {
+    let (top, bottom) = (*plate.depth, *plate.depth + *plate.thickness);
+    let (mut above, mut below) = (Vec::new(), Vec::new());
+    let mut ground = None;
+    let mut z = 0.0;
+    for layer in layers {
+        let end = z + layer.thickness;
+        let part = |from: f64, to: f64| Layer { thickness: (to - from).max(0.0), ..layer };
+        if z < top {
+            above.push(part(z, end.min(top)));
+        }
+        if end > bottom {
+            ground = ground.or(Some(layer));
+            let youngs_modulus = (layer.youngs_modulus / yields).min(layer.youngs_modulus.max(*plate.youngs_modulus));
+            below.push(Layer { youngs_modulus, ..part(z.max(bottom), end) });
+        }
+        z = end;
+    }
+    let spread = match ground.or(above.last().copied()) {
+        Some(ground) => (equivalent(plate, ground.youngs_modulus) / *plate.thickness * ground.spread.tan()).atan(),
+        None => 0.0,
+    };
+    above.push(Layer {
+        thickness: *plate.thickness,
+        youngs_modulus: *plate.youngs_modulus,
+        poisson_ratio: CONCRETE,
+        density: *plate.density,
+        spread,
+    });
+    above.extend(below);
+    above
+}
+
+fn key(bearing: &Bearing, stack: &[Layer]) -> Vec<u64> {
+    let plan = [bearing.width, bearing.length, bearing.spacings[0], bearing.spacings[1]];
+    let layer = |l: &Layer| [l.thickness, l.youngs_modulus, l.poisson_ratio, l.spread];
+    plan.into_iter().chain(bearing.to_centre).chain(stack.iter().flat_map(layer)).map(f64::to_bits).collect()
+}
+
+/// The answer for one stack under a bearing.
+fn solve(asked: &Asked, footing: &mut Footing, stack: &[Layer]) -> Found {
+    let below = match stack.last() {
+        Some(ground) if asked.quiet_base => {
+            Below::HalfSpace { youngs_modulus: ground.youngs_modulus, poisson_ratio: ground.poisson_ratio }
+        }
+        _ => Below::Rigid,
+    };
+    let support = footing.support(stack, below)?;
+    Ok((support.stiffness, support.pressures[stack.len() - 1]))
+}
+
+impl Supports {
+    /// Begins without any answer.
+    pub fn new(asked: Asked, damping_time: Option<Given>) -> Supports {
+        Supports { asked, damping_time, found: HashMap::new(), footings: HashMap::new() }
+    }
+
+    /// What stacks carry, in their order.
+    ///
+    /// # Errors
+    ///
+    /// Where the layers of a seat, or those before, carry no sleeper.
+    pub fn carried(&mut self, stacks: &[Stack]) -> Vec<Result<Carried, FoundationError>> {
+        let with = |stack: &Stack, plate: &ApproachSlab, yields: f64| {
+            (stack.bearing, with_plate(stack.layers.clone(), plate, yields))
+        };
+        let whole = |stack: &Stack| match &stack.plate {
+            Some((plate, lever)) => with(stack, plate, lever * lever),
+            None => (stack.bearing, stack.layers.clone()),
+        };
+        let pressed = |stack: &Stack| stack.plate.as_ref().map(|(plate, _)| with(stack, plate, 1.0));
+        let before = |stack: &Stack| stack.before.as_ref().map(|layers| (stack.bearing, layers.clone()));
+        let found = self.answers(&stacks.iter().map(whole).collect::<Vec<_>>());
+        let mut pressed = self.answers(&stacks.iter().filter_map(pressed).collect::<Vec<_>>()).into_iter();
+        let mut before = self.answers(&stacks.iter().filter_map(before).collect::<Vec<_>>()).into_iter();
+        let carried = |(stack, found): (&Stack, Found)| {
+            let pressed = stack.plate.as_ref().and_then(|(_, lever)| Some((*lever, pressed.next()?)));
+            let before = stack.before.as_ref().and_then(|_| before.next());
+            let (stiffness, onto_subgrade) = found?;
+            // of the load on a hinged plate the structure bears what the ground does not
+            let onto_subgrade = match pressed {
+                Some((lever, Ok((_, pressure)))) => lever * pressure,
+                _ => onto_subgrade,
+            };
+            let change = before.transpose()?.map_or(1.0, |(before, _)| stiffness / before);
+            Ok(Carried { stiffness, onto_subgrade, change })
+        };
+        stacks.iter().zip(found).map(carried).collect()
+    }
+
+    /// Answers in the order of what is asked; each is computed once in a check, and those under different bearings side by
+    /// side.
+    fn answers(&mut self, asked: &[Stacked]) -> Vec<Found> {
+        let settings = self.asked;
+        let Supports { found, footings, .. } = self;
+        let keys: Vec<Vec<u64>> = asked.iter().map(|(bearing, stack)| key(bearing, stack)).collect();
+        let missing: BTreeMap<&Vec<u64>, &Stacked> =
+            keys.iter().zip(asked).filter(|(key, _)| !found.contains_key(*key)).collect();
+        // keys begin with the bearing, so stacks under the same one stand together
+        let missing: Vec<Question<'_>> = missing.into_iter().collect();
+        let groups = missing.chunk_by(|(_, (a, _)), (_, (b, _))| a == b).map(|group| {
+            let bearing = group[0].1.0;
+            let footing = footings.remove(&key(&bearing, &[]));
+            (footing.unwrap_or_else(|| Footing::new(bearing, settings.support_method)), group)
+        });
+        let mut groups: Vec<(Footing, &[Question<'_>])> = groups.collect();
+        let answers: Vec<Vec<Found>> = groups
+            .par_iter_mut()
+            .map(|(footing, group)| group.iter().map(|(_, (_, stack))| solve(&settings, footing, stack)).collect())
+            .collect();
+        found.extend(missing.iter().map(|(key, _)| (*key).clone()).zip(answers.into_iter().flatten()));
+        footings.extend(groups.into_iter().map(|(footing, group)| (key(&group[0].1.0, &[]), footing)));
+        keys.iter().map(|key| found[key]).collect()
+    }
+}

@@ -1,0 +1,186 @@
+//! What stretches make of the seats under them, and of the auxiliary rails beside these.
+
+use super::ground::{Regrade, Under};
+use super::groundwork::has_ground;
+use super::rails::auxiliary_rails;
+use super::seats::lay_seats;
+use super::stretch::{Instance, extended_by};
+use super::support::Supports;
+use super::trackform::trackform;
+use crate::check::evaluate::evaluator::Evaluator;
+use crate::check::evaluate::value::{Change, Record, Val};
+use crate::check::findings::Findings;
+use crate::check::places::chainage::{Places, TINY};
+use crate::diag::{Code, Diagnostic};
+use crate::scenario::{AuxiliaryRailSpan, Layer, Seat};
+use std::ops::Range;
+use std::rc::Rc;
+
+/// What only sleepers on a support that gives have.
+const OF_SLEEPERS: [&str; 5] = ["sleeper", "usp", "support", "settlement", "layers"];
+
+/// A section before stretches change it.
+pub struct Unchanged<'a> {
+    pub form: &'a Record,
+    pub section: usize,
+    /// `None` where they are not understood.
+    pub layers: Option<&'a [Layer]>,
+}
+
+/// Gives the seats of a section what the stretches over them say; whether all was understood.
+///
+/// The trackform under a set of stretches is asked for here, since only stretches that stand say which of them meet.
+pub fn change_seats(
+    unchanged: &Unchanged<'_>,
+    stood: &[Instance],
+    places: &Places,
+    laid: &mut [Seat],
+    supports: &mut Supports,
+    eval: &mut Evaluator<'_>,
+) -> bool {
+    let whole = places.seats_of(unchanged.section);
+    let here: Vec<(&Instance, Range<usize>)> =
+        stood.iter().filter_map(|instance| Some((instance, instance.common(&whole)?))).collect();
+    let mut put = |stretches: &[&Instance], seats: Range<usize>| {
+        let changed = changed(unchanged, stretches, places, seats.clone(), supports, eval);
+        if let Some(changed) = &changed {
+            laid[seats.start - whole.start..seats.end - whole.start].clone_from_slice(changed);
+        }
+        changed.is_some()
+    };
+    // each alone first, so that a mistake in one is said once
+    let wrong: Vec<&Instance> = here
+        .iter()
+        .filter(|(instance, seats)| !put(&[instance], seats.clone()))
+        .map(|(instance, _)| *instance)
+        .collect();
+    let mut sound = wrong.is_empty();
+    let told = |stretches: &[&Instance]| wrong.iter().any(|w| stretches.iter().any(|s| std::ptr::eq(*w, *s)));
+    let over =
+        |seat: usize| here.iter().filter(|(_, seats)| seats.contains(&seat)).map(|(i, _)| *i).collect::<Vec<_>>();
+    let same =
+        |a: &[&Instance], b: &[&Instance]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| std::ptr::eq(*a, *b));
+    let mut start = whole.start;
+    while start < whole.end && here.len() > 1 {
+        let stretches = over(start);
+        let end = (start + 1..whole.end).find(|seat| !same(&over(*seat), &stretches)).unwrap_or(whole.end);
+        if stretches.len() > 1 && !told(&stretches) {
+            sound &= put(&stretches, start..end);
+        }
+        start = end;
+    }
+    sound
+}
+
+/// Seats of one section under the same stretches.
+fn changed(
+    unchanged: &Unchanged<'_>,
+    stretches: &[&Instance],
+    places: &Places,
+    seats: Range<usize>,
+    supports: &mut Supports,
+    eval: &mut Evaluator<'_>,
+) -> Option<Vec<Seat>> {
+    let Unchanged { form, section, layers } = *unchanged;
+    let extended = extended_by(form, stretches, eval);
+    for instance in stretches {
+        stands_right(instance, form, &extended, &places.named(&seats), &mut eval.findings)?;
+    }
+    let complete = eval.complete(&extended);
+    let built = trackform(&complete, true, supports.asked, &mut eval.files, &mut eval.findings);
+    if !stretches.iter().any(|instance| instance.regrades()) {
+        return lay_seats(&built, places, section, seats, Under::Section(layers), supports, &mut eval.findings);
+    }
+    let before = layers?;
+    let scales = !stretches.iter().any(|instance| instance.sets("support"));
+    for instance in stretches.iter().filter(|_| before.is_empty()) {
+        has_ground(instance, form, &mut eval.findings)?;
+    }
+    let plate = stretches.iter().find_map(|instance| instance.plate);
+    lay_seats(
+        &built,
+        places,
+        section,
+        seats,
+        Under::Regraded(&Regrade { before, plate, scales }),
+        supports,
+        &mut eval.findings,
+    )
+}
+
+/// Refuses what only sleepers have where there are none.
+fn stands_right(
+    instance: &Instance,
+    form: &Record,
+    under: &Record,
+    seats: &str,
+    findings: &mut Findings,
+) -> Option<()> {
+    let (ground, what) = match (form.record("slab").and(form.get("slab")), under.word("support")) {
+        (Some(slab), _) => (slab.span, "a slab"),
+        (None, Some("rigid")) => (under.get("support")?.span, "rigid supports"),
+        _ => return Some(()),
+    };
+    let has = |name: &str| match under.get(name).map(|slot| &slot.value) {
+        Some(Val::Number(n)) => n.value != 0.0,
+        Some(Val::Pairs(pairs)) => !pairs.is_empty(),
+        value => matches!(value, Some(Val::Profile(_) | Val::Record(_))),
+    };
+    let wrong = |change: &&Change| {
+        let name = change.field.path.names[0].text.as_str();
+        OF_SLEEPERS.contains(&name) && has(name)
+    };
+    let path = instance.stretch.changes.iter().find(wrong).map(|change| &change.field.path);
+    let plate = instance.stretch.get("approach_slab").filter(|_| instance.plate.is_some());
+    let (path, at) = match (path, plate) {
+        (Some(path), _) => (path.text(), path.span),
+        (None, Some(slot)) => ("approach_slab".into(), slot.span),
+        (None, None) => return Some(()),
+    };
+    let message = format!("stretch `{}` sets `{path}`, but {seats} stand on {what}", instance.stretch.name);
+    findings.report(
+        Diagnostic::new(Code::E0418, message)
+            .at(at, "only sleepers on a support have it")
+            .at(instance.over(), "reaches too far")
+            .at(ground, what)
+            .help(
+                "end the span at the last sleeper, as `over = -20 .. -1 sleepers` does; pads can differ on both sides",
+            ),
+    );
+    None
+}
+
+/// Auxiliary rails along the track: those of sections, cut where a stretch says otherwise, and those of stretches.
+pub fn auxiliary_spans(
+    forms: &[Rc<Record>],
+    stood: &[Instance],
+    places: &Places,
+    of_sections: Vec<AuxiliaryRailSpan>,
+    eval: &mut Evaluator<'_>,
+) -> Option<Vec<AuxiliaryRailSpan>> {
+    let mut spans = of_sections;
+    for instance in stood.iter().filter(|instance| instance.sets("auxiliary_rails")) {
+        let (start, end) = instance.reach;
+        spans = spans.into_iter().flat_map(|span| span.without(start, end)).collect();
+        let section = places.seats[instance.seats.start].1;
+        let extended = extended_by(&forms[section], &[instance], eval);
+        let complete = eval.complete(&extended);
+        let Some(rails) = auxiliary_rails(&complete, &mut eval.findings)? else { continue };
+        if instance.seats.len() < 2 {
+            let message = format!("the auxiliary rails of stretch `{}` lie on one sleeper", instance.stretch.name);
+            eval.findings.report(
+                Diagnostic::new(Code::E0418, message)
+                    .at(instance.over(), "too short")
+                    .help("let them reach over two sleepers or more"),
+            );
+            return None;
+        }
+        spans.push(AuxiliaryRailSpan { start, end, rails });
+    }
+    let carried = |span: &AuxiliaryRailSpan| {
+        places.seats.iter().filter(|s| (span.start - TINY..=span.end + TINY).contains(&s.0)).count() > 1
+    };
+    spans.retain(carried);
+    spans.sort_by(|a, b| a.start.total_cmp(&b.start));
+    Some(spans)
+}

@@ -1,0 +1,78 @@
+//! Headers of declarations that say one thing wrong: what the rest of the declaration shows to have been meant is put in its place,
+//! so that one slip is one mistake.
+
+use crate::diag::nearest::nearest;
+use crate::diag::{Code, Diagnostic};
+use crate::schema::{self, Kind, Role};
+use crate::syntax::tree::{Declaration, Item, Tree};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Mends the headers of a tree.
+pub fn mended(tree: &mut Arc<Tree>) -> Vec<Diagnostic> {
+    let mut kinds: BTreeMap<&str, Option<&'static Kind>> = BTreeMap::new();
+    for item in &tree.items {
+        match item {
+            Item::Declaration(d) => {
+                let name = d.name.as_ref().unwrap_or(&d.kind);
+                kinds.insert(&name.text, schema::kind(&d.kind.text));
+            }
+            Item::Let(binding) => {
+                kinds.insert(&binding.name.text, None);
+            }
+            Item::Use(used) => {
+                let name = used.alias.as_ref().or(used.path.names.last());
+                kinds.extend(name.map(|name| (name.text.as_str(), None)));
+            }
+        }
+    }
+    let mut found = Vec::new();
+    for (i, item) in tree.items.iter().enumerate() {
+        let Item::Declaration(d) = item else { continue };
+        found.extend(other_kind(d, &kinds).or_else(|| name_behind_colon(d, &kinds)).map(|mended| (i, mended)));
+    }
+    let mut mistakes = Vec::new();
+    for (i, (mended, mistake)) in found {
+        Arc::make_mut(tree).items[i] = Item::Declaration(mended);
+        mistakes.push(mistake);
+    }
+    mistakes
+}
+
+/// `track stiff : open { ... }`, where `open` is a trackform and the fields are those of one.
+fn other_kind(d: &Declaration, kinds: &BTreeMap<&str, Option<&'static Kind>>) -> Option<(Declaration, Diagnostic)> {
+    let kind = schema::kind(&d.kind.text)?;
+    let [base] = d.base.as_ref()?.names.as_slice() else { return None };
+    let of_base = (*kinds.get(base.text.as_str())?)?;
+    let fits = |kind: &Kind| d.fields.iter().all(|f| kind.field(&f.path.names[0].text).is_some());
+    if of_base.name == kind.name || d.fields.is_empty() || !fits(of_base) || fits(kind) {
+        return None;
+    }
+    let name = d.name.as_ref().map_or(String::new(), |name| format!(" {}", name.text));
+    let message = format!("a {} cannot extend `{}`, which is a {}", kind.name, base.text, of_base.name);
+    let mistake = Diagnostic::new(Code::E0205, message)
+        .at(d.kind.span, format!("its fields are those of a {}", of_base.name))
+        .help(format!("write `{}{name} : {}`", of_base.name, base.text));
+    let mut mended = d.clone();
+    mended.kind.text = of_base.name.to_string();
+    Some((mended, mistake))
+}
+
+/// `trackform: open { ... }`, where nothing is called `open`.
+fn name_behind_colon(
+    d: &Declaration,
+    kinds: &BTreeMap<&str, Option<&'static Kind>>,
+) -> Option<(Declaration, Diagnostic)> {
+    let kind = schema::kind(&d.kind.text)?;
+    let [base] = d.base.as_ref()?.names.as_slice() else { return None };
+    let known = kinds.contains_key(base.text.as_str()) || nearest(&base.text, kinds.keys().copied()).is_some();
+    if d.name.is_some() || d.fields.is_empty() || known || kind.role == (Role::Scene { once: true }) {
+        return None;
+    }
+    let mistake = Diagnostic::new(Code::E0201, format!("nothing is called `{}`", base.text))
+        .at(base.span, "behind `:` stands what is extended")
+        .help(format!("write `{} {} {{`, without the colon", kind.name, base.text));
+    let mut mended = d.clone();
+    mended.name = mended.base.take().and_then(|path| path.names.into_iter().next());
+    Some((mended, mistake))
+}

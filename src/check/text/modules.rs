@@ -1,0 +1,126 @@
+//! Where the files of a scene come from: a folder, memory, or a memory of what was parsed before.
+
+use crate::diag::{Diagnostic, FileId};
+use crate::syntax::parse;
+use crate::syntax::tree::Tree;
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Where `use site.gravel` finds `site/gravel.track`, and `file("level.csv")` its numbers.
+pub trait Modules {
+    /// The bytes of a file below the main file's folder; `None` where there is none.
+    fn read(&self, relative: &Path) -> Option<Vec<u8>>;
+
+    /// The bytes of a data file. `relative` has plain names only, no `..`; what a link makes of them is for the
+    /// implementation to refuse.
+    fn data(&self, relative: &Path) -> Result<Vec<u8>, DataError> {
+        self.read(relative).ok_or(DataError::Missing)
+    }
+
+    /// The tree of a text that is this file of the sources.
+    fn parsed(&self, file: FileId, text: &str) -> Parsed {
+        Parsed::new(file, text)
+    }
+}
+
+/// A file's tree, and all that is wrong with its text.
+#[derive(Debug, Clone)]
+pub struct Parsed {
+    pub tree: Arc<Tree>,
+    pub mistakes: Arc<[Diagnostic]>,
+}
+
+impl Parsed {
+    fn new(file: FileId, text: &str) -> Parsed {
+        let (tree, mistakes) = parse(file, text);
+        Parsed { tree: Arc::new(tree), mistakes: mistakes.into() }
+    }
+}
+
+/// Why a data file is not read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum DataError {
+    Missing,
+    /// It does not lie below the main file's folder.
+    Outside,
+    /// Its size in bytes is above [`LARGEST_DATA_FILE`].
+    TooLarge(u64),
+    /// What the system says.
+    Unreadable(String),
+}
+
+/// Bytes of a data file, as of a text of the language.
+pub const LARGEST_DATA_FILE: u64 = 8 << 20;
+
+/// Modules in a folder.
+pub struct Folder(pub PathBuf);
+
+impl Modules for Folder {
+    fn read(&self, relative: &Path) -> Option<Vec<u8>> {
+        std::fs::read(self.0.join(relative)).ok()
+    }
+
+    fn data(&self, relative: &Path) -> Result<Vec<u8>, DataError> {
+        let fail = |cause: std::io::Error| match cause.kind() {
+            std::io::ErrorKind::NotFound => DataError::Missing,
+            _ => DataError::Unreadable(cause.to_string()),
+        };
+        let folder = if self.0.as_os_str().is_empty() { Path::new(".") } else { &self.0 };
+        let folder = folder.canonicalize().map_err(fail)?;
+        let path = folder.join(relative).canonicalize().map_err(fail)?;
+        if !path.starts_with(&folder) {
+            return Err(DataError::Outside);
+        }
+        let about = path.metadata().map_err(fail)?;
+        if !about.is_file() {
+            return Err(DataError::Unreadable("it is no file".into()));
+        }
+        if about.len() > LARGEST_DATA_FILE {
+            return Err(DataError::TooLarge(about.len()));
+        }
+        std::fs::read(path).map_err(fail)
+    }
+}
+
+/// Modules of a scene that is compiled again and again, as the points of a study are: no text is parsed twice.
+pub struct Remembered<M> {
+    modules: M,
+    trees: Mutex<HashMap<(FileId, String), Parsed>>,
+}
+
+impl<M: Modules> Remembered<M> {
+    pub fn new(modules: M) -> Self {
+        Remembered { modules, trees: Mutex::default() }
+    }
+}
+
+impl<M: Modules> Modules for Remembered<M> {
+    fn read(&self, relative: &Path) -> Option<Vec<u8>> {
+        self.modules.read(relative)
+    }
+
+    fn data(&self, relative: &Path) -> Result<Vec<u8>, DataError> {
+        self.modules.data(relative)
+    }
+
+    fn parsed(&self, file: FileId, text: &str) -> Parsed {
+        let key = (file, text.to_string());
+        // a panic elsewhere leaves the map whole: trees are put into it finished
+        let known = self.trees.lock().unwrap_or_else(PoisonError::into_inner).get(&key).cloned();
+        known.unwrap_or_else(|| {
+            let parsed = Parsed::new(file, text);
+            self.trees.lock().unwrap_or_else(PoisonError::into_inner).insert(key, parsed.clone());
+            parsed
+        })
+    }
+}
+
+/// No modules but the standard library, for scenes that stand in memory.
+pub struct NoModules;
+
+impl Modules for NoModules {
+    fn read(&self, _: &Path) -> Option<Vec<u8>> {
+        None
+    }
+}
