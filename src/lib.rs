@@ -29,6 +29,8 @@ pub mod units;
 pub mod linalg;
 pub mod solvers;
 
+pub mod store;
+
 pub mod schema;
 pub mod syntax;
 

@@ -21,8 +21,8 @@ mod rig;
 mod run;
 mod scene;
 mod stability;
+mod stored;
 mod study;
-mod study_folder;
 mod subject;
 mod terminal;
 

@@ -5,7 +5,7 @@
 //! is touched.
 
 use super::histories::{self, HISTORIES};
-use super::{ResultsError, Row, Run, atomic};
+use super::{ResultsError, Row, Run, write_atomically};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
@@ -39,7 +39,7 @@ pub fn write(run: &Run, directory: &Path) -> Result<(), ResultsError> {
     let skipped = |name: &str| empty.contains(&(name, true));
     let written = files.iter().filter(|(name, _)| !skipped(name));
     super::states::write(run, directory)?;
-    written.into_iter().try_for_each(|(name, bytes)| atomic::write(&directory.join(name), bytes))
+    written.into_iter().try_for_each(|(name, bytes)| Ok(write_atomically(&directory.join(name), bytes)?))
 }
 
 /// Reads a run back from its directory.
@@ -64,7 +64,7 @@ pub fn write_timings(timings: &BTreeMap<String, f64>, directory: &Path) -> Resul
     }
     fs::create_dir_all(directory).map_err(|cause| ResultsError::io(directory, "create", cause))?;
     let path = directory.join(TIMINGS);
-    atomic::write(&path, &json(timings, &path)?)
+    Ok(write_atomically(&path, &json(timings, &path)?)?)
 }
 
 /// Reads `timings.json`; empty where there is none.

@@ -4,7 +4,7 @@
 use super::histories::HISTORIES;
 use super::{
     BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Scalar, SleeperRow, Tables, TampingRow,
-    TrainRow, atomic, checkpoint, histories,
+    TrainRow, checkpoint, histories, write_atomically,
 };
 use crate::graph::{self, Block, Measured, PassageOutcome, Recorder, Runner, Unloaded};
 use crate::scenario::response::Response;
@@ -352,10 +352,10 @@ impl Recorder for RunRecorder<'_> {
         let saved = || -> Result<(), ResultsError> {
             if self.written < self.histories.len() {
                 let bytes = histories::encode(&self.histories, &store.directory)?;
-                atomic::write(&store.directory.join(HISTORIES), &bytes)?;
+                write_atomically(&store.directory.join(HISTORIES), &bytes)?;
             }
             let saved = Saved { checkpoint: checkpoint.clone(), tables: self.tables.clone() };
-            checkpoint::write(&store.directory, &store.scene_sha256, &saved)
+            Ok(checkpoint::write(&store.directory, &store.scene_sha256, &saved)?)
         };
         saved().map_err(|e| e.to_string())?;
         self.written = self.histories.len();

@@ -5,7 +5,7 @@
 //! traffic does stands beside as data: warp by `displacement` to see the rail under the passage.
 
 use super::vtk::File;
-use super::{RailRow, ResultsError, Run, SleeperRow, atomic};
+use super::{RailRow, ResultsError, Run, SleeperRow, write_atomically};
 use crate::scenario::{Scenario, SleeperBody};
 use std::fs;
 use std::io;
@@ -40,14 +40,14 @@ pub(super) fn write(run: &Run, directory: &Path) -> Result<(), ResultsError> {
             let file = format!("{name}_{axles:06}.vtp");
             let path = folder.join(&file);
             let bytes = bytes.map_err(|cause| ResultsError::unwritable(&path, cause))?;
-            atomic::write(&path, &bytes)?;
+            write_atomically(&path, &bytes)?;
             listed += &format!("<DataSet timestep=\"{axles}\" part=\"{part}\" file=\"{file}\"/>\n");
         }
     }
     let collection = format!(
         "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n{listed}</Collection>\n</VTKFile>\n"
     );
-    atomic::write(&folder.join("states.pvd"), collection.as_bytes())
+    Ok(write_atomically(&folder.join("states.pvd"), collection.as_bytes())?)
 }
 
 /// Takes away the states of another run, and nothing else.

@@ -1,7 +1,7 @@
 //! The directory of a test rig.
 
 use super::super::files::{check_finite, json, table};
-use super::super::{ResultsError, Row, atomic};
+use super::super::{ResultsError, Row, write_atomically};
 use super::view::VIEW;
 use super::{CycleRow, LoopRow, RigView, SensorRow, SpecimenRow, VolumeRow};
 use std::fs;
@@ -33,5 +33,5 @@ pub fn write_rig(view: &RigView, directory: &Path) -> Result<(), ResultsError> {
         (SUMMARY, json(&run.summary, &directory.join(SUMMARY))?), // last: a directory with a summary is complete
     ]);
     fs::create_dir_all(directory).map_err(|cause| ResultsError::io(directory, "create", cause))?;
-    files.iter().try_for_each(|(name, bytes)| atomic::write(&directory.join(name), bytes))
+    files.iter().try_for_each(|(name, bytes)| Ok(write_atomically(&directory.join(name), bytes)?))
 }
