@@ -44,6 +44,7 @@ impl Beds {
         Beds::default()
     }
 
+    /// The folder of the beds; `None` where they are kept nowhere.
     pub fn folder(&self) -> Option<&Path> {
         self.shelf.as_ref().map(Shelf::folder)
     }

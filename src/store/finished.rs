@@ -36,6 +36,7 @@ impl Finished {
         Ok(manifest.map(|manifest| Finished::new(path.to_owned(), manifest)))
     }
 
+    /// The manifest by which the files are read.
     pub fn manifest(&self) -> &Manifest {
         &self.manifest
     }

@@ -12,21 +12,21 @@ use std::path::Path;
 pub struct Manifest {
     /// Counts the formats of this file.
     format: u32,
-    /// Of the program that wrote it.
+    /// The version of the program that wrote it.
     pub version: String,
     pub work: Work,
-    /// By name.
+    /// The files, sorted by name.
     pub files: Vec<FileRecord>,
-    /// Of all the above.
+    /// SHA-256 of all the above.
     sha256: String,
 }
 
 /// A file of a directory.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FileRecord {
-    /// Below the directory, with `/` between folders.
+    /// The path below the directory, with `/` between folders.
     pub name: String,
-    /// Of its content; `None` of what differs between equal runs, such as timings.
+    /// SHA-256 of its content; `None` for what differs between equal runs, such as timings.
     pub sha256: Option<String>,
 }
 

@@ -38,7 +38,7 @@ use sha2::{Digest, Sha256};
 /// What a directory is of: a kind of work, and the scene that it is done for.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
-    /// As a person calls it: `run`, or "study \`pads\`".
+    /// What a person calls it: `run`, or "study \`pads\`".
     pub name: String,
     pub scene_sha256: String,
 }

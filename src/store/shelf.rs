@@ -22,6 +22,7 @@ impl Shelf {
         Shelf { folder: folder.into(), kind }
     }
 
+    /// The folder of the values.
     pub fn folder(&self) -> &Path {
         &self.folder
     }

@@ -11,7 +11,7 @@ mod place;
 mod press;
 mod store;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 mod track;
 
 pub use describe::{LayerState, Stage, State};
