@@ -14,6 +14,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("syntax", 2),
     ("schema", 2),
     ("scenario", 3),
+    ("store", 3),
     ("check", 4),
     ("graph", 5),
     ("lower", 6),

@@ -119,3 +119,49 @@ fn what_cannot_be_packed_is_refused_before_anything_runs() {
     let output = pack(Path::new("scenarios/transition.track"), &["--fresh"], "2");
     assert!(said(&output).contains("this scene has no grains to pack"), "{}", said(&output));
 }
+
+#[test]
+fn a_damaged_bed_is_told_and_packed_anew() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = dir.path().join("box.track");
+    fs::write(&scene, SCENE).unwrap();
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let (cache, out) = (path("cache"), path("bed"));
+    let packed = |more: &[&str]| pack(&scene, &[&["--cache", cache.as_str()], more].concat(), "2");
+    // two that want the same bed at once: one packs it, the other takes it
+    let both: Vec<Output> = std::thread::scope(|scope| {
+        let json = || packed(&["--format", "json"]);
+        let workers = [scope.spawn(json), scope.spawn(json)];
+        workers.into_iter().map(|worker| worker.join().unwrap()).collect()
+    });
+    assert!(both.iter().all(|output| output.status.success()), "{} {}", said(&both[0]), said(&both[1]));
+    assert!(both[0].stdout == both[1].stdout);
+    for kind in ["bed", "readings"] {
+        let kept = fs::read_dir(&cache).unwrap().map(|entry| entry.unwrap().path());
+        let kept: Vec<_> = kept.filter(|path| path.extension().is_some_and(|end| end == kind)).collect();
+        let [file] = kept.as_slice() else { panic!("{kept:?}") };
+        let mut bytes = fs::read(file).unwrap();
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+        fs::write(file, bytes).unwrap();
+        let mended = packed(&["--format", "json"]);
+        assert!(mended.status.success() && mended.stdout == both[0].stdout, "{}", said(&mended));
+        let told = String::from_utf8_lossy(&mended.stderr).into_owned();
+        assert!(told.contains("anew") && told.contains(&format!(".{kind}`")), "{told}");
+        assert!(!String::from_utf8_lossy(&packed(&[]).stderr).contains("anew"));
+    }
+    // a directory that holds a bed holds it until it is told otherwise
+    assert!(packed(&["--out", &out]).status.success());
+    let again = packed(&["--out", &out]);
+    assert!(
+        !again.status.success() && said(&again).contains("holds the results of a finished bed"),
+        "{}",
+        said(&again)
+    );
+    let forced = packed(&["--out", &out, "--force", "--bays", "2"]);
+    assert!(forced.status.success(), "{}", said(&forced));
+    let manifest = fs::read_to_string(dir.path().join("bed/manifest.json")).unwrap();
+    for name in ["bed.html", "track.vtp", "track.json"] {
+        assert!(manifest.contains(&format!("\"{name}\"")), "{manifest}");
+    }
+}

@@ -288,7 +288,7 @@ fn a_killed_study_goes_on_to_the_same_answer() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    let kept = || fs::read_dir(cut.join("points")).map_or(0, |entries| entries.count());
+    let kept = || pieces(&cut).len();
     let started = Instant::now();
     while kept() < 2 && started.elapsed() < Duration::from_secs(120) {
         std::thread::sleep(Duration::from_millis(2));
@@ -301,16 +301,27 @@ fn a_killed_study_goes_on_to_the_same_answer() {
     assert!(output.status.code() == Some(1) && said(&output).contains("E0802"), "{}", said(&output));
     let output = run(&cut, &["--resume", "--set", "ore.speed=190 km/h"]);
     assert!(output.status.code() == Some(1) && said(&output).contains("E0809"), "{}", said(&output));
-    // a point that was kept is not run again
-    let first =
-        fs::read_dir(cut.join("points")).unwrap().map(|e| e.unwrap().path()).find(|p| p.ends_with("000001.json"));
-    let before = fs::metadata(first.as_ref().unwrap()).unwrap().modified().unwrap();
+    // a point whose file is damaged runs again, and no other
+    let damaged = pieces(&cut).remove(0);
+    let mut bytes = fs::read(&damaged).unwrap();
+    let last = bytes.len() - 4;
+    bytes[last] ^= 1;
+    fs::write(&damaged, bytes).unwrap();
     let output = run(&cut, &["--resume"]);
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
-    assert_eq!(fs::metadata(first.unwrap()).unwrap().modified().unwrap(), before);
-    for name in ["study.csv", "study.json", "study.html"] {
+    assert_eq!(said(&output).matches("runs again").count(), 1, "{}", said(&output));
+    for name in ["study.csv", "study.json", "study.html", "design.json", "points.json", "manifest.json"] {
         assert!(fs::read(whole.join(name)).unwrap() == fs::read(cut.join(name)).unwrap(), "{name}");
     }
+}
+
+/// Files of points that an unfinished study has kept.
+fn pieces(out: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(out.join(".trackbed/pieces")).map(|entries| entries.flatten().map(|e| e.path()));
+    let mut kept: Vec<PathBuf> =
+        entries.map_or_else(|_| Vec::new(), |paths| paths.filter(|path| path.extension().is_none()).collect());
+    kept.sort();
+    kept
 }
 
 #[test]

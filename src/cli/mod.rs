@@ -20,8 +20,8 @@ mod resolve;
 mod run;
 mod scene;
 mod stability;
+mod stored;
 mod study;
-mod study_folder;
 mod subject;
 mod terminal;
 

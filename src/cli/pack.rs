@@ -2,14 +2,16 @@
 
 use super::pack_track::{self, TrackArguments};
 use super::scene::{SceneArguments, failed, show};
-use super::{Format, Outcome, progress, terminal};
+use super::{Format, Outcome, progress, stored, terminal};
 use crate::compile::Compiled;
+use crate::compile::fingerprint;
 use crate::diag::{Code, Diagnostic, render};
 use crate::graph::{BedError, BedPlan, BedRecipe};
 use crate::lower::{self, BedUse};
 use crate::report::{BedPage, Side};
 use crate::results::{self, BedReadings, BedSummary, Beds, FoundBed};
 use crate::solvers::granular::packing::{Packed, Progress};
+use crate::store::{Directory, Mode, StoreError, Work};
 use crate::units::number;
 use std::path::{Path, PathBuf};
 
@@ -24,6 +26,9 @@ pub(super) struct Arguments {
     /// The directory for page, pictures and files for ParaView; made where it does not exist
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Replace what is in that directory
+    #[arg(long, requires = "out")]
+    force: bool,
     /// Where finished beds are kept, by what made them
     #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]
     cache: Option<PathBuf>,
@@ -45,12 +50,10 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Err(mistakes) => return stop(&compiled, &mistakes),
     };
     // a folder that cannot be is told before minutes of packing
-    if let Some(out) = &arguments.out
-        && let Err(error) = std::fs::create_dir_all(out)
-    {
-        terminal::error(&format!("cannot make the directory `{}`: {error}", out.display()));
-        return Outcome::Failed;
-    }
+    let directory = match arguments.out.as_deref().map(|out| open(out, arguments.force, &compiled)).transpose() {
+        Ok(directory) => directory,
+        Err(error) => return stop(&compiled, &[stored::diagnostic(&error)]),
+    };
     let beds = if arguments.fresh { Beds::not_kept() } else { beds(arguments.cache.as_deref()) };
     let (mut packed, kept) = match kept_or_built(&beds, &plan) {
         Ok(found) => found,
@@ -64,8 +67,8 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         }
     };
     let summary = results::bed_summary(&scenario.title, &plan, &packed, Some(readings));
-    if let Some(out) = &arguments.out
-        && let Err(message) = write(out, &summary, &mut packed)
+    if let Some(directory) = directory
+        && let Err(message) = write(directory, &summary, &mut packed)
     {
         terminal::error(&message);
         return Outcome::Failed;
@@ -87,6 +90,12 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             }
         },
     }
+}
+
+/// The directory for a bed.
+fn open(out: &Path, force: bool, compiled: &Compiled) -> Result<Directory, StoreError> {
+    let work = Work { name: "bed".to_owned(), scene_sha256: fingerprint(&compiled.sources) };
+    Directory::open(out, work, if force { Mode::Force } else { Mode::New })
 }
 
 /// The bed that is meant.
@@ -138,8 +147,11 @@ pub(super) fn at(bar: &mut progress::Patient, progress: &Progress) {
     bar.at((1e4 * progress.share) as u64, 10_000);
 }
 
-/// A bed that cannot be kept is there all the same.
+/// A bed that was damaged, or cannot be kept, is there all the same.
 pub(super) fn tell_loss(found: &FoundBed) {
+    if let Some(error) = &found.damage {
+        terminal::error(&format!("the bed was packed anew: {error}"));
+    }
     if let Some(error) = &found.loss {
         terminal::error(&format!("the bed is not kept: {error}"));
     }
@@ -147,8 +159,10 @@ pub(super) fn tell_loss(found: &FoundBed) {
 
 /// What is read off the bed, from before where it was kept.
 fn read(cache: Option<&Path>, plan: &BedRecipe, packed: &Packed<f32>) -> Result<BedReadings, String> {
-    if let Some(kept) = cache.and_then(|cache| results::kept_readings(cache, plan)) {
-        return Ok(kept);
+    match cache.map(|cache| results::kept_readings(cache, plan)) {
+        Some(Ok(Some(kept))) => return Ok(kept),
+        Some(Err(error)) => terminal::error(&format!("the bed was measured anew: {error}")),
+        Some(Ok(None)) | None => {}
     }
     let mut bar = progress::Patient::new("the plate");
     let readings = results::read_bed(plan, packed, |done, all| bar.at(done as u64, all as u64))
@@ -167,7 +181,7 @@ fn stop(compiled: &Compiled, mistakes: &[Diagnostic]) -> Outcome {
 }
 
 /// The page, its pictures, numbers for programs and files for ParaView.
-fn write(out: &Path, summary: &BedSummary, packed: &mut Packed<f32>) -> Result<(), String> {
+fn write(mut directory: Directory, summary: &BedSummary, packed: &mut Packed<f32>) -> Result<(), String> {
     let failure = |error: &dyn std::fmt::Display| format!("cannot write the bed: {error}");
     let snapshot = packed.bed.snapshot().map_err(|error| failure(&error))?;
     let (grains, links) = (results::grains(&packed.bed, &snapshot, None), results::links(&packed.bed, &snapshot));
@@ -192,9 +206,8 @@ fn write(out: &Path, summary: &BedSummary, packed: &mut Packed<f32>) -> Result<(
         ("bed.json", json),
         ("bed.html", page.html().into_bytes()),
     ];
-    files.iter().try_for_each(|(name, bytes)| {
-        results::write_atomically(&out.join(name), bytes).map_err(|error| failure(&error))
-    })
+    let staged = files.iter().try_for_each(|(name, bytes)| directory.stage(name, bytes));
+    staged.and_then(|()| directory.commit().map(drop)).map_err(|error| failure(&error))
 }
 
 fn tell(arguments: &Arguments, summary: &BedSummary, kept: bool) -> Outcome {

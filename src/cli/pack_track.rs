@@ -5,6 +5,7 @@ use crate::diag::{Code, Diagnostic};
 use crate::graph::BedRecipe;
 use crate::results;
 use crate::solvers::granular::packing::{Order, Packed, Recipe, TrackBed, lay};
+use crate::store::Directory;
 use std::num::NonZeroU32;
 use std::path::Path;
 
@@ -66,7 +67,11 @@ pub(super) fn tell(laid: &mut TrackBed<f32>, out: Option<&Path>, format: Format)
     let mut bodies = Vec::new();
     results::bodies_vtk(&results::grains(&laid.bed, &snapshot, None), &mut bodies).map_err(|error| failure(&error))?;
     let json = serde_json::to_vec_pretty(&laid.account).map_err(|error| failure(&error))?;
-    [("track.vtp", bodies), ("track.json", json)].iter().try_for_each(|(name, bytes)| {
-        results::write_atomically(&out.join(name), bytes).map_err(|error| failure(&error))
-    })
+    // the cell lies there already
+    let mut directory = Directory::amend(out).map_err(|error| failure(&error))?;
+    directory
+        .stage("track.vtp", &bodies)
+        .and_then(|()| directory.stage("track.json", &json))
+        .and_then(|()| directory.commit().map(drop))
+        .map_err(|error| failure(&error))
 }

@@ -1,8 +1,7 @@
 //! `trackbed study`: runs the points of a study, several at once, and says which design is best.
 
 use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
-use super::study_folder::{StudyFolder, Taken};
-use super::{Outcome, pack, progress, terminal};
+use super::{Outcome, pack, progress, stored, terminal};
 use crate::check::{Folder, Remembered};
 use crate::compile::Compiled;
 use crate::diag::nearest::nearest;
@@ -10,7 +9,8 @@ use crate::diag::{Code, Diagnostic, has_errors, or_list, render};
 use crate::execute;
 use crate::report;
 use crate::scenario::Study;
-use crate::study::{self, Answer, Plan, PointResult, Repeat, Scene, turns};
+use crate::store::Mode;
+use crate::study::{self, Answer, Plan, PointResult, Repeat, Scene, StudyFolder, turns};
 use crate::units::number;
 use clap::ValueEnum;
 use std::collections::BTreeMap;
@@ -125,15 +125,19 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
     if has_errors(&plan.diagnostics) {
         return Outcome::Failed;
     }
-    let folder = match StudyFolder::prepare(&arguments.out, &plan, compiled, arguments.resume, arguments.force) {
+    let folder = match StudyFolder::open(&arguments.out, &plan, compiled, mode(arguments)) {
         Ok(folder) => folder,
-        Err(taken) => {
-            say(&[refused(&taken)], compiled);
+        Err(error) => {
+            say(&[stored::diagnostic(&error)], compiled);
             return Outcome::Failed;
         }
     };
     let jobs = arguments.jobs.map_or_else(turns::cores, usize::from);
-    announce(&plan, jobs);
+    if folder.is_finished() {
+        terminal::note("this study has been finished before: nothing is run\n");
+    } else {
+        announce(&plan, jobs);
+    }
     let started = Instant::now();
     let executor = execute::Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
     let results = match perform(scene, &plan, &folder, &executor, jobs) {
@@ -149,21 +153,23 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
     let best = answer.best().first().map(|index| scene.compile(&plan.points[*index].overrides));
     let design = best.as_ref().and_then(|compiled| compiled.scenario.as_ref());
     let page = report::study_page(&answer, &name, design);
-    if let Err(message) = folder.finish(&answer, &page, compiled, started.elapsed().as_secs_f64(), jobs) {
-        say(&[Diagnostic::new(Code::E0802, message)], compiled);
+    let seconds = started.elapsed().as_secs_f64();
+    let timings = BTreeMap::from([("total_s".to_string(), seconds), ("jobs".to_string(), jobs as f64)]);
+    if !folder.is_finished()
+        && let Err(error) = folder.finish(&plan, &answer, &page, compiled, &timings)
+    {
+        say(&[stored::diagnostic(&error)], compiled);
         return Outcome::Failed;
     }
-    summary(&answer, &arguments.out, started.elapsed().as_secs_f64());
+    summary(&answer, &arguments.out, seconds);
     failures(&answer, compiled)
 }
 
-fn refused(taken: &Taken) -> Diagnostic {
-    match taken {
-        Taken::ByAnother(message) => Diagnostic::new(Code::E0809, message)
-            .help("run it without `--resume` into another `--out`, or replace what is there with `--force`"),
-        Taken::Unusable(message) => {
-            Diagnostic::new(Code::E0802, message).help("give another `--out`, or `--resume` or `--force`")
-        }
+fn mode(arguments: &Arguments) -> Mode {
+    match (arguments.force, arguments.resume) {
+        (true, _) => Mode::Force,
+        (false, true) => Mode::Resume,
+        (false, false) => Mode::New,
     }
 }
 
@@ -207,7 +213,14 @@ fn perform(
     executor: &execute::Executor,
     jobs: usize,
 ) -> Result<Vec<PointResult>, String> {
-    let known: Vec<Option<PointResult>> = plan.points.iter().map(|point| folder.known(point)).collect();
+    let known: Vec<Option<PointResult>> = plan
+        .points
+        .iter()
+        .map(|point| {
+            let damaged = |error| terminal::error(&format!("point {} runs again: {error}", point.number));
+            folder.known(point).map_err(damaged).ok().flatten()
+        })
+        .collect();
     let missing = known.iter().enumerate().filter(|(_, result)| result.is_none());
     let tasks: Vec<(usize, u32)> =
         missing.flat_map(|(index, _)| (0..plan.study.repeats).map(move |repeat| (index, repeat))).collect();
@@ -244,8 +257,8 @@ impl Work<'_> {
         let (point, all) = (&self.plan.points[index], self.plan.study.repeats);
         let runs: Vec<Repeat> = (0..all).map_while(|repeat| self.runs.get(&(index, repeat)).cloned()).collect();
         if runs.len() == all as usize {
-            let result = PointResult::of(point, &runs);
-            folder.keep(&result)?;
+            let result = PointResult::from_repeats(point, &runs);
+            folder.keep(point, &result).map_err(|error| error.to_string())?;
             self.known[index] = Some(result);
             self.runs.retain(|(other, _), _| *other != index);
         }

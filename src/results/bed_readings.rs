@@ -1,11 +1,11 @@
 //! What is measured in a packed bed: over its height, in its contacts, and under a plate.
 
-use super::{ResultsError, beds, checkpoint};
 use crate::graph::BedRecipe;
 use crate::solvers::granular::measure::{Fabric, ForceSpread, Reading, Region, Rose, Survey};
 use crate::solvers::granular::packing::{GrainLayer, Packed};
 use crate::solvers::granular::probe::{FULL, LoadPoint, Outline, Plate, Stiffness, probe};
 use crate::solvers::granular::{Bed, Failure};
+use crate::store::{Shelf, StoreError, recipe_hash};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -87,21 +87,24 @@ pub fn read_bed(
     })
 }
 
-/// Readings of a bed that was kept; `None` where there are none that can be used.
-pub fn kept_readings(cache: &Path, plan: &BedRecipe) -> Option<BedReadings> {
-    let hash = readings_hash(plan);
-    checkpoint::read(&cache.join(&hash), &hash).ok()?
+/// Readings of a bed that were kept; `None` where there are none. Fails where they are damaged.
+pub fn kept_readings(cache: &Path, plan: &BedRecipe) -> Result<Option<BedReadings>, StoreError> {
+    shelf(cache).get(&readings_hash(plan))
 }
 
 /// Keeps the readings of a bed.
-pub fn keep_readings(cache: &Path, plan: &BedRecipe, readings: &BedReadings) -> Result<(), ResultsError> {
-    let hash = readings_hash(plan);
-    checkpoint::write(&cache.join(&hash), &hash, readings)
+pub fn keep_readings(cache: &Path, plan: &BedRecipe, readings: &BedReadings) -> Result<(), StoreError> {
+    shelf(cache).put(&readings_hash(plan), readings)
+}
+
+/// Readings lie beside the beds that they are of.
+fn shelf(cache: &Path) -> Shelf {
+    Shelf::new(cache, "readings")
 }
 
 /// Names what made the bed and what it is measured with.
 fn readings_hash(plan: &BedRecipe) -> String {
-    beds::hash_of(&(&plan.recipe, &plan.plate))
+    recipe_hash(&(&plan.recipe, &plan.plate))
 }
 
 /// Levels between which a bed is measured, layer by layer.

@@ -5,7 +5,7 @@
 //! is touched.
 
 use super::histories::{self, HISTORIES};
-use super::{ResultsError, Row, Run, atomic};
+use super::{ResultsError, Row, Run, write_atomically};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::collections::BTreeMap;
@@ -55,7 +55,7 @@ pub fn write_files(files: &[NamedBytes], directory: &Path) -> Result<(), Results
         let path = directory.join(name);
         let folder = path.parent().unwrap_or(directory);
         fs::create_dir_all(folder).map_err(|cause| ResultsError::io(folder, "create", cause))?;
-        atomic::write(&path, bytes)?;
+        write_atomically(&path, bytes)?;
     }
     Ok(())
 }

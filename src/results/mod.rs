@@ -3,12 +3,9 @@
 //! Values are SI; signs and names are those of the language guide. [`summarise`] and [`verdicts`] make numbers of the
 //! tables, [`write()`] and [`read`] move a [`Run`] to a directory and back, bit for bit.
 
-mod atomic;
 mod bed;
 mod bed_readings;
 mod bed_tests;
-mod beds;
-pub mod checkpoint;
 mod error;
 mod evaluate;
 mod failure;
@@ -28,14 +25,12 @@ mod vtk;
 #[cfg(test)]
 pub(crate) mod example;
 
-pub use atomic::write as write_atomically;
 pub use bed::{BedLayer, BedSummary, bed_summary};
 pub use bed_readings::{BedReadings, Directions, PlateTest, ProfileRow, keep_readings, kept_readings, read_bed};
 pub use bed_tests::{
     BedTest, BedTests, BedTestsView, CycleRow, LoopRow, MeanCycleRow, SensorRow, SpecimenRow, TestTables, VolumeRow,
     read_tests, test_files,
 };
-pub use beds::{Beds, BedsError, FoundBed, bed_hash};
 pub use error::ResultsError;
 pub use evaluate::{
     SleeperTable, Tables, contact_pressures, evaluate, holds, is_kept, known, not_kept, verdict, verdicts,
@@ -51,6 +46,8 @@ pub use summarise::{RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, s
 pub use summary::{Provenance, Scalar, Summary, Verdict};
 pub use tables::{BlockRow, HistoryRow, RailRow, Row, SleeperRow, TampingRow, TrainRow};
 pub use vtk::{bodies_vtk, contacts_vtk};
+
+pub use crate::store::{Beds, FoundBed, bed_hash, checkpoint, write_atomically};
 
 use crate::scenario::{Loading, Scenario};
 use serde::{Deserialize, Serialize};

@@ -4,7 +4,7 @@
 use super::histories::HISTORIES;
 use super::{
     BedSummary, BedTest, BedTests, BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Scalar,
-    SleeperRow, SleeperTable, Tables, TampingRow, TrainRow, atomic, bed_summary, checkpoint, histories,
+    SleeperRow, SleeperTable, Tables, TampingRow, TrainRow, bed_summary, checkpoint, histories, write_atomically,
 };
 use crate::execute::{Between, Checkpoint, Event, Listener, Measured};
 use crate::graph::{Block, Graph, Runner, TrackNode};
@@ -140,7 +140,7 @@ impl<'a> RunRecorder<'a> {
         }
         if self.written < self.histories.len() {
             let bytes = histories::encode(&self.histories, &store.directory)?;
-            atomic::write(&store.directory.join(HISTORIES), &bytes)?;
+            write_atomically(&store.directory.join(HISTORIES), &bytes)?;
         }
         let path = store.directory.join("checkpoint.json");
         let checkpoint = between.checkpoint().map_err(|cause| ResultsError::unwritable(&path, cause))?;

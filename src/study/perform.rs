@@ -10,7 +10,7 @@ use crate::syntax::tree::Comparison;
 use serde::{Deserialize, Serialize};
 
 /// A point that has run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PointResult {
     pub number: usize,
     pub outcome: PointOutcome,
@@ -43,8 +43,8 @@ pub fn perform(scene: Scene<'_>, study: &Study, point: &PlannedPoint, repeat: u3
 }
 
 impl PointResult {
-    /// Of all repeats of a point, in their order; the first that failed speaks for it.
-    pub fn of(point: &PlannedPoint, repeats: &[Repeat]) -> PointResult {
+    /// The result of all repeats of a point, in their order; the first that failed speaks for it.
+    pub fn from_repeats(point: &PlannedPoint, repeats: &[Repeat]) -> PointResult {
         let runs: Result<Vec<OneRun>, PointOutcome> = repeats.iter().map(|repeat| repeat.0.clone()).collect();
         PointResult { number: point.number, outcome: runs.map_or_else(|failed| failed, |runs| gathered(&runs)) }
     }
@@ -94,7 +94,8 @@ fn run(
 /// What a study asks of the tables of a run.
 fn answered(study: &Study, view: Tables<'_>) -> Result<OneRun, PointOutcome> {
     let measure = |m: &crate::scenario::Measured| {
-        results::evaluate(&m.expression, view).map_err(|why| fail(&format!("`{}`: {why}", m.text)))
+        let value = results::evaluate(&m.expression, view).map_err(|why| fail(&format!("`{}`: {why}", m.text)))?;
+        if value.is_finite() { Ok(value) } else { Err(fail(&format!("`{}` is not a finite number", m.text))) }
     };
     let values: Vec<f64> = study.measured().into_iter().map(measure).collect::<Result<_, _>>()?;
     let verdicts = study.constraints.iter().map(|c| results::verdict(c, view));

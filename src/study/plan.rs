@@ -4,12 +4,13 @@
 use super::design::{Level, design};
 use super::perform::condition;
 use crate::check::{Modules, Override};
-use crate::compile::{Compiled, compile};
+use crate::compile::{Compiled, compile, fingerprint};
 use crate::diag::{Code, Diagnostic, FileId, Label, Severity, Sources, Span};
 use crate::graph::Graph;
 use crate::results;
 use crate::scenario::response::Measure;
 use crate::scenario::{Study, Values};
+use crate::store::sha256;
 use crate::units::number;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -32,6 +33,8 @@ pub struct PlannedPoint {
     /// One for each axis.
     pub levels: Vec<Level>,
     pub overrides: Vec<Override>,
+    /// Names what runs: SHA-256 over the study's name and every text of the point, its own lines included.
+    pub fingerprint: String,
     /// Time of one run on one core, estimated, s.
     pub seconds: f64,
     pub seed: u64,
@@ -74,7 +77,7 @@ impl Plan {
 /// What became of a point when it was checked.
 enum Checked {
     LeftOut,
-    Legal { seconds: f64, seed: u64, remarks: Vec<(Diagnostic, Option<Place>)> },
+    Legal { fingerprint: String, seconds: f64, seed: u64, remarks: Vec<(Diagnostic, Option<Place>)> },
     Illegal(Vec<(Diagnostic, Option<Place>)>),
 }
 
@@ -100,9 +103,9 @@ pub fn plan(scene: Scene<'_>, base: &Compiled, study: &Study) -> Plan {
         let number = index + 1;
         match checked {
             Checked::LeftOut => plan.left_out += 1,
-            Checked::Legal { seconds, seed, remarks } => {
+            Checked::Legal { fingerprint, seconds, seed, remarks } => {
                 remarks.into_iter().for_each(|(d, place)| found.add(d, place, number, &levels));
-                plan.points.push(PlannedPoint { number, levels, overrides, seconds, seed });
+                plan.points.push(PlannedPoint { number, levels, overrides, fingerprint, seconds, seed });
             }
             Checked::Illegal(mistakes) => {
                 mistakes.into_iter().for_each(|(d, place)| found.add(d, place, number, &levels));
@@ -139,7 +142,8 @@ fn check(scene: Scene<'_>, base: &Compiled, study: &Study, levels: &[Level], ove
             let new =
                 |d: &&Diagnostic| d.code != Code::E0412 && !base.diagnostics.iter().any(|known| known.code == d.code);
             let remarks = compiled.diagnostics.iter().filter(new).map(placed).collect();
-            Checked::Legal { seconds: run.cost.seconds, seed: scenario.solve.seed, remarks }
+            let fingerprint = content(study, &compiled);
+            Checked::Legal { fingerprint, seconds: run.cost.seconds, seed: scenario.solve.seed, remarks }
         }
         _ if errors.is_empty() => {
             // a hole of the scene itself is told there
@@ -148,6 +152,11 @@ fn check(scene: Scene<'_>, base: &Compiled, study: &Study, levels: &[Level], ove
         }
         _ => Checked::Illegal(errors),
     }
+}
+
+/// Names what a point asks and of what: two studies of one file ask other things of one scene.
+fn content(study: &Study, compiled: &Compiled) -> String {
+    sha256(format!("{}\n{}", study.name, fingerprint(&compiled.sources)).as_bytes())
 }
 
 /// A study that asks for what no run keeps would learn so after the first one.

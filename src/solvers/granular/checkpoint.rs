@@ -153,6 +153,9 @@ impl<R: Real> Checkpoint<R> {
         if self.version != VERSION {
             return Err(RestoreError::Version { found: self.version });
         }
+        if self.laws.surfaces() == 0 || self.laws.all().len() != self.laws.surfaces().pow(2) {
+            return Err(Inconsistent("laws between surfaces are missing"));
+        }
         let mut named = vec![false; self.bodies.len()];
         let (mut pebbles, mut clumps) = (0, 0);
         for body in &self.bodies {

@@ -73,6 +73,11 @@ pub struct Class {
 }
 
 impl Curve {
+    /// Whether it has the points of a curve: one that was read from a file may have lost them.
+    pub(in super::super) fn is_whole(&self) -> bool {
+        self.points.len() >= 2
+    }
+
     /// A curve of points (size in m, share of the mass that passes): sizes and shares ascend, and may stand still. What
     /// lies below the first and above the last point is not modelled.
     pub fn new(points: &[[f64; 2]]) -> Result<Self, GradingError> {

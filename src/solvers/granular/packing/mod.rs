@@ -17,7 +17,7 @@ mod progress;
 mod recipe;
 mod store;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 mod track;
 
 pub use describe::{BedState, LayerState, Stage, StageKind};

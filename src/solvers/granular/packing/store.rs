@@ -6,6 +6,7 @@ use super::super::grains::Sample;
 use super::super::lanes::Real;
 use super::describe::Stage;
 use super::packed::Packed;
+use super::press::LAST;
 use serde::{Deserialize, Serialize};
 
 /// What [`Packed`] holds, to be kept. A bed that comes back goes on bit by bit as the one that was kept.
@@ -34,9 +35,32 @@ impl<R: Real> Packed<R> {
         }
     }
 
-    /// Fails where what was kept is damaged.
+    /// The bed that was kept. Fails where what was kept is damaged: its lists must be those of its layers and stages.
     pub fn restore(stored: StoredBed<R>) -> Result<Packed<R>, RestoreError> {
         let StoredBed { bed, plan, densities, bodies, samples, levels, stages } = stored;
-        Ok(Packed { bed: Bed::restore(bed)?, plan, densities, bodies, samples, levels, stages })
+        let packed = Packed { bed: Bed::restore(bed)?, plan, densities, bodies, samples, levels, stages };
+        packed.check().map_err(RestoreError::Inconsistent).map(|()| packed)
+    }
+
+    /// Whether what is said of layers and stages is said of each.
+    fn check(&self) -> Result<(), &'static str> {
+        let layers = self.densities.len();
+        let of_all = |length: usize| length == layers;
+        if layers == 0 || self.bed.laws.surfaces() != layers + 1 {
+            return Err("its layers are not those of its surfaces");
+        }
+        if !of_all(self.samples.len()) || !of_all(self.levels.len()) || !of_all(self.bodies.len().wrapping_sub(1)) {
+            return Err("what is known of its layers is not of all of them");
+        }
+        if !self.bodies.is_sorted() || self.bodies.last().copied() != Some(self.bed.len() as u32) {
+            return Err("its layers do not hold its bodies");
+        }
+        if !self.samples.iter().all(|sample| sample.curve.is_whole()) {
+            return Err("a grading has no points");
+        }
+        if self.stages.len() <= LAST || !self.stages.iter().all(|stage| of_all(stage.state.layers.len())) {
+            return Err("stages of its packing are missing");
+        }
+        Ok(())
     }
 }

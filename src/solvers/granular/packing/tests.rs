@@ -226,3 +226,41 @@ fn every_cell_has_its_turn() {
         assert_eq!(turn, [0, 1, 2]);
     }
 }
+
+/// What comes from a disk may lack a list, and is refused or as good as before.
+#[test]
+fn a_bed_that_lost_a_list_is_refused() {
+    let whole = serde_json::to_value(packed(&small()).store()).unwrap();
+    let mut refused = 0;
+    for list in lists(&whole) {
+        let mut lacking = whole.clone();
+        *lacking.pointer_mut(&list).unwrap() = serde_json::json!([]);
+        let Ok(stored) = serde_json::from_value::<Stored<f32>>(lacking) else { continue };
+        match Packed::restore(stored) {
+            Err(_) => refused += 1,
+            Ok(mut packed) => {
+                packed.pressed_and_at_rest();
+                packed.porosity(packed.between(0));
+                packed.bed.snapshot().unwrap();
+            }
+        }
+    }
+    assert!(refused > 8, "{refused}");
+}
+
+/// Pointers to every list of a value, of equal neighbours in a list the first.
+pub(in super::super) fn lists(value: &serde_json::Value) -> Vec<String> {
+    let below = |name: String, value: &serde_json::Value| {
+        lists(value).into_iter().map(move |rest| format!("/{name}{rest}")).collect::<Vec<_>>()
+    };
+    match value {
+        serde_json::Value::Object(fields) => {
+            fields.iter().flat_map(|(name, value)| below(name.clone(), value)).collect()
+        }
+        serde_json::Value::Array(items) => {
+            let inner = items.first().into_iter().flat_map(|first| below("0".to_owned(), first));
+            std::iter::once(String::new()).chain(inner).collect()
+        }
+        _ => Vec::new(),
+    }
+}

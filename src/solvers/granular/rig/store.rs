@@ -20,8 +20,30 @@ impl<'a, R: Real> Trial<'a, R> {
         StoredTrial { bed: self.bed.checkpoint(), state: self.state.clone() }
     }
 
-    /// A test of the same rig that goes on. Fails where what was stored is damaged.
+    /// The test of the same rig that was stored. Fails where what was stored is damaged: it must be of these sleepers and sensors, and
+    /// no further than the rig goes.
     pub fn restore(stored: StoredTrial<R>, rig: &'a Rig) -> Result<Self, RestoreError> {
-        Ok(Trial { bed: Bed::restore(stored.bed)?, rig, state: stored.state })
+        let trial = Trial { bed: Bed::restore(stored.bed)?, rig, state: stored.state };
+        trial.check().map_err(RestoreError::Inconsistent).map(|()| trial)
+    }
+
+    fn check(&self) -> Result<(), &'static str> {
+        let (state, sleepers) = (&self.state, self.rig.sleepers.len());
+        if [state.walls.len(), state.rest.len(), state.current.len()] != [sleepers; 3] {
+            return Err("what is known of its sleepers is not of all of them");
+        }
+        if state.walls.iter().any(|wall| wall.0 as usize >= self.bed.walls().len()) {
+            return Err("a sleeper is no wall of its bed");
+        }
+        let cycles = state.cycles.iter().map(|cycle| cycle.sleeper);
+        if cycles.chain(state.samples.iter().map(|sample| sample.sleeper)).any(|sleeper| sleeper >= sleepers)
+            || state.readings.iter().any(|reading| reading.sensor >= self.rig.sensors.len())
+        {
+            return Err("what was read is of a sleeper or a sensor that is not there");
+        }
+        if state.pieces > self.pieces() || !(state.stride.is_finite() && state.stride > 0.0) {
+            return Err("it is beyond its end, or has no time step");
+        }
+        Ok(())
     }
 }

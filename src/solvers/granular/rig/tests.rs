@@ -202,3 +202,25 @@ fn a_specimen_without_friction_has_little_strength() {
     // 5.8 degrees at rest (Peyneau and Roux 2008); an inertial number of 1e-3 adds a few
     assert!((2.0..14.0).contains(&mean), "{mean}");
 }
+
+#[test]
+fn a_test_that_lost_a_list_is_refused() {
+    let rig = cyclic(2);
+    let mut trial = Trial::new(bed(), &rig, |_| {}).unwrap();
+    for _ in 0..100 {
+        trial.advance().unwrap();
+    }
+    let whole = serde_json::to_value(trial.store()).unwrap();
+    let mut refused = 0;
+    for list in super::super::packing::tests::lists(&whole) {
+        let mut lacking = whole.clone();
+        *lacking.pointer_mut(&list).unwrap() = serde_json::json!([]);
+        let Ok(stored) = serde_json::from_value::<Stored<f32>>(lacking) else { continue };
+        match Trial::restore(stored, &rig) {
+            Err(_) => refused += 1,
+            // histories of contacts and rows that were read are not missed by the motion
+            Ok(mut trial) => drop(trial.advance()),
+        }
+    }
+    assert!(refused > 5, "{refused}");
+}

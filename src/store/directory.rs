@@ -1,0 +1,288 @@
+//! A directory of results, from its opening to the commit of its files.
+
+use super::atomic::replace;
+use super::disk::{Disk, FileSystem};
+use super::layout::{Layout, part};
+use super::lock::Lock;
+use super::manifest::{FileRecord, Manifest, is_inside};
+use super::seal::Seal;
+use super::{Finished, StoreError, Work, recovery, sha256};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// What may be done with what is in a directory already.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// Nothing: the directory must be empty, but for hidden files.
+    New,
+    /// Go on with the same work, finished or not; begin it where the directory is empty.
+    Resume,
+    /// Discard unfinished work, and replace finished work when the new one is. Files that no manifest names stay, unless a result of
+    /// the same name takes their place.
+    Force,
+}
+
+/// A directory in which work is under way; nobody else can open it until this is dropped.
+///
+/// Old results stay as they are, and readable, until [`Directory::commit`].
+#[derive(Debug)]
+pub struct Directory<D: Disk = FileSystem> {
+    disk: D,
+    layout: Layout,
+    work: Work,
+    finished: Option<Finished>,
+    /// Files of the next results, staged or kept from the last.
+    files: Vec<FileRecord>,
+    _lock: Lock,
+}
+
+/// Of the file that says whose work is under way; it is this very file that names the scene.
+const WORK: Seal<'_> = Seal { kind: "work", key: "" };
+
+/// Data that has been kept beside a checkpoint. A checkpoint that holds this names exactly the bytes that were kept.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Piece {
+    pub key: String,
+    pub sha256: String,
+}
+
+impl Directory {
+    /// Opens a directory for some work, and makes it where it does not exist. A commit that was interrupted is finished first.
+    ///
+    /// Fails where somebody else works there, where it holds what `mode` does not allow, and in [`Mode::Resume`] where it is of other
+    /// work or a finished file is damaged.
+    pub fn open(path: &Path, work: Work, mode: Mode) -> Result<Directory, StoreError> {
+        Directory::open_on(FileSystem, path, work, mode)
+    }
+
+    /// Opens finished work to add files to it, or to replace some. Fails where nothing is finished there, and where other work has begun
+    /// over it, which a commit would end.
+    pub fn amend(path: &Path) -> Result<Directory, StoreError> {
+        let layout = Layout { root: path.to_owned() };
+        let nothing = || StoreError::damaged(&layout.manifest(), "there is none: nothing is finished here");
+        Finished::open(path)?.ok_or_else(nothing)?; // before anything is made there
+        let lock = enter(&FileSystem, &layout)?;
+        recovery::recover(&FileSystem, &layout)?;
+        if layout.is_unfinished() {
+            return Err(unfinished(&layout)?);
+        }
+        let finished = Finished::read_from(path)?.ok_or_else(nothing)?;
+        let (work, files) = (finished.manifest().work.clone(), finished.manifest().files.clone());
+        Ok(Directory { disk: FileSystem, layout, work, finished: Some(finished), files, _lock: lock })
+    }
+}
+
+impl<D: Disk> Directory<D> {
+    /// The same as [`Directory::open`] on a disk of one's own.
+    pub fn open_on(disk: D, path: &Path, work: Work, mode: Mode) -> Result<Directory<D>, StoreError> {
+        let layout = Layout { root: path.to_owned() };
+        if mode != Mode::Force && !layout.inner().exists() {
+            refuse_foreign(&layout)?; // before anything is made there
+        }
+        let lock = enter(&disk, &layout)?;
+        match recovery::recover(&disk, &layout) {
+            Err(StoreError::Damaged { .. }) if mode == Mode::Force => recovery::abandon(&disk, &layout)?,
+            other => other?,
+        }
+        let finished = match mode {
+            Mode::New => refuse_any(&layout).map(|()| None)?,
+            Mode::Resume => found(&layout, &work)?,
+            Mode::Force => recovery::discard(&disk, &layout).map(|()| None)?,
+        };
+        let directory = Directory { disk, layout, work, finished, files: Vec::new(), _lock: lock };
+        if directory.finished.is_none() {
+            let path = directory.layout.work();
+            directory.replace(&path, &WORK.close_json(&path, &directory.work)?)?;
+        }
+        Ok(directory)
+    }
+
+    /// The directory itself.
+    pub fn path(&self) -> &Path {
+        &self.layout.root
+    }
+
+    /// What was finished here before, in [`Mode::Resume`]: each of its files has been checked.
+    pub fn finished(&self) -> Option<&Finished> {
+        self.finished.as_ref()
+    }
+
+    /// Replaces the checkpoint by `state`, at once. Fails where a number of it is not finite.
+    pub fn write_checkpoint<T: Serialize + DeserializeOwned>(&self, state: &T) -> Result<(), StoreError> {
+        let path = self.layout.checkpoint();
+        self.replace(&path, &self.checkpoint_seal().close_json(&path, state)?)
+    }
+
+    /// The state of the last checkpoint; `None` where there is none. Fails where it is damaged, or of another scene or version.
+    pub fn read_checkpoint<T: DeserializeOwned>(&self) -> Result<Option<T>, StoreError> {
+        let path = self.layout.checkpoint();
+        read(&path)?.map(|bytes| self.checkpoint_seal().open_json(&path, &bytes)).transpose()
+    }
+
+    /// Keeps data beside the checkpoint until the commit; a key is one word, and keeping it again replaces it.
+    ///
+    /// A piece that no checkpoint names, because of a kill in between, is not in the way: it is kept again.
+    pub fn keep(&self, key: &str, bytes: &[u8]) -> Result<Piece, StoreError> {
+        let (folder, path) = (self.layout.pieces(), self.piece(key)?);
+        self.disk.create_folder(&folder).map_err(|cause| StoreError::io(&folder, "create", cause))?;
+        self.replace(&path, &Seal { kind: "piece", key: &self.piece_key(key) }.close(bytes))?;
+        Ok(Piece { key: key.to_owned(), sha256: sha256(bytes) })
+    }
+
+    /// Data that was kept under a key; `None` where there is none. Fails where it is damaged or of another version.
+    pub fn kept(&self, key: &str) -> Result<Option<Vec<u8>>, StoreError> {
+        let path = self.piece(key)?;
+        let Some(bytes) = read(&path)? else { return Ok(None) };
+        Ok(Some(Seal { kind: "piece", key: &self.piece_key(key) }.open(&path, &bytes)?.to_vec()))
+    }
+
+    /// The very bytes of a piece that a checkpoint names. Fails where they are missing or others.
+    pub fn read_piece(&self, piece: &Piece) -> Result<Vec<u8>, StoreError> {
+        match self.kept(&piece.key)? {
+            Some(bytes) if sha256(&bytes) == piece.sha256 => Ok(bytes),
+            Some(_) => Err(StoreError::damaged(&self.piece(&piece.key)?, "it is not what the checkpoint names")),
+            None => Err(StoreError::damaged(&self.piece(&piece.key)?, "it is gone, and the checkpoint names it")),
+        }
+    }
+
+    /// Writes a file of the next results, which nobody sees before the commit. Folders in its name are parted by `/`.
+    pub fn stage(&mut self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
+        self.stage_as(FileRecord { name: name.to_owned(), sha256: Some(sha256(bytes)) }, bytes)
+    }
+
+    /// The same of a file that differs between equal runs, such as timings: the manifest names it without a hash.
+    pub fn stage_changing(&mut self, name: &str, bytes: &[u8]) -> Result<(), StoreError> {
+        self.stage_as(FileRecord { name: name.to_owned(), sha256: None }, bytes)
+    }
+
+    /// Puts everything that was staged in place of the old results, at once, and ends the unfinished work.
+    pub fn commit(self) -> Result<Finished, StoreError> {
+        let manifest = Manifest::new(self.work.clone(), self.files.clone());
+        self.replace(&self.layout.intent(), &manifest.bytes())?;
+        recovery::finish(&self.disk, &self.layout, &manifest)?;
+        Ok(Finished::new(self.layout.root.clone(), manifest))
+    }
+
+    fn stage_as(&mut self, record: FileRecord, bytes: &[u8]) -> Result<(), StoreError> {
+        let path = self.layout.staging().join(&record.name);
+        if !is_inside(&record.name) {
+            return Err(StoreError::unwritable(&path, "it has no name of a result"));
+        }
+        let folder = path.parent().map_or_else(|| self.layout.staging(), PathBuf::from);
+        let written = self.disk.create_folder(&folder).and_then(|()| self.disk.write(&path, bytes));
+        let durable = written.and_then(|()| self.disk.sync_folder(&folder));
+        durable.map_err(|cause| StoreError::io(&path, "write", cause))?;
+        self.files.retain(|file| file.name != record.name);
+        self.files.push(record);
+        Ok(())
+    }
+
+    fn replace(&self, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+        replace(&self.disk, path, &part(path), bytes)
+    }
+
+    fn checkpoint_seal(&self) -> Seal<'_> {
+        Seal { kind: "checkpoint", key: &self.work.scene_sha256 }
+    }
+
+    fn piece(&self, key: &str) -> Result<PathBuf, StoreError> {
+        let path = self.layout.pieces().join(key);
+        if key.contains('/') || !is_inside(key) {
+            return Err(StoreError::unwritable(&path, "it has no name of a piece"));
+        }
+        Ok(path)
+    }
+
+    /// Binds a piece to its scene and to its key.
+    fn piece_key(&self, key: &str) -> String {
+        format!("{} {key}", self.work.scene_sha256)
+    }
+}
+
+/// Makes the folders of a directory and takes its lock.
+pub(super) fn enter(disk: &impl Disk, layout: &Layout) -> Result<Lock, StoreError> {
+    if layout.root.is_file() {
+        let cause = std::io::Error::from(ErrorKind::NotADirectory);
+        return Err(StoreError::io(&layout.root, "use as a directory", cause));
+    }
+    disk.create_folder(&layout.inner()).map_err(|cause| StoreError::io(&layout.root, "create", cause))?;
+    Lock::take(&layout.lock(), &layout.root)
+}
+
+/// What a resumed work finds finished. Unfinished work comes first: it was begun over finished one.
+fn found(layout: &Layout, work: &Work) -> Result<Option<Finished>, StoreError> {
+    if layout.is_unfinished() {
+        let path = layout.work();
+        let whose = read(&path)?.ok_or_else(|| StoreError::damaged(&path, "it is gone"))?;
+        let whose: Work = WORK.open_json(&path, &whose)?;
+        return same(layout, work, &whose).map(|()| None);
+    }
+    let Some(finished) = Finished::read_from(&layout.root)? else {
+        return refuse_foreign(layout).map(|()| None);
+    };
+    same(layout, work, &finished.manifest().work)?;
+    finished.verify()?;
+    Ok(Some(finished))
+}
+
+fn same(layout: &Layout, expected: &Work, found: &Work) -> Result<(), StoreError> {
+    let path = layout.root.clone();
+    if expected.name != found.name {
+        let (expected, found) = (expected.name.clone(), found.name.clone());
+        return Err(StoreError::OtherWork { path, expected, found });
+    }
+    if expected.scene_sha256 != found.scene_sha256 {
+        let (expected, found) = (expected.scene_sha256.clone(), found.scene_sha256.clone());
+        return Err(StoreError::OtherScene { path, expected, found });
+    }
+    Ok(())
+}
+
+/// Fails where anything is there.
+fn refuse_any(layout: &Layout) -> Result<(), StoreError> {
+    let path = layout.root.clone();
+    if layout.is_unfinished() {
+        return Err(unfinished(layout)?);
+    }
+    match Finished::read_from(&path)? {
+        Some(finished) => Err(StoreError::Finished { path, work: finished.manifest().work.name.clone() }),
+        None => refuse_foreign(layout),
+    }
+}
+
+/// Says whose unfinished work is there.
+fn unfinished(layout: &Layout) -> Result<StoreError, StoreError> {
+    let path = layout.root.clone();
+    let whose = read(&layout.work())?;
+    let whose = whose.and_then(|bytes| WORK.open_json::<Work>(&path, &bytes).ok());
+    let work = whose.map_or_else(|| "work".to_owned(), |work| work.name);
+    Ok(StoreError::Unfinished { path, work })
+}
+
+/// Fails where files are there that no manifest names. Hidden ones belong to tools and are nobody's results.
+fn refuse_foreign(layout: &Layout) -> Result<(), StoreError> {
+    let path = layout.root.clone();
+    if layout.manifest().exists() || !path.is_dir() {
+        return Ok(());
+    }
+    let entries = fs::read_dir(&path).map_err(|cause| StoreError::io(&path, "read", cause))?;
+    let names = entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned());
+    let mut names: Vec<String> = names.filter(|name| !name.starts_with('.')).collect();
+    names.sort();
+    match names.first() {
+        Some(first) => Err(StoreError::Foreign { path, first: first.clone(), count: names.len() }),
+        None => Ok(()),
+    }
+}
+
+/// The bytes of a file; `None` where there is none.
+pub(super) fn read(path: &Path) -> Result<Option<Vec<u8>>, StoreError> {
+    match fs::read(path) {
+        Ok(bytes) => Ok(Some(bytes)),
+        Err(cause) if cause.kind() == ErrorKind::NotFound => Ok(None),
+        Err(cause) => Err(StoreError::io(path, "read", cause)),
+    }
+}

@@ -1,0 +1,99 @@
+//! `manifest.json`: what a directory of results is of, and each of its files with its hash.
+
+use super::seal::version;
+use super::{StoreError, Work, sha256};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// The files of finished work. Equal work leaves equal manifests.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Manifest {
+    /// Counts the formats of this file.
+    format: u32,
+    /// The version of the program that wrote it.
+    pub version: String,
+    pub work: Work,
+    /// The files, sorted by name.
+    pub files: Vec<FileRecord>,
+    /// SHA-256 of all the above.
+    sha256: String,
+}
+
+/// A file of a directory.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FileRecord {
+    /// The path below the directory, with `/` between folders.
+    pub name: String,
+    /// SHA-256 of its content; `None` for what differs between equal runs, such as timings.
+    pub sha256: Option<String>,
+}
+
+const FORMAT: u32 = 1;
+
+impl Manifest {
+    pub(super) fn new(work: Work, mut files: Vec<FileRecord>) -> Manifest {
+        files.sort_by(|a, b| a.name.cmp(&b.name));
+        let mut manifest =
+            Manifest { format: FORMAT, version: version().to_owned(), work, files, sha256: String::new() };
+        manifest.sha256 = manifest.own_hash();
+        manifest
+    }
+
+    /// The record of a file; `None` where it is no file of the directory.
+    pub fn file(&self, name: &str) -> Option<&FileRecord> {
+        self.files.iter().find(|file| file.name == name)
+    }
+
+    /// Over everything but the hash itself.
+    fn own_hash(&self) -> String {
+        let bare = Manifest { sha256: String::new(), ..self.clone() };
+        sha256(&serde_json::to_vec(&bare).unwrap_or_default()) // texts and numbers always have a form
+    }
+
+    pub(super) fn bytes(&self) -> Vec<u8> {
+        let mut bytes = serde_json::to_vec_pretty(self).unwrap_or_default(); // as above
+        bytes.push(b'\n');
+        bytes
+    }
+
+    /// The manifest in a file; `None` where there is no such file.
+    pub(super) fn read(path: &Path) -> Result<Option<Manifest>, StoreError> {
+        let bytes = match fs::read(path) {
+            Ok(bytes) => bytes,
+            Err(cause) if cause.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(cause) => return Err(StoreError::io(path, "read", cause)),
+        };
+        let manifest: Manifest = serde_json::from_slice(&bytes).map_err(|cause| StoreError::damaged(path, cause))?;
+        if manifest.sha256 != manifest.own_hash() {
+            return Err(StoreError::damaged(path, "it is damaged: its checksum is not that of its content"));
+        }
+        if manifest.format != FORMAT {
+            let (expected, found) = (FORMAT.to_string(), manifest.format.to_string());
+            return Err(StoreError::OtherVersion { path: path.to_owned(), expected, found });
+        }
+        if let Some(file) = manifest.files.iter().find(|file| !is_inside(&file.name)) {
+            return Err(StoreError::damaged(path, format!("it names `{}`, which is not below it", file.name)));
+        }
+        Ok(Some(manifest))
+    }
+}
+
+/// Whether a name stays below its directory and out of the store's own files.
+pub(super) fn is_inside(name: &str) -> bool {
+    let plain = |part: &str| !part.is_empty() && !part.starts_with('.') && !part.contains(['\\', ':']);
+    name.split('/').all(plain) && name != "manifest.json"
+}
+
+impl FileRecord {
+    /// Whether `bytes` are the file's; `path` is for the error.
+    pub(super) fn verify(&self, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+        match &self.sha256 {
+            Some(hash) if *hash != sha256(bytes) => {
+                Err(StoreError::damaged(path, "it is damaged: its content is not what the manifest says"))
+            }
+            _ => Ok(()),
+        }
+    }
+}

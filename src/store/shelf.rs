@@ -1,0 +1,65 @@
+//! A folder of values that can be made again, each found by its key: a file a value, sealed.
+
+use super::directory::read;
+use super::lock::Lock;
+use super::seal::Seal;
+use super::{StoreError, write_atomically};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Values of one kind in a folder, which is made with the first of them.
+#[derive(Debug, Clone)]
+pub struct Shelf {
+    folder: PathBuf,
+    kind: &'static str,
+}
+
+impl Shelf {
+    /// The values of a kind, in one word, that are kept in a folder.
+    pub fn new(folder: impl Into<PathBuf>, kind: &'static str) -> Shelf {
+        Shelf { folder: folder.into(), kind }
+    }
+
+    /// The folder of the values.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// The value of a key; `None` where there is none, or one of another version. Fails where it is damaged.
+    pub fn get<T: DeserializeOwned>(&self, key: &str) -> Result<Option<T>, StoreError> {
+        let path = self.path(key);
+        let Some(bytes) = read(&path)? else { return Ok(None) };
+        match self.seal(key).open_json(&path, &bytes) {
+            Err(StoreError::OtherVersion { .. }) => Ok(None),
+            other => other.map(Some),
+        }
+    }
+
+    /// Keeps a value, whole or not at all.
+    pub fn put<T: Serialize + DeserializeOwned>(&self, key: &str, value: &T) -> Result<(), StoreError> {
+        self.make()?;
+        let path = self.path(key);
+        write_atomically(&path, &self.seal(key).close_json(&path, value)?)
+    }
+
+    /// The file of a key.
+    pub(super) fn path(&self, key: &str) -> PathBuf {
+        self.folder.join(format!("{key}.{}", self.kind))
+    }
+
+    /// Waits until nobody else, in this process or another, has the lock of a key.
+    pub(super) fn lock(&self, key: &str) -> Result<Lock, StoreError> {
+        self.make()?;
+        Lock::wait(&self.folder.join(format!("{key}.lock")))
+    }
+
+    fn make(&self) -> Result<(), StoreError> {
+        fs::create_dir_all(&self.folder).map_err(|cause| StoreError::io(&self.folder, "create", cause))
+    }
+
+    fn seal<'a>(&self, key: &'a str) -> Seal<'a> {
+        Seal { kind: self.kind, key }
+    }
+}

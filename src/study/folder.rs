@@ -1,0 +1,117 @@
+//! The directory of a study: each point is kept as soon as it is there, and the answer is put in place at once. A study that was
+//! killed finds there what it has.
+//!
+//! Points are kept by what they are made of and never by their number, so that no result can stand for another scene's.
+
+use super::{Answer, Plan, PlannedPoint, PointOutcome, PointResult, values};
+use crate::compile::{Compiled, fingerprint};
+use crate::store::{Directory, Mode, StoreError, Work};
+use serde::Serialize;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Outcomes of a finished study by the fingerprints of their points.
+const POINTS: &str = "points.json";
+
+/// A directory in which a study is under way, or finished.
+#[derive(Debug)]
+pub struct StudyFolder {
+    directory: Directory,
+    /// What a finished study found.
+    finished: Option<BTreeMap<String, PointOutcome>>,
+}
+
+impl StudyFolder {
+    /// Opens the directory of a study. Fails as [`Directory::open`] does.
+    pub fn open(out: &Path, plan: &Plan, compiled: &Compiled, mode: Mode) -> Result<StudyFolder, StoreError> {
+        let work = Work { name: format!("study `{}`", plan.study.name), scene_sha256: fingerprint(&compiled.sources) };
+        let directory = Directory::open(out, work, mode)?;
+        let points = directory.finished().map(|finished| finished.read(POINTS)).transpose()?.flatten();
+        let read = |bytes: Vec<u8>| {
+            serde_json::from_slice(&bytes).map_err(|cause| StoreError::damaged(&out.join(POINTS), cause))
+        };
+        Ok(StudyFolder { directory, finished: points.map(read).transpose()? })
+    }
+
+    /// Whether the study has been finished here before.
+    pub fn is_finished(&self) -> bool {
+        self.finished.is_some()
+    }
+
+    /// The result of a point that has been kept; `None` where it has not run. Fails where its file is damaged.
+    pub fn known(&self, point: &PlannedPoint) -> Result<Option<PointResult>, StoreError> {
+        let result = |outcome: PointOutcome| PointResult { number: point.number, outcome };
+        if let Some(finished) = &self.finished {
+            return Ok(finished.get(&point.fingerprint).cloned().map(result));
+        }
+        let Some(bytes) = self.directory.kept(&point.fingerprint)? else { return Ok(None) };
+        let outcome = serde_json::from_slice(&bytes);
+        outcome.map(|outcome| Some(result(outcome))).map_err(|cause| StoreError::damaged(self.directory.path(), cause))
+    }
+
+    /// Keeps the result of a point.
+    pub fn keep(&self, point: &PlannedPoint, result: &PointResult) -> Result<(), StoreError> {
+        self.directory.keep(&point.fingerprint, &self.text("a point", &result.outcome)?).map(drop)
+    }
+
+    /// Puts the answer in place; equal studies leave equal bytes but for the timings.
+    pub fn finish(
+        mut self,
+        plan: &Plan,
+        answer: &Answer,
+        page: &str,
+        compiled: &Compiled,
+        timings: &BTreeMap<String, f64>,
+    ) -> Result<(), StoreError> {
+        let csv =
+            answer.csv().map_err(|cause| StoreError::unwritable(&self.directory.path().join("study.csv"), cause))?;
+        let mut found = answer.json();
+        found["provenance"] = provenance(compiled);
+        let outcomes: BTreeMap<&String, &PointOutcome> = plan
+            .points
+            .iter()
+            .map(|point| &point.fingerprint)
+            .zip(answer.rows.iter().map(|row| &row.outcome))
+            .collect();
+        let files = [
+            ("design.json", self.text("design.json", &design(plan, compiled))?),
+            (POINTS, self.text(POINTS, &outcomes)?),
+            ("study.csv", csv.into_bytes()),
+            ("study.json", self.text("study.json", &found)?),
+            ("study.html", page.as_bytes().to_vec()),
+        ];
+        files.iter().try_for_each(|(name, bytes)| self.directory.stage(name, bytes))?;
+        self.directory.stage_changing("timings.json", &self.text("timings.json", timings)?)?;
+        self.directory.commit().map(drop)
+    }
+
+    fn text(&self, name: &str, value: &impl Serialize) -> Result<Vec<u8>, StoreError> {
+        let text = serde_json::to_string_pretty(value).map(|text| text + "\n");
+        text.map(String::into_bytes).map_err(|cause| StoreError::unwritable(&self.directory.path().join(name), cause))
+    }
+}
+
+/// What names a study: its scene, its points, and the program that runs them.
+fn design(plan: &Plan, compiled: &Compiled) -> Value {
+    let point = |p: &PlannedPoint| json!({ "point": p.number, "values": values(&plan.study, &p.levels), "sha256": p.fingerprint });
+    json!({
+        "study": plan.study.name,
+        "provenance": provenance(compiled),
+        "points": plan.points.iter().map(point).collect::<Vec<_>>(),
+    })
+}
+
+fn provenance(compiled: &Compiled) -> Value {
+    let main = compiled.sources.iter().next().map(|(_, source)| source);
+    // the name alone: equal scenes give equal files wherever they lie
+    let name = main.map_or("", |s| s.name.rsplit(['/', '\\']).next().unwrap_or(&s.name));
+    json!({
+        "program": env!("CARGO_PKG_NAME"),
+        "version": env!("CARGO_PKG_VERSION"),
+        "file": name,
+        "source": main.map_or("", |s| s.text.as_str()),
+        "source_sha256": fingerprint(&compiled.sources),
+        "seed": compiled.scenario.as_ref().map(|s| s.solve.seed),
+    })
+}
