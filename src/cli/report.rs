@@ -3,7 +3,8 @@
 use super::{Outcome, terminal};
 use crate::report::{self, BedTestsPage, Figure};
 use crate::results::{self, BedTestsView, NamedBytes, ResultsError};
-use std::path::PathBuf;
+use crate::store::Directory;
+use std::path::{Path, PathBuf};
 
 /// Write the report page of a run, from its directory
 #[derive(clap::Args)]
@@ -16,30 +17,33 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
-    let (directory, figures) = (&arguments.directory, arguments.figures);
-    let pages = match results::read_tests(directory) {
-        Ok(Some(view)) => test_pages(&view, figures),
-        Ok(None) => match results::read(directory) {
-            Ok(run) => run_pages(&run, figures),
-            Err(error) => return unread(&error),
-        },
-        Err(error) => return unread(&error),
-    };
-    match results::write_files(&pages, directory) {
-        Ok(()) => {
-            terminal::out(&format!("wrote {}\n", directory.join(PAGE).display()));
+    match write(&arguments.directory, arguments.figures) {
+        Ok(page) => {
+            terminal::out(&format!("wrote {}\n", page.display()));
             Outcome::Fine
         }
         Err(error) => {
             terminal::error(&error.to_string());
-            Outcome::Failed
+            Outcome::Usage
         }
     }
 }
 
-fn unread(error: &ResultsError) -> Outcome {
-    terminal::error(&error.to_string());
-    Outcome::Usage
+/// Reads the results of a directory, each file checked, and puts their page in place.
+fn write(directory: &Path, figures: bool) -> Result<PathBuf, ResultsError> {
+    let mut opened = Directory::amend(directory)?;
+    if let Some(finished) = opened.finished() {
+        finished.verify()?;
+    }
+    let pages = match results::read_tests(directory)? {
+        Some(view) => test_pages(&view, figures),
+        None => run_pages(&results::read(directory)?, figures),
+    };
+    for (name, bytes) in &pages {
+        opened.stage(name, bytes)?;
+    }
+    opened.commit()?;
+    Ok(directory.join(PAGE))
 }
 
 /// `report.html` of a run, and the figures where they are wanted.

@@ -1,14 +1,16 @@
 //! `trackbed run`: runs a scene into a directory, with checkpoints, a report and the verdict on its expectations.
 
 use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
-use super::{Outcome, pack, progress, report, terminal};
+use super::{Outcome, pack, progress, report, stored, terminal};
 use crate::compile::{Compiled, fingerprint};
 use crate::diag::{Code, Diagnostic, render};
 use crate::execute::{Both, Ending, Event, Executor, Listener};
 use crate::graph::{Graph, Schedule};
 use crate::lower::Parameter;
-use crate::results::{self, BedTestsView, BlockRow, NamedBytes, Run, RunRecorder, Scalar, Store, Verdict, checkpoint};
+use crate::results::{self, BedTestsView, BlockRow, NamedBytes, ResultsError, Run, RunRecorder, Scalar, Verdict};
 use crate::scenario::Scenario;
+use crate::solvers::granular::Bed;
+use crate::store::{Directory, Mode, Work};
 use crate::units::number;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -63,40 +65,76 @@ fn run_here(arguments: &Arguments) -> Outcome {
     let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else {
         return not_yet(&compiled);
     };
-    if let Err(message) = prepare(arguments) {
-        let help = "give another `--out`, or `--resume` or `--force`";
-        return stop(&compiled, Diagnostic::new(Code::E0802, message).help(help));
+    let work = Work { name: "run".into(), scene_sha256: fingerprint(&compiled.sources) };
+    match Directory::open(&arguments.out, work, arguments.mode()) {
+        Ok(directory) if directory.finished().is_some() => again(directory.path(), &compiled),
+        Ok(directory) => compute(arguments, directory, &Running { compiled: &compiled, scenario, graph, started }),
+        Err(error) => stop(&compiled, stored::diagnostic(&error)),
     }
-    let hash = fingerprint(&compiled.sources);
-    let store = Store { directory: arguments.out.clone(), scene_sha256: hash.clone() };
-    let mut recorder = RunRecorder::new(scenario, graph).kept_in(store);
-    let from = match arguments.resume.then(|| recorder.resume()).transpose() {
-        Ok(from) => from.flatten(),
-        Err(error) => {
-            let mistake = Diagnostic::new(Code::E0803, error.to_string());
-            return stop(&compiled, mistake.help("run without `--resume`, with `--force`"));
+}
+
+impl Arguments {
+    fn mode(&self) -> Mode {
+        match (self.force, self.resume) {
+            (true, _) => Mode::Force,
+            (false, true) => Mode::Resume,
+            (false, false) => Mode::New,
         }
+    }
+}
+
+/// A run on its way.
+struct Running<'a> {
+    compiled: &'a Compiled,
+    scenario: &'a Scenario,
+    graph: &'a Graph,
+    started: Instant,
+}
+
+fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -> Outcome {
+    let Running { compiled, scenario, graph, started } = running;
+    let refused = |error: &ResultsError| stop(compiled, results_diagnostic(error));
+    let mut recorder = RunRecorder::new(scenario, graph).kept_in(&directory);
+    let from = match recorder.resume() {
+        Ok(from) => from,
+        Err(error) => return refused(&error),
     };
     let executor = Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
     let mut shown = Shown::new(graph);
     let ended = executor.run(graph, &mut Both(&mut recorder, &mut shown), from);
     drop(shown);
-    match ended {
-        Ok(Ending::Finished) => {}
-        Ok(Ending::Stopped) => {
-            let why = recorder.failure().map_or_else(|| "the run was ended".to_owned(), |error| error.to_string());
-            return stop(&compiled, Diagnostic::new(Code::E0802, why).help("the run can be resumed with `--resume`"));
-        }
-        Err(error) => return stop(&compiled, results::diagnose(&error, graph, &compiled.origins)),
+    match (ended, recorder.failure()) {
+        (Ok(Ending::Finished), _) => {}
+        (Ok(Ending::Stopped), Some(error)) => return refused(&error),
+        (Ok(Ending::Stopped), None) => return Outcome::Failed,
+        (Err(error), _) => return stop(compiled, results::diagnose(&error, graph, &compiled.origins)),
     }
     let computed = started.elapsed().as_secs_f64();
-    let run = Run::gather(&recorder, scenario, graph, &compiled.sources, hash);
-    match write(&run, recorder, &arguments.out, computed, &started) {
-        Ok(page) => summary(&run, &page, computed),
-        Err(message) => return stop(&compiled, Diagnostic::new(Code::E0802, message)),
+    let run = Run::gather(&recorder, scenario, graph, &compiled.sources, fingerprint(&compiled.sources));
+    let files = match files(&run, recorder.last_bed.take(), &arguments.out) {
+        Ok(files) => files,
+        Err(error) => return refused(&error),
+    };
+    drop(recorder);
+    if let Err(error) = put_in_place(directory, &files, computed, started) {
+        return refused(&error);
     }
-    warn(&run, &compiled);
-    verdicts(&run.summary.expectations, scenario, &compiled)
+    summary(&run, &arguments.out.join(report::PAGE), computed);
+    warn(&run, compiled);
+    verdicts(&run.summary.expectations, scenario, compiled)
+}
+
+/// Says what a run found that is finished already.
+fn again(out: &Path, compiled: &Compiled) -> Outcome {
+    let summary = match results::read_summary(out) {
+        Ok(summary) => summary,
+        Err(error) => return stop(compiled, results_diagnostic(&error)),
+    };
+    terminal::out(&format!("{} was finished before\n", out.join(report::PAGE).display()));
+    match &compiled.scenario {
+        Some(scenario) => verdicts(&summary.expectations, scenario, compiled),
+        None => Outcome::Fine,
+    }
 }
 
 /// Shows how far a run is, on a terminal or in a line a minute.
@@ -144,69 +182,48 @@ fn stop(compiled: &Compiled, diagnostic: Diagnostic) -> Outcome {
     Outcome::Failed
 }
 
-/// Makes the directory ready: the results of another run are not overwritten by accident.
-fn prepare(arguments: &Arguments) -> Result<(), String> {
-    let out = &arguments.out;
-    let shown = out.display();
-    if out.is_file() {
-        return Err(format!("`{shown}` is a file, not a directory"));
-    }
-    std::fs::create_dir_all(out).map_err(|e| format!("cannot make the directory `{shown}`: {e}"))?;
-    let holds = |name: &str| out.join(name).exists();
-    if arguments.force {
-        results::remove_states(out).map_err(|e| e.to_string())?;
-        for name in ["summary.json", "checkpoint.json", "histories.parquet", "laws.csv"] {
-            if holds(name) {
-                std::fs::remove_file(out.join(name)).map_err(|e| format!("cannot replace `{shown}/{name}`: {e}"))?;
-            }
+fn results_diagnostic(error: &ResultsError) -> Diagnostic {
+    match error {
+        ResultsError::Store(error) => stored::diagnostic(error),
+        other => {
+            Diagnostic::new(Code::E0802, other.to_string()).help("what was computed is kept: go on with `--resume`")
         }
     }
-    if holds("summary.json") {
-        return Err(format!("`{shown}` holds the results of a finished run"));
-    }
-    if holds("checkpoint.json") && !arguments.resume {
-        return Err(format!("`{shown}` holds an interrupted run"));
-    }
-    Ok(())
 }
 
 /// Every file of a finished run, its page among them.
-fn files(run: &Run, mut recorder: RunRecorder<'_>, out: &Path) -> Result<Vec<NamedBytes>, String> {
-    let failure = |error: &dyn std::fmt::Display| format!("cannot write the results: {error}");
-    let view = match &mut recorder.last_bed {
-        Some(bed) => BedTestsView::new(run.clone(), bed).map_err(|error| failure(&error))?,
+fn files(run: &Run, last_bed: Option<Bed<f32>>, out: &Path) -> Result<Vec<NamedBytes>, ResultsError> {
+    let view = match last_bed {
+        Some(mut bed) => {
+            BedTestsView::new(run.clone(), &mut bed).map_err(|cause| ResultsError::unwritable(out, cause))?
+        }
         None => None,
     };
-    match view {
-        Some(view) => {
-            let files = results::test_files(&view, out).map_err(|error| failure(&error))?;
-            Ok([report::test_pages(&view, false), files].concat())
-        }
-        None => {
-            let files = results::files(run, out).map_err(|error| failure(&error))?;
-            Ok([files, report::run_pages(run, false)].concat())
-        }
-    }
+    Ok(match view {
+        Some(view) => [results::test_files(&view, out)?, report::test_pages(&view, false)].concat(),
+        None => [results::files(run, out)?, report::run_pages(run, false)].concat(),
+    })
 }
 
-fn write(
-    run: &Run,
-    recorder: RunRecorder<'_>,
-    out: &Path,
+/// Puts all files in place at once.
+fn put_in_place(
+    mut directory: Directory,
+    files: &[NamedBytes],
     computed: f64,
     started: &Instant,
-) -> Result<PathBuf, String> {
-    let files = files(run, recorder, out)?;
-    results::write_files(&files, out).map_err(|e| e.to_string())?;
+) -> Result<(), ResultsError> {
+    for (name, bytes) in files {
+        directory.stage(name, bytes)?;
+    }
     let timings = BTreeMap::from([
         ("solve_s".to_string(), computed),
         ("total_s".to_string(), started.elapsed().as_secs_f64()),
         ("threads".to_string(), rayon::current_num_threads() as f64),
     ]);
-    let timings = results::timings_file(&timings, out).map_err(|e| e.to_string())?;
-    results::write_files(&[timings], out).map_err(|e| e.to_string())?;
-    checkpoint::remove(out).map_err(|e| e.to_string())?;
-    Ok(out.join(report::PAGE))
+    let (name, bytes) = results::timings_file(&timings, directory.path())?;
+    directory.stage_changing(&name, &bytes)?;
+    directory.commit()?;
+    Ok(())
 }
 
 /// The few numbers that people ask for first.

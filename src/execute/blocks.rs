@@ -122,7 +122,7 @@ impl Run<'_, '_> {
                 let state = ScheduleState::Blocks { blocks, control, ground: ground.save()? };
                 Ok(Checkpoint { clock: Clock::Axles(axles), state })
             };
-            tell!(self, Event::Between(Between { at_end: true, state: &state }));
+            tell!(self, Event::Between(Between { is_last: false, state: &state }));
             let all = self.done as u64 + self.blocks_left(axles, done.block.axles) + 1;
             tell!(self, Event::Progress { done: self.done as u64, all });
             here = match done.next {

@@ -47,8 +47,8 @@ pub enum Event<'a> {
 
 /// A moment at which a run can be interrupted and taken up again.
 pub struct Between<'a> {
-    /// Whether a block of axles, a cycle or a whole test has just ended.
-    pub at_end: bool,
+    /// Whether nothing but the writing of results follows: what is lost here is lost whole.
+    pub is_last: bool,
     pub(super) state: &'a dyn Fn() -> Result<Checkpoint, NodeError>,
 }
 

@@ -20,14 +20,18 @@ pub(super) fn run(
     };
     let none = NodeError::NoBuilder { node: "bed".into(), kind: "bed under actuators".into() };
     let (bed, actuators) = machine.graph.bed_under_actuators().ok_or_else(|| at(0, none))?;
-    while (done.len() as u64) < u64::from(tests.packings.max(1)) {
+    let packings = tests.packings.max(1) as usize;
+    while done.len() < packings {
         let mut test = Test { machine, tests, bed, actuators, listener, done: &done };
         let Some((tested, bed)) = test.run(running.take().map(|state| *state))? else { return Ok(Ending::Stopped) };
         done.push(tested);
-        let told = listener.hear(&Event::Tested { tested: &done[done.len() - 1], bed: &bed });
+        if listener.hear(&Event::Tested { tested: &done[done.len() - 1], bed: &bed }).is_break() {
+            return Ok(Ending::Stopped);
+        }
+        // the state before the end of the last test holds its bed, which results show
         let state = || Ok(checkpoint(&done, None));
-        let kept = listener.hear(&Event::Between(Between { at_end: true, state: &state }));
-        if told.is_break() || kept.is_break() {
+        let between = Between { is_last: false, state: &state };
+        if done.len() < packings && listener.hear(&Event::Between(between)).is_break() {
             return Ok(Ending::Stopped);
         }
     }
@@ -85,7 +89,7 @@ impl Test<'_, '_> {
             let (done, all) = test.pieces();
             let progress = self.listener.hear(&Event::Progress { done, all });
             let state = || Ok(checkpoint(self.done, Some((test.cycles(), test.save()))));
-            let between = Between { at_end: test.at_end_of_cycle(), state: &state };
+            let between = Between { is_last: done == all, state: &state };
             if progress.is_break() || self.listener.hear(&Event::Between(between)).is_break() {
                 return Ok(None);
             }

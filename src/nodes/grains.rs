@@ -59,11 +59,6 @@ impl<'a> BedUnderActuators<'a> {
         self.trial.cycles().last().map_or(0, |cycle| cycle.number)
     }
 
-    /// Whether the last piece ended a cycle of the first actuator.
-    pub fn at_end_of_cycle(&self) -> bool {
-        self.trial.at_end_of_cycle()
-    }
-
     /// The state as data.
     pub fn save(&self) -> TestState {
         self.trial.store()

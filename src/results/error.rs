@@ -23,7 +23,7 @@ impl ResultsError {
         StoreError::damaged(path, cause).into()
     }
 
-    pub(super) fn unwritable(path: &Path, cause: impl fmt::Display) -> Self {
+    pub(crate) fn unwritable(path: &Path, cause: impl fmt::Display) -> Self {
         StoreError::unwritable(path, cause).into()
     }
 }

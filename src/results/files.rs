@@ -60,6 +60,11 @@ pub fn write_files(files: &[NamedBytes], directory: &Path) -> Result<(), Results
     Ok(())
 }
 
+/// The summary of a finished run or test.
+pub fn read_summary(directory: &Path) -> Result<super::Summary, ResultsError> {
+    read_json(&directory.join(SUMMARY))
+}
+
 /// Reads a run back from its directory.
 pub fn read(directory: &Path) -> Result<Run, ResultsError> {
     Ok(Run {

@@ -5,12 +5,13 @@
 
 use super::files::check_finite;
 use super::{HistoryRow, ResultsError};
+use bytes::Bytes;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use parquet::column::reader::get_typed_column_reader;
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::Result as ParquetResult;
 use parquet::file::properties::WriterProperties;
-use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
+use parquet::file::reader::{ChunkReader, FileReader, RowGroupReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{Type, TypePtr};
 use std::fs::File;
@@ -45,6 +46,15 @@ pub(super) fn encode(rows: &[HistoryRow], directory: &Path) -> Result<Vec<u8>, R
 /// The rows of a file.
 pub(super) fn decode(path: &Path) -> Result<Vec<HistoryRow>, ResultsError> {
     let file = File::open(path).map_err(|cause| ResultsError::io(path, "read", cause))?;
+    read_rows(file, path)
+}
+
+/// The rows of a file that is in memory; `path` stands in messages only.
+pub(super) fn decode_bytes(bytes: Vec<u8>, path: &Path) -> Result<Vec<HistoryRow>, ResultsError> {
+    read_rows(Bytes::from(bytes), path)
+}
+
+fn read_rows(file: impl ChunkReader + 'static, path: &Path) -> Result<Vec<HistoryRow>, ResultsError> {
     let reader = SerializedFileReader::new(file).map_err(|cause| ResultsError::malformed(path, cause))?;
     let schema = reader.metadata().file_metadata().schema_descr();
     let found = schema.columns().iter().map(|c| (c.name(), c.physical_type()));

@@ -36,11 +36,11 @@ pub use evaluate::{
     SleeperTable, Tables, contact_pressures, evaluate, holds, is_kept, known, not_kept, verdict, verdicts,
 };
 pub use failure::diagnose;
-pub use files::{NamedBytes, files, read, read_timings, timings_file, write, write_files};
+pub use files::{NamedBytes, files, read, read_summary, read_timings, timings_file, write, write_files};
 pub use grains::{Grain, Link, grains, links, places};
 pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};
 pub use level::{LongitudinalLevel, longitudinal_level};
-pub use recorder::{RunRecorder, RunTables, Store};
+pub use recorder::{RunRecorder, RunTables};
 pub use states::remove as remove_states;
 pub use summarise::{RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise};
 pub use summary::{Provenance, Scalar, Summary, Verdict};

@@ -1,10 +1,9 @@
 //! Listens to a run and makes its tables. What it holds between two blocks is small and goes into the checkpoint;
 //! histories go into their own file as soon as they exist.
 
-use super::histories::HISTORIES;
 use super::{
     BedSummary, BedTest, BedTests, BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Scalar,
-    SleeperRow, SleeperTable, Tables, TampingRow, TrainRow, bed_summary, checkpoint, histories, write_atomically,
+    SleeperRow, SleeperTable, Tables, TampingRow, TrainRow, bed_summary, histories,
 };
 use crate::execute::{Between, Checkpoint, Event, Listener, Measured};
 use crate::graph::{Block, Graph, Runner, TrackNode};
@@ -12,18 +11,11 @@ use crate::nodes::{self, PassageOutcome, RailPoint, SeatOutcome, Tested, Unloade
 use crate::scenario::response::Response;
 use crate::scenario::{Loading, Scenario, Track, Traffic};
 use crate::solvers::granular::Bed;
+use crate::store::{Directory, Piece};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
-
-/// Where a run keeps what it needs to be resumed.
-pub struct Store {
-    pub directory: PathBuf,
-    /// Names the scene: its texts and overrides.
-    pub scene_sha256: String,
-}
 
 /// The small tables of a run.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -60,23 +52,25 @@ impl RunTables {
     }
 }
 
-/// What a checkpoint holds.
+/// What a checkpoint holds; the histories so far stand in pieces beside it.
 #[derive(Serialize, Deserialize)]
 struct Saved {
     checkpoint: Checkpoint,
     tables: RunTables,
+    histories: Vec<Piece>,
 }
 
 /// Makes the tables of a run.
 pub struct RunRecorder<'a> {
     scenario: &'a Scenario,
     track: Option<&'a TrackNode>,
-    store: Option<Store>,
-    /// When a checkpoint was written last.
-    kept: Option<Instant>,
+    directory: Option<&'a Directory>,
+    /// When a checkpoint is due.
+    due: Option<Instant>,
     pub tables: RunTables,
     pub histories: Vec<HistoryRow>,
-    /// Rows of `histories` that are in their file already.
+    /// Histories that are kept already, and their rows.
+    kept: Vec<Piece>,
     written: usize,
     unloaded: Option<Unloaded>,
     /// The bed under test, before its test is over.
@@ -87,8 +81,9 @@ pub struct RunRecorder<'a> {
     failure: Option<ResultsError>,
 }
 
-/// Time between two checkpoints.
+/// Time between two checkpoints at least, and as a multiple of what the last one took: they cost a twentieth of a run at most.
 const KEEP: Duration = Duration::from_secs(2);
+const SHARE: u32 = 20;
 
 impl<'a> RunRecorder<'a> {
     /// A recorder that writes nothing while the run goes on.
@@ -97,10 +92,11 @@ impl<'a> RunRecorder<'a> {
         RunRecorder {
             scenario,
             track: graph.track(),
-            store: None,
-            kept: None,
+            directory: None,
+            due: None,
             tables: RunTables { tests, ..RunTables::default() },
             histories: Vec::new(),
+            kept: Vec::new(),
             written: 0,
             unloaded: None,
             bed: None,
@@ -109,21 +105,21 @@ impl<'a> RunRecorder<'a> {
         }
     }
 
-    /// The same, that keeps what a run needs to be resumed.
-    pub fn kept_in(self, store: Store) -> Self {
-        RunRecorder { store: Some(store), ..self }
+    /// The same, that keeps in a directory what a run needs to be resumed.
+    pub fn kept_in(self, directory: &'a Directory) -> Self {
+        RunRecorder { directory: Some(directory), ..self }
     }
 
-    /// Takes up what an interrupted run has left; `None` where it left nothing.
+    /// Takes up what an interrupted run has left in the directory; `None` where it left nothing.
     pub fn resume(&mut self) -> Result<Option<Checkpoint>, ResultsError> {
-        let Some(store) = &self.store else { return Ok(None) };
-        let Some(saved) = checkpoint::read::<Saved>(&store.directory, &store.scene_sha256)? else { return Ok(None) };
-        // a passage recorded after the checkpoint will be computed again
-        let done = saved.tables.blocks.last().map_or(0, |b| b.axles + b.block_axles);
-        self.histories = histories::decode(&store.directory.join(HISTORIES)).unwrap_or_default();
-        self.histories.retain(|row| row.axles < done);
+        let Some(directory) = self.directory else { return Ok(None) };
+        let Some(saved) = directory.read_checkpoint::<Saved>()? else { return Ok(None) };
+        for piece in &saved.histories {
+            let bytes = directory.read_piece(piece)?;
+            self.histories.extend(histories::decode_bytes(bytes, &directory.path().join(&piece.key))?);
+        }
         self.written = self.histories.len();
-        self.tables = saved.tables;
+        (self.kept, self.tables) = (saved.histories, saved.tables);
         Ok(Some(saved.checkpoint))
     }
 
@@ -134,20 +130,19 @@ impl<'a> RunRecorder<'a> {
 
     /// Keeps the state of now, where it is time.
     fn keep(&mut self, between: &Between<'_>) -> Result<(), ResultsError> {
-        let Some(store) = &self.store else { return Ok(()) };
-        if !between.at_end && self.kept.is_some_and(|kept| kept.elapsed() < KEEP) {
+        let Some(directory) = self.directory else { return Ok(()) };
+        let started = Instant::now();
+        if !between.is_last && self.due.is_some_and(|due| started < due) {
             return Ok(());
         }
         if self.written < self.histories.len() {
-            let bytes = histories::encode(&self.histories, &store.directory)?;
-            write_atomically(&store.directory.join(HISTORIES), &bytes)?;
+            let bytes = histories::encode(&self.histories[self.written..], directory.path())?;
+            self.kept.push(directory.keep(&format!("histories-{:04}", self.kept.len()), &bytes)?);
+            self.written = self.histories.len();
         }
-        let path = store.directory.join("checkpoint.json");
-        let checkpoint = between.checkpoint().map_err(|cause| ResultsError::unwritable(&path, cause))?;
-        let saved = Saved { checkpoint, tables: self.tables.clone() };
-        checkpoint::write(&store.directory, &store.scene_sha256, &saved)?;
-        self.written = self.histories.len();
-        self.kept = Some(Instant::now());
+        let checkpoint = between.checkpoint().map_err(|cause| ResultsError::unwritable(directory.path(), cause))?;
+        directory.write_checkpoint(&Saved { checkpoint, tables: self.tables.clone(), histories: self.kept.clone() })?;
+        self.due = Some(Instant::now() + KEEP.max(SHARE * started.elapsed()));
         Ok(())
     }
 
