@@ -3,7 +3,8 @@
 use std::time::Instant;
 use trackbed::check::{NoModules, Override};
 use trackbed::compile;
-use trackbed::graph::{self, Graph};
+use trackbed::execute;
+use trackbed::graph::Graph;
 use trackbed::results::RunRecorder;
 use trackbed::scenario::Scenario;
 
@@ -19,18 +20,18 @@ fn main() {
         })
         .collect();
     let runs = || -> Vec<(&Graph, RunRecorder<'_>)> {
-        scenes.iter().map(|(scenario, graph)| (graph, RunRecorder::new(scenario, None, |_, _| {}))).collect()
+        scenes.iter().map(|(scenario, graph)| (graph, RunRecorder::new(scenario, graph))).collect()
     };
 
     let clock = Instant::now();
     for (graph, mut recorder) in runs() {
-        if let Err(error) = graph::execute(graph, &mut recorder, None) {
+        if let Err(error) = execute::execute(graph, &mut recorder) {
             println!("{error}");
         }
     }
     let one_by_one = clock.elapsed().as_secs_f64();
     let clock = Instant::now();
-    let failed = graph::execute_all(&mut runs()).into_iter().filter(Result::is_err).count();
+    let failed = execute::execute_all(&mut runs()).into_iter().filter(Result::is_err).count();
     let at_once = clock.elapsed().as_secs_f64();
     println!(
         "{} runs: {one_by_one:.2} s one by one, {at_once:.2} s on {} threads, ratio {:.2}, {failed} failed",

@@ -4,15 +4,16 @@
 
 use std::error::Error;
 use trackbed::check::Folder;
-use trackbed::results::{RailRow, RunRecorder, subgrade_pressures, summarise};
-use trackbed::{compile, graph};
+use trackbed::results::{RailRow, RunRecorder, evaluate, summarise};
+use trackbed::scenario::response::{Expression, Measure, Reduction, Response};
+use trackbed::{compile, execute};
 
 const AXLES: u64 = 10_000;
 /// Stiffness gradients are those over this distance, m, no further than `NEAR` from the transition.
 const STEP: f64 = 1.0;
 const NEAR: f64 = 15.0;
-/// Pressure is that before the slab, m.
-const LAST: f64 = 6.0;
+/// Pressure is that before the slab, m, between seats: neither end has one.
+const LAST: (f64, f64) = (-5.999, -0.001);
 
 /// Name, and the stretches that make it.
 const CASES: [(&str, &str); 8] = [
@@ -105,7 +106,7 @@ struct Effect {
     seat_load: f64,
     /// mm, after the last axle.
     differential: f64,
-    /// kPa, the largest over the last `LAST` metres before the slab after the last axle; where the layers are known.
+    /// kPa, the largest over the last metres before the slab after the last axle; where the layers are known.
     subgrade: Option<f64>,
 }
 
@@ -146,19 +147,20 @@ fn run(scene: &str) -> Result<Effect, Box<dyn Error>> {
     let (Some(scenario), Some(plan)) = (compiled.scenario, compiled.graph) else {
         return Err(format!("{:?}", compiled.diagnostics).into());
     };
-    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
-    graph::execute(&plan, &mut recorder, None)?;
+    let mut recorder = RunRecorder::new(&scenario, &plan);
+    execute::execute(&plan, &mut recorder)?;
     let tables = &recorder.tables;
     let scalars = summarise(&scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
     let scalar = |name: &str| scalars.get(name).map(|s| s.value).ok_or(format!("no {name}"));
     let before: Vec<&RailRow> = tables.rail.iter().filter(|r| r.axles == 0 && r.x_m.abs() < NEAR).collect();
-    let last = tables.sleepers.iter().filter(|row| row.axles == AXLES && row.x_m < 0.0 && row.x_m > -LAST);
-    let pressures = subgrade_pressures(&scenario.track, last);
+    let pressure = Measure { over: Some(LAST), ..Measure::new(Reduction::Max, Response::SubgradePressure) };
+    let view = tables.view(&recorder.histories, &scalars, &scenario.track);
+    let subgrade = evaluate(&Expression::Measure(pressure), view);
     Ok(Effect {
         gradient: steepest(&before) / 1e6,
         seat_load: scalar("max_rail_seat_load")? / 1e3,
         differential: scalar("differential_settlement")? * 1e3,
-        subgrade: pressures.iter().map(|(_, pressure)| pressure / 1e3).max_by(f64::total_cmp),
+        subgrade: subgrade.ok().map(|pressure| pressure / 1e3),
     })
 }
 

@@ -100,9 +100,9 @@ fn outcome(text: &str) -> Result<(), Code> {
     let compiled = compiled(text);
     assert!(codes(&compiled).is_empty(), "{}", told(&compiled));
     let (scenario, graph) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
-    let mut recorder = trackbed::results::RunRecorder::new(&scenario, None, |_, _| {});
-    trackbed::graph::execute(&graph, &mut recorder, None)
-        .map_err(|error| trackbed::results::diagnose(&error, &scenario, &graph).code)?;
+    let mut recorder = trackbed::results::RunRecorder::new(&scenario, &graph);
+    trackbed::execute::execute(&graph, &mut recorder)
+        .map_err(|error| trackbed::results::diagnose(&error, &graph, &compiled.origins).code)?;
     let (tables, histories) = (&recorder.tables, recorder.all_histories());
     let scalars = trackbed::results::summarise(&scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
     let view = tables.view(&histories, &scalars, &scenario.track);
@@ -205,10 +205,10 @@ fn a_checkpoint_of_another_scene_is_refused() {
         directory: directory.path().to_owned(),
         scene_sha256: hash.to_string(),
     };
-    let mut recorder = trackbed::results::RunRecorder::new(&scenario, Some(store("one")), |_, _| {});
-    trackbed::graph::execute(&graph, &mut recorder, None).unwrap();
-    let mut other = trackbed::results::RunRecorder::new(&scenario, Some(store("two")), |_, _| {});
+    let mut recorder = trackbed::results::RunRecorder::new(&scenario, &graph).kept_in(store("one"));
+    trackbed::execute::execute(&graph, &mut recorder).unwrap();
+    let mut other = trackbed::results::RunRecorder::new(&scenario, &graph).kept_in(store("two"));
     assert!(other.resume().is_err());
-    let mut same = trackbed::results::RunRecorder::new(&scenario, Some(store("one")), |_, _| {});
+    let mut same = trackbed::results::RunRecorder::new(&scenario, &graph).kept_in(store("one"));
     assert!(same.resume().unwrap().is_some());
 }

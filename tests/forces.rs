@@ -35,7 +35,7 @@ const RISE: &str = "time_s,force_kN\n0,5\n0.1,60\n0.2,5\n";
 fn mistakes(force: &str, file: &'static str) -> Vec<(Code, String)> {
     let compiled = compile("scene.track", &scene(force), &File(file), &[]);
     assert!(compiled.diagnostics.iter().any(|d| d.code == Code::E0604), "it waits for grains");
-    assert!(compiled.graph.is_none());
+    assert!(compiled.runnable().is_none());
     let wrong = compiled.diagnostics.iter().filter(|d| d.code != Code::E0604);
     wrong.map(|d| (d.code, d.message.clone())).collect()
 }

@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 use trackbed::check::NoModules;
 use trackbed::diag::Code;
-use trackbed::{Compiled, compile, lower};
+use trackbed::graph::{BedPlan, TestWork, Work};
+use trackbed::{Compiled, compile};
 
 /// 42 m of track on a layer of stone and a metre of soil; each part may be replaced.
 #[derive(Clone, Copy)]
@@ -270,14 +271,13 @@ fn rules_hold_for_test_rigs() {
 
 #[test]
 fn larger_grains_are_fewer_and_as_much_stiffer() {
-    let bed = |scale: &str| {
-        let compiled = box_test(&format!("scale = {scale}"), "");
-        let plan = lower::rig(compiled.scenario.as_ref().unwrap()).unwrap();
-        let cost = lower::rig_cost(compiled.scenario.as_ref().unwrap()).unwrap();
-        (plan.bed, cost)
+    let bed = |scale: &str| -> (BedPlan, TestWork) {
+        let graph = box_test(&format!("scale = {scale}"), "").graph.unwrap();
+        let Work::Tests(work) = graph.cost.work else { panic!("{:?}", graph.cost) };
+        (graph.beds().next().unwrap().clone(), work)
     };
     let ((fine, many), (coarse, few)) = (bed("1"), bed("1.5"));
-    let [one, other] = [&fine.recipe.layers[0], &coarse.recipe.layers[0]];
+    let [one, other] = [&fine.numbers().layers[0], &coarse.numbers().layers[0]];
     let near = |value: f64, wanted: f64| assert!((value / wanted - 1.0).abs() < 1e-12, "{value} {wanted}");
     (0..2).for_each(|end| near(other.curve.ends()[end], 1.5 * one.curve.ends()[end]));
     near(other.surface.normal_stiffness, 1.5 * one.surface.normal_stiffness);

@@ -18,8 +18,7 @@ fn the_scenes_of_the_guide_are_without_a_mistake() {
     for block in blocks {
         let compiled = compile("guide.track", block, &Folder(PathBuf::from("scenarios")), &[]);
         let told = trackbed::diag::render::human(&compiled.diagnostics, &compiled.sources, false, 120);
-        let rig = compiled.scenario.as_ref().is_some_and(trackbed::lower::is_rig);
-        assert!(compiled.diagnostics.is_empty() && (compiled.graph.is_some() || rig), "{block}\n{told}");
+        assert!(compiled.diagnostics.is_empty() && compiled.runnable().is_some(), "{block}\n{told}");
     }
 }
 

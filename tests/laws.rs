@@ -1,11 +1,12 @@
 //! Settlement laws from the text to the run: what the words mean, several laws under the same forces, and a law under which
 //! nothing settles.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::Command;
 use trackbed::check::NoModules;
 use trackbed::diag::Code;
-use trackbed::graph::{self, Block, Checkpoint, Measured, PassageOutcome, Recorder, Runner, Unloaded};
+use trackbed::execute::{self, Checkpoint, Event, Executor, Listener};
 use trackbed::results::{RunRecorder, law_rows, summarise_laws, unsettled};
 use trackbed::scenario::SettlementLaw;
 use trackbed::solvers::settlement::*;
@@ -126,19 +127,17 @@ struct Laws {
     saved: Vec<String>,
 }
 
-impl Recorder for Laws {
-    fn unloaded(&mut self, _: u64, _: &Unloaded) {}
-    fn passage(&mut self, _: u64, _: Runner, _: &PassageOutcome) {}
-    fn block(&mut self, _: u64, _: Option<(&Block, &Measured)>, _: &[&PassageOutcome], _: &[f64], _: &[f64]) {}
-    fn laws(&mut self, axles: u64, settlement: &[Vec<f64>]) {
-        self.counts.push((axles, settlement.to_vec()));
+impl Listener for Laws {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Laws { axles, settlement } => self.counts.push((*axles, settlement.to_vec())),
+            Event::Between(between) => {
+                self.saved.push(serde_json::to_string(&between.checkpoint().unwrap()).unwrap());
+            }
+            _ => {}
+        }
+        ControlFlow::Continue(())
     }
-    fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<(), String> {
-        self.saved.push(serde_json::to_string(checkpoint).unwrap());
-        Ok(())
-    }
-    fn progress(&mut self, _: u64, _: u64) {}
-    fn equilibrium(&mut self, _: &Unloaded) {}
 }
 
 const TWO: &str = "law first : laws.varandas_2014 { }
@@ -148,16 +147,16 @@ law second : laws.hettler_1984 { }";
 fn followers_settle_under_the_forces_of_the_first_law() {
     let compiled = compiled(TWO);
     let (scenario, graph) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
-    let mut both = RunRecorder::new(&scenario, None, |_, _| {});
-    graph::execute(&graph, &mut both, None).unwrap();
+    let mut both = RunRecorder::new(&scenario, &graph);
+    execute::execute(&graph, &mut both).unwrap();
     let rows = law_rows(&scenario, &both.tables.laws);
     assert_eq!(rows.len(), 7 * 2 * 19);
 
     // the first law alone makes the same run
     let alone = crate::compiled("law first : laws.varandas_2014 { }");
     let (single, graph) = (alone.scenario.unwrap(), alone.graph.unwrap());
-    let mut one = RunRecorder::new(&single, None, |_, _| {});
-    graph::execute(&graph, &mut one, None).unwrap();
+    let mut one = RunRecorder::new(&single, &graph);
+    execute::execute(&graph, &mut one).unwrap();
     assert_eq!(one.tables.sleepers, both.tables.sleepers);
     assert!(one.tables.laws.is_empty());
 
@@ -185,11 +184,11 @@ fn followers_resume_with_the_same_bits() {
     let compiled = compiled(TWO);
     let graph = compiled.graph.unwrap();
     let mut whole = Laws::default();
-    graph::execute(&graph, &mut whole, None).unwrap();
+    execute::execute(&graph, &mut whole).unwrap();
     assert_eq!(whole.counts.len(), 7);
     let checkpoint: Checkpoint = serde_json::from_str(&whole.saved[2]).unwrap();
     let mut rest = Laws::default();
-    graph::execute(&graph, &mut rest, Some(checkpoint)).unwrap();
+    Executor::default().run(&graph, &mut rest, Some(checkpoint)).unwrap();
     assert_eq!(rest.counts, whole.counts[4..]);
     assert_eq!(rest.saved, whole.saved[3..]);
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Floors of the folders of `src/`; one imports from lower floors and its own folder only.
+/// Floors of the folders of `src/`; one imports from lower floors and its own folder only. `lib.rs` stands above all of them.
 const FLOORS: &[(&str, u32)] = &[
     ("diag", 0),
     ("units", 0),
@@ -16,16 +16,27 @@ const FLOORS: &[(&str, u32)] = &[
     ("scenario", 3),
     ("store", 3),
     ("check", 4),
-    ("graph", 5),
-    ("lower", 6),
-    ("lint", 7),
-    ("results", 8),
-    ("study", 9),
-    ("trials", 9),
-    ("report", 10),
+    ("graph", 4),
+    ("lower", 5),
+    ("nodes", 5),
+    ("lint", 6),
+    ("execute", 6),
+    ("compile", 7),
+    ("results", 7),
+    ("study", 8),
+    ("trials", 8),
+    ("embed", 8),
+    ("report", 9),
     ("editor", 10),
     ("cli", 11),
 ];
+
+/// What is planned and run knows SI numbers and no word of the language.
+const KNOW_NO_SCENE: &[&str] = &["graph", "nodes", "execute"];
+const SCENE: &[&str] = &["scenario", "schema", "syntax", "check"];
+
+/// To be deleted with the first commit that gives `store` files of its own: until then it re-exports what `results` holds.
+const ALLOWED_UNTIL_STORE_IS_THERE: &[(&str, &str)] = &[("store", "results")];
 
 /// Solvers that know `linalg` and nothing else of the program, each other neither.
 const SOLVERS: &[&str] = &["track", "granular", "continuum", "superstructure", "settlement", "foundation"];
@@ -87,8 +98,12 @@ fn folders_import_from_lower_floors_only() {
         let own = &parts[0];
         let own_floor = floor(own).unwrap_or_else(|| panic!("src/{own} has no floor"));
         for (folder, inner) in imports(&code(&path)) {
-            let Some(other) = floor(&folder) else { continue };
-            if folder != *own && other >= own_floor {
+            let Some(other) = floor(&folder) else {
+                broken.push(format!("{}: `crate::{folder}` is no folder: {own} imports lib.rs", relative.display()));
+                continue;
+            };
+            let allowed = ALLOWED_UNTIL_STORE_IS_THERE.contains(&(own.as_str(), folder.as_str()));
+            if folder != *own && other >= own_floor && !allowed {
                 broken.push(format!("{}: {own} ({own_floor}) imports {folder} ({other})", relative.display()));
             }
             let solver = SOLVERS.contains(&parts[1].trim_end_matches(".rs"));
@@ -104,6 +119,17 @@ fn folders_import_from_lower_floors_only() {
         }
     }
     assert!(broken.is_empty(), "{}", broken.join("\n"));
+}
+
+#[test]
+fn plans_and_their_execution_know_no_scene() {
+    for folder in KNOW_NO_SCENE {
+        for path in sources(&Path::new("src").join(folder)) {
+            for (other, _) in imports(&code(&path)) {
+                assert!(!SCENE.contains(&other.as_str()), "{} imports {other}", path.display());
+            }
+        }
+    }
 }
 
 #[test]

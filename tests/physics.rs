@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use trackbed::check::Modules;
 use trackbed::results::{RunRecorder, SleeperRow};
-use trackbed::{compile, diag, graph};
+use trackbed::{compile, diag, execute};
 
 /// Files in memory.
 #[derive(Default)]
@@ -66,8 +66,8 @@ solve {{ {} }}
     let told = diag::render::human(&compiled.diagnostics, &compiled.sources, false, 120);
     assert!(!compiled.diagnostics.iter().any(|d| d.is_error()), "{told}");
     let (scenario, plan) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
-    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
-    graph::execute(&plan, &mut recorder, None).unwrap();
+    let mut recorder = RunRecorder::new(&scenario, &plan);
+    execute::execute(&plan, &mut recorder).unwrap();
     let first = recorder.tables.blocks[0].clone();
     let duration = recorder.histories.iter().filter(|h| h.axles == 0).map(|h| h.time_s).fold(0.0, f64::max);
     Found {

@@ -6,7 +6,7 @@ use std::path::Path;
 use trackbed::check::{DataError, Folder, LARGEST_DATA_FILE, Modules};
 use trackbed::diag::Code;
 use trackbed::scenario::{Beam, Integrator, Loading, RailEnds, Scenario, Seat, Support, TimeStep, Train};
-use trackbed::{Compiled, compile, graph, results};
+use trackbed::{Compiled, compile, execute, results};
 
 /// Files in memory.
 #[derive(Default)]
@@ -391,8 +391,8 @@ fn run(text: &str) -> BTreeMap<String, results::SleeperRow> {
     let compiled = with(text, Files::default());
     assert!(!compiled.diagnostics.iter().any(|d| d.is_error()), "{}", told(&compiled));
     let (scenario, plan) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
-    let mut recorder = results::RunRecorder::new(&scenario, None, |_, _| {});
-    graph::execute(&plan, &mut recorder, None).unwrap();
+    let mut recorder = results::RunRecorder::new(&scenario, &plan);
+    execute::execute(&plan, &mut recorder).unwrap();
     recorder.tables.sleepers.iter().filter(|r| r.axles == 0).map(|r| (r.sleeper.clone(), r.clone())).collect()
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use trackbed::check::Modules;
 use trackbed::diag::{Code, render};
 use trackbed::results::{self, RunRecorder};
-use trackbed::{Compiled, compile, graph};
+use trackbed::{Compiled, compile, execute};
 
 /// Measured settlement: half a millimetre everywhere before the slab.
 struct Measured;
@@ -68,8 +68,8 @@ fn a_run_answers_every_reduction_and_function() {
     let compiled = expecting(&that.join(", "));
     assert!(compiled.diagnostics.is_empty(), "{}", told(&compiled));
     let (scenario, plan) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
-    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
-    graph::execute(&plan, &mut recorder, None).unwrap();
+    let mut recorder = RunRecorder::new(&scenario, &plan);
+    execute::execute(&plan, &mut recorder).unwrap();
     let (tables, histories) = (&recorder.tables, recorder.all_histories());
     let scalars = results::summarise(&scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
     let view = tables.view(&histories, &scalars, &scenario.track);

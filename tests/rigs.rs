@@ -3,12 +3,14 @@
 use serde_json::Value;
 use std::collections::HashMap;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::Command;
 use std::time::Duration;
 use trackbed::check::NoModules;
 use trackbed::diag::{Code, Diagnostic};
-use trackbed::results::Beds;
+use trackbed::execute::{Event, Executor};
+use trackbed::store::Beds;
 use trackbed::{Scene, compile};
 
 mod common {
@@ -166,7 +168,12 @@ fn a_plan_says_what_a_rig_costs_without_packing_it() {
     let scene = scene(directory.path(), SCENE);
     let plan = trackbed(&["plan", &scene]);
     let text = said(&plan);
-    for word in ["test rig: 1 sleeper on a packed bed", "grains: about", "steps: about", "time: about"] {
+    for word in [
+        "node bed: 1 sleeper on a packed bed",
+        " grains of ",
+        " steps to pack the bed",
+        "on two cores, within a factor of two",
+    ] {
         assert!(plan.status.success() && text.contains(word), "{word}: {text}");
     }
     let hertz = trackbed(&["run", &scene, "--out", "unused", "--set", "stone.contact=hertz(50 GPa, 0.2)"]);
@@ -321,8 +328,9 @@ fn a_study_runs_rigs_and_points_that_pack_alike_share_a_bed() {
             "{file}"
         );
     }
-    let alone = Scene::open(&scene).unwrap().run_rig(&Beds::kept_in(path("cache"))).unwrap();
-    let [run, point] = [1e3 * alone.summary.scalars["max_settlement"].value, settlements[3]];
+    let executor = Executor::default().with_beds(Beds::kept_in(path("cache")));
+    let alone = Scene::open(&scene).unwrap().run_with(&executor, &mut ()).unwrap();
+    let [run, point] = [1e3 * alone.scalar("max_settlement").unwrap(), settlements[3]];
     assert!((run / point - 1.0).abs() < 1e-12, "{run} {point} mm");
     let page = fs::read_to_string(path("first/study.html")).unwrap();
     assert!(page.contains("<section id=\"effects\">") && !page.contains("NaN") && !page.contains("Whiskers"));
@@ -349,11 +357,20 @@ fn a_study_of_rigs_is_checked_before_it_runs() {
 }
 
 #[test]
-fn a_program_that_runs_the_wrong_kind_of_scene_is_told_which_call_is_right() {
+fn one_call_runs_rigs_and_tracks() {
     let rig = Scene::from_text(SCENE);
-    assert!(rig.run().unwrap_err().to_string().contains("Scene::run_rig"));
-    let wrong = rig.set("stone.packing.lifts", "0.5").run_rig(&Beds::not_kept()).unwrap_err();
+    let mut packed = 0;
+    let mut stop_at_the_bed = |event: &Event<'_>| match event {
+        Event::Packed { .. } => {
+            packed += 1;
+            ControlFlow::Break(())
+        }
+        _ => ControlFlow::Continue(()),
+    };
+    let run = rig.run_with(&Executor::default(), &mut stop_at_the_bed).unwrap();
+    assert!(run.tests.is_some_and(|tests| tests.tests.is_empty()) && packed == 1, "a listener has ended it");
+    let wrong = rig.clone().set("stone.packing.lifts", "0.5").run().unwrap_err();
     assert!(wrong.to_string().contains("lifts"), "{wrong}");
-    let none = Scene::open("scenarios/static_check.track").unwrap().run_rig(&Beds::not_kept()).unwrap_err();
-    assert!(none.to_string().contains("E0611"), "{none}");
+    let track = Scene::open("scenarios/static_check.track").unwrap().run().unwrap();
+    assert!(track.tests.is_none() && track.scalar("max_rail_moment").is_some());
 }

@@ -2,7 +2,7 @@
 
 use trackbed::check::{Folder, NoModules, Override};
 use trackbed::results::{self, RunRecorder, SleeperRow};
-use trackbed::{compile, graph};
+use trackbed::{compile, execute};
 
 struct Scene {
     sleepers: Vec<SleeperRow>,
@@ -15,8 +15,8 @@ fn run(text: &str) -> Scene {
     let errors: Vec<_> = compiled.diagnostics.iter().filter(|d| d.is_error()).collect();
     assert!(errors.is_empty(), "{errors:?}");
     let (scenario, plan) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
-    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
-    graph::execute(&plan, &mut recorder, None).unwrap();
+    let mut recorder = RunRecorder::new(&scenario, &plan);
+    execute::execute(&plan, &mut recorder).unwrap();
     Scene {
         histories: recorder.all_histories(),
         sleepers: recorder.tables.sleepers.clone(),
@@ -94,8 +94,8 @@ fn the_mitigations_that_come_with_the_program_run() {
         let compiled = compile(&path, &text, &folder, &few);
         let (scenario, plan) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
         assert!(!scenario.track.stretches.is_empty());
-        let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
-        graph::execute(&plan, &mut recorder, None).unwrap();
+        let mut recorder = RunRecorder::new(&scenario, &plan);
+        execute::execute(&plan, &mut recorder).unwrap();
         let settled: Vec<f64> =
             recorder.tables.sleepers.iter().filter(|r| r.axles == 4).map(|r| r.settlement_m).collect();
         assert!(settled.iter().any(|s| *s > 0.0), "{path}");

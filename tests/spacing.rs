@@ -4,7 +4,7 @@
 use std::path::Path;
 use trackbed::check::{DataError, Modules, NoModules};
 use trackbed::diag::Code;
-use trackbed::graph;
+use trackbed::execute;
 use trackbed::results::RunRecorder;
 use trackbed::scenario::Scenario;
 use trackbed::{Compiled, compile};
@@ -146,8 +146,8 @@ fn a_track_of_random_bays_runs() {
     let text = text("random(0.6 m, sd = 8 mm, correlation = 2 m)", "30 m", "");
     let compiled = compile("scene.track", &text, &NoModules, &[]);
     let (scene, plan) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
-    let mut recorder = RunRecorder::new(&scene, None, |_, _| {});
-    graph::execute(&plan, &mut recorder, None).unwrap();
+    let mut recorder = RunRecorder::new(&scene, &plan);
+    execute::execute(&plan, &mut recorder).unwrap();
     let rows: Vec<_> = recorder.tables.sleepers.iter().filter(|row| row.axles == 4 && row.x_m < 0.0).collect();
     assert!(rows.len() > 40 && rows.iter().all(|row| row.settlement_m > 0.0 && row.max_contact_force_N > 10e3));
 }

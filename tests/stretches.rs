@@ -6,7 +6,7 @@ use trackbed::diag::Code;
 use trackbed::lint::Winkler;
 use trackbed::results::{RunRecorder, SleeperRow};
 use trackbed::scenario::{Foot, Scenario, Seat, Support};
-use trackbed::{Compiled, compile, graph};
+use trackbed::{Compiled, compile, execute};
 
 const FORMS: &str = "use std
 trackform open {
@@ -343,8 +343,8 @@ fn run(text: &str) -> Vec<SleeperRow> {
     let compiled = checked(text);
     assert!(!compiled.diagnostics.iter().any(|d| d.is_error()), "{}", told(&compiled));
     let (scenario, plan) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
-    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
-    graph::execute(&plan, &mut recorder, None).unwrap();
+    let mut recorder = RunRecorder::new(&scenario, &plan);
+    execute::execute(&plan, &mut recorder).unwrap();
     let last = recorder.tables.sleepers.iter().map(|r| r.axles).max().unwrap();
     recorder.tables.sleepers.iter().filter(|r| r.axles == last).cloned().collect()
 }

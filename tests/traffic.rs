@@ -1,10 +1,10 @@
 //! Mixes of trains: their shares and order, what they do to the track together, and what is said against a mix that is none.
 
+use std::ops::ControlFlow;
 use trackbed::check::NoModules;
 use trackbed::diag::{Code, render};
-use trackbed::graph::{
-    self, Block, Checkpoint, Graph, Measured, PassageOutcome, Recorder, RunError, Runner, Schedule, Unloaded,
-};
+use trackbed::execute::{self, Checkpoint, Ending, Event, Executor, Listener};
+use trackbed::graph::{Graph, Schedule};
 use trackbed::results::RunRecorder;
 use trackbed::scenario::Scenario;
 use trackbed::{Compiled, compile};
@@ -54,8 +54,8 @@ record {{ at = -3 sleepers, after = [0, 60, 120] axles, quantities = contact_for
 /// Settlement of every seat after the last train, m.
 fn settled(rest: &str) -> Vec<f64> {
     let (scenario, graph) = parts(rest);
-    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
-    graph::execute(&graph, &mut recorder, None).unwrap();
+    let mut recorder = RunRecorder::new(&scenario, &graph);
+    execute::execute(&graph, &mut recorder).unwrap();
     recorder.tables.sleepers.iter().filter(|row| row.axles == 120).map(|row| row.settlement_m).collect()
 }
 
@@ -92,8 +92,8 @@ fn a_mix_settles_more_than_its_lighter_train_and_less_than_its_heavier() {
 #[test]
 fn results_name_the_train() {
     let (scenario, graph) = parts(&traffic("trains = [ore: 50 %, heavy: 50 %]", "bed"));
-    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
-    graph::execute(&graph, &mut recorder, None).unwrap();
+    let mut recorder = RunRecorder::new(&scenario, &graph);
+    execute::execute(&graph, &mut recorder).unwrap();
     let force = |train: &str, quantity: &str| {
         let of =
             recorder.histories.iter().filter(|row| row.train == train && row.quantity == quantity && row.axles == 60);
@@ -136,11 +136,11 @@ fn trains_in_turn_end_a_block_where_they_change() {
 /// Passages that the plan expects, those that a run computes, and how many blocks it takes back.
 fn passages(rest: &str) -> (u64, u64, u64) {
     let (scenario, graph) = parts(rest);
-    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
-    graph::execute(&graph, &mut recorder, None).unwrap();
+    let mut recorder = RunRecorder::new(&scenario, &graph);
+    execute::execute(&graph, &mut recorder).unwrap();
     let blocks = &recorder.tables.blocks;
     let sum = |of: fn(&trackbed::results::BlockRow) -> u64| blocks.iter().map(of).sum();
-    (graph.estimate.passages, sum(|block| block.passages), sum(|block| block.rejected))
+    (graph.cost.passages().passages, sum(|block| block.passages), sum(|block| block.rejected))
 }
 
 const BOTH_WAYS: &str = "train ore_both : ore { direction = both }
@@ -189,10 +189,13 @@ fn a_track_that_cannot_settle_is_planned_as_it_runs() {
     let compiled =
         compile("scene.track", &format!("{slab}traffic {{ trains = ore, total = 80 axles }}"), &NoModules, &[]);
     let (scenario, graph) = (compiled.scenario.as_ref().unwrap(), compiled.graph.as_ref().unwrap());
-    let mut recorder = RunRecorder::new(scenario, None, |_, _| {});
-    graph::execute(graph, &mut recorder, None).unwrap();
+    let mut recorder = RunRecorder::new(scenario, graph);
+    execute::execute(graph, &mut recorder).unwrap();
     let passages: u64 = recorder.tables.blocks.iter().map(|block| block.passages).sum();
-    assert_eq!((graph.estimate.passages, graph.estimate.blocks + 1), (passages, recorder.tables.blocks.len() as u64));
+    assert_eq!(
+        (graph.cost.passages().passages, graph.cost.passages().blocks + 1),
+        (passages, recorder.tables.blocks.len() as u64)
+    );
 }
 
 #[test]
@@ -206,8 +209,8 @@ expect { that = [max(settlement, after = 0.001 MGT) < max(settlement, after = 0.
     let Schedule::Blocks(blocks) = &graph.schedule else { panic!("traffic") };
     assert_eq!(blocks.sequence.shares.iter().map(|share| share.trains).collect::<Vec<_>>(), [20, 20]);
     assert_eq!((blocks.total, blocks.recorded.clone()), (160, vec![0, 40, 160]));
-    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
-    graph::execute(&graph, &mut recorder, None).unwrap();
+    let mut recorder = RunRecorder::new(&scenario, &graph);
+    execute::execute(&graph, &mut recorder).unwrap();
     assert!(recorder.tables.sleepers.iter().any(|row| row.axles == 40));
 }
 
@@ -253,22 +256,25 @@ struct Stopping {
     blocks: Vec<(u64, Vec<u64>)>,
 }
 
-impl Recorder for Stopping {
-    fn unloaded(&mut self, _: u64, _: &Unloaded) {}
-    fn passage(&mut self, _: u64, _: Runner, _: &PassageOutcome) {}
-    fn block(&mut self, axles: u64, _: Option<(&Block, &Measured)>, _: &[&PassageOutcome], _: &[f64], after: &[f64]) {
-        self.blocks.push((axles, after.iter().map(|s| s.to_bits()).collect()));
+impl Listener for Stopping {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Block { axles, after, .. } => {
+                self.blocks.push((*axles, after.iter().map(|s| s.to_bits()).collect()));
+            }
+            Event::Between(between) => {
+                let text = serde_json::to_string(&between.checkpoint().unwrap()).unwrap();
+                self.kept = Some(serde_json::from_str(&text).unwrap());
+                self.left -= 1;
+                if self.left == 0 {
+                    return ControlFlow::Break(());
+                }
+            }
+            Event::Progress { done, all } => assert!(done <= all),
+            _ => {}
+        }
+        ControlFlow::Continue(())
     }
-    fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<(), String> {
-        let text = serde_json::to_string(checkpoint).unwrap();
-        self.kept = Some(serde_json::from_str(&text).unwrap());
-        self.left -= 1;
-        if self.left == 0 { Err("stopped".into()) } else { Ok(()) }
-    }
-    fn progress(&mut self, done: u64, all: u64) {
-        assert!(done <= all);
-    }
-    fn equilibrium(&mut self, _: &Unloaded) {}
 }
 
 /// What a run leaves whole, and stopped after each of its blocks.
@@ -276,14 +282,14 @@ fn stops_and_goes_on(rest: &str) {
     let (_, graph) = parts(rest);
     let run = |left: usize, from: Option<Checkpoint>| {
         let mut recorder = Stopping { left, kept: None, blocks: Vec::new() };
-        let outcome = graph::execute(&graph, &mut recorder, from);
+        let outcome = Executor::default().run(&graph, &mut recorder, from);
         (recorder, outcome)
     };
     let (whole, outcome) = run(usize::MAX, None);
-    assert_eq!(outcome, Ok(()));
+    assert_eq!(outcome, Ok(Ending::Finished));
     for stop in [1, whole.blocks.len() / 2, whole.blocks.len() - 2] {
         let (mut begun, outcome) = run(stop, None);
-        assert_eq!(outcome, Err(RunError::Recorder("stopped".into())));
+        assert_eq!(outcome, Ok(Ending::Stopped));
         begun.blocks.extend(run(usize::MAX, begun.kept.take()).0.blocks);
         assert!(begun.blocks == whole.blocks, "stopped after {stop}");
     }
@@ -311,8 +317,8 @@ record {{ at = -3 sleepers, after = [0, 60, 120] axles, quantities = contact_for
     };
     let run = |tamping: &str| {
         let (scenario, graph) = parts(&scene(tamping));
-        let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
-        graph::execute(&graph, &mut recorder, None).unwrap();
+        let mut recorder = RunRecorder::new(&scenario, &graph);
+        execute::execute(&graph, &mut recorder).unwrap();
         recorder.tables
     };
     let at = |tables: &trackbed::results::RunTables, axles: u64, sleeper: &str| {

@@ -1,12 +1,13 @@
 //! The update interval: what a block of axles may be worth, what becomes of one that is too long, and that nothing of a run
 //! hangs on where it stopped or on how many threads it had.
 
+use std::ops::ControlFlow;
 use trackbed::check::NoModules;
-use trackbed::graph::{
-    self, Block, Checkpoint, Graph, Measured, PassageOutcome, Recorder, RunError, Runner, Schedule, Unloaded,
-};
+use trackbed::execute::{self, Checkpoint, Ending, Event, Executor, Listener};
+use trackbed::graph::{Block, Graph, Schedule};
 use trackbed::results::{BlockRow, RunRecorder};
-use trackbed::scenario::{Direction, Scenario};
+use trackbed::scenario::Scenario;
+use trackbed::solvers::track::Direction;
 use trackbed::{Compiled, compile};
 
 /// A transition zone that runs in a moment.
@@ -50,8 +51,8 @@ fn run(set: &[(&str, &str)], cure: bool) -> (Vec<BlockRow>, Vec<f64>) {
     if let Schedule::Blocks(blocks) = &mut graph.schedule {
         blocks.cure = cure;
     }
-    let mut recorder = RunRecorder::new(&scenario, None, |_, _| {});
-    graph::execute(&graph, &mut recorder, None).unwrap();
+    let mut recorder = RunRecorder::new(&scenario, &graph);
+    execute::execute(&graph, &mut recorder).unwrap();
     let rows = &recorder.tables.sleepers;
     let last = rows.last().unwrap().axles;
     let settled = rows.iter().filter(|row| row.axles == last).map(|row| row.settlement_m).collect();
@@ -176,22 +177,25 @@ struct Stopping {
     blocks: Vec<(u64, Vec<u64>)>,
 }
 
-impl Recorder for Stopping {
-    fn unloaded(&mut self, _: u64, _: &Unloaded) {}
-    fn passage(&mut self, _: u64, _: Runner, _: &PassageOutcome) {}
-    fn block(&mut self, axles: u64, _: Option<(&Block, &Measured)>, _: &[&PassageOutcome], _: &[f64], after: &[f64]) {
-        self.blocks.push((axles, after.iter().map(|s| s.to_bits()).collect()));
+impl Listener for Stopping {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Block { axles, after, .. } => {
+                self.blocks.push((*axles, after.iter().map(|s| s.to_bits()).collect()));
+            }
+            Event::Between(between) => {
+                let text = serde_json::to_string(&between.checkpoint().unwrap()).unwrap();
+                self.kept = Some(serde_json::from_str(&text).unwrap());
+                self.left -= 1;
+                if self.left == 0 {
+                    return ControlFlow::Break(());
+                }
+            }
+            Event::Progress { done, all } => assert!(done <= all),
+            _ => {}
+        }
+        ControlFlow::Continue(())
     }
-    fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<(), String> {
-        let text = serde_json::to_string(checkpoint).unwrap();
-        self.kept = Some(serde_json::from_str(&text).unwrap());
-        self.left -= 1;
-        if self.left == 0 { Err("stopped".into()) } else { Ok(()) }
-    }
-    fn progress(&mut self, done: u64, all: u64) {
-        assert!(done <= all);
-    }
-    fn equilibrium(&mut self, _: &Unloaded) {}
 }
 
 #[test]
@@ -209,14 +213,14 @@ fn a_stopped_run_goes_on_with_the_same_bits() {
         ]));
         let run = |left: usize, from: Option<Checkpoint>| {
             let mut recorder = Stopping { left, kept: None, blocks: Vec::new() };
-            let outcome = graph::execute(&graph, &mut recorder, from);
+            let outcome = Executor::default().run(&graph, &mut recorder, from);
             (recorder, outcome)
         };
         let (whole, outcome) = run(usize::MAX, None);
-        assert_eq!(outcome, Ok(()));
+        assert_eq!(outcome, Ok(Ending::Finished));
         for stop in [1, whole.blocks.len() / 2, whole.blocks.len() - 2] {
             let (mut begun, outcome) = run(stop, None);
-            assert_eq!(outcome, Err(RunError::Recorder("stopped".into())));
+            assert_eq!(outcome, Ok(Ending::Stopped));
             begun.blocks.extend(run(usize::MAX, begun.kept.take()).0.blocks);
             assert_eq!(begun.blocks, whole.blocks, "{blocks}, stopped after {stop}");
         }
@@ -244,13 +248,12 @@ fn several_scenes_at_once_are_each_alone() {
             ("[0, 100, 256]", "[0, 64]"),
         ]))
     });
-    let recorder = |(scenario, _)| RunRecorder::new(scenario, None, |_, _| {});
     let mut runs: Vec<(&Graph, RunRecorder<'_>)> =
-        scenes.iter().map(|scene| (&scene.1, recorder((&scene.0, ())))).collect();
-    assert!(graph::execute_all(&mut runs).iter().all(Result::is_ok));
+        scenes.iter().map(|(scenario, graph)| (graph, RunRecorder::new(scenario, graph))).collect();
+    assert!(execute::execute_all(&mut runs).iter().all(Result::is_ok));
     for ((scenario, graph), (_, together)) in scenes.iter().zip(&runs) {
-        let mut alone = recorder((scenario, ()));
-        graph::execute(graph, &mut alone, None).unwrap();
+        let mut alone = RunRecorder::new(scenario, graph);
+        execute::execute(graph, &mut alone).unwrap();
         assert!(alone.tables == together.tables && alone.histories == together.histories);
     }
 }

@@ -12,7 +12,6 @@
 //! cores, each with a core of its own.
 
 use std::time::Instant;
-use trackbed::results::Beds;
 use trackbed::solvers::granular::clump::Template;
 use trackbed::solvers::granular::grains::{ClumpShape, Curve};
 use trackbed::solvers::granular::packing::{
@@ -20,6 +19,7 @@ use trackbed::solvers::granular::packing::{
 };
 use trackbed::solvers::granular::probe::{Outline, Plate, Stillness, probe};
 use trackbed::solvers::granular::{DashpotMode, Surface};
+use trackbed::store::Beds;
 use trackbed::study::turns;
 
 const USAGE: &str = "beds cell [seed] | track BAYS [CELLS] | seeds COUNT | readings [WORD] | accuracy [WORD]";
@@ -125,7 +125,7 @@ fn kept(recipe: &Recipe) -> Packed<f32> {
     let beds = Beds::kept_in(std::env::temp_dir().join("trackbed_beds"));
     let mut told = Told::from_now();
     let found = beds.bed(recipe, |progress| told.stage(progress)).unwrap_or_else(|error| {
-        eprintln!("{}", error.message);
+        eprintln!("{error}");
         std::process::exit(1)
     });
     found.packed

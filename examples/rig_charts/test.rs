@@ -1,9 +1,10 @@
 //! One box test on one packing.
 
 use std::time::Instant;
+use trackbed::Scene;
+use trackbed::graph::Schedule;
 use trackbed::solvers::granular::packing::pack;
 use trackbed::solvers::granular::rig::Trial;
-use trackbed::{Scene, lower};
 
 /// Cycles, and the one from which settlement counts: a first contact is chance.
 const CYCLES: u64 = 10;
@@ -66,17 +67,20 @@ pub fn run(setting: &Setting, seed: u64) -> Result<Answer, String> {
     let scene = setting.sets.iter().fold(scene, |scene, (path, value)| scene.set(path, value));
     let compiled = scene.check();
     let wrong = compiled.diagnostics.iter().find(|diagnostic| diagnostic.is_error());
-    let (None, Some(scenario)) = (wrong, &compiled.scenario) else { return Err(format!("{wrong:?}")) };
-    let mut plan = lower::rig(scenario).map_err(|wrong| format!("{wrong:?}"))?;
+    let (None, Some(graph)) = (wrong, compiled.runnable()) else { return Err(format!("{wrong:?}")) };
+    let (Some((bed, actuators)), Schedule::Actuators(tests)) = (graph.bed_under_actuators(), &graph.schedule) else {
+        return Err("no rig".into());
+    };
+    let mut recipe = bed.bed.ready(seed).map_err(|error| error.to_string())?.recipe;
     // one long cell, in place of copies of a short one
-    plan.bed.recipe.plan[0] = 0.6 * f64::from(setting.bays);
-    plan.bed.recipe.rest.lift = setting.rest;
+    recipe.plan[0] = 0.6 * f64::from(setting.bays);
+    recipe.rest.lift = setting.rest;
     let start = Instant::now();
-    let packed = pack::<f32>(&plan.bed.recipe, |_| ()).map_err(|error| error.to_string())?;
+    let packed = pack::<f32>(&recipe, |_| ()).map_err(|error| error.to_string())?;
     let packing = start.elapsed().as_secs_f64();
     let [low, high] = packed.between(0);
     let porosity = packed.porosity([low + 0.25 * (high - low), high - 0.25 * (high - low)]);
-    let mut rig = plan.on(high);
+    let mut rig = bed.rig(actuators, &recipe, high, &tests.kept);
     rig.added = setting.added;
     let load = rig.sleepers[0].load.clone();
     rig.sleepers.iter_mut().for_each(|sleeper| sleeper.load = load.clone());

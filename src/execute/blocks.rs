@@ -18,7 +18,7 @@ pub(super) fn run(
     from: Option<Checkpoint>,
 ) -> Result<Ending, RunError> {
     let at = |cause: NodeError| RunError::Node { clock: Clock::Axles(0), cause };
-    let (track, mut ground) = machine.track_on_ground().map_err(at)?;
+    let (mut track, mut ground) = machine.track_on_ground().map_err(at)?;
     let (mut done, mut axles, mut control) = (0, 0, Control::default());
     if let Some(checkpoint) = from {
         let (Clock::Axles(count), ScheduleState::Blocks { blocks, control: kept, ground: state }) =
@@ -27,6 +27,7 @@ pub(super) fn run(
             return Err(RunError::ForeignCheckpoint);
         };
         ground.restore(&state).map_err(at)?;
+        track.stand_on(ground.responses()).map_err(at)?;
         (done, axles, control) = (blocks, count, kept);
     }
     let runs = machine.graph.track().map(settling).unwrap_or_default();
@@ -103,6 +104,7 @@ impl Run<'_, '_> {
                 let Some(tamped) = self.tamp(here.axles)? else { return Ok(Ending::Stopped) };
                 here = tamped;
             }
+            let revision = self.ground.responses().revision;
             let done = match self.blocks.adaptive() {
                 Some((tolerance, cap)) => self.adaptive(&mut here, tolerance, cap)?,
                 None => self.prescribed(&mut here)?,
@@ -111,6 +113,14 @@ impl Run<'_, '_> {
             let passages: Vec<&PassageOutcome> =
                 done.block.runs.iter().filter_map(|(runner, _)| here.passage(*runner)).collect();
             work.add(&here, Work::default());
+            // what the ground did may differ from what it predicted, and it may answer otherwise: the passages ahead are lost then
+            let (next, lost) = match done.next {
+                Some(next) if next.settlement == after && self.ground.responses().revision == revision => {
+                    (Some(next), None)
+                }
+                lost => (None, lost),
+            };
+            lost.iter().for_each(|lost| work.add(lost, Work::default()));
             let measured = done.measured.with(&work);
             let (block, before) = (Some((&done.block, &measured)), &here.settlement);
             tell!(self, Event::Block { axles: here.axles, block, passages: &passages, before, after: &after });
@@ -125,10 +135,9 @@ impl Run<'_, '_> {
             tell!(self, Event::Between(Between { is_last: false, state: &state }));
             let all = self.done as u64 + self.blocks_left(axles, done.block.axles) + 1;
             tell!(self, Event::Progress { done: self.done as u64, all });
-            here = match done.next {
-                // what the ground did may differ from what it predicted
-                Some(next) if next.settlement == after => next,
-                _ => self.arrive(axles, after)?,
+            here = match next {
+                Some(next) => next,
+                None => self.arrive(axles, after)?,
             };
         }
         let passages: Vec<&PassageOutcome> = here.passages().collect();

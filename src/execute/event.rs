@@ -52,7 +52,12 @@ pub struct Between<'a> {
     pub(super) state: &'a dyn Fn() -> Result<Checkpoint, NodeError>,
 }
 
-impl Between<'_> {
+impl<'a> Between<'a> {
+    /// A moment of a schedule of another program; `state` is asked only where somebody keeps it.
+    pub fn new(at_end: bool, state: &'a dyn Fn() -> Result<Checkpoint, NodeError>) -> Between<'a> {
+        Between { at_end, state }
+    }
+
     /// The state of now. Of a large bed it takes a moment.
     pub fn checkpoint(&self) -> Result<Checkpoint, NodeError> {
         (self.state)()

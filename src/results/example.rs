@@ -397,7 +397,7 @@ fn finished(
 ) -> Run {
     let scalars = summarise(&scenario, &sleepers, &blocks, rail);
     let tables = Tables {
-        sleepers: &sleepers,
+        sleepers: SleeperTable::Axles(&sleepers),
         blocks: &blocks,
         rail: &[],
         histories: &histories,
@@ -415,5 +415,16 @@ fn finished(
         plan: "track        2D finite elements, 440 elements\nsubstructure law varandas, 69 seats\n".to_owned(),
     };
     let summary = Summary { scalars, expectations, provenance };
-    Run { scenario, summary, sleepers, blocks, laws: vec![], rail: vec![], trains: vec![], tampings: vec![], histories }
+    Run {
+        scenario,
+        summary,
+        sleepers,
+        blocks,
+        laws: vec![],
+        rail: vec![],
+        trains: vec![],
+        tampings: vec![],
+        histories,
+        tests: None,
+    }
 }
