@@ -87,7 +87,7 @@ pub use law::{
     ContactLaw, ContactLaws, Dashpot, DashpotMode, FrictionLimit, HertzMindlin, LawError, Linear, Surface, in_series,
 };
 pub use motion::{Felt, Pose, WallMotion};
-pub use scaling::{HeldEnergy, Scaling};
+pub use scaling::Scaling;
 pub use shape::Shape;
 pub use snapshot::{ContactState, Party, Snapshot};
 pub use timings::Timings;

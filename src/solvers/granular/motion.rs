@@ -257,11 +257,6 @@ impl Pose {
     pub fn direction_to_space(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         turn(self.orientation, direction)
     }
-
-    /// Velocity (m/s) of the wall's material at a point of space, with the velocities of the wall.
-    pub fn velocity_at(&self, point: &Vector3<f64>, linear: &Vector3<f64>, angular: &Vector3<f64>) -> Vector3<f64> {
-        linear + angular.cross(&(point - self.position))
-    }
 }
 
 /// Hamilton's product of quaternions w, x, y, z.

@@ -100,3 +100,101 @@ fn look_at<R: Real, W: Waiting<R>>(waiting: &mut W, since: f64) -> Result<Look, 
     let (unbalance, time) = (unbalance(bed, &snapshot), bed.time() - since);
     Ok(Look { snapshot, unbalance, missed: waiting.missed(), time })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::law::{ContactLaw, Dashpot, DashpotMode, FrictionLimit, Linear};
+    use super::super::{ContactLaws, Domain, Gravity, Sphere};
+    use super::*;
+
+    const RADIUS: f64 = 0.03;
+
+    /// A sphere over a floor, and what was done with it.
+    struct Fall {
+        bed: Bed<f64>,
+        steps: u64,
+        looks: usize,
+    }
+
+    impl Fall {
+        /// From so many of the overlaps that carry the sphere's weight; below 0 it does not touch.
+        fn new(overlaps: f64) -> Fall {
+            let (normal, density) = (1e6, 2700.0);
+            let law = ContactLaw::Linear(Linear {
+                normal_stiffness: normal,
+                shear_stiffness: normal,
+                friction: 0.5,
+                dashpot: Dashpot::Ratio { normal: 0.5, shear: 0.5 },
+                mode: DashpotMode::default(),
+                limit: FrictionLimit::default(),
+            });
+            let mass = density * 4.0 / 3.0 * std::f64::consts::PI * RADIUS.powi(3);
+            let mut bed = Bed::new(Domain::open(), ContactLaws::single(law));
+            bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
+            let height = RADIUS - overlaps * mass * 9.81 / normal;
+            bed.add_sphere(&Sphere { centre: [0.0, 0.0, height], radius: RADIUS, density, surface: 0 });
+            bed.set_gravity(Gravity::Constant([0.0, 0.0, -9.81]));
+            bed.set_time_step(1e-5);
+            Fall { bed, steps: 0, looks: 0 }
+        }
+    }
+
+    impl Waiting<f64> for Fall {
+        type Error = &'static str;
+
+        fn bed(&mut self) -> &mut Bed<f64> {
+            &mut self.bed
+        }
+
+        fn advance(&mut self, steps: u64) -> Result<(), Failure> {
+            self.steps += steps;
+            self.bed.run(steps)
+        }
+
+        fn hear(&mut self, _: &Look) {
+            self.looks += 1;
+        }
+
+        fn restless(&self, _: &Look) -> &'static str {
+            "restless"
+        }
+
+        fn failed(&self, _: Failure) -> &'static str {
+            "failed"
+        }
+    }
+
+    const CRITERION: Criterion =
+        Criterion { unbalance: 1e-3, missed: 0.0, every: 100, looks: 3, longest: 0.5, look_first: false };
+
+    #[test]
+    fn rest_must_be_found_in_some_looks_in_a_row() {
+        let mut resting = Fall::new(1.0);
+        let look = until_rest(&mut resting, &CRITERION, 0.0).unwrap();
+        assert_eq!((resting.steps, resting.looks), (300, 3));
+        assert!(look.unbalance <= CRITERION.unbalance && (look.time - 300e-5).abs() < 1e-12);
+        let mut bouncing = Fall::new(2.0);
+        until_rest(&mut bouncing, &CRITERION, 0.0).unwrap();
+        assert!(bouncing.looks > 3 && bouncing.steps == 100 * bouncing.looks as u64);
+    }
+
+    #[test]
+    fn a_bed_that_lies_at_rest_needs_no_step_where_it_is_looked_at_first() {
+        let first = Criterion { look_first: true, ..CRITERION };
+        let mut resting = Fall::new(1.0);
+        until_rest(&mut resting, &first, 0.0).unwrap();
+        assert_eq!((resting.steps, resting.looks), (0, 1));
+        // time that has passed before counts
+        let mut later = Fall::new(1.0);
+        until_rest(&mut later, &first, -0.1).unwrap();
+        assert_eq!((later.steps, later.looks), (200, 3));
+    }
+
+    #[test]
+    fn what_is_not_at_rest_in_time_is_restless() {
+        let mut falling = Fall::new(-1e4);
+        let soon = Criterion { longest: 0.0105, ..CRITERION };
+        assert_eq!(until_rest(&mut falling, &soon, 0.0).unwrap_err(), "restless");
+        assert_eq!(falling.steps, 1100);
+    }
+}

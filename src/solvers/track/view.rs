@@ -78,11 +78,6 @@ impl<'a> StepView<'a> {
         &self.passage.interface.forces
     }
 
-    /// The unknowns of a vehicle of the train, m and rad.
-    pub fn vehicle_displacements(&self, vehicle: usize) -> &'a [f64] {
-        &self.passage.vehicles[vehicle].0.displacement
-    }
-
     /// Force of the rail on the pad, N.
     pub fn seat_load(&self, seat: usize) -> f64 {
         let track = self.track();

@@ -4,9 +4,7 @@
 //! S/I and elongation I/L (Zingg 1935), both 1 for a cube and a ball and smaller for plates and needles. Sphericity is
 //! the surface of the ball of the same volume over the grain's own (Wadell 1932).
 
-use super::super::clump::Template;
 use super::super::shape::Mesh;
-use super::points::outside;
 use super::random::Random;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use std::f64::consts::PI;
@@ -40,26 +38,17 @@ impl GrainForm {
         Self { sides, axes, volume: surface.volume(), area: surface.area() }
     }
 
-    /// Form of a clump; its surface is counted by points, to 1e-3 of it.
-    pub fn of_clump(clump: &Template) -> Self {
-        let pebbles = &clump.pebbles;
-        let reach = |n: &Vector3<f64>| pebbles.iter().map(|p| p.centre.dot(n) + p.radius).fold(f64::MIN, f64::max);
-        let points = outside(pebbles, 4000);
-        let Box { sides, axes } = Box::round(|n| reach(n) + reach(&-n));
-        Self { sides, axes, volume: clump.volume, area: points.iter().map(|point| point.area).sum() }
-    }
-
-    /// S/I.
+    /// Flatness, S/I.
     pub fn flatness(&self) -> f64 {
         self.sides[0] / self.sides[1]
     }
 
-    /// I/L.
+    /// Elongation, I/L.
     pub fn elongation(&self) -> f64 {
         self.sides[1] / self.sides[2]
     }
 
-    /// Wadell's, at most 1.
+    /// Sphericity after Wadell, at most 1.
     pub fn sphericity(&self) -> f64 {
         PI.cbrt() * (6.0 * self.volume).powf(2.0 / 3.0) / self.area
     }

@@ -273,11 +273,6 @@ impl Sample {
         };
         points.windows(2).map(class).collect()
     }
-
-    /// Share of the mass in the largest grain: no sample of whole grains comes nearer to the curve than half of it.
-    pub fn largest_share(&self) -> f64 {
-        ball(self.sizes.iter().copied().fold(0.0, f64::max)) / self.volume
-    }
 }
 
 /// Volume of a ball, m³, by its diameter, m.

@@ -93,12 +93,6 @@ impl Reading {
         let symmetric = [0, 1, 2].map(|i| [0, 1, 2].map(|j| 0.5 * (self.stress[i][j] + self.stress[j][i])));
         equivalent(&symmetric)
     }
-
-    /// Horizontal over vertical pressure, the mean of the two horizontal ones: K0 at rest.
-    pub fn lateral_ratio(&self) -> f64 {
-        let [along, across] = self.horizontal();
-        0.5 * (along + across) / self.vertical()
-    }
 }
 
 impl Survey {

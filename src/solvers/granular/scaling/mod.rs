@@ -40,15 +40,6 @@ pub struct Scaling {
     pub largest: Option<(BodyId, f64)>,
 }
 
-/// Kinetic energy of translation of the last half step, and how much of it bodies with added inertia hold \[J\].
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-pub struct HeldEnergy {
-    pub all: f64,
-    pub scaled: f64,
-    /// Energy of the added mass alone: what is not there in nature.
-    pub added: f64,
-}
-
 impl<R: Real> Bed<R> {
     /// Adds inertia to bodies until `target` \[s\] is a stable step for the contacts of now and of pairs up to `gap` \[m\] apart.
     /// What was added before is taken off first.
@@ -162,22 +153,6 @@ impl<R: Real> Bed<R> {
             let clump = &mut self.clumps[body.clump as usize];
             clump.inverse_inertia = scale(clump.inverse_inertia, 1.0 / factor);
         }
-    }
-
-    /// How much of the kinetic energy bodies with added inertia hold.
-    pub fn energy_of_scaled(&self) -> HeldEnergy {
-        let mut held = HeldEnergy::default();
-        let named = self.index.iter().map(|&place| (place as usize, &self.bodies[place as usize]));
-        for (place, body) in named.filter(|(_, b)| b.inverse_mass > 0.0) {
-            let per_mass = 0.5 * super::vector::dot(body.velocity, body.velocity);
-            let inertial = 1.0 / body.inverse_mass;
-            held.all += per_mass * inertial;
-            if self.inertia_factor(place) != 1.0 {
-                held.scaled += per_mass * inertial;
-                held.added += per_mass * (inertial - body.mass);
-            }
-        }
-        held
     }
 }
 

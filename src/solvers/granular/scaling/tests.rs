@@ -134,8 +134,6 @@ fn a_scaled_bed_is_stable_at_the_target_and_weighs_the_same() {
     let load =
         |contacts: &[crate::solvers::granular::ContactState]| contacts.iter().map(|c| c.force[2].abs()).sum::<f64>();
     assert!((load(&after) / load(&forces) - 1.0).abs() < 0.02, "{} {}", load(&after), load(&forces));
-    let held = bed.energy_of_scaled();
-    assert!(held.scaled <= held.all && held.added < held.scaled);
 }
 
 #[test]

@@ -35,12 +35,6 @@ impl Mesh {
         nearest
     }
 
-    /// Distance from a point to the surface, m: negative inside what is solid.
-    pub fn signed_distance(&self, point: &Vector3<f64>) -> f64 {
-        let distance = self.nearest(point, f64::MAX.sqrt()).map_or(f64::INFINITY, |nearest| nearest.distance);
-        if self.contains(point) { -distance } else { distance }
-    }
-
     /// Unit normal of a facet, out of what is solid.
     pub fn normal(&self, facet: u32) -> Vector3<f64> {
         self.surface.facets[facet as usize].normal

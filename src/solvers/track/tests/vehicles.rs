@@ -79,7 +79,7 @@ fn cross(span: f64, vehicle: Multibody, time_step: f64) -> Vec<(f64, f64, f64)> 
     let run = Run { train: &train, start: 0.0, finish: span, motion: &Motion::Constant(SPEED) };
     let mut seen = Vec::new();
     let mut look = |view: &StepView<'_>| {
-        let body = view.vehicle_displacements(0).first().copied().unwrap_or(0.0);
+        let body = view.passage.vehicles[0].0.displacement.first().copied().unwrap_or(0.0);
         seen.push((view.time(), view.rail_deflection(20), body));
     };
     Passage::new(&stepper, &level, run).unwrap().run(&mut look).unwrap();

@@ -23,7 +23,8 @@ fn pebbles_are_inscribed_and_keep_their_distance() {
         let largest = bubbles.pebbles[0].radius;
         assert_eq!((bubbles.by_rule, bubbles.ratio, bubbles.distance), (bubbles.pebbles.len(), 0.8, PAPER.distance));
         for (k, pebble) in bubbles.pebbles.iter().enumerate() {
-            assert!(surface.signed_distance(&pebble.centre) <= -pebble.radius * (1.0 - 1e-5));
+            let depth = surface.nearest(&pebble.centre, 10.0).unwrap().distance;
+            assert!(surface.contains(&pebble.centre) && depth >= pebble.radius * (1.0 - 1e-5));
             assert!(pebble.radius >= 0.8 * largest && pebble.radius <= largest);
             assert!(bubbles.pebbles[..k].iter().all(|other| angle(pebble, other) <= 110.0 + 1e-9));
         }

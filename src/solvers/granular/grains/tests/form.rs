@@ -1,6 +1,5 @@
 //! Boxes, moments and indices of bodies with closed forms.
 
-use super::super::super::clump::{Pebble, Template};
 use super::super::super::shape::{Mesh, MeshKind};
 use super::super::form::{Box, Solid, extent};
 use super::super::*;
@@ -44,20 +43,9 @@ fn an_ellipsoid_has_its_axes_and_its_moments() {
 }
 
 #[test]
-fn a_ball_is_round_as_a_surface_and_as_a_clump() {
+fn a_ball_is_round() {
     let form = GrainForm::of_surface(&Mesh::sphere(0.03, 4).unwrap());
     assert!((form.sphericity() - 1.0).abs() < 2e-3 && form.flatness() > 0.99 && form.elongation() > 0.99);
-    let form = GrainForm::of_clump(&Template::sphere(0.03).unwrap());
-    assert!((form.sphericity() - 1.0).abs() < 1e-9 && (form.sides[0] - 0.06).abs() < 1e-12);
-}
-
-#[test]
-fn two_pebbles_are_as_long_as_they_are() {
-    let pebble = |x: f64| Pebble { centre: turn() * Vector3::new(x, 0.0, 0.0), radius: 1.0 };
-    let form = GrainForm::of_clump(&Template::from_pebbles(&[pebble(-0.6), pebble(0.6)]).unwrap());
-    assert!((form.sides[2] - 3.2).abs() < 1e-4 && (form.sides[0] - 2.0).abs() < 1e-12);
-    // two balls less two caps of height 0.4
-    assert!((form.area / (2.0 * (4.0 * PI - 2.0 * PI * 0.4)) - 1.0).abs() < 1e-3);
 }
 
 #[test]

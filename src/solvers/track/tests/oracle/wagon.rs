@@ -1,6 +1,6 @@
 //! The wagon, body by body.
 
-use super::Vehicle;
+use crate::solvers::track::Vehicle;
 
 /// Newton's law of every body, written out.
 pub fn accelerations(wagon: &Vehicle, gravity: f64, z: &[f64], v: &[f64], wheel_forces: [f64; 4], a: &mut [f64]) {
