@@ -54,8 +54,8 @@ pub struct Between<'a> {
 
 impl<'a> Between<'a> {
     /// A moment of a schedule of another program; `state` is asked only where somebody keeps it.
-    pub fn new(at_end: bool, state: &'a dyn Fn() -> Result<Checkpoint, NodeError>) -> Between<'a> {
-        Between { at_end, state }
+    pub fn new(is_last: bool, state: &'a dyn Fn() -> Result<Checkpoint, NodeError>) -> Between<'a> {
+        Between { is_last, state }
     }
 
     /// The state of now. Of a large bed it takes a moment.
