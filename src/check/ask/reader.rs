@@ -38,6 +38,7 @@ pub enum Question {
 }
 
 /// What one record asks, by field; without what is not understood.
+#[derive(Default)]
 pub struct Questions(BTreeMap<&'static str, Vec<Question>>);
 
 impl Questions {
@@ -66,24 +67,37 @@ impl Questions {
     }
 }
 
-/// What records ask. A field that several of them inherit is read once, so that a mistake in it stays one for all of them.
+/// What records of the main file ask. A field that several of them inherit is read once, so that a mistake in it stays one for
+/// all of them.
 pub fn questions(records: &[impl Borrow<Record>], eval: &mut Evaluator<'_>, counting: Counting<'_>) -> Vec<Questions> {
+    let mut known: HashMap<Span, Vec<Question>> = HashMap::new();
+    let asked = records.iter().map(|record| {
+        let record = record.borrow();
+        // inside the declaration, so that a question that leads back to it closes a circle
+        let id = eval.item_of(record)?;
+        eval.within(id, record.span, |eval| Some(asked_by(record, eval, counting, &mut known)))
+    });
+    asked.map(Option::unwrap_or_default).collect()
+}
+
+fn asked_by(
+    record: &Record,
+    eval: &mut Evaluator<'_>,
+    counting: Counting<'_>,
+    known: &mut HashMap<Span, Vec<Question>>,
+) -> Questions {
     let mut operands = 0;
     let mut reader = Reader { eval, counting, operands: &mut operands };
-    let mut known: HashMap<Span, Vec<Question>> = HashMap::new();
-    let mut of_record = |record: &Record| {
-        let mut fields: Vec<(&'static str, &Slot)> = record.fields.iter().map(|(name, slot)| (*name, slot)).collect();
-        // in the order of the text
-        fields.sort_by_key(|(_, slot)| slot.span);
-        let mut asked = BTreeMap::new();
-        for (name, slot) in fields {
-            let Some(field) = record.kind.field(name).filter(|field| asks(&field.form)) else { continue };
-            let read = known.entry(slot.span).or_insert_with(|| reader.read(&field.form, slot));
-            asked.insert(name, read.clone());
-        }
-        Questions(asked)
-    };
-    records.iter().map(|record| of_record(record.borrow())).collect()
+    let mut fields: Vec<(&'static str, &Slot)> = record.fields.iter().map(|(name, slot)| (*name, slot)).collect();
+    // in the order of the text
+    fields.sort_by_key(|(_, slot)| slot.span);
+    let mut asked = BTreeMap::new();
+    for (name, slot) in fields {
+        let Some(field) = record.kind.field(name).filter(|field| asks(&field.form)) else { continue };
+        let read = known.entry(slot.span).or_insert_with(|| reader.read(&field.form, slot));
+        asked.insert(name, read.clone());
+    }
+    Questions(asked)
 }
 
 /// Whether a form holds questions.

@@ -1,6 +1,7 @@
 //! The declarations of files: each evaluated, those of a kind complete, and those that nothing asks for.
 
 use super::evaluator::Evaluator;
+use super::records::header;
 use super::value::Record;
 use crate::check::text::scope::{ItemId, ScopeId};
 use crate::diag::{Code, Diagnostic, FileId, Span};
@@ -51,6 +52,13 @@ impl Evaluator<'_> {
             }
         }
         found
+    }
+
+    /// The declaration of the main file that an object is.
+    pub fn item_of(&self, record: &Record) -> Option<ItemId> {
+        let items = &self.scopes[self.main].tree.items;
+        let item = items.iter().position(|item| matches!(item, Item::Declaration(d) if header(d) == record.span))?;
+        Some(ItemId { scope: self.main, item })
     }
 
     /// Bindings that nothing asks for may have unknown units all the same.

@@ -13,7 +13,7 @@ use std::rc::Rc;
 impl Evaluator<'_> {
     /// The object that a declaration stands for, evaluated once.
     pub fn record(&mut self, id: ItemId, place: Span) -> Option<Rc<Record>> {
-        if let Some(done) = self.records.get(&id) {
+        if let Some(done) = self.records.get(&id).filter(|_| !self.follows(id)) {
             self.used.insert(id);
             return done.clone();
         }
@@ -29,7 +29,7 @@ impl Evaluator<'_> {
 
     fn declaration(&mut self, declaration: &Declaration, scope: ScopeId) -> Option<Record> {
         let kind = self.kind_of(&declaration.kind)?;
-        let header = declaration.name.as_ref().map_or(declaration.kind.span, |n| declaration.kind.span.to(n.span));
+        let header = header(declaration);
         let name = declaration.name.as_ref().unwrap_or(&declaration.kind).text.clone();
         let mut record = self.extended(declaration.base.as_ref(), kind, &name, header, scope);
         record.partial |= self.unread(declaration.span);
@@ -303,6 +303,11 @@ impl Evaluator<'_> {
         );
         None
     }
+}
+
+/// The place by which a declaration is known.
+pub fn header(declaration: &Declaration) -> Span {
+    declaration.name.as_ref().map_or(declaration.kind.span, |name| declaration.kind.span.to(name.span))
 }
 
 /// The kind of object that a field holds.

@@ -32,13 +32,6 @@ pub fn tier(solve: &Record) -> Tier {
     }
 }
 
-impl Default for Asked {
-    fn default() -> Self {
-        let support_method = Method::StressCone;
-        Asked { layers_do: false, support_method, quiet_base: false, rig: false, plate: false, traffic: false }
-    }
-}
-
 impl Asked {
     /// Reads what a scene asks from its complete records.
     pub fn by_scene(solve: &Record, track: &Record, traffic: bool, loads: &[Record]) -> Asked {

@@ -3,13 +3,13 @@
 use super::asked::Asked;
 use super::layers::lay_strata;
 use super::strata::Stratum;
-use super::support::{Carried, Stack, Supports, bearing};
+use super::support::{Carried, Stack, Supports};
 use super::trackform::Built;
 use crate::check::findings::Findings;
 use crate::check::places::chainage::Places;
 use crate::diag::{Code, Diagnostic, Span};
-use crate::scenario::{ApproachSlab, Layer, Material};
-use crate::solvers::foundation::{self, FoundationError};
+use crate::scenario::{ApproachSlab, Given, Layer};
+use crate::solvers::foundation::FoundationError;
 use std::ops::Range;
 
 /// The ground of some seats.
@@ -29,31 +29,19 @@ pub struct Regrade<'a> {
     pub scales: bool,
 }
 
-/// Layers at a chainage as continua; `None` where a modulus is not known.
-fn stack(layers: &[Layer], x: f64) -> Option<Vec<foundation::Layer>> {
-    let continuum = |layer: &Layer| {
-        let (poisson_ratio, density, spread) = match &layer.material {
-            Material::Granular(granular) => (granular.poisson_ratio, granular.density, granular.spread),
-            Material::Soil(soil) => (soil.poisson_ratio, soil.density, soil.spread),
-        };
-        Some(foundation::Layer {
-            thickness: layer.thickness.at(x).max(0.0),
-            youngs_modulus: layer.youngs_modulus()?.at(x),
-            poisson_ratio: *poisson_ratio,
-            density: *density,
-            spread: *spread,
-        })
-    };
-    layers.iter().map(continuum).collect()
+/// By what the layers of a track carry its sleepers.
+pub struct Carrying {
+    pub asked: Asked,
+    /// Damping over stiffness of a support that layers make, s.
+    pub damping_time: Option<Given>,
+    pub supports: Supports,
 }
 
-/// Nearer to its hinge than this share of its length a plate is as stiff as there: the ground must keep a modulus.
-const AT_HINGE: f64 = 0.05;
-
-/// How far a load is from the hinge of a plate, as share of its length: by the lever, what of the load the ground bears.
-fn lever(plate: &ApproachSlab, x: f64) -> f64 {
-    let [structure, far] = plate.ends;
-    if plate.hinged { ((x - structure) / (far - structure)).abs().clamp(AT_HINGE, 1.0) } else { 1.0 }
+impl Carrying {
+    /// Begins with nothing computed.
+    pub fn new(asked: Asked, damping_time: Option<Given>) -> Carrying {
+        Carrying { asked, damping_time, supports: Supports::new(asked.support_method, asked.quiet_base) }
+    }
 }
 
 /// What the layers are to some seats of a section; empty where there are none, or where a modulus is not known and nothing
@@ -64,14 +52,14 @@ pub fn carried(
     section: usize,
     seats: Range<usize>,
     under: Under<'_>,
-    supports: &mut Supports,
+    carrying: &mut Carrying,
     findings: &mut Findings,
 ) -> Option<Vec<Carried>> {
     let strata = built.layers.as_ref()?;
     let regrade = if let Under::Regraded(regrade) = under { Some(regrade) } else { None };
     let depends = built.stands_on_layers() || regrade.is_some_and(|regrade| regrade.scales);
     let (Some(body), false) = (built.sleeper_body(), strata.is_empty()) else { return Some(Vec::new()) };
-    if !knows_moduli(built, strata, regrade, depends, supports.asked, findings)? {
+    if !knows_moduli(built, strata, regrade, depends, carrying.asked, findings)? {
         return Some(Vec::new());
     }
     let layers = match under {
@@ -83,16 +71,12 @@ pub fn carried(
     let plain = regrade.filter(|regrade| regrade.scales && !built.stands_on_layers());
     let of_seat = |seat: usize| {
         let x = places.seats[seat].0;
-        Some(Stack {
-            bearing: bearing(&body, places.spacings(seat, built.spacing.map_or(0.6, |s| *s))),
-            layers: stack(&layers, x)?,
-            plate: plate.map(|plate| (plate, lever(&plate, x))),
-            before: plain.and_then(|regrade| stack(regrade.before, x)),
-        })
+        let spacings = places.spacings(seat, built.spacing.map_or(0.6, |s| *s));
+        Stack::under(&body, spacings, x, &layers, plate, plain.map(|regrade| regrade.before))
     };
     let stacks: Vec<Stack> = seats.clone().map(of_seat).collect::<Option<_>>()?;
     let mut carried = Vec::with_capacity(seats.len());
-    for (seat, found) in seats.zip(supports.carried(&stacks)) {
+    for (seat, found) in seats.zip(carrying.supports.carried(&stacks)) {
         match found {
             Ok(found) => carried.push(found),
             Err(_) if !depends => return Some(Vec::new()),

@@ -1,8 +1,7 @@
 //! The seats of a section: where a field varies along the track, each seat takes the value of its place.
 
-use super::ground::{Under, carried};
+use super::ground::{Carrying, Under, carried};
 use super::spring::{LaidSpring, lay_spring, pad_at, spring_at};
-use super::support::Supports;
 use super::trackform::{Base, Bed, Built, Cushion};
 use crate::check::evaluate::evaluator::Evaluator;
 use crate::check::evaluate::value::Val;
@@ -43,7 +42,7 @@ pub fn lay_seats(
     section: usize,
     range: Range<usize>,
     under: Under<'_>,
-    supports: &mut Supports,
+    carrying: &mut Carrying,
     findings: &mut Findings,
 ) -> Option<Vec<Seat>> {
     let (start, end) = places.sections[section];
@@ -61,12 +60,12 @@ pub fn lay_seats(
     };
     let settlement = built.settlement.as_ref().and_then(|along| lay(along, places, &cover("settlement"), findings));
     let foot = match built.foot.as_ref() {
-        Some(Base::Sleeper(bed)) => lay_bed(built, bed, places, range.clone(), &cover, supports, findings),
+        Some(Base::Sleeper(bed)) => lay_bed(built, bed, places, range.clone(), &cover, carrying, findings),
         Some(Base::Rigid) => Some(LaidFoot::Fixed(Foot::Rigid)),
         Some(Base::Slab) => Some(LaidFoot::Fixed(Foot::Slab)),
         None => None,
     };
-    let carried = carried(built, places, section, range.clone(), under, supports, findings);
+    let carried = carried(built, places, section, range.clone(), under, carrying, findings);
     let (pad, settlement, foot, carried) = (pad?, settlement?, foot?, carried?);
     let mut seats = Vec::with_capacity(range.len());
     for (i, &(x, section, transition, number)) in places.seats[range].iter().enumerate() {
@@ -107,11 +106,11 @@ fn lay_bed<'a>(
     places: &Places,
     seats: Range<usize>,
     cover: &dyn Fn(&str) -> Cover,
-    supports: &Supports,
+    carrying: &Carrying,
     findings: &mut Findings,
 ) -> Option<LaidFoot<'a>> {
     let support = match &bed.support {
-        _ if bed.by_layers => supports.damping_time.map(|time| LaidSupport::OfLayers { time }),
+        _ if bed.by_layers => carrying.damping_time.map(|time| LaidSupport::OfLayers { time }),
         Some(support) => lay_spring(support, places, "support", cover, findings).map(LaidSupport::Stated),
         None => None,
     };

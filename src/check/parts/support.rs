@@ -1,8 +1,7 @@
 //! The support of a seat from what lies under it: a function of plain data, each answer computed once.
 
-use super::asked::Asked;
-use crate::scenario::{ApproachSlab, Given, SleeperBody};
-use crate::solvers::foundation::{Bearing, Below, Footing, FoundationError, Layer};
+use crate::scenario::{self, ApproachSlab, Material, SleeperBody};
+use crate::solvers::foundation::{Bearing, Below, Footing, FoundationError, Layer, Method};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 
@@ -10,6 +9,9 @@ use std::collections::{BTreeMap, HashMap};
 const CONCRETE: f64 = 0.2;
 /// Odemark's correction for a plate on softer ground.
 const ODEMARK: f64 = 0.9;
+/// Nearer to its hinge than this share of its length a plate is as stiff as there: the ground must keep a modulus.
+const AT_HINGE: f64 = 0.05;
+
 /// What lies under one seat, SI.
 pub struct Stack {
     /// How half of the sleeper lies, and how far its neighbours are.
@@ -20,6 +22,26 @@ pub struct Stack {
     pub plate: Option<(ApproachSlab, f64)>,
     /// The layers with which the stated support of the seat goes, where a stretch has replaced them.
     pub before: Option<Vec<Layer>>,
+}
+
+impl Stack {
+    /// What lies under a sleeper at a chainage, m, its neighbours so far away on the left and on the right, m; `None` where a
+    /// modulus is not known.
+    pub fn under(
+        body: &SleeperBody,
+        spacings: [f64; 2],
+        x: f64,
+        layers: &[scenario::Layer],
+        plate: Option<ApproachSlab>,
+        before: Option<&[scenario::Layer]>,
+    ) -> Option<Stack> {
+        Some(Stack {
+            bearing: bearing(body, spacings),
+            layers: continua(layers, x)?,
+            plate: plate.map(|plate| (plate, lever(&plate, x))),
+            before: before.and_then(|layers| continua(layers, x)),
+        })
+    }
 }
 
 /// What layers are to one seat.
@@ -44,20 +66,44 @@ type Question<'a> = (&'a Vec<u64>, &'a Stacked);
 
 /// How supports are computed, and what has been: seats under several stretches are asked for again.
 pub struct Supports {
-    pub asked: Asked,
-    /// Damping over stiffness of a support that layers make, s.
-    pub damping_time: Option<Given>,
+    method: Method,
+    /// The lowest layer goes on without end.
+    quiet_base: bool,
     /// Answers by the bits of what was asked.
     found: HashMap<Vec<u64>, Found>,
     footings: HashMap<Vec<u64>, Footing>,
 }
 
 /// How half a sleeper lies: its bearing area under the seat as far as the sleeper reaches.
-pub fn bearing(body: &SleeperBody, spacings: [f64; 2]) -> Bearing {
+fn bearing(body: &SleeperBody, spacings: [f64; 2]) -> Bearing {
     let half = 0.5 * body.length;
     let length = (0.5 * body.base_area / body.base_width).min(half);
     let to_centre = (0.5 * (body.seat_distance - length)).clamp(0.0, half - length);
     Bearing { width: body.base_width, length, spacings, to_centre: Some(to_centre) }
+}
+
+/// Layers at a chainage as continua; `None` where a modulus is not known.
+fn continua(layers: &[scenario::Layer], x: f64) -> Option<Vec<Layer>> {
+    let continuum = |layer: &scenario::Layer| {
+        let (poisson_ratio, density, spread) = match &layer.material {
+            Material::Granular(granular) => (granular.poisson_ratio, granular.density, granular.spread),
+            Material::Soil(soil) => (soil.poisson_ratio, soil.density, soil.spread),
+        };
+        Some(Layer {
+            thickness: layer.thickness.at(x).max(0.0),
+            youngs_modulus: layer.youngs_modulus()?.at(x),
+            poisson_ratio: *poisson_ratio,
+            density: *density,
+            spread: *spread,
+        })
+    };
+    layers.iter().map(continuum).collect()
+}
+
+/// How far a load is from the hinge of a plate, as share of its length: by the lever, what of the load the ground bears.
+fn lever(plate: &ApproachSlab, x: f64) -> f64 {
+    let [structure, far] = plate.ends;
+    if plate.hinged { ((x - structure) / (far - structure)).abs().clamp(AT_HINGE, 1.0) } else { 1.0 }
 }
 
 /// Thickness of the ground that spreads a load as a plate on it does, m: `0.9 t (E / E_ground)^(1/3)` (Odemark 1949).
@@ -110,9 +156,9 @@ fn key(bearing: &Bearing, stack: &[Layer]) -> Vec<u64> {
 }
 
 /// The answer for one stack under a bearing.
-fn solve(asked: &Asked, footing: &mut Footing, stack: &[Layer]) -> Found {
+fn solve(footing: &mut Footing, stack: &[Layer], quiet_base: bool) -> Found {
     let below = match stack.last() {
-        Some(ground) if asked.quiet_base => {
+        Some(ground) if quiet_base => {
             Below::HalfSpace { youngs_modulus: ground.youngs_modulus, poisson_ratio: ground.poisson_ratio }
         }
         _ => Below::Rigid,
@@ -123,8 +169,8 @@ fn solve(asked: &Asked, footing: &mut Footing, stack: &[Layer]) -> Found {
 
 impl Supports {
     /// Begins without any answer.
-    pub fn new(asked: Asked, damping_time: Option<Given>) -> Supports {
-        Supports { asked, damping_time, found: HashMap::new(), footings: HashMap::new() }
+    pub fn new(method: Method, quiet_base: bool) -> Supports {
+        Supports { method, quiet_base, found: HashMap::new(), footings: HashMap::new() }
     }
 
     /// What stacks carry, in their order.
@@ -163,8 +209,7 @@ impl Supports {
     /// Answers in the order of what is asked; each is computed once in a check, and those under different bearings side by
     /// side.
     fn answers(&mut self, asked: &[Stacked]) -> Vec<Found> {
-        let settings = self.asked;
-        let Supports { found, footings, .. } = self;
+        let Supports { method, quiet_base, found, footings } = self;
         let keys: Vec<Vec<u64>> = asked.iter().map(|(bearing, stack)| key(bearing, stack)).collect();
         let missing: BTreeMap<&Vec<u64>, &Stacked> =
             keys.iter().zip(asked).filter(|(key, _)| !found.contains_key(*key)).collect();
@@ -173,12 +218,12 @@ impl Supports {
         let groups = missing.chunk_by(|(_, (a, _)), (_, (b, _))| a == b).map(|group| {
             let bearing = group[0].1.0;
             let footing = footings.remove(&key(&bearing, &[]));
-            (footing.unwrap_or_else(|| Footing::new(bearing, settings.support_method)), group)
+            (footing.unwrap_or_else(|| Footing::new(bearing, *method)), group)
         });
         let mut groups: Vec<(Footing, &[Question<'_>])> = groups.collect();
         let answers: Vec<Vec<Found>> = groups
             .par_iter_mut()
-            .map(|(footing, group)| group.iter().map(|(_, (_, stack))| solve(&settings, footing, stack)).collect())
+            .map(|(footing, group)| group.iter().map(|(_, (_, stack))| solve(footing, stack, *quiet_base)).collect())
             .collect();
         found.extend(missing.iter().map(|(key, _)| (*key).clone()).zip(answers.into_iter().flatten()));
         footings.extend(groups.into_iter().map(|(footing, group)| (key(&group[0].1.0, &[]), footing)));

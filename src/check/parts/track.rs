@@ -1,13 +1,12 @@
 //! From the objects of a track to the track of the scenario: sections, seats and what each stands on.
 
 use super::asked::Asked;
-use super::ground::Under;
+use super::ground::{Carrying, Under};
 use super::groundwork::groundworks;
 use super::layers::{bed, lay_layers};
 use super::layout::Layout;
 use super::seats::{lay_seats, usual_damping_time};
 use super::stretch::{Instance, described, stand};
-use super::support::Supports;
 use super::trackform::Built;
 use super::under_stretches::{Unchanged, auxiliary_spans, change_seats};
 use crate::check::evaluate::evaluator::Evaluator;
@@ -38,10 +37,10 @@ pub fn track(record: &Record, layout: &Layout, asked: Asked, eval: &mut Evaluato
     let stood = stand(&layout.stretches, places, &mut eval.findings);
     let mut sound = layout.sound && stood.is_some();
     let stood = stood.unwrap_or_default();
-    let mut supports = Supports::new(asked, usual_damping_time(eval));
+    let mut carrying = Carrying::new(asked, usual_damping_time(eval));
     let mut parts = Parts::default();
     for section in 0..layout.built.len() {
-        sound &= add_section(&mut parts, layout, section, &stood, &mut supports, eval);
+        sound &= add_section(&mut parts, layout, section, &stood, &mut carrying, eval);
     }
     if !sound {
         return None;
@@ -74,20 +73,20 @@ fn add_section(
     layout: &Layout,
     section: usize,
     stood: &[Instance],
-    supports: &mut Supports,
+    carrying: &mut Carrying,
     eval: &mut Evaluator<'_>,
 ) -> bool {
     let (places, built, form) = (&layout.places, &layout.built[section], &*layout.forms[section]);
     let mut sound = true;
     let layers = lay_layers(built, places, section, &mut eval.findings);
     let under = Under::Section(layers.as_deref());
-    let mut laid = lay_seats(built, places, section, places.seats_of(section), under, supports, &mut eval.findings);
+    let mut laid = lay_seats(built, places, section, places.seats_of(section), under, carrying, &mut eval.findings);
     if let Some(laid) = &mut laid {
         let unchanged = Unchanged { form, section, layers: layers.as_deref() };
-        sound &= change_seats(&unchanged, stood, places, laid, supports, eval);
+        sound &= change_seats(&unchanged, stood, places, laid, carrying, eval);
     }
     if let Some(before) = layers.as_deref().filter(|_| laid.is_some()) {
-        let found = groundworks(form, stood, places, section, before, supports.asked, eval);
+        let found = groundworks(form, stood, places, section, before, carrying.asked, eval);
         sound &= found.is_some();
         parts.groundworks.extend(found.unwrap_or_default());
     }

@@ -1,11 +1,10 @@
 //! What stretches make of the seats under them, and of the auxiliary rails beside these.
 
-use super::ground::{Regrade, Under};
+use super::ground::{Carrying, Regrade, Under};
 use super::groundwork::has_ground;
 use super::rails::auxiliary_rails;
 use super::seats::lay_seats;
 use super::stretch::{Instance, extended_by};
-use super::support::Supports;
 use super::trackform::trackform;
 use crate::check::evaluate::evaluator::Evaluator;
 use crate::check::evaluate::value::{Change, Record, Val};
@@ -35,14 +34,14 @@ pub fn change_seats(
     stood: &[Instance],
     places: &Places,
     laid: &mut [Seat],
-    supports: &mut Supports,
+    carrying: &mut Carrying,
     eval: &mut Evaluator<'_>,
 ) -> bool {
     let whole = places.seats_of(unchanged.section);
     let here: Vec<(&Instance, Range<usize>)> =
         stood.iter().filter_map(|instance| Some((instance, instance.common(&whole)?))).collect();
     let mut put = |stretches: &[&Instance], seats: Range<usize>| {
-        let changed = changed(unchanged, stretches, places, seats.clone(), supports, eval);
+        let changed = changed(unchanged, stretches, places, seats.clone(), carrying, eval);
         if let Some(changed) = &changed {
             laid[seats.start - whole.start..seats.end - whole.start].clone_from_slice(changed);
         }
@@ -78,7 +77,7 @@ fn changed(
     stretches: &[&Instance],
     places: &Places,
     seats: Range<usize>,
-    supports: &mut Supports,
+    carrying: &mut Carrying,
     eval: &mut Evaluator<'_>,
 ) -> Option<Vec<Seat>> {
     let Unchanged { form, section, layers } = *unchanged;
@@ -87,9 +86,9 @@ fn changed(
         stands_right(instance, form, &extended, &places.named(&seats), &mut eval.findings)?;
     }
     let complete = eval.complete(&extended);
-    let built = trackform(&complete, true, supports.asked, &mut eval.files, &mut eval.findings);
+    let built = trackform(&complete, true, carrying.asked, &mut eval.files, &mut eval.findings);
     if !stretches.iter().any(|instance| instance.regrades()) {
-        return lay_seats(&built, places, section, seats, Under::Section(layers), supports, &mut eval.findings);
+        return lay_seats(&built, places, section, seats, Under::Section(layers), carrying, &mut eval.findings);
     }
     let before = layers?;
     let scales = !stretches.iter().any(|instance| instance.sets("support"));
@@ -103,7 +102,7 @@ fn changed(
         section,
         seats,
         Under::Regraded(&Regrade { before, plate, scales }),
-        supports,
+        carrying,
         &mut eval.findings,
     )
 }

@@ -6,6 +6,6 @@ pub mod chainage;
 pub mod chosen;
 pub mod cover;
 pub mod geometry;
-pub mod random_field;
-pub mod scatter;
+mod random_field;
+mod scatter;
 pub mod spacing;

@@ -11,13 +11,14 @@ mod text;
 
 use super::{Modules, Override, with_evaluator};
 use crate::check::evaluate::evaluator::Evaluator;
+use crate::check::evaluate::records::header;
 use crate::check::evaluate::value::{Record, Slot, Val};
 use crate::check::text::scope::ItemId;
 use crate::diag::{self, Span};
 use crate::scenario::Origin;
 use crate::schema::{self, Field, Form, KINDS, Kind, Role};
 use crate::syntax;
-use crate::syntax::tree::{Declaration, Item};
+use crate::syntax::tree::Item;
 use std::collections::{BTreeSet, HashMap};
 use std::rc::Rc;
 
@@ -44,11 +45,6 @@ struct Resolver<'c, 'm> {
     named: Vec<(Rc<Record>, String)>,
     /// Declarations so far, parts before what names them.
     written: Vec<(&'static Kind, String)>,
-}
-
-/// The place by which a declaration is known.
-fn header(declaration: &Declaration) -> Span {
-    declaration.name.as_ref().map_or(declaration.kind.span, |name| declaration.kind.span.to(name.span))
 }
 
 impl<'c, 'm> Resolver<'c, 'm> {
