@@ -10,11 +10,15 @@ mod evaluate;
 mod findings;
 mod parts;
 mod places;
+mod reads;
 mod resolve;
 mod scene;
+mod stated;
 mod text;
 
+pub use reads::{ALWAYS, readers};
 pub use resolve::resolve;
+pub use stated::Stated;
 pub use text::library::{Entry, library};
 pub use text::measured::{MeasuredCurve, measured_curve};
 pub use text::modules::{DataError, Folder, LARGEST_DATA_FILE, Modules, NoModules, Parsed, Remembered};
@@ -36,6 +40,8 @@ pub struct Checked {
     pub scenario: Option<Scenario>,
     /// The studies of the main file; those without a mistake.
     pub studies: Vec<Study>,
+    /// What the user's own texts state of the objects that take part, in the order of the texts.
+    pub stated: Vec<Stated>,
     /// Whether nothing stands against a run.
     pub sound: bool,
 }
@@ -70,6 +76,7 @@ fn with_evaluator<T>(
 
 fn evaluated<T>(mut eval: Evaluator<'_>, ask: &impl Fn(&mut Evaluator<'_>) -> T) -> (Checked, T) {
     let (scenario, studies) = scene::scene(&mut eval);
+    let stated = stated::stated(&eval);
     let known = eval.findings.diagnostics.len();
     let answer = ask(&mut eval);
     eval.findings.diagnostics.truncate(known);
@@ -77,5 +84,5 @@ fn evaluated<T>(mut eval: Evaluator<'_>, ask: &impl Fn(&mut Evaluator<'_>) -> T)
     let mut diagnostics = eval.findings.diagnostics;
     diag::sort(&mut diagnostics);
     let sound = !diagnostics.iter().any(|d| d.is_error() || d.code == Code::E0410);
-    (Checked { sources: eval.files.sources, diagnostics, scenario, studies, sound }, answer)
+    (Checked { sources: eval.files.sources, diagnostics, scenario, studies, stated, sound }, answer)
 }

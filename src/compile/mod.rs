@@ -1,9 +1,11 @@
 //! From a text to a compiled scene, in memory: check, lower, lint.
 
+mod unused;
+
 use crate::check::{self, Modules, Override};
 use crate::diag::{self, Code, Diagnostic, Severity, Sources};
 use crate::graph::Graph;
-use crate::lint::lint;
+use crate::lint::{self, lint};
 use crate::lower::{Lowered, Origins, Planner};
 use crate::scenario::{Scenario, Study};
 use sha2::{Digest, Sha256};
@@ -74,6 +76,10 @@ pub fn compile_with(
         graph = lowered.graph.filter(|_| checked.sound);
         origins = lowered.origins;
         diagnostics.extend(graph.iter().flat_map(|graph| lint(scenario, graph)));
+        if checked.sound {
+            let of_plan = |graph| [check::readers(scenario), lowered.readers, lint::readers(graph)].concat();
+            diagnostics.extend(unused::told(&checked.stated, &graph.as_ref().map(of_plan).unwrap_or_default()));
+        }
     }
     diag::sort(&mut diagnostics);
     Compiled {

@@ -80,6 +80,7 @@ codes! {
     E0424 Error "layers of another depth than those under them"
     E0425 Error "approach slab away from its structure"
     E0426 Error "approach slab outside its layers"
+    E0429 Warning "field that does nothing"
     E0501 Error "place off the track"
     E0502 Error "section that does not fit its sleepers"
     E0503 Error "train longer than its track"

@@ -21,6 +21,7 @@ mod over_budget;
 mod overdamped;
 mod passing_frequency;
 mod rail_stress;
+mod reads;
 mod small_volume;
 mod stiffness_jump;
 mod support_stiffness;
@@ -33,6 +34,7 @@ mod wheel_on_track;
 mod wheel_unloading;
 mod winkler;
 
+pub use reads::readers;
 pub use winkler::Winkler;
 
 use crate::diag::{Code, Diagnostic, Severity};

@@ -3,6 +3,7 @@
 use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::BedPlan;
 use crate::scenario::{BedEnds, Contact, Granular, Layer, Loading, Scenario, Section};
+use crate::schema::Reads;
 use crate::solvers::granular::clump::Template;
 use crate::solvers::granular::packing::{GrainLayer as Filling, Packing, PackingError, Recipe, Rest};
 use crate::solvers::granular::probe::{Outline, Plate, Stillness};
@@ -15,6 +16,42 @@ const CELL: f64 = 3.2;
 const HALF_WIDTH: f64 = 1.2;
 /// Under the plate, Pa: somewhat below half a wheel load of 98 kN (a 20 t axle) on the 0.39 m2 of half a sleeper.
 const PLATE_PRESSURE: f64 = 100e3;
+
+/// Fields of grains and of the bed that they fill.
+pub(super) const READS: Reads = Reads {
+    fields: &[
+        "grading.passing",
+        "grading.cut_below",
+        "grading.cut_above",
+        "granular.grading",
+        "granular.scale",
+        "granular.density",
+        "granular.shape",
+        "granular.contact",
+        "granular.contact_stiffness",
+        "granular.shear_ratio",
+        "granular.friction",
+        "granular.wall_friction",
+        "granular.local_damping",
+        "granular.viscous_damping",
+        "granular.dashpots",
+        "granular.packing",
+        "packing.lifts",
+        "packing.pressure",
+        "packing.friction",
+        "packing.local_damping",
+        "packing.viscous_damping",
+        "track.bed_width",
+        "solve.gravity",
+        "solve.symmetry",
+    ],
+    acts_where: WITH_GRAINS,
+};
+
+/// Fields of the volumes in which the answers of grains are wanted.
+pub(super) const VOLUMES: Reads = Reads { fields: &["record.depth", "record.volume"], acts_where: WITH_GRAINS };
+
+const WITH_GRAINS: &str = "where grains are modelled: on a test rig, or with `substructure = cells`, `zone` or `full`";
 
 /// What a packed cell becomes part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

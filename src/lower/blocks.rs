@@ -3,8 +3,56 @@
 use super::{Draft, Pass, track};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::{Blocks, Cost, PassagePlan, Rejected, Schedule, Tamping, Train, Update, Work};
-use crate::scenario::{self, Loading, Order, Share, Traffic};
+use crate::scenario::{self, Loading, Order, Scenario, Share, Traffic};
+use crate::schema::Reads;
 use crate::units::number;
+
+/// Where the passes of trains act.
+pub(super) const WITH_TRAINS: &str = "where trains run";
+
+/// Fields of trains, of their number, and of what happens between them.
+const READS: Reads = Reads {
+    fields: &[
+        "vehicle.axle_load",
+        "vehicle.car_body",
+        "vehicle.bogie",
+        "vehicle.wheelset",
+        "vehicle.primary",
+        "vehicle.secondary",
+        "vehicle.contact",
+        "vehicle.length",
+        "car_body.mass",
+        "car_body.pitch_inertia",
+        "car_body.radius_of_gyration",
+        "bogie.mass",
+        "bogie.pitch_inertia",
+        "bogie.spacing",
+        "wheelset.mass",
+        "wheelset.spacing",
+        "wheelset.radius",
+        "primary_suspension.stiffness",
+        "primary_suspension.damping",
+        "secondary_suspension.stiffness",
+        "secondary_suspension.damping",
+        "train.vehicles",
+        "train.speed",
+        "train.direction",
+        "traffic.trains",
+        "traffic.total",
+        "traffic.order",
+        "tamping.after",
+        "tamping.over",
+        "tamping.from",
+        "tamping.left",
+        "solve.update_every",
+        "record.states",
+    ],
+    acts_where: WITH_TRAINS,
+};
+
+/// The counts at which something is recorded: of axles, and of the cycles of a rig.
+pub(super) const COUNTS: Reads =
+    Reads { fields: &["record.after"], acts_where: "where trains run or a test rig is loaded" };
 
 /// Cuts the axles into blocks, at the counts where something is recorded or done to the track.
 pub(super) struct Cut;
@@ -12,6 +60,14 @@ pub(super) struct Cut;
 impl Pass for Cut {
     fn name(&self) -> &'static str {
         "blocks"
+    }
+
+    fn reads(&self) -> &'static [&'static Reads] {
+        &[&READS, &COUNTS]
+    }
+
+    fn acts(&self, scenario: &Scenario) -> bool {
+        matches!(scenario.loading, Some(Loading::Traffic(_)))
     }
 
     fn run(&self, draft: &mut Draft<'_>) {

@@ -19,6 +19,7 @@ pub use tier::{ExpectedError, Proposal, Tier};
 use crate::diag::{Code, Diagnostic, Severity};
 use crate::graph::{Graph, faults};
 use crate::scenario::Scenario;
+use crate::schema::{Reader, Reads};
 use tier::ChooseTier;
 
 /// What became of a scene.
@@ -27,6 +28,8 @@ pub struct Lowered {
     pub graph: Option<Graph>,
     /// Where the scene says the parameters of the plan.
     pub origins: Origins,
+    /// Which fields passes and tiers read, and which of them acted.
+    pub readers: Vec<Reader>,
     pub diagnostics: Vec<Diagnostic>,
 }
 
@@ -120,8 +123,23 @@ impl Planner {
                 None => pass.run(&mut draft),
             }
         }
+        let readers = self.readers(scenario, draft.tier);
         let (graph, diagnostics) = finished(draft);
-        Lowered { graph, origins, diagnostics }
+        Lowered { graph, origins, readers, diagnostics }
+    }
+
+    /// What its passes and tiers read of a scene, of which the one of that name was taken.
+    pub fn readers(&self, scenario: &Scenario, tier: Option<&str>) -> Vec<Reader> {
+        let of_passes = self.passes().into_iter().flat_map(|pass| {
+            let left_out = pass.without().is_some() && self.without.iter().any(|name| name == pass.name());
+            let acted = pass.acts(scenario) && !left_out;
+            pass.reads().iter().map(move |reads| Reader { reads, acted })
+        });
+        let of_tiers = self.tiers.iter().flat_map(|other| {
+            let acted = tier == Some(other.name());
+            other.reads().iter().map(move |reads| Reader { reads, acted })
+        });
+        of_passes.chain(of_tiers).collect()
     }
 }
 
@@ -129,6 +147,14 @@ impl Planner {
 impl Pass for &dyn Pass {
     fn name(&self) -> &'static str {
         (**self).name()
+    }
+
+    fn reads(&self) -> &'static [&'static Reads] {
+        (**self).reads()
+    }
+
+    fn acts(&self, scenario: &Scenario) -> bool {
+        (**self).acts(scenario)
     }
 
     fn run(&self, draft: &mut Draft<'_>) {

@@ -4,11 +4,22 @@ use super::Origins;
 use crate::diag::{Diagnostic, has_errors};
 use crate::graph::{Blocks, Cost, Decision, Edge, Node, PassagePlan, Record, Rejected, Schedule};
 use crate::scenario::Scenario;
+use crate::schema::Reads;
 
 /// One decision of the planner. The list of passes is the story of a plan; see [`super::Planner`].
 pub trait Pass: Send + Sync {
     /// The name by which it is switched off and told.
     fn name(&self) -> &'static str;
+
+    /// Which fields of the scene it reads.
+    fn reads(&self) -> &'static [&'static Reads] {
+        &[]
+    }
+
+    /// Whether it has something to decide about a scene.
+    fn acts(&self, _: &Scenario) -> bool {
+        true
+    }
 
     /// Decides, and says so.
     fn run(&self, draft: &mut Draft<'_>);
@@ -28,6 +39,8 @@ pub struct Draft<'a> {
     pub passages: Vec<PassagePlan>,
     /// The loop over axles, before a tier takes it.
     pub blocks: Option<Blocks>,
+    /// The name of the tier that was taken.
+    pub tier: Option<&'static str>,
     pub nodes: Vec<Node>,
     pub edges: Vec<Edge>,
     pub schedule: Option<Schedule>,
@@ -46,6 +59,7 @@ impl<'a> Draft<'a> {
             origins,
             passages: Vec::new(),
             blocks: None,
+            tier: None,
             nodes: Vec::new(),
             edges: Vec::new(),
             schedule: None,

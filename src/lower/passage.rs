@@ -1,9 +1,11 @@
 //! Where a passage starts and ends, and in which steps it is integrated.
 
+use super::blocks::WITH_TRAINS;
 use super::{Draft, Pass};
 use crate::diag::{Code, Diagnostic};
 use crate::graph::{AdaptiveSteps, PassagePlan};
 use crate::scenario::{Direction, Given, Loading, Scenario, TimeStep, Train};
+use crate::schema::Reads;
 use crate::units::number;
 
 /// Distance that wheels keep from the ends of the model where there is room, m: about three decay lengths of the
@@ -19,6 +21,22 @@ const HALVINGS: u32 = 5;
 /// Interval of histories where nothing is said, s.
 const SAMPLE: f64 = 5e-4;
 
+/// Fields of the run of a train, and of what moves only under one.
+const READS: Reads = Reads {
+    fields: &[
+        "solve.integrator",
+        "solve.time_step",
+        "solve.start",
+        "solve.finish",
+        "record.every",
+        "track.irregularity",
+        "pad.damping",
+        "pad.damping_time",
+        "slab.foundation_damping_time",
+    ],
+    acts_where: WITH_TRAINS,
+};
+
 /// Where trains start and stop, and in which steps their passages are integrated.
 pub(super) struct Passages;
 
@@ -27,9 +45,17 @@ impl Pass for Passages {
         "passage"
     }
 
+    fn reads(&self) -> &'static [&'static Reads] {
+        &[&READS]
+    }
+
+    fn acts(&self, scenario: &Scenario) -> bool {
+        matches!(scenario.loading, Some(Loading::Traffic(_))) && scenario.track.has_rails()
+    }
+
     fn run(&self, draft: &mut Draft<'_>) {
         let Some(Loading::Traffic(traffic)) = &draft.scenario.loading else { return };
-        if !draft.scenario.track.has_rails() {
+        if !self.acts(draft.scenario) {
             return;
         }
         let plans: Vec<Option<PassagePlan>> =

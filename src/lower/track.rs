@@ -4,7 +4,37 @@ use crate::graph::{Runs, SupportNode, TrackFoot, TrackNode, TrackSeat, TrackSect
 use crate::scenario::{
     self, AuxiliaryRailSpan, Beam, Direction, Foot, Piece, Profile, RailEnds, Scenario, Seat, Section, Track,
 };
+use crate::schema::Reads;
 use crate::solvers::track::{self as solver, Motion, Vehicle};
+
+/// Fields of the track itself, at rest and in motion.
+pub(super) const READS: Reads = Reads {
+    fields: &[
+        "rail.mass",
+        "rail.density",
+        "rail.area",
+        "rail.bending_stiffness",
+        "rail.youngs_modulus",
+        "rail.second_moment",
+        "rail.shear_stiffness",
+        "pad.stiffness",
+        "sleeper.mass",
+        "slab.bending_stiffness",
+        "slab.mass",
+        "slab.foundation_stiffness",
+        "track.rail_ends",
+        "solve.beam",
+        "solve.elements_per_bay",
+        "solve.gravity",
+    ],
+    acts_where: "where there are rails",
+};
+
+/// Fields of the springs under the sleepers, at rest and in motion.
+pub(super) const SUPPORTS: Reads = Reads {
+    fields: &["support.stiffness", "support.seating", "seating.stiffness", "seating.closure", "usp.bedding_modulus"],
+    acts_where: "where springs carry the sleepers: under test loads on a rail, or with `substructure = law`",
+};
 
 /// The track node of a scene.
 pub(super) fn track(scenario: &Scenario) -> TrackNode {

@@ -5,6 +5,9 @@ use super::svg::Svg;
 use super::{cross_section, gradings, layers, templates};
 use crate::scenario::Scenario;
 
+/// Fields that only drawings read.
+pub const DRAWN: &[&str] = &["rail.height", "usp.thickness"];
+
 /// Everything that can be drawn of a scene, one below the other, as one picture that is valid on its own.
 pub fn drawing_svg(scenario: &Scenario) -> String {
     let mut svg = Svg::default();

@@ -47,7 +47,7 @@ mod work_precision;
 
 pub use bed::{BedView, Colour, Side, bed_svg};
 pub use bed_tests::BedTestsPage;
-pub use drawing::drawing_svg;
+pub use drawing::{DRAWN, drawing_svg};
 pub use packed::BedPage;
 pub use page::page;
 pub use pebbles::{PebbleRow, grain_pebbles_svg};

@@ -42,7 +42,8 @@ pub fn section(kind: &Kind) -> String {
 /// A field as a row of a table: its name, form, need and meaning, with those of its words.
 fn row(field: &Field, name: &str) -> String {
     let words = known_words(field).filter(|w| !w.doc.is_empty()).map(|w| format!("`{}`: {}", w.name, w.doc));
-    let meaning: Vec<String> = [field.doc.to_string()].into_iter().filter(|doc| !doc.is_empty()).chain(words).collect();
+    let docs = [field.doc, remark(field)].map(str::to_string);
+    let meaning: Vec<String> = docs.into_iter().filter(|doc| !doc.is_empty()).chain(words).collect();
     let need = match field.need {
         Need::Required => "required".into(),
         Need::Optional | Need::Alternative => String::new(),
@@ -50,6 +51,11 @@ fn row(field: &Field, name: &str) -> String {
     };
     let cells = [name.to_string(), form(&field.form), need, meaning.join("; ")];
     format!("| {} |\n", cells.map(|cell| cell.replace('|', "\\|")).join(" | "))
+}
+
+/// What is said of a field that no run reads yet.
+fn remark(field: &Field) -> &'static str {
+    if field.unread { "no run of this version reads it yet" } else { "" }
 }
 
 fn known_words(field: &Field) -> impl Iterator<Item = &'static super::Word> {
@@ -96,8 +102,8 @@ fn describe(out: &mut String, field: &Field, indent: usize) {
         Need::Alternative => "see below".into(),
     };
     out.push_str(&format!("{pad}{:<24}{} ({need})\n", field.name, form(&field.form)));
-    if !field.doc.is_empty() {
-        out.push_str(&format!("{pad}{:<24}{}\n", "", field.doc));
+    for text in [field.doc, remark(field)].into_iter().filter(|text| !text.is_empty()) {
+        out.push_str(&format!("{pad}{:<24}{text}\n", ""));
     }
     for word in field.form.words().into_iter().filter(|w| !w.planned && !w.doc.is_empty()) {
         out.push_str(&format!("{pad}{:<24}`{}`: {}\n", "", word.name, word.doc));

@@ -4,7 +4,11 @@ use super::{Alternative, Basis, Field, Form, Kind, Measure, Need, Role, Varies, 
 use super::{materials, results, traffic};
 
 const fn field(name: &'static str, form: Form, need: Need, doc: &'static str) -> Field {
-    Field { name, form, need, doc }
+    Field { name, form, need, doc, unread: false }
+}
+/// A field that no run reads yet.
+pub(super) const fn unread(field: Field) -> Field {
+    Field { unread: true, ..field }
 }
 pub(super) const fn required(name: &'static str, form: Form, doc: &'static str) -> Field {
     field(name, form, Need::Required, doc)
@@ -203,12 +207,12 @@ pub const KINDS: &[Kind] = &[
         role: Role::Part,
         fields: &[
             required("mass", per("kg", 50.0, 1000.0, &SLEEPER_OR_SEAT), "heavier sleepers lift less"),
-            default(
+            unread(default(
                 "bending",
                 Form::Words(&[word("rigid", "does not bend")]),
                 "rigid",
                 "bending of the sleeper itself",
-            ),
+            )),
             default("length", number("m", 2.0, 3.0), "2.6 m", "across the track"),
             default("base_width", number("m", 0.2, 0.7), "0.3 m", "along the track"),
             default("height", number("m", 0.1, 0.3), "0.21 m", ""),
@@ -571,12 +575,12 @@ pub const KINDS: &[Kind] = &[
                 "adaptive(0.003 mm)",
                 "axles between two exchanges of forces and settlement",
             ),
-            default(
+            unread(default(
                 "passages",
                 Form::Words(&[word("isolated", "trains run one by one"), planned("continuous")]),
                 "isolated",
                 "",
-            ),
+            )),
             default(
                 "beam",
                 Form::Words(&[
@@ -649,7 +653,7 @@ pub const KINDS: &[Kind] = &[
                 "auto",
                 "where grains are modelled, at every transition; track and vehicle keep their length",
             ),
-            default(
+            unread(default(
                 "coupling",
                 Form::Words(&[
                     word("iterated", "track and grains in turn"),
@@ -657,8 +661,8 @@ pub const KINDS: &[Kind] = &[
                 ]),
                 "iterated",
                 "of track and grains",
-            ),
-            default(
+            )),
+            unread(default(
                 "support_from",
                 Form::Words(&[
                     word("static_load", "each sleeper pressed once"),
@@ -666,25 +670,25 @@ pub const KINDS: &[Kind] = &[
                 ]),
                 "static_load",
                 "from which grains give the stiffness of supports",
-            ),
+            )),
             default(
                 "grain_step",
                 Form::OneOf(&[number("s", 1e-9, 1e-2), Form::Words(AUTO)]),
                 "auto",
                 "time step of grains",
             ),
-            default(
+            unread(default(
                 "zone_size",
                 Form::OneOf(&[number("m", 0.005, 5.0), Form::Words(AUTO)]),
                 "auto",
                 "of the elements of soil",
-            ),
-            default(
+            )),
+            unread(default(
                 "tolerance",
                 number("%", 0.1, 50.0),
                 "5 %",
                 "of the largest settlement: the error that `auto` plans for",
-            ),
+            )),
             default(
                 "budget",
                 Form::OneOf(&[number("min", 0.01, 1e6), Form::Words(NONE)]),

@@ -1,6 +1,6 @@
 //! Kinds of what lies under the sleepers: gradings, granular materials, soils.
 
-use super::kinds::{NONE, along, default, either, measure, number, optional, per, required, way, word};
+use super::kinds::{NONE, along, default, either, measure, number, optional, per, required, unread, way, word};
 use super::{Basis, Form, Kind, Role, Word};
 
 /// A contact is two particles in series.
@@ -122,12 +122,12 @@ pub(super) const GRANULAR: Kind = Kind {
             "of contacts",
         ),
         default("packing", Form::Object("packing"), "{}", "recipe by which the periodic cell is packed"),
-        default(
+        unread(default(
             "bond",
             Form::OneOf(&[Form::Object("bond"), Form::Words(NONE)]),
             "none",
             "glue between grains that touch after packing",
-        ),
+        )),
     ],
     alternatives: &[],
     planned: &[],
@@ -218,9 +218,9 @@ pub(super) const BOND: Kind = Kind {
     doc: "Glue between grains: a spring that also pulls, until it breaks.",
     role: Role::Nested,
     fields: &[
-        required("stiffness", per("MN/m", 0.1, 1000.0, &CONTACT_OR_PARTICLE), "normal"),
-        required("tensile_strength", number("kN", 1e-3, 1000.0), "force at which it breaks when pulled"),
-        required("shear_strength", number("kN", 1e-3, 1000.0), "force at which it breaks when sheared"),
+        unread(required("stiffness", per("MN/m", 0.1, 1000.0, &CONTACT_OR_PARTICLE), "normal")),
+        unread(required("tensile_strength", number("kN", 1e-3, 1000.0), "force at which it breaks when pulled")),
+        unread(required("shear_strength", number("kN", 1e-3, 1000.0), "force at which it breaks when sheared")),
     ],
     alternatives: &[],
     planned: &[],
@@ -235,9 +235,9 @@ pub(super) const SOIL: Kind = Kind {
         way("poisson_ratio", number("", 0.0, 0.49), ""),
         way("bulk_modulus", number("MPa", 0.3, 1e6), ""),
         way("shear_modulus", number("MPa", 0.3, 25_000.0), ""),
-        required("density", number("kg/m^3", 100.0, 3500.0), "with its pores and water"),
+        unread(required("density", number("kg/m^3", 100.0, 3500.0), "with its pores and water")),
         default("spread", SPREAD, "35 deg", "angle against the vertical at which the layer spreads a load"),
-        default(
+        unread(default(
             "strength",
             Form::Words(&[
                 word("elastic", "it does not yield"),
@@ -255,7 +255,7 @@ pub(super) const SOIL: Kind = Kind {
             ]),
             "elastic",
             "",
-        ),
+        )),
     ],
     alternatives: &[either(&[&["youngs_modulus", "poisson_ratio"], &["bulk_modulus", "shear_modulus"]])],
     planned: &[],
@@ -268,7 +268,7 @@ pub(super) const APPROACH_SLAB: Kind = Kind {
     fields: &[
         required("thickness", number("m", 0.1, 1.0), ""),
         required("youngs_modulus", number("GPa", 5.0, 60.0), "of the plate, such as concrete"),
-        required("density", number("kg/m^3", 1000.0, 3500.0), "kept; the tier `law` has no use for it"),
+        unread(required("density", number("kg/m^3", 1000.0, 3500.0), "of the plate")),
         required("depth", number("m", 0.1, 5.0), "of its top below the sleepers"),
         default(
             "hinged",

@@ -6,11 +6,13 @@ mod docs;
 mod kinds;
 mod laws;
 mod materials;
+mod reads;
 mod results;
 mod traffic;
 
 pub use docs::{index, page, section};
 pub use kinds::{COMMON, KINDS, RANDOM};
+pub use reads::{Reader, Reads};
 
 /// A kind of declaration, or of a value that only stands inside one.
 #[derive(Debug)]
@@ -47,6 +49,8 @@ pub struct Field {
     pub form: Form,
     pub need: Need,
     pub doc: &'static str,
+    /// No run of this version reads it.
+    pub unread: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

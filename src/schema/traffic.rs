@@ -1,7 +1,7 @@
 //! Kinds of what loads the track: vehicles, trains, traffic, test loads.
 
 use super::kinds::{
-    AXLES_OR_MASS, along, default, either, measure, number, one_of, optional, per, required, way, word,
+    AXLES_OR_MASS, along, default, either, measure, number, one_of, optional, per, required, unread, way, word,
 };
 use super::{Basis, Form, Kind, Measure, Role, Word};
 
@@ -107,11 +107,7 @@ pub(super) const WHEELSET: Kind = Kind {
     role: Role::Nested,
     fields: &[
         required("mass", per("kg", 300.0, 5000.0, &WHEELSET_OR_WHEEL), ""),
-        optional(
-            "rolling_inertia",
-            per("kg m^2", 1.0, 1000.0, &WHEELSET_OR_WHEEL),
-            "kept; vertical dynamics has no use for it",
-        ),
+        unread(optional("rolling_inertia", per("kg m^2", 1.0, 1000.0, &WHEELSET_OR_WHEEL), "about the axle")),
         required("spacing", number("m", 1.0, 4.0), "of the axles of a bogie"),
         default("radius", number("m", 0.2, 0.7), "0.46 m", ""),
     ],

@@ -139,9 +139,12 @@ fn check(scene: Scene<'_>, base: &Compiled, study: &Study, levels: &[Level], ove
     match (&compiled.scenario, run) {
         (Some(scenario), Some(run)) if errors.is_empty() => {
             // an edited line may leave what it stood for unused
-            let new =
-                |d: &&Diagnostic| d.code != Code::E0412 && !base.diagnostics.iter().any(|known| known.code == d.code);
-            let remarks = compiled.diagnostics.iter().filter(new).map(placed).collect();
+            let known = |d: &Diagnostic| base.diagnostics.iter().any(|known| known.code == d.code);
+            let new = |d: &&Diagnostic| d.code != Code::E0412 && d.code != Code::E0429 && !known(d);
+            // what the scene's own lines do not do is told there
+            let idle = compiled.diagnostics.iter().filter(|d| d.code == Code::E0429);
+            let idle = idle.filter_map(|d| places.of_edits(d)).collect::<Vec<_>>();
+            let remarks = compiled.diagnostics.iter().filter(new).chain(&idle).map(placed).collect();
             let fingerprint = content(study, &compiled);
             Checked::Legal { fingerprint, seconds: run.cost.seconds, seed: scenario.solve.seed, remarks }
         }
@@ -227,6 +230,14 @@ impl Places<'_> {
             .filter_map(|label| Some(Label { span: self.span(label.span)?, text: label.text.clone() }))
             .collect();
         (!labels.is_empty()).then_some(labels)
+    }
+
+    /// The same of lines that the study edits alone; `None` where it is of none of them.
+    fn of_edits(&self, diagnostic: &Diagnostic) -> Option<Diagnostic> {
+        let edits = self.given + 1..=self.given + self.study.set.len() + self.study.axes.len();
+        let labels = diagnostic.labels.iter().filter(|label| edits.contains(&(label.span.file.0 as usize)));
+        let labels: Vec<Label> = labels.cloned().collect();
+        (!labels.is_empty()).then(|| Diagnostic { labels, ..diagnostic.clone() })
     }
 
     /// Overrides stand behind the main file, in their order; an edited line is told where the study gives its value.

@@ -100,7 +100,7 @@ impl Foreseen {
 
 /// Lowers a scene and says what its diagnostics foresee of its numerics, whatever rules it silences.
 pub(super) fn check(scenario: &Scenario) -> (Option<Planned>, Foreseen, Vec<&'static str>) {
-    let Lowered { graph, origins, diagnostics } = lower(scenario);
+    let Lowered { graph, origins, diagnostics, .. } = lower(scenario);
     if let Some(error) = diagnostics.iter().find(|d| d.is_error()) {
         return (None, Foreseen::Refused(error.code.as_str(), error.message.clone()), Vec::new());
     }

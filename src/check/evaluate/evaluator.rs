@@ -6,7 +6,7 @@ use crate::check::findings::Findings;
 use crate::check::text::files::Files;
 use crate::check::text::loader::Loaded;
 use crate::check::text::scope::{ItemId, Scope, ScopeId};
-use crate::diag::{Code, Diagnostic, Span};
+use crate::diag::{Code, Diagnostic, Span, and_list};
 use crate::scenario::Origin;
 use crate::syntax::tree::{Item, Name, Value};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -117,7 +117,7 @@ impl<'m> Evaluator<'m> {
             let names: Vec<String> =
                 self.stack[start..].iter().map(|(item, _)| *item).chain([id]).map(|i| self.item_name(i)).collect();
             let mut mistake =
-                Diagnostic::new(Code::E0203, format!("{} need each other", and_list(&names[..names.len() - 1])))
+                Diagnostic::new(Code::E0203, format!("{} need each other", quoted_list(&names[..names.len() - 1])))
                     .at(place, "closes the circle")
                     .help(format!("the circle is {}", names.join(" -> ")));
             if names.len() == 2 {
@@ -184,11 +184,6 @@ impl<'m> Evaluator<'m> {
 }
 
 /// `a`, `b` and `c`
-fn and_list(names: &[String]) -> String {
-    let quoted: Vec<String> = names.iter().map(|n| format!("`{n}`")).collect();
-    match quoted.split_last() {
-        Some((last, [])) => last.clone(),
-        Some((last, first)) => format!("{} and {last}", first.join(", ")),
-        None => String::new(),
-    }
+fn quoted_list(names: &[String]) -> String {
+    and_list(&names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>())
 }

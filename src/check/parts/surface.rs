@@ -101,7 +101,7 @@ mod tests {
         assert_eq!(words, LIBRARY.iter().map(|(name, _)| *name).collect::<Vec<_>>());
         for word in from.form.words().into_iter().filter(|word| word.name != "file") {
             let bytes = LIBRARY.iter().find(|(name, _)| *name == word.name).unwrap().1;
-            let form = crate::solvers::granular::grains::Form::of_surface(&stl::read(bytes).unwrap());
+            let form = crate::solvers::granular::grains::GrainForm::of_surface(&stl::read(bytes).unwrap());
             let said = |index: &str| {
                 let rest = word.doc.split(index).nth(1).unwrap().trim_start();
                 rest.split([',', ' ']).next().unwrap().parse::<f64>().unwrap()

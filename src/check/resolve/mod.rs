@@ -13,6 +13,7 @@ use super::{Modules, Override, with_evaluator};
 use crate::check::evaluate::evaluator::Evaluator;
 use crate::check::evaluate::records::header;
 use crate::check::evaluate::value::{Record, Slot, Val};
+use crate::check::text::overrides::EDIT;
 use crate::check::text::scope::ItemId;
 use crate::diag::{self, Span};
 use crate::scenario::Origin;
@@ -242,7 +243,7 @@ impl<'c, 'm> Resolver<'c, 'm> {
         let (name, line) = (&sources.get(span.file).name, sources.position(span.file, span.start).line);
         if span.file == diag::FileId(0) {
             format!("line {line}")
-        } else if name == "--set" {
+        } else if name == EDIT {
             name.clone()
         } else {
             format!("{name}:{line}")

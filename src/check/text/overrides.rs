@@ -6,6 +6,9 @@ use crate::schema::{self, Role};
 use crate::syntax::parse;
 use crate::syntax::tree::{Argument, Declaration, Field, Item, Name, Path, Tree, Value, ValueKind};
 
+/// The name of a text that stands for an edited line.
+pub const EDIT: &str = "--set";
+
 /// One override: a path and the text of a value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Override {
@@ -31,7 +34,7 @@ pub fn apply(sources: &mut Sources, diagnostics: &mut Vec<Diagnostic>, tree: &mu
         // read as a binding of the same length, shown as the path that it sets
         let text = format!("let {} = {}", wanted.path.replace('.', "_"), wanted.value);
         let shown = format!("    {} = {}", wanted.path, wanted.value);
-        let file = sources.add("--set", shown.as_str(), false);
+        let file = sources.add(EDIT, shown.as_str(), false);
         let (parsed, mistakes) = parse(file, &text);
         let sound = mistakes.is_empty();
         diagnostics.extend(mistakes);

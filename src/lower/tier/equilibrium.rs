@@ -4,6 +4,7 @@ use super::{ExpectedError, Proposal, Tier, edges};
 use crate::graph::{LoadedPart, Model, Node, PointLoad, Schedule, SpringsNode};
 use crate::lower::{Draft, cost, track};
 use crate::scenario::{Loading, Scenario, Seat, StaticLoad, Target};
+use crate::schema::Reads;
 
 pub struct Equilibrium;
 
@@ -14,6 +15,10 @@ impl Tier for Equilibrium {
 
     fn answers(&self, word: &str) -> bool {
         word == "law"
+    }
+
+    fn reads(&self) -> &'static [&'static Reads] {
+        &[&track::READS, &track::SUPPORTS]
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {

@@ -3,18 +3,39 @@
 
 use super::{ExpectedError, Proposal, Tier, edges};
 use crate::graph::{GrainsNode, Model, Node, PointLoad, Schedule, SoilLayer, SoilNode};
-use crate::lower::bed::{BedUse, beds};
+use crate::lower::bed::{self, BedUse, beds};
 use crate::lower::tier::rig::cost::grains_under_track;
 use crate::lower::{Draft, track};
 use crate::scenario::{Loading, Material, Scenario};
+use crate::schema::Reads;
 
 pub struct Cells;
 pub struct Zone;
 pub struct Full;
 
+/// Fields of the grains and the soil under a track.
+const READS: Reads = Reads {
+    fields: &[
+        "solve.window",
+        "track.bed_ends",
+        "soil.youngs_modulus",
+        "soil.poisson_ratio",
+        "soil.bulk_modulus",
+        "soil.shear_modulus",
+    ],
+    acts_where: "where grains lie under a track: `substructure = cells`, `zone` or `full`",
+};
+
+/// What each of these tiers reads.
+const ALL: &[&Reads] = &[&track::READS, &bed::READS, &bed::VOLUMES, &READS];
+
 impl Tier for Cells {
     fn name(&self) -> &'static str {
         "cells"
+    }
+
+    fn reads(&self) -> &'static [&'static Reads] {
+        ALL
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
@@ -28,6 +49,10 @@ impl Tier for Zone {
         "zone"
     }
 
+    fn reads(&self) -> &'static [&'static Reads] {
+        ALL
+    }
+
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
         propose(draft, "grains under the bays that differ", window_length(draft.scenario).min(ZONE))
     }
@@ -36,6 +61,10 @@ impl Tier for Zone {
 impl Tier for Full {
     fn name(&self) -> &'static str {
         "full"
+    }
+
+    fn reads(&self) -> &'static [&'static Reads] {
+        ALL
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {

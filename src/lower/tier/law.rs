@@ -5,13 +5,33 @@ use crate::graph::{LawNode, Model, NamedLaw, Node, Schedule};
 use crate::lower::outlook::Outlook;
 use crate::lower::{Draft, cost, track};
 use crate::scenario::{Loading, Origin, Scenario, Seat, SettlementLaw, law_argument};
+use crate::schema::Reads;
 use crate::solvers::settlement::{Form, Logarithm};
 
 pub struct SettlementLaws;
 
+/// Fields of supports that settle, and that move under trains.
+const READS: Reads = Reads {
+    fields: &[
+        "solve.law",
+        "law.form",
+        "law.loads",
+        "law.cycles",
+        "law.cycle_per",
+        "support.damping",
+        "support.damping_time",
+        "usp.damping_time",
+    ],
+    acts_where: "where trains run over supports that settle by a law",
+};
+
 impl Tier for SettlementLaws {
     fn name(&self) -> &'static str {
         "law"
+    }
+
+    fn reads(&self) -> &'static [&'static Reads] {
+        &[&track::READS, &track::SUPPORTS, &READS]
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {

@@ -17,11 +17,17 @@ use super::{Draft, Pass};
 use crate::diag::Diagnostic;
 use crate::graph::{Cost, Edge, Node, Quantity, Rejected, Schedule};
 use crate::scenario;
+use crate::schema::Reads;
 
 /// A model of what lies under the sleepers.
 pub trait Tier: Send + Sync {
     /// The word by which a scene asks for it.
     fn name(&self) -> &'static str;
+
+    /// Which fields of the scene its plan reads, and with them the nodes of the plan.
+    fn reads(&self) -> &'static [&'static Reads] {
+        &[]
+    }
 
     /// The plan that it makes of a scene; why there is none where the scene is not for it.
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String>;
@@ -82,8 +88,9 @@ impl Pass for ChooseTier<'_> {
             b.runs.cmp(&a.runs).then(seconds(a).total_cmp(&seconds(b)))
         });
         let mut offers = offers.into_iter();
-        let Some((_, taken)) = offers.next() else { return };
+        let Some((name, taken)) = offers.next() else { return };
         rejected.extend(offers.map(|(name, proposal)| dearer(name, &proposal)));
+        draft.tier = Some(name);
         take(draft, taken, rejected);
     }
 }

@@ -6,8 +6,10 @@ mod refusals;
 use super::{ExpectedError, Proposal, Tier, edges};
 use crate::graph::{ActuatorsNode, BedNode, Model, Node, Schedule, SensorNode, SensorVolume, StandingBody, Tests};
 use crate::lower::Draft;
-use crate::lower::bed::{BedUse, beds, confinement};
+use crate::lower::bed::{self, BedUse, beds, confinement};
+use crate::lower::blocks::COUNTS;
 use crate::scenario::{Foot, Force, Given, Loading, RigLoad, Scenario, Seat, Section, SleeperBody, Target, Volume};
+use crate::schema::Reads;
 use crate::solvers::granular::packing::{GrainLayer, Recipe};
 use crate::solvers::granular::rig::{ADDED, Load};
 use crate::units::number;
@@ -26,6 +28,10 @@ const HELD: f64 = 0.5;
 
 pub struct TestRig;
 
+/// Fields of the test itself.
+const READS: Reads =
+    Reads { fields: &["solve.repeats", "load.total", "sleeper.mass"], acts_where: "where a test rig is loaded" };
+
 impl Tier for TestRig {
     fn name(&self) -> &'static str {
         "rig"
@@ -34,6 +40,10 @@ impl Tier for TestRig {
     /// A bed under actuators is the same in every tier of grains.
     fn answers(&self, word: &str) -> bool {
         ["cells", "zone", "full"].contains(&word)
+    }
+
+    fn reads(&self) -> &'static [&'static Reads] {
+        &[&bed::READS, &bed::VOLUMES, &COUNTS, &READS]
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {

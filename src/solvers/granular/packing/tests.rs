@@ -235,7 +235,7 @@ fn a_bed_that_lost_a_list_is_refused() {
     for list in lists(&whole) {
         let mut lacking = whole.clone();
         *lacking.pointer_mut(&list).unwrap() = serde_json::json!([]);
-        let Ok(stored) = serde_json::from_value::<Stored<f32>>(lacking) else { continue };
+        let Ok(stored) = serde_json::from_value::<StoredBed<f32>>(lacking) else { continue };
         match Packed::restore(stored) {
             Err(_) => refused += 1,
             Ok(mut packed) => {

@@ -215,7 +215,7 @@ fn a_test_that_lost_a_list_is_refused() {
     for list in super::super::packing::tests::lists(&whole) {
         let mut lacking = whole.clone();
         *lacking.pointer_mut(&list).unwrap() = serde_json::json!([]);
-        let Ok(stored) = serde_json::from_value::<Stored<f32>>(lacking) else { continue };
+        let Ok(stored) = serde_json::from_value::<StoredTrial<f32>>(lacking) else { continue };
         match Trial::restore(stored, &rig) {
             Err(_) => refused += 1,
             // histories of contacts and rows that were read are not missed by the motion

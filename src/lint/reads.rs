@@ -1,0 +1,25 @@
+//! Fields that only physics rules read.
+
+use crate::graph::{Graph, Model, Work};
+use crate::schema::{Reader, Reads};
+
+/// What rule L1022 holds a plan against.
+const BUDGET: Reads = Reads { fields: &["solve.budget"], acts_where: "where this version can run the plan" };
+const MEMORY: Reads =
+    Reads { fields: &["solve.memory"], acts_where: "where there are rails and this version can run the plan" };
+/// What rule L1020 looks at; a test rig chooses its own step.
+const GRAIN_STEP: Reads = Reads {
+    fields: &["solve.grain_step"],
+    acts_where: "where grains lie under a track: `substructure = cells`, `zone` or `full`",
+};
+
+/// What physics rules read of a scene, and whether they have something to say about its plan.
+pub fn readers(graph: &Graph) -> Vec<Reader> {
+    let passages = matches!(graph.cost.work, Work::Passages(_));
+    let grains_under_track = graph.nodes.iter().any(|node| matches!(node.model, Model::Grains(_)));
+    vec![
+        Reader { reads: &BUDGET, acted: graph.runs },
+        Reader { reads: &MEMORY, acted: graph.runs && passages },
+        Reader { reads: &GRAIN_STEP, acted: grains_under_track },
+    ]
+}
