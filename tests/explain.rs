@@ -8,8 +8,9 @@ use trackbed::study::{Scene, plan};
 use trackbed::{Compiled, compile};
 
 /// Codes that no text alone can show, and what shows them instead.
-const RUN_TIME: [(Code, &str); 13] = [
+const RUN_TIME: [(Code, &str); 14] = [
     (Code::E0610, "a bed of a scene: `tests/pack.rs`"),
+    (Code::E0612, "a plan that a pass of another program breaks: `tests/graph/planner.rs`"),
     (Code::E0701, "a chart of a scene without trains: `tests/study.rs`"),
     (Code::E0702, "a chart after a count that is not known: `tests/study.rs`"),
     (Code::E0802, "a run into a directory that is taken: `tests/cli.rs`"),

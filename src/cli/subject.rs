@@ -65,7 +65,7 @@ impl<'a> Subject<'a> {
 
     /// A passage that the study needs has failed.
     pub fn failed(&self, cause: TrackError, axles: u64) -> Outcome {
-        let error = RunError::Node { clock: Clock::Axles(axles), cause: NodeError::Track(cause) };
+        let error = RunError::node(Clock::Axles(axles), NodeError::Track(cause));
         stop(self.compiled, results::diagnose(&error, &self.planned.graph, &self.planned.origins))
     }
 }

@@ -17,7 +17,7 @@ pub(super) fn run(
     listener: &mut dyn Listener,
     from: Option<Checkpoint>,
 ) -> Result<Ending, RunError> {
-    let at = |cause: NodeError| RunError::Node { clock: Clock::Axles(0), cause };
+    let at = |cause: NodeError| RunError::node(Clock::Axles(0), cause);
     let (mut track, mut ground) = machine.track_on_ground().map_err(at)?;
     let (mut done, mut axles, mut control) = (0, 0, Control::default());
     if let Some(checkpoint) = from {
@@ -39,7 +39,7 @@ pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunErro
     let Some(blocks) = graph.blocks() else { return Ok(None) };
     let executor = super::Executor::default().with_builders(Builders::default());
     let machine = Machine { graph, executor: &executor };
-    let at = |cause: NodeError| RunError::Node { clock: Clock::Axles(0), cause };
+    let at = |cause: NodeError| RunError::node(Clock::Axles(0), cause);
     let (track, ground) = machine.track_on_ground().map_err(at)?;
     let runner = Runner { kind: 0, direction: blocks.leading_direction() };
     let settlement = ground.settlement();
@@ -167,7 +167,7 @@ impl Run<'_, '_> {
         let mut seats = Vec::new();
         for tamping in self.blocks.tamped_after(axles) {
             let tamped = self.ground.tamp(&tamping.seats, tamping.left);
-            tamped.map_err(|cause| RunError::Node { clock: Clock::Axles(axles), cause })?;
+            tamped.map_err(|cause| RunError::node(Clock::Axles(axles), cause))?;
             seats.extend(&tamping.seats);
         }
         self.stand(axles)?;
@@ -185,12 +185,12 @@ impl Run<'_, '_> {
     pub fn ensure(&self, exchange: &mut Exchange, runners: &[Runner]) -> Result<(), RunError> {
         let clock = Clock::Axles(exchange.axles);
         let done = exchange.ensure(&self.track, runners, self.ground.forces());
-        done.map_err(|cause| RunError::Node { clock, cause })
+        done.map_err(|cause| RunError::node(clock, cause))
     }
 
     /// The settlement of every seat that these loads would leave, m.
     pub fn predict(&self, axles: u64, loads: &[Load<'_>]) -> Result<Vec<f64>, RunError> {
-        self.ground.predict(loads).map_err(|cause| RunError::Node { clock: Clock::Axles(axles), cause })
+        self.ground.predict(loads).map_err(|cause| RunError::node(Clock::Axles(axles), cause))
     }
 
     /// Settlement of every seat, m.
@@ -203,7 +203,7 @@ impl Run<'_, '_> {
         let mark = self.ground.mark();
         if let Err(cause) = self.ground.advance(loads) {
             self.ground.roll_back(mark);
-            return Err(RunError::Node { clock: Clock::Axles(axles), cause });
+            return Err(RunError::node(Clock::Axles(axles), cause));
         }
         self.stand(axles)
     }
@@ -211,7 +211,7 @@ impl Run<'_, '_> {
     /// Lets the track take the responses of the ground.
     fn stand(&mut self, axles: u64) -> Result<(), RunError> {
         let stood = self.track.stand_on(self.ground.responses());
-        stood.map_err(|cause| RunError::Node { clock: Clock::Axles(axles), cause })
+        stood.map_err(|cause| RunError::node(Clock::Axles(axles), cause))
     }
 
     /// Blocks from an axle count to the end, as far as one can know.

@@ -6,7 +6,7 @@ use crate::graph::{Clock, PointLoad};
 use crate::nodes::{NodeError, Superstructure};
 
 pub(super) fn run(machine: &Machine<'_>, loads: &[PointLoad], listener: &mut dyn Listener) -> Result<Ending, RunError> {
-    let at = |cause: NodeError| RunError::Node { clock: Clock::Axles(0), cause };
+    let at = |cause: NodeError| RunError::node(Clock::Axles(0), cause);
     let (track, ground) = machine.track_on_ground().map_err(at)?;
     let state = track.equilibrium(&ground.settlement(), loads).map_err(at)?;
     let told = listener.hear(&Event::Equilibrium(&state));

@@ -24,11 +24,18 @@ pub enum RunError {
     /// The nodes and edges of the graph do not fit together.
     Faults(Vec<Fault>),
     /// A node found no answer.
-    Node { clock: Clock, cause: NodeError },
+    Node { clock: Clock, cause: Box<NodeError> },
     /// A checkpoint of another schedule.
     ForeignCheckpoint,
     /// A schedule of another program, which nobody here can run.
     NoSchedule { kind: String },
+}
+
+impl RunError {
+    /// The failure of a node, and how far the schedule was.
+    pub fn node(clock: Clock, cause: NodeError) -> RunError {
+        RunError::Node { clock, cause: Box::new(cause) }
+    }
 }
 
 impl fmt::Display for RunError {

@@ -13,7 +13,7 @@ mod step;
 mod tests_of_beds;
 
 pub use event::{Between, Both, Checkpoint, Event, Listener, ScheduleState};
-pub use machine::{Custom, Ending, Executor, RunError};
+pub use machine::{Custom, Ending, Executor, Machine, RunError};
 pub use step::Measured;
 
 pub use blocks::passage_as_built;

@@ -39,7 +39,7 @@ pub(super) fn run(
 }
 
 fn at(cycles: u64, cause: NodeError) -> RunError {
-    RunError::Node { clock: Clock::Cycles(cycles), cause }
+    RunError::node(Clock::Cycles(cycles), cause)
 }
 
 fn checkpoint(done: &[Tested], running: Option<(u64, TestState)>) -> Checkpoint {

@@ -1,7 +1,7 @@
 //! What rules of grains share: which layers are modelled as grains, and how hard their grains press on each other.
 
 use super::{Led, led};
-use crate::graph::Graph;
+use crate::graph::{Graph, Model};
 use crate::lint::dynamic::amplification;
 use crate::lint::winkler::seat_load;
 use crate::scenario::{Contact, Granular, Layer, Loading, Origin, Scenario, Section, Target};
@@ -26,7 +26,7 @@ pub(super) struct Bed<'a> {
 
 /// The granular layers of a scene whose plan has grains; none where a settlement law answers.
 pub(super) fn beds<'a>(scenario: &'a Scenario, graph: &Graph) -> Vec<Bed<'a>> {
-    if graph.beds().next().is_none() {
+    if !graph.nodes.iter().any(|node| matches!(node.model, Model::Bed(_) | Model::Grains(_))) {
         return Vec::new();
     }
     let sections = scenario.track.sections.iter().enumerate();

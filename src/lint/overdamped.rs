@@ -14,6 +14,9 @@ use crate::units::number;
 const LARGEST: f64 = 1.0;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+    if graph.track().is_none() {
+        return Vec::new();
+    }
     let sections = 0..scenario.track.sections.len();
     let mut swinging: Vec<Swinging> = sections.filter_map(|section| sleeper(scenario, section)).collect();
     if let Some(traffic) = led(scenario, graph) {

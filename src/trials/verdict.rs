@@ -120,7 +120,7 @@ pub(super) fn check(scenario: &Scenario) -> (Option<Planned>, Foreseen, Vec<&'st
 
 /// The diagnostic that a user would see.
 pub(super) fn refused(cause: &TrackError, planned: &Planned) -> Verdict {
-    let error = RunError::Node { clock: Clock::Axles(0), cause: NodeError::Track(cause.clone()) };
+    let error = RunError::node(Clock::Axles(0), NodeError::Track(cause.clone()));
     let diagnostic = diagnose(&error, &planned.graph, &planned.origins);
     Verdict::Refused { code: diagnostic.code.as_str(), message: diagnostic.message }
 }

@@ -53,10 +53,7 @@ fn it_settles_the_track_and_is_given_whole_histories() {
 fn nobody_runs_a_node_without_a_builder() {
     let graph = plan(|_| ());
     let none = NodeError::NoBuilder { node: "substructure".into(), kind: KIND.into() };
-    assert_eq!(
-        Executor::default().run(&graph, &mut (), None),
-        Err(RunError::Node { clock: Clock::Axles(0), cause: none })
-    );
+    assert_eq!(Executor::default().run(&graph, &mut (), None), Err(RunError::node(Clock::Axles(0), none)));
 }
 
 #[test]

@@ -29,7 +29,7 @@ fn run(
     for (done, x) in (1..).zip(&places).skip(first as usize) {
         // a second for each place
         let clock = Clock::Time(done as f64);
-        let failed = |cause: NodeError| RunError::Node { clock, cause };
+        let failed = |cause: NodeError| RunError::node(clock, cause);
         let (track, ground) = machine.track_on_ground().map_err(failed)?;
         let state = track.equilibrium(&ground.settlement(), &[jack_at(*x)]).map_err(failed)?;
         let checkpoint = || Ok(Checkpoint { clock, state: ScheduleState::Custom(json!(done)) });
