@@ -24,8 +24,8 @@ TRACK = [
     "run", here / "scenarios/transition.track", "--set", "traffic.total=240 axles", "--set", "track_response.after=[0, 120, 240] axles",
     "--set", "solve.elements_per_bay=1", "--set", "solve.time_step=2e-4 s",
 ]
-RIG = ["run", here / "scenarios/box_test.track", "--set", "actuator.total=2 cycles", "--set", "stone.scale=2.5", "--set", "pressure.after=[1, 2] cycles"]
-PACK = ["pack", here / "scenarios/box_test.track", "--set", "stone.scale=2.5"]
+RIG = ["run", here / "scenarios/box_test.track", "--set", "actuator.total=2 cycles", "--set", "stone.scale=1.8", "--set", "pressure.after=[1, 2] cycles"]
+PACK = ["pack", here / "scenarios/box_test.track", "--set", "stone.scale=1.8"]
 STUDY = ["study", here / "scenarios/study_pads.track", "--set", "traffic.total=40 axles"]
 WORKS = {"track": TRACK, "rig": RIG, "pack": PACK, "study": STUDY}
 # differs between any two runs, or says where the cache lies

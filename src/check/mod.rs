@@ -16,7 +16,7 @@ mod scene;
 mod stated;
 mod text;
 
-pub use reads::{ALWAYS, readers};
+pub use reads::{ALWAYS_READ, readers};
 pub use resolve::resolve;
 pub use stated::Stated;
 pub use text::library::{Entry, library};

@@ -4,7 +4,7 @@ use crate::scenario::{Scenario, Seat};
 use crate::schema::{Reader, Reads};
 
 /// Fields that act in every plan: where things lie, what stands on what, what is asked of the scene, and the seed of all that is random.
-pub const ALWAYS: &[&str] = &[
+pub const ALWAYS_READ: &[&str] = &[
     "scenario.title",
     "scenario.allow",
     "scenario.deny",

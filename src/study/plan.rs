@@ -141,10 +141,10 @@ fn check(scene: Scene<'_>, base: &Compiled, study: &Study, levels: &[Level], ove
             // an edited line may leave what it stood for unused
             let known = |d: &Diagnostic| base.diagnostics.iter().any(|known| known.code == d.code);
             let new = |d: &&Diagnostic| d.code != Code::E0412 && d.code != Code::E0429 && !known(d);
-            // what the scene's own lines do not do is told there
+            // what the scene's own lines do not do is told there, and that of an axis once for all of its values
             let idle = compiled.diagnostics.iter().filter(|d| d.code == Code::E0429);
-            let idle = idle.filter_map(|d| places.of_edits(d)).collect::<Vec<_>>();
-            let remarks = compiled.diagnostics.iter().filter(new).chain(&idle).map(placed).collect();
+            let idle = idle.filter_map(|d| Some((d.clone(), Some(places.of_edits(d)?))));
+            let remarks = compiled.diagnostics.iter().filter(new).map(placed).chain(idle).collect();
             let fingerprint = content(study, &compiled);
             Checked::Legal { fingerprint, seconds: run.cost.seconds, seed: scenario.solve.seed, remarks }
         }
@@ -232,12 +232,16 @@ impl Places<'_> {
         (!labels.is_empty()).then_some(labels)
     }
 
-    /// The same of lines that the study edits alone; `None` where it is of none of them.
-    fn of_edits(&self, diagnostic: &Diagnostic) -> Option<Diagnostic> {
-        let edits = self.given + 1..=self.given + self.study.set.len() + self.study.axes.len();
-        let labels = diagnostic.labels.iter().filter(|label| edits.contains(&(label.span.file.0 as usize)));
-        let labels: Vec<Label> = labels.cloned().collect();
-        (!labels.is_empty()).then(|| Diagnostic { labels, ..diagnostic.clone() })
+    /// The axes and settings of the study by which a diagnostic speaks of edited lines; `None` where it speaks of none.
+    fn of_edits(&self, diagnostic: &Diagnostic) -> Option<Place> {
+        let settings = self.study.set.iter().map(|setting| setting.span);
+        let edits: Vec<Span> = settings.chain(self.study.axes.iter().map(|axis| axis.span)).collect();
+        let edited = |label: &Label| {
+            let index = (label.span.file.0 as usize).checked_sub(self.given + 1)?;
+            Some(Label { span: *edits.get(index)?, text: label.text.clone() })
+        };
+        let labels: Vec<Label> = diagnostic.labels.iter().filter_map(edited).collect();
+        (!labels.is_empty()).then_some(labels)
     }
 
     /// Overrides stand behind the main file, in their order; an edited line is told where the study gives its value.
