@@ -202,14 +202,17 @@ fn a_checkpoint_of_another_scene_is_refused() {
     let text = blocks(parts(Code::L1006).1)[0].text.replace("400 axles", "40 axles");
     let compiled = compiled(&text);
     let (scenario, graph) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
-    let store = |hash: &str| trackbed::results::Store {
-        directory: directory.path().to_owned(),
-        scene_sha256: hash.to_string(),
+    let open = |scene: &str, mode| {
+        let work = trackbed::store::Work { name: "run".into(), scene_sha256: scene.to_owned() };
+        trackbed::store::Directory::open(directory.path(), work, mode)
     };
-    let mut recorder = trackbed::results::RunRecorder::new(&scenario, &graph).kept_in(store("one"));
+    let kept = open("one", trackbed::store::Mode::New).unwrap();
+    let mut recorder = trackbed::results::RunRecorder::new(&scenario, &graph).kept_in(&kept);
     trackbed::execute::execute(&graph, &mut recorder).unwrap();
-    let mut other = trackbed::results::RunRecorder::new(&scenario, &graph).kept_in(store("two"));
-    assert!(other.resume().is_err());
-    let mut same = trackbed::results::RunRecorder::new(&scenario, &graph).kept_in(store("one"));
+    drop(recorder);
+    drop(kept);
+    assert!(open("two", trackbed::store::Mode::Resume).unwrap_err().is_of_another());
+    let kept = open("one", trackbed::store::Mode::Resume).unwrap();
+    let mut same = trackbed::results::RunRecorder::new(&scenario, &graph).kept_in(&kept);
     assert!(same.resume().unwrap().is_some());
 }

@@ -9,7 +9,8 @@ use trackbed::check::Folder;
 use trackbed::compile;
 use trackbed::execute::{Both, Ending, Event, Executor, execute};
 use trackbed::graph::Graph;
-use trackbed::results::{RunRecorder, Store};
+use trackbed::results::RunRecorder;
+use trackbed::store::{Directory, Mode, Work};
 
 fn through_a_file(graph: &Graph) -> Graph {
     serde_json::from_str(&serde_json::to_string(graph).unwrap()).unwrap()
@@ -22,8 +23,10 @@ fn a_run_that_a_listener_ends_goes_on_with_the_same_bits() {
     execute(&graph, &mut whole).unwrap();
 
     let directory = tempfile::tempdir().unwrap();
-    let store = || Store { directory: directory.path().to_owned(), scene_sha256: "the scene".into() };
-    let mut begun = RunRecorder::new(&scenario, &graph).kept_in(store());
+    let work = Work { name: "run".into(), scene_sha256: "the scene".into() };
+    let open = |mode| Directory::open(directory.path(), work.clone(), mode).unwrap();
+    let kept = open(Mode::New);
+    let mut begun = RunRecorder::new(&scenario, &graph).kept_in(&kept);
     let mut blocks = 0;
     let mut at_the_third = |event: &Event<'_>| {
         blocks += u32::from(matches!(event, Event::Between(_)));
@@ -33,8 +36,11 @@ fn a_run_that_a_listener_ends_goes_on_with_the_same_bits() {
     assert_eq!(ended, Ok(Ending::Stopped));
     assert_eq!(begun.tables.blocks.len(), 3);
 
-    let mut rest = RunRecorder::new(&scenario, &graph).kept_in(store());
-    let from = rest.resume().unwrap().expect("the third block was kept");
+    drop(begun);
+    drop(kept);
+    let kept = open(Mode::Resume);
+    let mut rest = RunRecorder::new(&scenario, &graph).kept_in(&kept);
+    let from = rest.resume().unwrap().expect("a block was kept");
     assert_eq!(Executor::default().run(&graph, &mut rest, Some(from)), Ok(Ending::Finished));
     assert!(rest.tables == whole.tables && rest.histories == whole.histories);
 }
