@@ -20,7 +20,7 @@ cases() {
         [[ $scene == tests/* ]] && name=tests_$name
         echo "check_$name check $scene --format json"
         echo "resolve_$name resolve $scene"
-        echo "draw_$name draw $scene"
+        echo "draw_$name draw $scene --out OUT.svg"
     done
     for name in static_check sleepers pads usp wedge transition bridge oedometer box_test triaxial; do
         echo "run_$name run scenarios/$name.track --out OUT"

@@ -162,7 +162,7 @@ fn a_killed_run_resumes_with_the_same_bits() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    while !killed.join("checkpoint.json").exists() && child.try_wait().unwrap().is_none() {
+    while !killed.join(".trackbed/checkpoint").exists() && child.try_wait().unwrap().is_none() {
         std::thread::yield_now();
     }
     child.kill().unwrap();
@@ -177,7 +177,7 @@ fn a_killed_run_resumes_with_the_same_bits() {
     let other = write(dir.path(), "other.track", &text.replace("0.6 m", "0.65 m"));
     let refused = trackbed(&["run", other.to_str().unwrap(), "--out", out, "--resume"]);
     assert_eq!(code(&refused), 1);
-    assert!(said(&refused).contains("E0803"), "{}", said(&refused));
+    assert!(said(&refused).contains("E0809"), "{}", said(&refused));
 
     let resumed = trackbed(&["run", scene, "--out", out, "--resume"]);
     assert_eq!(code(&resumed), 0, "{}", said(&resumed));

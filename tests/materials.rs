@@ -41,10 +41,10 @@ fn codes(compiled: &Compiled) -> Vec<Code> {
     compiled.diagnostics.iter().map(|d| d.code).collect()
 }
 
-/// The scenario of a text without a mistake.
+/// The scenario of a text without a mistake; what no run reads yet is told and is none.
 fn sound(text: &str, modules: &dyn Modules) -> Scenario {
     let compiled = compile("scene.track", text, modules, &[]);
-    assert!(compiled.diagnostics.is_empty(), "{}", told(&compiled));
+    assert!(compiled.diagnostics.iter().all(|d| d.code == Code::E0429), "{}", told(&compiled));
     compiled.scenario.unwrap()
 }
 

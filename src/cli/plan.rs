@@ -1,8 +1,7 @@
 //! `trackbed plan`: the solver graph, what each pass decided and what the run will take.
 
-use super::scene::{SceneArguments, failed, not_yet, show};
+use super::scene::{PassArguments, SceneArguments, failed, not_yet, show};
 use super::{Outcome, terminal};
-use crate::compile::Compiled;
 use clap::ValueEnum;
 
 /// Print the solver graph, the passes and the estimate
@@ -10,6 +9,8 @@ use clap::ValueEnum;
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    #[command(flatten)]
+    passes: PassArguments,
     #[arg(long, value_enum, default_value = "human")]
     format: PlanFormat,
 }
@@ -22,7 +23,7 @@ enum PlanFormat {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
-    let Some(compiled) = arguments.scene.compile().map(Compiled::to_run) else { return Outcome::Usage };
+    let Some(compiled) = arguments.scene.compile_without(&arguments.passes) else { return Outcome::Usage };
     show(&compiled);
     let Some(graph) = compiled.graph.as_ref().filter(|_| !failed(&compiled)) else {
         return not_yet(&compiled);

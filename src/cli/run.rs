@@ -1,6 +1,6 @@
 //! `trackbed run`: runs a scene into a directory, with checkpoints, a report and the verdict on its expectations.
 
-use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
+use super::scene::{PassArguments, SceneArguments, SeedArgument, failed, not_yet, show};
 use super::{Outcome, pack, progress, report, stored, terminal};
 use crate::compile::{Compiled, fingerprint};
 use crate::diag::{Code, Diagnostic, render};
@@ -24,6 +24,8 @@ pub(super) struct Arguments {
     scene: SceneArguments,
     #[command(flatten)]
     seed: SeedArgument,
+    #[command(flatten)]
+    passes: PassArguments,
     /// The directory for results; made where it does not exist.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -55,7 +57,8 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
 /// Runs in the pool of threads of the caller.
 fn run_here(arguments: &Arguments) -> Outcome {
     let started = Instant::now();
-    let Some(compiled) = arguments.scene.with_seed(&arguments.seed).compile().map(Compiled::to_run) else {
+    let scene = arguments.scene.with_seed(&arguments.seed);
+    let Some(compiled) = scene.compile_without(&arguments.passes).map(Compiled::to_run) else {
         return Outcome::Usage;
     };
     show(&compiled);
@@ -65,7 +68,7 @@ fn run_here(arguments: &Arguments) -> Outcome {
     let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else {
         return not_yet(&compiled);
     };
-    let work = Work { name: "run".into(), scene_sha256: fingerprint(&compiled.sources) };
+    let work = Work { name: arguments.name(), scene_sha256: fingerprint(&compiled.sources) };
     match Directory::open(&arguments.out, work, arguments.mode()) {
         Ok(directory) if directory.finished().is_some() => again(directory.path(), &compiled),
         Ok(directory) => compute(arguments, directory, &Running { compiled: &compiled, scenario, graph, started }),
@@ -74,6 +77,12 @@ fn run_here(arguments: &Arguments) -> Outcome {
 }
 
 impl Arguments {
+    /// What is done in the directory: a run without some passes is another work.
+    fn name(&self) -> String {
+        let without = self.passes.without.join("`, `");
+        if without.is_empty() { "run".to_owned() } else { format!("run without `{without}`") }
+    }
+
     fn mode(&self) -> Mode {
         match (self.force, self.resume) {
             (true, _) => Mode::Force,

@@ -2,8 +2,9 @@
 
 use super::{Outcome, terminal};
 use crate::check::{self, Folder, Modules, Override, Remembered};
-use crate::compile::{Compiled, compile};
+use crate::compile::{Compiled, compile_with};
 use crate::diag::{self, render};
+use crate::lower::{NoSuchPass, Planner};
 use crate::syntax;
 use std::path::{Path, PathBuf};
 
@@ -23,6 +24,29 @@ pub(super) struct SeedArgument {
     /// The seed of all that is random, as `--set solve.seed=N`.
     #[arg(long, value_name = "N")]
     seed: Option<u32>,
+}
+
+/// Which passes of the planner are left out.
+#[derive(clap::Args)]
+pub(super) struct PassArguments {
+    /// Leave out a pass of the planner, so that its error can be measured; `trackbed plan` names them.
+    #[arg(long, value_name = "PASS")]
+    pub without: Vec<String>,
+}
+
+impl PassArguments {
+    /// The planner without these passes; `None` where one cannot be left out, which has been said.
+    pub fn planner(&self) -> Option<Planner> {
+        let without = self.without.iter().try_fold(Planner::default(), |planner, name| planner.without(name));
+        match without {
+            Ok(planner) => Some(planner),
+            Err(NoSuchPass { name, optional }) => {
+                let optional = optional.join("`, `");
+                terminal::error(&format!("no pass `{name}` can be left out: write one of `{optional}`"));
+                None
+            }
+        }
+    }
 }
 
 impl SceneArguments {
@@ -56,6 +80,15 @@ impl SceneArguments {
 
     /// The same with modules that are asked again later.
     pub fn compile_with(&self, modules: &dyn Modules) -> Option<Compiled> {
+        self.compile_by(&Planner::default(), modules)
+    }
+
+    /// The same without some passes; `None` too where one cannot be left out.
+    pub fn compile_without(&self, passes: &PassArguments) -> Option<Compiled> {
+        self.compile_by(&passes.planner()?, &self.folder())
+    }
+
+    fn compile_by(&self, planner: &Planner, modules: &dyn Modules) -> Option<Compiled> {
         let name = self.file.display().to_string();
         let bytes = match std::fs::read(&self.file) {
             Ok(bytes) => bytes,
@@ -65,7 +98,7 @@ impl SceneArguments {
             }
         };
         Some(match syntax::decode(&name, &bytes) {
-            Ok(text) => compile(&name, &text, modules, &self.set),
+            Ok(text) => compile_with(planner, &name, &text, modules, &self.set),
             Err(mistake) => Compiled::unread(mistake),
         })
     }

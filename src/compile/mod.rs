@@ -78,7 +78,9 @@ pub fn compile_with(
         diagnostics.extend(graph.iter().flat_map(|graph| lint(scenario, graph)));
         if checked.sound {
             let of_plan = |graph| [check::readers(scenario), lowered.readers, lint::readers(graph)].concat();
-            diagnostics.extend(unused::told(&checked.stated, &graph.as_ref().map(of_plan).unwrap_or_default()));
+            // a plan that this version cannot run is no measure of what a line is for
+            let runs = graph.as_ref().filter(|graph| graph.runs);
+            diagnostics.extend(unused::told(&checked.stated, &runs.map(of_plan).unwrap_or_default()));
         }
     }
     diag::sort(&mut diagnostics);
