@@ -1,7 +1,7 @@
 //! Tiers `cells`, `zone` and `full`: grains under the sleepers of a track, one cell for each distinct sleeper, under the bays that
 //! differ, or under all of the window. This version plans them and cannot run them.
 
-use super::{ExpectedError, Proposal, Tier, edges};
+use super::{ExpectedError, Proposal, Tier, edges, waiting};
 use crate::graph::{GrainsNode, Model, Node, PointLoad, Schedule, SoilLayer, SoilNode};
 use crate::lower::bed::{BedUse, beds};
 use crate::lower::tier::rig::cost::grains_under_track;
@@ -51,11 +51,12 @@ fn propose(draft: &Draft<'_>, what: &str, length: f64) -> Result<Proposal, Strin
     if !scenario.track.has_rails() {
         return Err("there are no rails".into());
     }
-    let (beds, refusals) = match beds(scenario, BedUse::Track) {
+    let (beds, mut refusals) = match beds(scenario, BedUse::Track) {
         Ok(beds) if beds.is_empty() => return Err("no section has a layer of grains".into()),
         Ok(beds) => (beds, Vec::new()),
         Err(refusals) => (Vec::new(), refusals),
     };
+    refusals.extend(waiting::refusal(scenario));
     let schedule = match (&scenario.loading, &draft.blocks) {
         (Some(Loading::Traffic(_)), Some(blocks)) => Schedule::Blocks(Box::new(blocks.clone())),
         (Some(Loading::Static(_) | Loading::Rig(_)), _) => Schedule::Static { loads: Vec::<PointLoad>::new() },
