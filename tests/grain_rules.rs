@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 use trackbed::check::NoModules;
-use trackbed::diag::Code;
+use trackbed::diag::{Code, Diagnostic, Span};
 use trackbed::graph::{BedPlan, TestWork, Work};
 use trackbed::{Compiled, compile};
 
@@ -289,4 +289,45 @@ fn larger_grains_are_fewer_and_as_much_stiffer() {
     let thin = box_test("scale = 3", "");
     let refused = thin.diagnostics.iter().find(|d| d.code == Code::E0511).unwrap();
     assert!(refused.help.as_deref().is_some_and(|help| help.contains("a smaller `scale`")), "{refused:?}");
+}
+
+/// A rig of one sleeper on 200 mm of coarse stone, with a step of grains that is far too long.
+fn rig(tier: &str) -> Vec<(Code, String, Option<Span>)> {
+    let text = format!(
+        "use std
+granular stone {{ {STONE} }}
+trackform bed {{ sleeper = sleepers.B70, spacing = 0.6 m, layers = [stone: 200 mm] }}
+track box {{ sections = [bed: 1 sleeper] }}
+load jack {{ on = sleepers, at = 1 sleeper, force = cyclic(5 .. 60 kN, 40 Hz) per sleeper, total = 4 cycles }}
+solve {{ grain_step = 1 ms, substructure = {tier} }}
+"
+    );
+    let compiled = compile("rig.track", &text, &NoModules, &[]);
+    let place = |d: &Diagnostic| d.labels.first().map(|label| label.span);
+    compiled.diagnostics.iter().map(|d| (d.code, d.message.clone(), place(d))).collect()
+}
+
+#[test]
+fn rules_of_grains_speak_where_the_plan_has_grains_whatever_the_spelling() {
+    let full = rig("full");
+    for code in [Code::L1009, Code::L1020] {
+        assert_eq!(full.iter().filter(|(said, ..)| *said == code).count(), 1, "{code}: {full:?}");
+    }
+    assert_eq!(rig("auto"), full);
+}
+
+#[test]
+fn rules_speak_of_a_plan_that_is_refused() {
+    let text = "use std
+granular stone { grading = { passing = [20 mm: 0 %, 80 mm: 100 %] }, density = 2700 kg/m^3, friction = 0.7
+                 contact_stiffness = 10 MN/m per contact }
+trackform open { rail = rails.UIC60, pad = pads.soft, sleeper = sleepers.B70, spacing = 0.6 m, layers = [stone: 250 mm] }
+track line { sections = [open: 42 m] }
+train ore { vehicles = vehicles.ore_wagon_20t, speed = 60 km/h }
+traffic { trains = ore, total = 400 axles }
+";
+    let compiled = compile("scene.track", text, &NoModules, &[]);
+    let codes: Vec<Code> = compiled.diagnostics.iter().map(|d| d.code).collect();
+    assert!(codes.contains(&Code::E0604) && codes.contains(&Code::L1009), "{codes:?}");
+    assert!(compiled.graph.is_some() && compiled.runnable().is_none());
 }

@@ -3,6 +3,8 @@
 
 use trackbed::check::NoModules;
 use trackbed::diag::Code;
+use trackbed::graph::SupportNode;
+use trackbed::lower::supports;
 use trackbed::scenario::{Scenario, Seat};
 use trackbed::{Compiled, compile};
 
@@ -55,8 +57,13 @@ fn seat(scenario: &Scenario, number: i32) -> &Seat {
 
 /// Stiffness and damping of a support, N/m and N s/m.
 fn support(scenario: &Scenario, number: i32) -> (f64, f64) {
-    let support = seat(scenario, number).support().unwrap();
-    (*support.stiffness, *support.damping)
+    let support = carrier(scenario, number).support.unwrap();
+    (support.stiffness, support.damping)
+}
+
+/// What carries a seat, as every plan of the scene has it.
+fn carrier(scenario: &Scenario, number: i32) -> SupportNode {
+    supports(scenario)[scenario.track.seats.iter().position(|s| s.number == number).unwrap()]
 }
 
 fn stiffness(scenario: &Scenario, number: i32) -> f64 {
@@ -83,9 +90,25 @@ fn layers_that_do_not_spread_are_springs_in_series() {
         let (stiffness, damping) = support(&scenario, number);
         close(stiffness, expected);
         close(damping, 1e-3 * expected);
-        close(seat(&scenario, number).onto_subgrade.unwrap(), 1.0 / AREA);
+        close(carrier(&scenario, number).onto_subgrade.unwrap(), 1.0 / AREA);
     }
-    assert_eq!(seat(&scenario, 1).onto_subgrade, None);
+    assert_eq!(carrier(&scenario, 1).onto_subgrade, None);
+}
+
+#[test]
+fn the_plan_says_what_layers_carry_and_by_which_method() {
+    let decided = |text: &str| {
+        let graph = checked(text).graph.unwrap();
+        let known = graph.supports.iter().filter(|node| node.spring.is_some()).count();
+        let decision = graph.decisions.into_iter().find(|decision| decision.pass == "supports");
+        (known, decision.map(|decision| (decision.what, decision.rejected[0].what.clone())))
+    };
+    let (known, decision) = decided(&embankment("", PLAIN, ""));
+    let what = format!("the layers give the stiffness of {known} supports, by the stress cone");
+    assert_eq!(decision, Some((what, "layered elasticity".to_owned())));
+    let stated =
+        embankment("", PLAIN, "").replace("layers = [", "support = { stiffness = 40 MN/m per seat }, layers = [");
+    assert_eq!(decided(&stated), (known, None), "layers under stated supports only say what presses on the subgrade");
 }
 
 #[test]
@@ -102,7 +125,7 @@ fn a_load_that_spreads_meets_softer_springs_of_larger_area() {
     let wide = embankment("", PLAIN, "").replace("spread = 0 deg", "spread = 35 deg");
     let (narrow, wide) = (scene(&embankment("", PLAIN, "")), scene(&wide));
     assert!(stiffness(&wide, -30) > 1.5 * stiffness(&narrow, -30));
-    assert!(seat(&wide, -30).onto_subgrade < seat(&narrow, -30).onto_subgrade);
+    assert!(carrier(&wide, -30).onto_subgrade < carrier(&narrow, -30).onto_subgrade);
     // closer sleepers have less ground each
     let closer =
         scene(&embankment("", PLAIN, "").replace("spread = 0 deg", "spread = 35 deg").replace("0.6 m", "0.5 m"));
@@ -182,7 +205,7 @@ fn an_approach_slab_is_stiffest_at_its_hinge() {
         close(stiffness(&hinged, number), series(&[(0.4, 100e6), (0.3, 30e9), (1.7, 50e6 / (share * share))]));
     }
     // by the lever the structure bears the rest
-    let onto = |scenario: &Scenario, number: i32| seat(scenario, number).onto_subgrade.unwrap();
+    let onto = |scenario: &Scenario, number: i32| carrier(scenario, number).onto_subgrade.unwrap();
     close(onto(&hinged, -4), onto(&loose, -4) * 2.4 / 6.0);
     let falls: Vec<f64> = (1..=10).map(|n| stiffness(&hinged, -n)).collect();
     assert!(falls.windows(2).all(|pair| pair[0] > pair[1]), "{falls:?}");
@@ -199,7 +222,7 @@ fn a_plate_spreads_the_load_as_odemark_says() {
         scene(&spreading.replace("stretches = [a]", "stretches = []").replace("stretch a", "stretch unused")),
         scene(&spreading),
     );
-    let onto = |scenario: &Scenario| 1.0 / seat(scenario, -5).onto_subgrade.unwrap();
+    let onto = |scenario: &Scenario| 1.0 / carrier(scenario, -5).onto_subgrade.unwrap();
     // outwards alone: neighbours and the other rail stop the cone along the track and inwards
     let tan = 10f64.to_radians().tan();
     let equivalent = 0.9 * 0.3 * f64::cbrt(30e9 / 50e6);

@@ -82,7 +82,7 @@ fn the_papers_scene_is_checked_with_all_its_grains() {
     assert_eq!(scenario.track.bed.half_width.map(|w| *w), Some(1.2));
     assert_eq!(scenario.track.bed.ends, BedEnds::Walls);
     let grains = &scenario.solve.grains;
-    assert_eq!((grains.tier, grains.window.clone(), grains.repeats), (Tier::Full, Some(vec![[-24.0, 6.0]]), 1));
+    assert_eq!((*grains.tier, grains.window.clone(), grains.repeats), (Tier::Full, Some(vec![[-24.0, 6.0]]), 1));
     let [volume] = scenario.volumes.as_slice() else { panic!("one record of ballast") };
     assert_eq!((volume.seats.len(), volume.depth, volume.after.as_slice()), (2, Some(0.2), &[100, 500][..]));
     assert_eq!(volume.volume, Volume::Box { along: 0.2, across: Some(1.2), height: 0.2 });
@@ -139,7 +139,10 @@ fn a_rig_is_a_scene_without_rails() {
     // of one rail: half of what acts on the sleeper
     assert_eq!((*range[0], *range[1], *frequency, loads[0].cycles), (2.5e3, 30e3, 20.0, 50));
     let (section, seat) = (&scenario.track.sections[0], &scenario.track.seats[0]);
-    assert!(section.rail.is_none() && seat.pad.is_none() && seat.support().is_some(), "{seat:?}");
+    assert!(
+        section.rail.is_none() && seat.pad.is_none() && seat.support().is_none() && seat.stack.is_some(),
+        "{seat:?}"
+    );
     let drawn = trackbed::report::drawing_svg(&scenario);
     assert!(drawn.contains("actuator: 2.5 to 30 kN per seat, 20 Hz, 50 times"), "{drawn}");
     assert!(!drawn.contains("class=\"steel\""), "nothing is drawn that is not there");
@@ -150,7 +153,7 @@ fn a_rig_is_a_scene_without_rails() {
     let text = text.lines().map(edited).collect::<Vec<_>>().join("\n");
     let scenario = compile("box.track", &text, &NoModules, &[]).scenario.unwrap();
     let seat = &scenario.track.seats[0];
-    assert!(seat.support().is_none() && seat.spring().is_none() && seat.is_ballasted(), "{seat:?}");
+    assert!(seat.support().is_none() && seat.stack.is_none() && seat.is_ballasted(), "{seat:?}");
     assert!(trackbed::report::drawing_svg(&scenario).contains("actuator"));
 }
 

@@ -202,6 +202,9 @@ fn what_no_rig_has_is_refused_by_the_check() {
         let compiled = compile("box.track", &text, &NoModules, &[]);
         let found: Vec<(Code, &str)> = compiled.diagnostics.iter().map(|d| (d.code, d.message.as_str())).collect();
         assert!(found.iter().any(|(c, m)| *c == Code::E0611 && m.contains(expected)), "{expected}: {found:?}");
+        let mut refusals = compiled.diagnostics.iter().filter(|d| d.code == Code::E0611);
+        assert!(refusals.all(|refusal| !refusal.labels.is_empty()), "each has its line: {found:?}");
+        assert!(compiled.graph.is_some() && compiled.runnable().is_none(), "what is refused is planned all the same");
     }
 }
 

@@ -4,6 +4,7 @@
 use trackbed::check::NoModules;
 use trackbed::diag::Code;
 use trackbed::lint::Winkler;
+use trackbed::lower::supports;
 use trackbed::results::{RunRecorder, SleeperRow};
 use trackbed::scenario::{Foot, Scenario, Seat, Support};
 use trackbed::{Compiled, compile, execute};
@@ -355,7 +356,8 @@ fn row(rows: &[SleeperRow], number: i32) -> &SleeperRow {
 
 /// Stiffness at rail level of the stiffer side of the transition over that of the softer one.
 fn jump(scenario: &Scenario) -> f64 {
-    let side = |section: usize| Winkler::beside(&scenario.track, section, 0.0).unwrap().rail_stiffness();
+    let side =
+        |section: usize| Winkler::beside(&scenario.track, &supports(scenario), section, 0.0).unwrap().rail_stiffness();
     side(1) / side(0)
 }
 

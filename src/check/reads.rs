@@ -82,7 +82,7 @@ const LAYERS: Reads = Reads {
 
 /// What checking reads of a scene beside what always acts.
 pub fn readers(scenario: &Scenario) -> Vec<Reader> {
-    let on_layers = |seat: &Seat| seat.onto_subgrade.is_some();
+    let on_layers = |seat: &Seat| seat.stack.is_some();
     let track = &scenario.track;
     vec![Reader { reads: &LAYERS, acted: track.has_rails() && track.seats.iter().any(on_layers) }]
 }

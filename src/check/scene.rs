@@ -11,7 +11,6 @@ use super::parts::rails::shear_stiffnesses;
 use super::parts::records::kept;
 use super::parts::solve::solve;
 use super::parts::tamping::tampings;
-use super::parts::tier::waits_for_grains;
 use super::parts::track::track;
 use super::parts::traffic::traffic;
 use super::text::scope::MAIN_FILE;
@@ -65,7 +64,6 @@ fn with_track(track_record: &Record, eval: &mut Evaluator<'_>) -> (Option<Scenar
     let load_records = eval.all("load");
     let solve_record = eval.only("solve").unwrap_or_else(|| eval.default_solve());
     let asked = Asked::by_scene(&solve_record, track_record, traffic_record.is_some(), &load_records);
-    waits_for_grains(&solve_record, track_record, &load_records, asked, &mut eval.findings);
     let seed = solve_record.number("seed").map_or(1, |seed| seed.value as u64);
     let layout = layout(track_record, asked, seed, &mut eval.files, &mut eval.findings);
     let places = layout.as_ref().map(|layout| &layout.places);

@@ -6,6 +6,7 @@ use crate::check::{MeasuredCurve, measured_curve};
 use crate::compile::Compiled;
 use crate::diag::{Code, Diagnostic, FileId, Span, nearest::nearest, or_list, render};
 use crate::execute::passage_as_built;
+use crate::lower::supports;
 use crate::scenario::{Scenario, Seat, SettlementLaw, law_argument};
 use crate::schema;
 use crate::solvers::settlement::fit::{Fit, FitError};
@@ -138,7 +139,7 @@ fn acting(arguments: &Arguments, compiled: &Compiled, scenario: &Scenario) -> Re
     let seat = seat(arguments, scenario)?;
     let name = track.seat_name(&track.seats[seat]);
     if let Some(force) = arguments.seat_load {
-        let stiffness = track.seats[seat].support().map_or(f64::INFINITY, |support| *support.stiffness);
+        let stiffness = supports(scenario)[seat].support.map_or(f64::INFINITY, |support| support.stiffness);
         let peak = Peak { force, deflection: force / stiffness };
         let described = format!("{} kN per seat under every wheel", number(force / 1e3));
         return Ok(Acting { wheels: vec![peak; 4], described });

@@ -21,8 +21,10 @@ pub struct LawNode {
 /// What lies under one seat.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SupportNode {
-    /// Support and under sleeper pad in series; `None` under a seat without a sleeper.
+    /// Support and under sleeper pad in series; `None` under a seat without a sleeper, and where only grains can say.
     pub spring: Option<Spring>,
+    /// The support without the pad.
+    pub support: Option<Spring>,
     /// Settlement at the start, m.
     pub settlement: f64,
     /// Vertical pressure on the lowest layer for each newton of contact force, 1/m^2; `None` where the layers or their moduli are not

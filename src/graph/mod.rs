@@ -46,6 +46,8 @@ pub struct Graph {
     pub edges: Vec<Edge>,
     pub schedule: Schedule,
     pub records: Vec<Record>,
+    /// What the scene and its layers say of the support under each seat of a track, whatever node carries it; none in a rig.
+    pub supports: Vec<SupportNode>,
     /// What each pass decided, and why.
     pub decisions: Vec<Decision>,
     pub cost: Cost,
@@ -62,16 +64,6 @@ impl Graph {
     /// The track; `None` in a rig without rails.
     pub fn track(&self) -> Option<&TrackNode> {
         self.nodes.iter().find_map(|node| if let Model::Track(track) = &node.model { Some(&**track) } else { None })
-    }
-
-    /// The supports of springs or of laws, one a seat; none where grains carry the sleepers.
-    pub fn supports(&self) -> &[SupportNode] {
-        let found = self.nodes.iter().find_map(|node| match &node.model {
-            Model::Springs(springs) => Some(springs.supports.as_slice()),
-            Model::Law(law) => Some(law.supports.as_slice()),
-            _ => None,
-        });
-        found.unwrap_or_default()
     }
 
     /// The laws by which supports settle, the driving one first.

@@ -18,7 +18,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let (track, speed) = (&scenario.track, traffic.train.speed);
     let factor = amplification(*speed);
-    let pressed = seat_loads(scenario, traffic).into_iter().filter_map(|load| {
+    let pressed = seat_loads(scenario, graph, traffic).into_iter().filter_map(|load| {
         let seat = track.seats[track.seats_of(load.section)].iter().find(|s| s.is_ballasted())?;
         let share = load.wheel * load.winkler.seat_share(load.spacing);
         let area = track.bearing_area(seat)?;

@@ -15,7 +15,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     if graph.laws().next().is_none() {
         return Vec::new();
     }
-    let seats = seat_loads(scenario, traffic);
+    let seats = seat_loads(scenario, graph, traffic);
     let Some(most) = seats.iter().max_by(|a, b| a.peak.force.total_cmp(&b.peak.force)) else { return Vec::new() };
     let below = laws(scenario).filter_map(|law| Some((law, law.law.threshold()?)));
     let kilonewtons = |force: f64| number((force / 1e2).round() / 10.0);

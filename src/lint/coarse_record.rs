@@ -20,7 +20,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let intervals = scenario.records.iter().filter_map(|record| record.every);
     let mut found: Vec<Diagnostic> = Vec::new();
     for every in intervals {
-        let mistake = too_fine(every, traffic).or_else(|| too_coarse(every, scenario, traffic));
+        let mistake = too_fine(every, traffic).or_else(|| too_coarse(every, scenario, graph, traffic));
         let mistake = mistake.map(|mistake| match every.origin.span() {
             Some(span) => mistake.at(span, "of these histories"),
             None => mistake,
@@ -42,8 +42,8 @@ fn too_fine(every: Given, traffic: Led<'_>) -> Option<Diagnostic> {
     (*every < 0.6 * step).then(|| Diagnostic::new(Code::L1025, message).help(help))
 }
 
-fn too_coarse(every: Given, scenario: &Scenario, traffic: Led<'_>) -> Option<Diagnostic> {
-    let (what, frequency) = fastest(scenario, traffic)?;
+fn too_coarse(every: Given, scenario: &Scenario, graph: &Graph, traffic: Led<'_>) -> Option<Diagnostic> {
+    let (what, frequency) = fastest(scenario, graph, traffic)?;
     let samples = 1.0 / (*every * frequency);
     if samples >= SAMPLES_A_PERIOD {
         return None;
@@ -61,9 +61,9 @@ fn too_coarse(every: Given, scenario: &Scenario, traffic: Led<'_>) -> Option<Dia
 }
 
 /// What moves fastest of that which every history shows, and its frequency, Hz.
-fn fastest(scenario: &Scenario, traffic: Led<'_>) -> Option<(&'static str, f64)> {
+fn fastest(scenario: &Scenario, graph: &Graph, traffic: Led<'_>) -> Option<(&'static str, f64)> {
     let (track, speed) = (&scenario.track, *traffic.train.speed);
-    let sections = (0..track.sections.len()).filter_map(|section| Winkler::of(track, section));
+    let sections = (0..track.sections.len()).filter_map(|section| Winkler::of(track, &graph.supports, section));
     let vehicles = &traffic.train.vehicles;
     let wheels = sections.flat_map(|section| vehicles.iter().map(move |v| resonance(&section, v)).collect::<Vec<_>>());
     let axles = vehicles.iter().map(|vehicle| speed / *vehicle.wheelset_spacing);

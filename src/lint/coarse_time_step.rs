@@ -6,8 +6,8 @@
 
 use super::{Led, led};
 use crate::diag::{Code, Diagnostic};
-use crate::graph::Graph;
-use crate::scenario::{Foot, Scenario};
+use crate::graph::{Graph, SupportNode};
+use crate::scenario::{Foot, Scenario, Seat};
 use crate::units::number;
 use std::f64::consts::PI;
 
@@ -17,7 +17,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let fast = [
         ("the wheel on its contact spring", contact(scenario, traffic)),
-        ("a sleeper between pad and support", sleeper(scenario)),
+        ("a sleeper between pad and support", sleeper(scenario, graph)),
         ("the passage from sleeper to sleeper", passing(scenario, traffic)),
     ];
     let Some((what, frequency)) = fast.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { return Vec::new() };
@@ -57,13 +57,13 @@ fn contact(scenario: &Scenario, traffic: Led<'_>) -> f64 {
     traffic.train.vehicles.iter().map(of_vehicle).fold(0.0, f64::max)
 }
 
-fn sleeper(scenario: &Scenario) -> f64 {
-    let of_seat = |seat: &crate::scenario::Seat| {
+fn sleeper(scenario: &Scenario, graph: &Graph) -> f64 {
+    let of_seat = |(seat, node): (&Seat, &SupportNode)| {
         let Foot::Sleeper { mass, .. } = &seat.foot else { return None };
-        let (pad, support) = (seat.pad.as_ref()?, seat.support()?);
-        Some(((*pad.stiffness + *support.stiffness) / **mass).sqrt() / (2.0 * PI))
+        let (pad, support) = (seat.pad.as_ref()?, node.support?);
+        Some(((*pad.stiffness + support.stiffness) / **mass).sqrt() / (2.0 * PI))
     };
-    scenario.track.seats.iter().filter_map(of_seat).fold(0.0, f64::max)
+    scenario.track.seats.iter().zip(&graph.supports).filter_map(of_seat).fold(0.0, f64::max)
 }
 
 fn passing(scenario: &Scenario, traffic: Led<'_>) -> f64 {

@@ -13,7 +13,8 @@ const LARGEST_SHARE: f64 = 0.6;
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let track = &scenario.track;
-    let sections = (0..track.sections.len()).filter_map(|i| Some((i, Winkler::of(track, i)?.critical_speed())));
+    let sections =
+        (0..track.sections.len()).filter_map(|i| Some((i, Winkler::of(track, &graph.supports, i)?.critical_speed())));
     let Some((section, critical)) = sections.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Vec::new() };
     let speed = traffic.train.speed;
     if *speed < LARGEST_SHARE * critical {

@@ -55,7 +55,7 @@ impl Bed<'_> {
     pub fn pressure(&self, scenario: &Scenario, graph: &Graph) -> f64 {
         let packed = *self.granular.packing.pressure;
         let loaded = match led(scenario, graph) {
-            Some(traffic) if self.top => under_sleepers(scenario, traffic, self.index),
+            Some(traffic) if self.top => under_sleepers(scenario, graph, traffic, self.index),
             None if self.top => under_loads(scenario, self.index),
             _ => 0.0,
         };
@@ -64,9 +64,9 @@ impl Bed<'_> {
 }
 
 /// Pressure under the sleepers of a section as a wheel passes, Pa; 0 where nobody knows their size.
-fn under_sleepers(scenario: &Scenario, traffic: Led<'_>, section: usize) -> f64 {
+fn under_sleepers(scenario: &Scenario, graph: &Graph, traffic: Led<'_>, section: usize) -> f64 {
     let track = &scenario.track;
-    let Some(load) = seat_load(scenario, traffic, section) else { return 0.0 };
+    let Some(load) = seat_load(scenario, graph, traffic, section) else { return 0.0 };
     let area = track.seats[track.seats_of(section)].iter().find_map(|s| track.bearing_area(s));
     area.map_or(0.0, |area| load.peak.force * amplification(*traffic.train.speed) / area)
 }

@@ -13,7 +13,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     if graph.laws().next().is_none() {
         return Vec::new();
     }
-    let seats = seat_loads(scenario, traffic);
+    let seats = seat_loads(scenario, graph, traffic);
     let of_law = |law| {
         let loads = seats.iter().filter_map(move |seat| beyond_loads(scenario, law, seat));
         beyond_cycles(scenario, law, traffic.blocks.total).into_iter().chain(loads)

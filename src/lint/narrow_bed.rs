@@ -62,7 +62,7 @@ fn across(scenario: &Scenario) -> Option<Side> {
 }
 
 fn along(scenario: &Scenario, bed: &Bed<'_>) -> Option<Side> {
-    if scenario.solve.grains.tier == Tier::Cells {
+    if *scenario.solve.grains.tier == Tier::Cells {
         let spacing = bed.section.spacing;
         return Some(Side { what: "long, a cell of three bays", length: BAYS * *spacing, span: spacing.origin.span() });
     }

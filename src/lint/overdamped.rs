@@ -7,7 +7,7 @@
 use super::led;
 use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
-use crate::scenario::{Foot, Given, Origin, Scenario, Vehicle};
+use crate::scenario::{Foot, Origin, Scenario, Vehicle};
 use crate::units::number;
 
 /// Critical damping.
@@ -18,7 +18,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         return Vec::new();
     }
     let sections = 0..scenario.track.sections.len();
-    let mut swinging: Vec<Swinging> = sections.filter_map(|section| sleeper(scenario, section)).collect();
+    let mut swinging: Vec<Swinging> = sections.filter_map(|section| sleeper(scenario, graph, section)).collect();
     if let Some(traffic) = led(scenario, graph) {
         swinging.extend(traffic.train.vehicles.iter().flat_map(|v| [bogie(v), car_body(v)]));
     }
@@ -73,19 +73,20 @@ impl Swinging {
 }
 
 /// The sleeper of a section with the strongest dampers: pad and support on the same mass.
-fn sleeper(scenario: &Scenario, section: usize) -> Option<Swinging> {
+fn sleeper(scenario: &Scenario, graph: &Graph, section: usize) -> Option<Swinging> {
     let track = &scenario.track;
-    let seats = track.seats[track.seats_of(section)].iter();
-    let swinging = seats.filter_map(|seat| {
+    let swinging = track.seats_of(section).filter_map(|index| {
+        let seat = &track.seats[index];
         let Foot::Sleeper { mass, .. } = &seat.foot else { return None };
-        let (pad, support, spring) = (seat.pad.as_ref()?, seat.support()?, seat.spring()?);
-        let stronger: Given = if *pad.damping > spring.damping { pad.damping } else { support.damping };
+        let (pad, spring) = (seat.pad.as_ref()?, graph.supports.get(index)?.spring?);
+        let stated = seat.support().map_or(Origin::Derived, |support| support.damping.origin);
+        let origin = if *pad.damping > spring.damping { pad.damping.origin } else { stated };
         Some(Swinging {
             what: format!("a sleeper of `{}` between pad and support", track.sections[section].name),
             mass: **mass,
             stiffness: *pad.stiffness + spring.stiffness,
             damping: *pad.damping + spring.damping,
-            origin: stronger.origin,
+            origin,
         })
     });
     swinging.max_by(|a, b| a.ratio().total_cmp(&b.ratio()))

@@ -21,7 +21,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let wheel = heaviest / Vehicle::AXLES as f64 * *scenario.solve.gravity;
     let factor = amplification(*speed);
     let stress = |section: usize| {
-        let winkler = Winkler::of(track, section)?;
+        let winkler = Winkler::of(track, &graph.supports, section)?;
         let moment = wheel / (4.0 * winkler.lambda());
         Some((section, moment, factor * moment / track.sections[section].rail.as_ref()?.foot_modulus()))
     };

@@ -11,13 +11,14 @@ use crate::units::number;
 
 const LARGEST_RATIO: f64 = 1.15;
 
-pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
+pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let track = &scenario.track;
     let mut found = Vec::new();
     for (i, transition) in track.transitions.iter().enumerate() {
-        let (Some(left), Some(right)) =
-            (Winkler::beside(track, i, transition.x), Winkler::beside(track, i + 1, transition.x))
-        else {
+        let (Some(left), Some(right)) = (
+            Winkler::beside(track, &graph.supports, i, transition.x),
+            Winkler::beside(track, &graph.supports, i + 1, transition.x),
+        ) else {
             continue;
         };
         let (a, b) = (left.rail_stiffness(), right.rail_stiffness());
@@ -39,9 +40,9 @@ pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
         .help(format!("bring both sides within a factor of {LARGEST_RATIO}: softer pads on the stiff side, a stiffer support before it"));
         for section in [i, i + 1] {
             let seat = track.seats[track.seats_of(section)].first();
-            let stiffness = |seat: &Seat| match seat.support() {
-                Some(support) => Some(support.stiffness),
-                None => seat.pad.as_ref().map(|pad| pad.stiffness),
+            let stiffness = |seat: &Seat| match seat.is_ballasted() {
+                true => seat.support().map(|support| support.stiffness),
+                false => seat.pad.as_ref().map(|pad| pad.stiffness),
             };
             if let Some(span) = seat.and_then(stiffness).and_then(|given| given.origin.span()) {
                 diagnostic = diagnostic.at(span, format!("section `{}`", track.sections[section].name));

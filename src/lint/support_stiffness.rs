@@ -5,7 +5,7 @@
 
 use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
-use crate::scenario::{Given, Scenario, Seat};
+use crate::scenario::{Origin, Scenario};
 use crate::units::number;
 
 /// N/m per seat.
@@ -18,23 +18,30 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         return Vec::new();
     }
     let track = &scenario.track;
-    let stiffness = |seat: &Seat| seat.support().map(|support| support.stiffness);
+    // the stiffness of a seat, and where the scene states it
+    let stiffness = |index: usize| {
+        let support = graph.supports.get(index)?.support?;
+        Some((
+            support.stiffness,
+            track.seats[index].support().map_or(Origin::Derived, |stated| stated.stiffness.origin),
+        ))
+    };
     let mut found: Vec<Diagnostic> = Vec::new();
     for (i, section) in track.sections.iter().enumerate() {
-        let supports = || track.seats[track.seats_of(i)].iter().filter_map(stiffness);
-        let soft = supports().filter(|k| **k < SOFTEST).min_by(|a, b| a.total_cmp(b));
-        let stiff = supports().filter(|k| **k > STIFFEST).max_by(|a, b| a.total_cmp(b));
-        let beyond = supports().filter(|k| !(SOFTEST..=STIFFEST).contains(&**k)).count();
-        let said = |what: &str, k: Given| {
+        let supports = || track.seats_of(i).filter_map(stiffness);
+        let soft = supports().filter(|k| k.0 < SOFTEST).min_by(|a, b| a.0.total_cmp(&b.0));
+        let stiff = supports().filter(|k| k.0 > STIFFEST).max_by(|a, b| a.0.total_cmp(&b.0));
+        let beyond = supports().filter(|k| !(SOFTEST..=STIFFEST).contains(&k.0)).count();
+        let said = |what: &str, (k, origin): (f64, Origin)| {
             let message = format!(
                 "{beyond} of {} supports of `{}` are {what} than measured ones: {} MN/m per seat",
                 supports().count(),
                 section.name,
-                number((*k / 1e5).round() / 10.0)
+                number((k / 1e5).round() / 10.0)
             );
             let diagnostic = Diagnostic::new(Code::L1016, message)
                 .help("20 .. 100 MN/m are usual under half a sleeper: is the value of a seat, a sleeper or the track?");
-            match k.origin.span() {
+            match origin.span() {
                 Some(span) => diagnostic.at(span, "this support"),
                 None => diagnostic,
             }

@@ -18,11 +18,11 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let sections = 0..scenario.track.sections.len();
     let sparse = sections.filter_map(|section| sparsely_passed(scenario, traffic, section));
-    near_ends(scenario, traffic).into_iter().chain(sparse).collect()
+    near_ends(scenario, graph, traffic).into_iter().chain(sparse).collect()
 }
 
 /// Ends that wheels come near; free ends have been asked for.
-fn near_ends(scenario: &Scenario, traffic: Led<'_>) -> Vec<Diagnostic> {
+fn near_ends(scenario: &Scenario, graph: &Graph, traffic: Led<'_>) -> Vec<Diagnostic> {
     let track = &scenario.track;
     if track.rail_ends == RailEnds::Free {
         return Vec::new();
@@ -33,7 +33,7 @@ fn near_ends(scenario: &Scenario, traffic: Led<'_>) -> Vec<Diagnostic> {
         (last, track.end() - traffic.blocks.passage.right, "right"),
     ];
     let near = ends.into_iter().filter_map(|(section, distance, side)| {
-        let needed = LENGTHS / Winkler::of(track, section)?.lambda();
+        let needed = LENGTHS / Winkler::of(track, &graph.supports, section)?.lambda();
         let form = &track.sections[section];
         let diagnostic = Diagnostic::new(
             Code::L1003,

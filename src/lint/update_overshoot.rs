@@ -18,7 +18,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let first = traffic.blocks.block(0, wanted);
     let Some(law) = graph.laws().next() else { return Vec::new() };
     let mut worst: Option<(f64, f64)> = None;
-    for seat in seat_loads(scenario, traffic) {
+    for seat in seat_loads(scenario, graph, traffic) {
         let settled = |share: f64| first_block(&law.law, seat.peak.scaled(share), &first);
         // 1 % to either side
         let slope = (settled(1.01) - settled(0.99)) / (0.02 * seat.peak.force);

@@ -25,7 +25,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let (track, speed) = (&scenario.track, traffic.train.speed);
     let mut found = Vec::new();
     for (i, section) in track.sections.iter().enumerate() {
-        let Some(winkler) = Winkler::of(track, i) else { continue };
+        let Some(winkler) = Winkler::of(track, &graph.supports, i) else { continue };
         let passing = *speed / *section.spacing;
         for vehicle in &traffic.train.vehicles {
             let frequency = resonance(&winkler, vehicle);

@@ -1,6 +1,7 @@
 //! The track as a beam on a Winkler foundation: the closed forms that several rules need.
 
 use super::Led;
+use crate::graph::{Graph, SupportNode};
 use crate::scenario::{Foot, Scenario, Section, Track, Vehicle};
 use crate::solvers::settlement::Peak;
 
@@ -17,19 +18,19 @@ pub struct Winkler {
 impl Winkler {
     /// A seat is pad and support in series; a slab adds its foundation over one bay. Where they vary, those of the
     /// section's left end. `None` without seats, or where rail, pads or supports are not known.
-    pub fn of(track: &Track, section: usize) -> Option<Winkler> {
-        Winkler::beside(track, section, track.sections[section].start)
+    pub fn of(track: &Track, supports: &[SupportNode], section: usize) -> Option<Winkler> {
+        Winkler::beside(track, supports, section, track.sections[section].start)
     }
 
     /// As at the seat of a section that is nearest to a chainage.
-    pub fn beside(track: &Track, section: usize, x: f64) -> Option<Winkler> {
+    pub fn beside(track: &Track, supports: &[SupportNode], section: usize, x: f64) -> Option<Winkler> {
         let Section { rail, slab, .. } = &track.sections[section];
         let from = |index: &usize| (track.seats[*index].x - x).abs();
         let index = track.seats_of(section).min_by(|a, b| from(a).total_cmp(&from(b)))?;
         let seat = &track.seats[index];
         let spacing = track.bay(index);
         let (below, mass) = match (&seat.foot, slab) {
-            (Foot::Sleeper { mass, .. }, _) => (1.0 / seat.spring()?.stiffness, **mass / spacing),
+            (Foot::Sleeper { mass, .. }, _) => (1.0 / supports.get(index)?.spring?.stiffness, **mass / spacing),
             (Foot::Slab, Some(slab)) => (1.0 / (*slab.foundation_stiffness * spacing), 0.0),
             _ => (0.0, 0.0),
         };
@@ -75,21 +76,21 @@ pub(super) struct SeatLoad {
 }
 
 /// The ballasted sections under the heaviest wheel of the train.
-pub(super) fn seat_loads(scenario: &Scenario, traffic: Led<'_>) -> Vec<SeatLoad> {
-    (0..scenario.track.sections.len()).filter_map(|section| seat_load(scenario, traffic, section)).collect()
+pub(super) fn seat_loads(scenario: &Scenario, graph: &Graph, traffic: Led<'_>) -> Vec<SeatLoad> {
+    (0..scenario.track.sections.len()).filter_map(|section| seat_load(scenario, graph, traffic, section)).collect()
 }
 
 /// A ballasted section under the heaviest wheel of the train: the seat's share of it and its own weight, and the deflection of
 /// its support.
-pub(super) fn seat_load(scenario: &Scenario, traffic: Led<'_>, section: usize) -> Option<SeatLoad> {
+pub(super) fn seat_load(scenario: &Scenario, graph: &Graph, traffic: Led<'_>, section: usize) -> Option<SeatLoad> {
     let (track, gravity) = (&scenario.track, *scenario.solve.gravity);
     let heaviest = traffic.train.vehicles.iter().map(Vehicle::mass).fold(0.0, f64::max);
     let wheel = heaviest / Vehicle::AXLES as f64 * gravity;
     let first = track.seats_of(section).find(|seat| track.seats[*seat].is_ballasted())?;
-    let winkler = Winkler::of(track, section)?;
+    let winkler = Winkler::of(track, &graph.supports, section)?;
     let spacing = track.bay(first);
-    let support = track.seats[first].support()?;
+    let support = graph.supports.get(first)?.support?;
     let force = wheel * winkler.seat_share(spacing) + winkler.mass * spacing * gravity;
-    let peak = Peak { force, deflection: force / *support.stiffness };
+    let peak = Peak { force, deflection: force / support.stiffness };
     Some(SeatLoad { section, winkler, spacing, wheel, peak })
 }

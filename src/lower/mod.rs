@@ -3,17 +3,20 @@
 mod bed;
 mod blocks;
 mod cost;
+mod foundation;
 mod origins;
 mod outlook;
 mod pass;
 mod passage;
 mod records;
+mod supports;
 mod tier;
 mod track;
 
 pub use bed::{BedUse, beds};
 pub use origins::{Origins, Parameter};
 pub use pass::{Draft, Pass};
+pub use supports::{supports, with_stated_supports};
 pub use tier::{ExpectedError, Proposal, Tier};
 
 use crate::diag::{Code, Diagnostic, Severity};
@@ -97,6 +100,8 @@ impl Planner {
             // trains first: blocks are counted in whole trains, and every tier runs the same passages
             Box::new(passage::Passages),
             Box::new(blocks::Cut),
+            // every tier stands on the same supports
+            Box::new(supports::Supports),
             // a tier makes the nodes and knows what they cost
             Box::new(ChooseTier(&self.tiers)),
             // what follows changes a plan that has a cost
@@ -174,9 +179,11 @@ pub fn lower(scenario: &Scenario) -> Lowered {
 /// The plan of a draft, where nothing stands against it and its nodes fit together.
 fn finished(draft: Draft<'_>) -> (Option<Graph>, Vec<Diagnostic>) {
     let wrong = draft.is_wrong();
-    let Draft { nodes, edges, schedule, records, cost, decisions, runs, mut diagnostics, .. } = draft;
+    let Draft { supports, nodes, edges, schedule, records, cost, decisions, runs, mut diagnostics, refusals, .. } =
+        draft;
+    diagnostics.extend(refusals);
     let (Some(schedule), Some(cost)) = (schedule.filter(|_| !wrong), cost) else { return (None, diagnostics) };
-    let graph = Graph { nodes, edges, schedule, records, decisions, cost, runs };
+    let graph = Graph { nodes, edges, schedule, records, supports, decisions, cost, runs };
     let faults = faults(&graph);
     diagnostics.extend(faults.iter().map(|fault| Diagnostic::new(Code::E0612, fault.to_string())));
     (faults.is_empty().then_some(graph), diagnostics)

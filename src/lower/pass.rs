@@ -2,7 +2,7 @@
 
 use super::Origins;
 use crate::diag::{Diagnostic, has_errors};
-use crate::graph::{Blocks, Cost, Decision, Edge, Node, PassagePlan, Record, Rejected, Schedule};
+use crate::graph::{Blocks, Cost, Decision, Edge, Node, PassagePlan, Record, Rejected, Schedule, SupportNode};
 use crate::scenario::Scenario;
 use crate::schema::Reads;
 
@@ -41,6 +41,8 @@ pub struct Draft<'a> {
     pub blocks: Option<Blocks>,
     /// The name of the tier that was taken.
     pub tier: Option<&'static str>,
+    /// What carries every seat of a track, as far as the scene or its layers say.
+    pub supports: Vec<SupportNode>,
     pub nodes: Vec<Node>,
     pub edges: Vec<Edge>,
     pub schedule: Option<Schedule>,
@@ -50,6 +52,8 @@ pub struct Draft<'a> {
     pub runs: bool,
     pub decisions: Vec<Decision>,
     pub diagnostics: Vec<Diagnostic>,
+    /// What stands against running the plan, which can be looked at all the same.
+    pub refusals: Vec<Diagnostic>,
 }
 
 impl<'a> Draft<'a> {
@@ -60,6 +64,7 @@ impl<'a> Draft<'a> {
             passages: Vec::new(),
             blocks: None,
             tier: None,
+            supports: Vec::new(),
             nodes: Vec::new(),
             edges: Vec::new(),
             schedule: None,
@@ -68,6 +73,7 @@ impl<'a> Draft<'a> {
             runs: false,
             decisions: Vec::new(),
             diagnostics: Vec::new(),
+            refusals: Vec::new(),
         }
     }
 
@@ -85,6 +91,14 @@ impl<'a> Draft<'a> {
         rejected: Vec<Rejected>,
     ) {
         self.decisions.push(Decision { pass: pass.into(), what: what.into(), why: why.into(), rejected });
+    }
+
+    /// Whether rails, pads and supports of known stiffness carry a wheel all along the track.
+    pub fn is_sprung(&self) -> bool {
+        let track = &self.scenario.track;
+        let mut seats = track.seats.iter().zip(&self.supports);
+        track.has_rails()
+            && seats.all(|(seat, node)| seat.pad.is_some() && (!seat.is_ballasted() || node.spring.is_some()))
     }
 
     /// Whether a mistake stands against the plan.

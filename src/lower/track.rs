@@ -1,8 +1,8 @@
 //! From the track and trains of the scene to those of the graph: plain numbers of one rail.
 
-use crate::graph::{Runs, SupportNode, TrackFoot, TrackNode, TrackSeat, TrackSection, Train};
+use crate::graph::{Runs, TrackFoot, TrackNode, TrackSeat, TrackSection, Train};
 use crate::scenario::{
-    self, AuxiliaryRailSpan, Beam, Direction, Foot, Piece, Profile, RailEnds, Scenario, Seat, Section, Track,
+    self, AuxiliaryRailSpan, Beam, Direction, Foot, Piece, Profile, RailEnds, Scenario, Section, Track,
 };
 use crate::schema::Reads;
 use crate::solvers::track::{self as solver, Motion, Vehicle};
@@ -57,16 +57,6 @@ pub(super) fn track(scenario: &Scenario) -> TrackNode {
         gravity: *scenario.solve.gravity,
         shortest_bay: track.shortest_bay(),
     }
-}
-
-/// What lies under every seat where springs carry the sleepers.
-pub(super) fn supports(track: &Track) -> Vec<SupportNode> {
-    let support = |seat: &Seat| SupportNode {
-        spring: seat.spring(),
-        settlement: seat.initial_settlement,
-        onto_subgrade: seat.onto_subgrade,
-    };
-    track.seats.iter().map(support).collect()
 }
 
 fn irregularity(profile: &Profile) -> solver::Irregularity {

@@ -7,6 +7,8 @@ use super::number::{plain, tick_label, ticks, whole};
 use super::svg::{Anchor, Frame, Svg, text_width};
 use super::symbols::{draw_dimension, draw_spring, draw_stones};
 use super::vehicle;
+use crate::graph::SupportNode;
+use crate::lower::supports;
 use crate::scenario::{Foot, Force, Loading, RigLoad, Scenario, Seat, Section, StaticLoad, Tamping, Target};
 
 pub const WIDTH: f64 = 900.0;
@@ -78,13 +80,14 @@ pub(super) fn draw_scene(svg: &mut Svg, scenario: &Scenario) -> f64 {
     let mut bottom = draw_whole(svg, scenario);
     let length = track.end() - track.start();
     if length > 3.0 * CLOSE {
+        let supports = supports(scenario);
         let places: Vec<f64> = match &scenario.loading {
             Some(Loading::Static(loads)) if track.transitions.is_empty() => loads.iter().map(|load| load.x).collect(),
             Some(Loading::Rig(loads)) if track.transitions.is_empty() => loads.iter().map(|load| load.x).collect(),
             _ => track.transitions.iter().map(|transition| transition.x).collect(),
         };
         for (index, place) in places.iter().take(4).enumerate() {
-            bottom = draw_close(svg, scenario, *place, index, bottom);
+            bottom = draw_close(svg, scenario, &supports, *place, index, bottom);
         }
     }
     bottom
@@ -123,7 +126,7 @@ fn draw_whole(svg: &mut Svg, scenario: &Scenario) -> f64 {
     draw_chainage(svg, &view, bottom)
 }
 
-fn draw_close(svg: &mut Svg, scenario: &Scenario, place: f64, index: usize, top: f64) -> f64 {
+fn draw_close(svg: &mut Svg, scenario: &Scenario, supports: &[SupportNode], place: f64, index: usize, top: f64) -> f64 {
     let track = &scenario.track;
     let (start, end) = ((place - CLOSE).max(track.start()), (place + CLOSE).min(track.end()));
     let scale = (WIDTH - 2.0 * MARGIN) / (end - start);
@@ -139,7 +142,7 @@ fn draw_close(svg: &mut Svg, scenario: &Scenario, place: f64, index: usize, top:
     let clip = Frame { x: MARGIN, y: top + 26.0, width: WIDTH - 2.0 * MARGIN, height: 400.0 };
     svg.clipped(&format!("scene-close-{index}"), clip, |svg| draw_track(svg, scenario, &view));
     let bottom = draw_loads(svg, scenario, &view);
-    draw_spacings(svg, scenario, &view);
+    draw_spacings(svg, scenario, supports, &view);
     let bottom = draw_numbers(svg, scenario, &view, bottom);
     if let Some(transition) = track.transitions.get(index) {
         let x = view.x(transition.x);
@@ -301,9 +304,11 @@ fn signed(number: i32) -> String {
 }
 
 /// The spacing of each section in a close-up, above the rail, with what carries its seats.
-fn draw_spacings(svg: &mut Svg, scenario: &Scenario, view: &View) {
+fn draw_spacings(svg: &mut Svg, scenario: &Scenario, supports: &[SupportNode], view: &View) {
     for (index, section) in scenario.track.sections.iter().enumerate() {
-        let seats: Vec<&Seat> = scenario.track.seats.iter().filter(|s| s.section == index && view.shows(s.x)).collect();
+        let standing = scenario.track.seats.iter().zip(supports);
+        let (seats, supports): (Vec<&Seat>, Vec<&SupportNode>) =
+            standing.filter(|(seat, _)| seat.section == index && view.shows(seat.x)).unzip();
         let middle = seats.len() / 2;
         let (Some(from), Some(to)) = (seats.get(middle.wrapping_sub(1)), seats.get(middle)) else { continue };
         let (a, b, y) = (view.x(from.x), view.x(to.x), view.rail - 12.0);
@@ -311,13 +316,13 @@ fn draw_spacings(svg: &mut Svg, scenario: &Scenario, view: &View) {
         let text = format!("{} m", plain(to.x - from.x, 3));
         svg.text("small halo", ((a + b) / 2.0, y - 6.0), Anchor::Middle, &text);
         let (left, right) = (view.x(section.start.max(view.start)), view.x(section.end.min(view.end)));
-        let text = carried(section, &seats);
+        let text = carried(section, &seats, &supports);
         svg.text("small muted halo", ((left + right) / 2.0, view.rail - 34.0), Anchor::Middle, &text);
     }
 }
 
 /// `ballasted: pads 40 MN/m, support 60 MN/m per seat`
-fn carried(section: &Section, seats: &[&Seat]) -> String {
+fn carried(section: &Section, seats: &[&Seat], supports: &[&SupportNode]) -> String {
     let range = |values: Vec<f64>| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(0.0, f64::max);
@@ -325,7 +330,7 @@ fn carried(section: &Section, seats: &[&Seat]) -> String {
         if high - low < 1e-3 * high { show(high) } else { format!("{} to {}", show(low), show(high)) }
     };
     let pads: Vec<f64> = seats.iter().filter_map(|seat| Some(*seat.pad.as_ref()?.stiffness)).collect();
-    let supports: Vec<f64> = seats.iter().filter_map(|seat| Some(seat.spring()?.stiffness)).collect();
+    let supports: Vec<f64> = supports.iter().filter_map(|node| Some(node.spring?.stiffness)).collect();
     let mut parts = Vec::new();
     if !pads.is_empty() {
         parts.push(format!("pads {} MN/m", range(pads)));

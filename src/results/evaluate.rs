@@ -4,9 +4,9 @@
 //! time); velocities and accelerations come from histories, as do the wheels' and the rail's responses.
 
 use super::{BlockRow, HistoryRow, MeanCycleRow, RailRow, Scalar, SleeperRow, Verdict};
-use crate::graph::{Graph, Record, Schedule};
+use crate::graph::{Graph, Record, Schedule, SupportNode};
 use crate::scenario::response::{Expectation, Expression, Function, Measure, Place, Reduction, Response};
-use crate::scenario::{Scenario, Track};
+use crate::scenario::{Scenario, Seat, Track};
 use crate::syntax::tree::{BinaryOp, Comparison};
 use std::collections::{BTreeMap, HashMap};
 
@@ -22,6 +22,8 @@ pub struct Tables<'a> {
     pub histories: &'a [HistoryRow],
     pub scalars: &'a BTreeMap<String, Scalar>,
     pub track: &'a Track,
+    /// What carries each of its seats; none in a rig.
+    pub supports: &'a [SupportNode],
 }
 
 /// Rows of sleepers, with the columns of what was run.
@@ -64,9 +66,13 @@ fn pressures_on_areas<'a>(track: &Track, forces: impl Iterator<Item = Reading<'a
 }
 
 /// Chainage and largest pressure on the lowest layer under each force where the layers are known, m and Pa.
-fn subgrade_pressures<'a>(track: &Track, forces: impl Iterator<Item = Reading<'a>>) -> Vec<(f64, f64)> {
-    let known = |seat| Some((track.seat_name(seat), seat.onto_subgrade?));
-    let by_name: HashMap<String, f64> = track.seats.iter().filter_map(known).collect();
+pub(super) fn subgrade_pressures<'a>(
+    track: &Track,
+    supports: &[SupportNode],
+    forces: impl Iterator<Item = Reading<'a>>,
+) -> Vec<(f64, f64)> {
+    let known = |(seat, node): (&Seat, &SupportNode)| Some((track.seat_name(seat), node.onto_subgrade?));
+    let by_name: HashMap<String, f64> = track.seats.iter().zip(supports).filter_map(known).collect();
     forces.filter_map(|(_, sleeper, x, force)| Some((x, force * by_name.get(sleeper)?))).collect()
 }
 
@@ -264,7 +270,7 @@ pub fn is_kept(measure: &Measure, graph: &Graph) -> bool {
             by_loads || graph.blocks().is_some()
         }
         Place::Seat if response == Response::SubgradePressure => {
-            graph.supports().iter().any(|support| support.onto_subgrade.is_some())
+            graph.supports.iter().any(|support| support.onto_subgrade.is_some())
         }
         Place::Seat if response == Response::ContactPressure || sleeper_column(response).is_some() => true,
         Place::Seat => {
@@ -312,7 +318,7 @@ fn values(measure: &Measure, tables: Tables<'_>) -> Result<Vec<(f64, f64)>, Stri
         let forces = covered(forces, measure, inside);
         return Ok(match measure.response {
             Response::ContactPressure => pressures_on_areas(tables.track, forces),
-            _ => subgrade_pressures(tables.track, forces),
+            _ => subgrade_pressures(tables.track, tables.supports, forces),
         });
     }
     // a static check has its rail in the histories
@@ -399,6 +405,7 @@ mod tests {
             histories: &run.histories,
             scalars: &run.summary.scalars,
             track: &run.scenario.track,
+            supports: &[],
         };
         let value = |measure: Measure| evaluate(&Expression::Measure(measure), tables);
         let place = value(measure(Reduction::PlaceOfMax, Response::Settlement)).unwrap();
@@ -426,6 +433,7 @@ mod tests {
             histories: &run.histories,
             scalars: &run.summary.scalars,
             track: &run.scenario.track,
+            supports: &[],
         };
         let value = |measure: Measure| evaluate(&Expression::Measure(measure), tables);
         let over =
@@ -453,6 +461,7 @@ mod tests {
             histories: &run.histories,
             scalars: &run.summary.scalars,
             track: &run.scenario.track,
+            supports: &[],
         };
         let value = |measure: Measure| evaluate(&Expression::Measure(measure), tables).unwrap();
         let deepest = value(measure(Reduction::Max, Response::RailDisplacement));
@@ -475,6 +484,7 @@ mod tests {
             histories: &[],
             scalars: &scalars,
             track: &track,
+            supports: &[],
         };
         let number = |value| Box::new(Expression::Number(value));
         let binary = |a, operator, b| evaluate(&Expression::Binary(number(a), operator, number(b)), tables);

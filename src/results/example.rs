@@ -4,6 +4,7 @@ use super::*;
 use crate::diag::{FileId, Span};
 use crate::scenario::response::{Expectation, Expression, Measure, Reduction, Response};
 use crate::scenario::*;
+use crate::solvers::foundation::Method;
 use crate::solvers::settlement::{CyclePer, Form, Law, Varandas};
 use crate::syntax::tree::Comparison;
 
@@ -33,6 +34,7 @@ fn solve() -> Solve {
         other_laws: vec![],
         update: Update::Fixed { axles: 20 },
         update_span: None,
+        support_method: Method::StressCone,
         integrator: Integrator::GeneralisedAlpha { rho: 0.9 },
         beam: given(Beam::Euler),
         elements_per_bay: given(4),
@@ -79,6 +81,7 @@ pub(crate) fn transition() -> Run {
         spacing: given(0.6),
         slab,
         layers: vec![],
+        layers_span: None,
         length_origin: Origin::Default,
     };
     let slab = Slab {
@@ -98,7 +101,7 @@ pub(crate) fn transition() -> Run {
         foot: if number < 0 { ballast.clone() } else { Foot::Slab },
         sleeper: (number < 0).then(sleeper),
         initial_settlement: 0.0,
-        onto_subgrade: None,
+        stack: None,
     };
     let expectation = |text: &str, low: f64, high: f64, reduction, response, unit: (&str, f64)| Expectation {
         text: text.to_owned(),
@@ -304,7 +307,7 @@ pub(crate) fn bench() -> Run {
             foot: Foot::Rigid,
             sleeper: Some(sleeper()),
             initial_settlement: 0.0,
-            onto_subgrade: None,
+            stack: None,
         })
         .collect();
     let load = seats[9].x;
@@ -320,6 +323,7 @@ pub(crate) fn bench() -> Run {
                 spacing: given(0.6),
                 slab: None,
                 layers: vec![],
+                layers_span: None,
                 length_origin: Origin::Default,
             }],
             transitions: vec![],
@@ -334,6 +338,7 @@ pub(crate) fn bench() -> Run {
         tampings: vec![],
         loading: Some(Loading::Static(vec![StaticLoad {
             name: "jack".to_owned(),
+            span: Span::new(FileId(0), 0, 1),
             on: Target::Rail,
             x: load,
             force: given(100e3),
@@ -395,7 +400,7 @@ fn finished(
     histories: Vec<HistoryRow>,
     rail: RailMaxima,
 ) -> Run {
-    let scalars = summarise(&scenario, &sleepers, &blocks, rail);
+    let scalars = summarise(&scenario, &[], &sleepers, &blocks, rail);
     let tables = Tables {
         sleepers: SleeperTable::Axles(&sleepers),
         blocks: &blocks,

@@ -25,9 +25,10 @@ impl Run {
         }
         let histories = recorder.all_histories();
         let laws = law_rows(scenario, &tables.laws);
-        let mut scalars = summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+        let mut scalars =
+            summarise(scenario, &graph.supports, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
         scalars.extend(summarise_laws(scenario, &laws));
-        let view = tables.view(&histories, &scalars, &scenario.track);
+        let view = tables.view(&histories, &scalars, &scenario.track, &graph.supports);
         let expectations = verdicts(scenario, view);
         Run {
             sleepers: tables.sleepers.clone(),

@@ -6,7 +6,7 @@ use super::{
     SleeperRow, SleeperTable, Tables, TampingRow, TrainRow, bed_summary, histories,
 };
 use crate::execute::{Between, Checkpoint, Event, Listener, Measured};
-use crate::graph::{Block, Graph, Runner, TrackNode};
+use crate::graph::{Block, Graph, Runner, SupportNode, TrackNode};
 use crate::nodes::{self, PassageOutcome, RailPoint, SeatOutcome, Tested, Unloaded};
 use crate::scenario::response::Response;
 use crate::scenario::{Loading, Scenario, Track, Traffic};
@@ -46,9 +46,10 @@ impl RunTables {
         histories: &'a [HistoryRow],
         scalars: &'a BTreeMap<String, Scalar>,
         track: &'a Track,
+        supports: &'a [SupportNode],
     ) -> Tables<'a> {
         let RunTables { sleepers, blocks, rail, .. } = self;
-        Tables { sleepers: SleeperTable::Axles(sleepers), blocks, rail, histories, scalars, track }
+        Tables { sleepers: SleeperTable::Axles(sleepers), blocks, rail, histories, scalars, track, supports }
     }
 }
 
@@ -64,6 +65,7 @@ struct Saved {
 pub struct RunRecorder<'a> {
     scenario: &'a Scenario,
     track: Option<&'a TrackNode>,
+    supports: &'a [SupportNode],
     directory: Option<&'a Directory>,
     /// When a checkpoint is due.
     due: Option<Instant>,
@@ -92,6 +94,7 @@ impl<'a> RunRecorder<'a> {
         RunRecorder {
             scenario,
             track: graph.track(),
+            supports: &graph.supports,
             directory: None,
             due: None,
             tables: RunTables { tests, ..RunTables::default() },
@@ -208,11 +211,16 @@ impl<'a> RunRecorder<'a> {
         }
     }
 
+    /// Of the support and the pad under a sleeper, N/m; 0 without one.
+    fn support_stiffness(&self, seat: usize) -> f64 {
+        self.supports.get(seat).and_then(|node| node.spring).map_or(0.0, |spring| spring.stiffness)
+    }
+
     /// Every sleeper after a count, under the leading train.
     fn keep_sleepers(&mut self, axles: u64, unloaded: &Unloaded, passage: &PassageOutcome) {
         let track = self.track();
-        for ((seat, outcome), rest) in track.seats.iter().zip(&passage.seats).zip(&unloaded.seats) {
-            let stiffness = seat.spring().map_or(0.0, |spring| spring.stiffness);
+        for (index, ((seat, outcome), rest)) in track.seats.iter().zip(&passage.seats).zip(&unloaded.seats).enumerate()
+        {
             self.tables.sleepers.push(SleeperRow {
                 axles,
                 sleeper: track.seat_name(seat),
@@ -223,7 +231,7 @@ impl<'a> RunRecorder<'a> {
                 max_contact_force_N: outcome.max_contact_force,
                 max_rail_seat_load_N: outcome.max_rail_seat_load,
                 max_sleeper_displacement_m: outcome.max_sleeper_displacement,
-                support_stiffness_N_per_m: stiffness,
+                support_stiffness_N_per_m: self.support_stiffness(index),
                 contact_loss_s: outcome.contact_loss,
             });
         }
@@ -434,8 +442,7 @@ impl RunRecorder<'_> {
         let track = self.track();
         self.keep_rail(0, Response::RailDisplacement, state.rail.iter().map(|p| (p.x, p.deflection)));
         self.keep_rail(0, Response::RailMoment, state.rail.iter().map(|p| (p.x, p.moment)));
-        for (seat, rest) in track.seats.iter().zip(&state.seats) {
-            let stiffness = seat.spring().map_or(0.0, |spring| spring.stiffness);
+        for (index, (seat, rest)) in track.seats.iter().zip(&state.seats).enumerate() {
             self.tables.sleepers.push(SleeperRow {
                 axles: 0,
                 sleeper: track.seat_name(seat),
@@ -446,7 +453,7 @@ impl RunRecorder<'_> {
                 max_contact_force_N: rest.contact_force,
                 max_rail_seat_load_N: rest.seat_load,
                 max_sleeper_displacement_m: rest.sleeper_level,
-                support_stiffness_N_per_m: stiffness,
+                support_stiffness_N_per_m: self.support_stiffness(index),
                 contact_loss_s: 0.0,
             });
         }

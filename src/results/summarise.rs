@@ -1,6 +1,8 @@
 //! The scalars of `summary.json`, from the tables: every extreme is that after the last axle count.
 
+use super::evaluate::subgrade_pressures;
 use super::{BlockRow, LongitudinalLevel, RailRow, Scalar, SleeperRow, longitudinal_level};
+use crate::graph::SupportNode;
 use crate::scenario::{Loading, Scenario, Seat, Train, Vehicle};
 use std::collections::{BTreeMap, HashMap};
 
@@ -43,6 +45,7 @@ impl RailMaxima {
 /// Computes the scalars that the tables allow; what does not exist on the scene is left out.
 pub fn summarise(
     scenario: &Scenario,
+    supports: &[SupportNode],
     sleepers: &[SleeperRow],
     blocks: &[BlockRow],
     rail: RailMaxima,
@@ -82,8 +85,10 @@ pub fn summarise(
         let pressure =
             |(seat, row): &(&Seat, &SleeperRow)| Some(row.max_contact_force_N / scenario.track.bearing_area(seat)?);
         put("max_contact_pressure", largest(ballasted.iter().filter_map(pressure)), "Pa");
-        let deeper = |(seat, row): &(&Seat, &SleeperRow)| Some(row.max_contact_force_N * seat.onto_subgrade?);
-        put("max_subgrade_pressure", largest(ballasted.iter().filter_map(deeper)), "Pa");
+        let forces =
+            ballasted.iter().map(|(_, row)| (row.axles, row.sleeper.as_str(), row.x_m, row.max_contact_force_N));
+        let deeper = subgrade_pressures(&scenario.track, supports, forces);
+        put("max_subgrade_pressure", largest(deeper.into_iter().map(|(_, pressure)| pressure)), "Pa");
     }
     if let Some(block) = blocks.last() {
         put("update_error", Some(blocks.iter().map(|b| b.error_m).sum()), "m");
@@ -180,7 +185,7 @@ mod tests {
     #[test]
     fn the_example_has_the_scalars_of_its_making() {
         let run = example::transition();
-        let scalars = summarise(&run.scenario, &run.sleepers, &run.blocks, RailMaxima::default());
+        let scalars = summarise(&run.scenario, &[], &run.sleepers, &run.blocks, RailMaxima::default());
         let value = |name: &str| scalars[name].value;
         assert_eq!(value("axles"), 500.0);
         assert!((value("far_field_settlement") - 1.2e-3).abs() < 1e-9);
@@ -195,7 +200,7 @@ mod tests {
     fn a_short_track_takes_its_far_half() {
         let mut run = example::transition();
         run.scenario.track.seats.retain(|seat| seat.x > -2.5);
-        let scalars = summarise(&run.scenario, &run.sleepers, &run.blocks, RailMaxima::default());
+        let scalars = summarise(&run.scenario, &[], &run.sleepers, &run.blocks, RailMaxima::default());
         // seats at -2.4, -1.8, -1.2 and -0.6: the far half is the first two
         let at = |x: f64| run.sleepers.iter().rfind(|r| (r.x_m - x).abs() < 1e-6).unwrap().settlement_m;
         assert!((scalars["far_field_settlement"].value - (at(-2.4) + at(-1.8)) / 2.0).abs() < 1e-12);

@@ -1,7 +1,7 @@
 //! What only models of grains and soil read: the bed that they fill, how they are computed, and the volumes in which
 //! their answers are wanted.
 
-use super::{Given, response::Response};
+use super::{Given, Origin, response::Response};
 use crate::diag::Span;
 use serde::{Deserialize, Serialize};
 
@@ -59,7 +59,7 @@ impl Tier {
 /// How grains and soil are computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Grains {
-    pub tier: Tier,
+    pub tier: Given<Tier>,
     /// Chainages between which grains are modelled, m, one span a transition; `None` is chosen by the planner.
     pub window: Option<Vec<[f64; 2]>>,
     /// Whether track and grains are solved together, step by step, instead of in turn.
@@ -85,7 +85,7 @@ pub struct Grains {
 impl Default for Grains {
     fn default() -> Self {
         Grains {
-            tier: Tier::Auto,
+            tier: Given { value: Tier::Auto, origin: Origin::Default },
             window: None,
             monolithic: false,
             support_from_passage: false,

@@ -29,11 +29,12 @@ pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spre
 pub use tamping::Tamping;
 pub use track::{
     ApproachSlab, AuxiliaryRailSpan, AuxiliaryRails, Foot, Groundwork, Pad, Rail, RailEnds, Seat, Seating, Section,
-    Side, Slab, SleeperBody, Stretch, Support, Track, Transition, Usp,
+    Side, Slab, SleeperBody, Stack, Stretch, Support, Track, Transition, Usp,
 };
 pub use traffic::{Direction, Force, RigLoad, StaticLoad, Target, Traffic, Train, Vehicle, Wave};
 
 use crate::diag::Span;
+use crate::solvers::foundation::Method;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -77,6 +78,8 @@ pub struct Solve {
     pub update: Update,
     /// The word after `update_every`, for messages.
     pub update_span: Option<Span>,
+    /// By which layers become the support of a sleeper.
+    pub support_method: Method,
     pub integrator: Integrator,
     /// Beam theory of the rail.
     pub beam: Given<Beam>,

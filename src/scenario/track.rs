@@ -1,6 +1,8 @@
 //! The track at rest: sections side by side, the transitions between them, and every rail seat.
 
 use super::{Bed, Given, Layer, Origin, Profile};
+use crate::diag::Span;
+use crate::solvers::foundation;
 use crate::solvers::track::Spring;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -94,6 +96,8 @@ pub struct Section {
     pub slab: Option<Slab>,
     /// Under the sleepers, downwards; none where the scene has only their supports.
     pub layers: Vec<Layer>,
+    /// Where they are given; where they are not, its trackform.
+    pub layers_span: Option<Span>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -270,9 +274,25 @@ pub struct Seat {
     pub sleeper: Option<SleeperBody>,
     /// Permanent settlement of its support at the start, m; 0 where nothing settles.
     pub initial_settlement: f64,
-    /// Vertical pressure on the lowest layer for each newton of contact force, 1/m^2; `None` where layers or their moduli are
-    /// not known.
-    pub onto_subgrade: Option<f64>,
+    /// What lies under it; `None` where layers or their moduli are not known.
+    pub stack: Option<Stack>,
+}
+
+/// The layers under one seat, as plain numbers of its place.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Stack {
+    /// How half of the sleeper lies, and how far its neighbours are.
+    pub bearing: foundation::Bearing,
+    /// Downwards.
+    pub layers: Vec<foundation::Layer>,
+    /// An approach slab in these layers, and how far the seat is from its hinge, as share of its length.
+    pub plate: Option<(ApproachSlab, f64)>,
+    /// The layers with which the stated support of the seat goes, where a stretch has replaced them.
+    pub before: Option<Vec<foundation::Layer>>,
+    /// Damping over stiffness of a support that these layers make, s.
+    pub damping_time: Given,
+    /// Where they are given.
+    pub span: Span,
 }
 
 /// Size of a whole sleeper.
@@ -293,7 +313,7 @@ pub enum Foot {
     /// A rigid sleeper, its half mass in kg, on a support that can only push.
     Sleeper {
         mass: Given,
-        /// `None` where only grains can say what it is.
+        /// As it is stated; `None` where the layers, or only grains, say what it is.
         support: Option<Support>,
         /// In series with the support.
         usp: Option<Usp>,
@@ -313,12 +333,6 @@ impl Track {
     /// Chainage of the right end, m.
     pub fn end(&self) -> f64 {
         self.sections.last().map_or(0.0, |s| s.end)
-    }
-
-    /// Whether rails, pads and supports of known stiffness carry a wheel all along it.
-    pub fn is_sprung(&self) -> bool {
-        let held = |seat: &Seat| seat.pad.is_some() && (!seat.is_ballasted() || seat.support().is_some());
-        self.has_rails() && self.seats.iter().all(held)
     }
 
     /// Whether rails lie all along it.
@@ -393,14 +407,9 @@ impl Seat {
         matches!(self.foot, Foot::Sleeper { .. })
     }
 
-    /// Under its sleeper; `None` without a sleeper, or where only grains can say.
+    /// Under its sleeper, as it is stated; `None` without a sleeper, or where layers or grains say what it is.
     pub fn support(&self) -> Option<&Support> {
         if let Foot::Sleeper { support, .. } = &self.foot { support.as_ref() } else { None }
-    }
-
-    /// Under its sleeper, with the under sleeper pad.
-    pub fn spring(&self) -> Option<Spring> {
-        Some(self.support()?.below(self.usp()))
     }
 
     /// Under its sleeper.

@@ -1,6 +1,7 @@
 //! What acts on the track: vehicles, trains and test loads.
 
 use super::{Given, Order, Profile, Sequence, Share};
+use crate::diag::Span;
 use serde::{Deserialize, Serialize};
 
 /// A vehicle on two bogies of two axles each, as carried by **one rail**: half of every mass, inertia and stiffness.
@@ -151,6 +152,8 @@ impl Traffic {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StaticLoad {
     pub name: String,
+    /// Where it stands.
+    pub span: Span,
     pub on: Target,
     /// Chainage, m.
     pub x: f64,
@@ -162,6 +165,8 @@ pub struct StaticLoad {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RigLoad {
     pub name: String,
+    /// Where it stands.
+    pub span: Span,
     pub on: Target,
     /// Chainage at the start, m.
     pub x: f64,
@@ -172,6 +177,8 @@ pub struct RigLoad {
     pub speed: Given,
     /// Times that a cyclic force comes back.
     pub cycles: u64,
+    /// What of it is more than a constant force at one place, where the scene says that.
+    pub changes: Option<Span>,
 }
 
 /// N over one rail, positive down.
@@ -213,7 +220,7 @@ impl RigLoad {
     pub fn at_rest(&self) -> Option<StaticLoad> {
         match self.force {
             Force::Constant(force) if *self.speed == 0.0 && self.confinement.is_none() => {
-                Some(StaticLoad { name: self.name.clone(), on: self.on, x: self.x, force })
+                Some(StaticLoad { name: self.name.clone(), span: self.span, on: self.on, x: self.x, force })
             }
             _ => None,
         }

@@ -87,8 +87,9 @@ fn run(
         return answered(own, TestTables::new(tests).view(&scenario.track));
     }
     let histories = recorder.all_histories();
-    let scalars = results::summarise(scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
-    answered(own, tables.view(&histories, &scalars, &scenario.track))
+    let scalars =
+        results::summarise(scenario, &graph.supports, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+    answered(own, tables.view(&histories, &scalars, &scenario.track, &graph.supports))
 }
 
 /// What a study asks of the tables of a run.

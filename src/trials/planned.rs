@@ -18,13 +18,13 @@ impl Planned {
     /// The passages of a plan; `None` where no train runs over a track.
     pub fn new(graph: &Graph, origins: &Origins) -> Option<Planned> {
         let (node, blocks) = (graph.track()?.clone(), graph.blocks()?.clone());
-        let seats = graph.supports().iter().map(|support| support.spring).collect();
+        let seats = graph.supports.iter().map(|support| support.spring).collect();
         let responses = Responses { revision: 0, seats };
         Some(Planned { graph: graph.clone(), origins: origins.clone(), node, responses, blocks })
     }
 
     /// Settlement of every seat as the scene starts, m.
     pub fn initial_settlement(&self) -> Vec<f64> {
-        self.graph.supports().iter().map(|support| support.settlement).collect()
+        self.graph.supports.iter().map(|support| support.settlement).collect()
     }
 }

@@ -5,6 +5,7 @@ use super::verdict::{Foreseen, Verdict, check, judge, refused};
 use super::void::{Void, middle};
 use crate::graph::Train;
 use crate::lint::Winkler;
+use crate::lower::{self, with_stated_supports};
 use crate::scenario::{self, Foot, Given, Integrator, Loading, RailEnds, Scenario, TimeStep, Track};
 use crate::units::number;
 use serde::Serialize;
@@ -67,7 +68,9 @@ pub(super) fn stresses(scenario: &Scenario, tick: &mut dyn FnMut()) -> Vec<Stres
 }
 
 fn list(scenario: &Scenario) -> Vec<Hard> {
-    let track = &scenario.track;
+    // those that change supports change numbers
+    let scenario = &with_stated_supports(scenario);
+    let (track, known) = (&scenario.track, lower::supports(scenario));
     let even = vec![0.0; track.seats.len()];
     let hard = |name: &str, change: &dyn Fn(&mut Scenario)| {
         let mut scenario = scenario.clone();
@@ -78,7 +81,7 @@ fn list(scenario: &Scenario) -> Vec<Hard> {
     let void = |depth: f64, sleepers: Option<usize>| Void { depth, sleepers }.settlement(track);
     let speed = |factor: f64| move |s: &mut Scenario| of_train(s, |t| t.speed.value = factor);
     let critical = (0..track.sections.len())
-        .filter_map(|i| Some(Winkler::of(track, i)?.critical_speed()))
+        .filter_map(|i| Some(Winkler::of(track, &known, i)?.critical_speed()))
         .fold(f64::INFINITY, f64::min);
 
     let mut list = vec![

@@ -29,7 +29,7 @@ pub const EACH: f64 = 1e-4;
 impl Sinking {
     /// On the supports of a plan.
     pub fn under(graph: &Graph) -> Sinking {
-        Sinking { supports: graph.supports().to_vec(), each: EACH, keeps: 1.0, tells: true }
+        Sinking { supports: graph.supports.clone(), each: EACH, keeps: 1.0, tells: true }
     }
 
     pub fn node(&self, name: &str) -> Node {

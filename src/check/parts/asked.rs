@@ -2,17 +2,12 @@
 
 use crate::check::evaluate::value::{Record, Val};
 use crate::scenario::Tier;
-use crate::solvers::foundation::Method;
 
 /// What the parts of a track have to bring along.
 #[derive(Debug, Clone, Copy)]
 pub struct Asked {
     /// Grains give the stiffness of the supports: layers without a modulus do instead of a `support`.
     pub layers_do: bool,
-    /// By which layers with a modulus become the support of a sleeper.
-    pub support_method: Method,
-    /// The lowest layer goes on without end.
-    pub quiet_base: bool,
     /// Only test loads on sleepers, or on the bed itself, act: a rail is not needed.
     pub rig: bool,
     /// A plate lies on the bed: sleepers are not needed either.
@@ -42,9 +37,7 @@ impl Asked {
         let under_load = !loads.is_empty() && loads.iter().all(|load| on(load, &["sleepers", "bed"]));
         let rig = layers_do && !traffic && under_load;
         let plate = rig && loads.iter().all(|load| on(load, &["bed"]));
-        let support_method = method(solve).unwrap_or(Method::StressCone);
-        let quiet_base = track.word("base") == Some("quiet");
-        Asked { layers_do, support_method, quiet_base, rig, plate, traffic }
+        Asked { layers_do, rig, plate, traffic }
     }
 }
 
@@ -55,17 +48,6 @@ pub fn forms(track: &Record) -> impl Iterator<Item = &Record> {
         _ => &[],
     };
     pairs.iter().filter_map(|(form, _)| if let Val::Record(form) = &form.value { Some(&**form) } else { None })
-}
-
-fn method(solve: &Record) -> Option<Method> {
-    let Val::Word { word, arguments } = &solve.get("support_method")?.value else { return None };
-    if word.name == "stress_cone" {
-        return Some(Method::StressCone);
-    }
-    match arguments.get("neighbours")?.value {
-        Val::Number(n) => Some(Method::LayeredElastic { neighbours: n.value }),
-        _ => None,
-    }
 }
 
 fn has_layers(form: &Record) -> bool {

@@ -1,15 +1,14 @@
-//! The support of each seat from the layers under it, and what stretches make of these.
+//! What lies under each seat, and what stretches make of it.
 
 use super::asked::Asked;
 use super::layers::lay_strata;
+use super::stack::Ground;
 use super::strata::Stratum;
-use super::support::{Carried, Stack, Supports};
 use super::trackform::Built;
 use crate::check::findings::Findings;
 use crate::check::places::chainage::Places;
 use crate::diag::{Code, Diagnostic, Span};
-use crate::scenario::{ApproachSlab, Given, Layer};
-use crate::solvers::foundation::FoundationError;
+use crate::scenario::{ApproachSlab, Given, Layer, Stack};
 use std::ops::Range;
 
 /// The ground of some seats.
@@ -29,32 +28,25 @@ pub struct Regrade<'a> {
     pub scales: bool,
 }
 
-/// By what the layers of a track carry its sleepers.
+/// What the ground of a track has to bring along.
+#[derive(Clone, Copy)]
 pub struct Carrying {
     pub asked: Asked,
     /// Damping over stiffness of a support that layers make, s.
     pub damping_time: Option<Given>,
-    pub supports: Supports,
 }
 
-impl Carrying {
-    /// Begins with nothing computed.
-    pub fn new(asked: Asked, damping_time: Option<Given>) -> Carrying {
-        Carrying { asked, damping_time, supports: Supports::new(asked.support_method, asked.quiet_base) }
-    }
-}
-
-/// What the layers are to some seats of a section; empty where there are none, or where a modulus is not known and nothing
+/// What lies under some seats of a section; empty where there are none, or where a modulus is not known and nothing
 /// depends on it.
-pub fn carried(
+pub fn stacks(
     built: &Built,
     places: &Places,
     section: usize,
     seats: Range<usize>,
     under: Under<'_>,
-    carrying: &mut Carrying,
+    carrying: Carrying,
     findings: &mut Findings,
-) -> Option<Vec<Carried>> {
+) -> Option<Vec<Stack>> {
     let strata = built.layers.as_ref()?;
     let regrade = if let Under::Regraded(regrade) = under { Some(regrade) } else { None };
     let depends = built.stands_on_layers() || regrade.is_some_and(|regrade| regrade.scales);
@@ -69,34 +61,19 @@ pub fn carried(
     }?;
     let plate = regrade.and_then(|regrade| regrade.plate);
     let plain = regrade.filter(|regrade| regrade.scales && !built.stands_on_layers());
-    let of_seat = |seat: usize| {
-        let x = places.seats[seat].0;
-        let spacings = places.spacings(seat, built.spacing.map_or(0.6, |s| *s));
-        Stack::under(&body, spacings, x, &layers, plate, plain.map(|regrade| regrade.before))
+    let ground = Ground {
+        body,
+        layers: &layers,
+        plate,
+        before: plain.map(|regrade| regrade.before),
+        damping_time: carrying.damping_time?,
+        span: built.layers_span,
     };
-    let stacks: Vec<Stack> = seats.clone().map(of_seat).collect::<Option<_>>()?;
-    let mut carried = Vec::with_capacity(seats.len());
-    for (seat, found) in seats.zip(carrying.supports.carried(&stacks)) {
-        match found {
-            Ok(found) => carried.push(found),
-            Err(_) if !depends => return Some(Vec::new()),
-            Err(wrong) => {
-                carry_nothing(built, places, seat, wrong, findings);
-                return None;
-            }
-        }
-    }
-    Some(carried)
-}
-
-fn carry_nothing(built: &Built, places: &Places, seat: usize, wrong: FoundationError, findings: &mut Findings) {
-    let seat = places.named(&(seat..seat + 1));
-    let message = format!("the layers of trackform `{}` carry no sleeper at {seat}: {wrong}", built.name);
-    findings.report(
-        Diagnostic::new(Code::E0407, message)
-            .at(built.layers_span, "its support is computed from these")
-            .help("give every layer a thickness and a modulus there, and sleepers that do not lie on each other"),
-    );
+    let at_seat = |seat: usize| {
+        let spacings = places.spacings(seat, built.spacing.map_or(0.6, |s| *s));
+        ground.at_seat(places.seats[seat].0, spacings)
+    };
+    seats.map(at_seat).collect()
 }
 
 /// Whether every layer has a modulus; `None` where one has none and something depends on it.

@@ -9,7 +9,7 @@ use crate::check::findings::Findings;
 use crate::check::places::chainage::Places;
 use crate::check::places::chosen::chainages_at;
 use crate::check::text::files::Files;
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Force, Given, RigLoad, Target, Wave};
 
 /// A load at each of its places.
@@ -46,12 +46,21 @@ pub fn loads(
     let confinement = given(record, "confinement");
     let speed = given(record, "speed")?;
     let cycles = record.number("total")?.value as u64;
+    let changes = changes(record);
     let places = places?;
     let load = |x: f64| {
         let x = if on == Target::Sleepers { places.seats[places.nearest_seat(x)?].0 } else { x };
-        Some(RigLoad { name: record.name.clone(), on, x, force: force.clone(), confinement, speed, cycles })
+        let (name, span, force) = (record.name.clone(), record.span, force.clone());
+        Some(RigLoad { name, span, on, x, force, confinement, speed, cycles, changes })
     };
     chainages.into_iter().map(|(x, _)| load(x)).collect()
+}
+
+/// Where a load is more than a constant force at one place.
+fn changes(record: &Record) -> Option<Span> {
+    let cyclic = record.get("force").filter(|force| matches!(force.value, Val::Word { .. }));
+    let moves = record.get("speed").filter(|speed| matches!(speed.value, Val::Number(n) if n.value > 0.0));
+    cyclic.or(moves).map(|slot| slot.span)
 }
 
 /// The force of a load, over one rail.

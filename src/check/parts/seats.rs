@@ -1,6 +1,6 @@
 //! The seats of a section: where a field varies along the track, each seat takes the value of its place.
 
-use super::ground::{Carrying, Under, carried};
+use super::ground::{Carrying, Under, stacks};
 use super::spring::{LaidSpring, lay_spring, pad_at, spring_at};
 use super::trackform::{Base, Bed, Built, Cushion};
 use crate::check::evaluate::evaluator::Evaluator;
@@ -24,14 +24,8 @@ enum LaidFoot<'a> {
 /// What carries sleepers.
 enum LaidSupport<'a> {
     Stated(LaidSpring<'a>),
-    /// Computed from the layers of each seat; damping over stiffness is that of a support that does not say it.
-    OfLayers {
-        time: Given,
-    },
-}
-
-fn scaled(given: Given, by: f64) -> Given {
-    if by == 1.0 { given } else { Given { value: by * *given, ..given } }
+    /// Found from the layers of each seat when the scene is planned.
+    OfLayers,
 }
 
 /// Some seats of a section, each with the values of its place. Whatever varies is laid out, even beside parts that are not
@@ -42,7 +36,7 @@ pub fn lay_seats(
     section: usize,
     range: Range<usize>,
     under: Under<'_>,
-    carrying: &mut Carrying,
+    carrying: Carrying,
     findings: &mut Findings,
 ) -> Option<Vec<Seat>> {
     let (start, end) = places.sections[section];
@@ -60,15 +54,16 @@ pub fn lay_seats(
     };
     let settlement = built.settlement.as_ref().and_then(|along| lay(along, places, &cover("settlement"), findings));
     let foot = match built.foot.as_ref() {
-        Some(Base::Sleeper(bed)) => lay_bed(built, bed, places, range.clone(), &cover, carrying, findings),
+        Some(Base::Sleeper(bed)) => lay_bed(built, bed, places, range.clone(), &cover, findings),
         Some(Base::Rigid) => Some(LaidFoot::Fixed(Foot::Rigid)),
         Some(Base::Slab) => Some(LaidFoot::Fixed(Foot::Slab)),
         None => None,
     };
-    let carried = carried(built, places, section, range.clone(), under, carrying, findings);
-    let (pad, settlement, foot, carried) = (pad?, settlement?, foot?, carried?);
+    let stacks = stacks(built, places, section, range.clone(), under, carrying, findings);
+    let (pad, settlement, foot, stacks) = (pad?, settlement?, foot?, stacks?);
+    let mut stacks = stacks.into_iter();
     let mut seats = Vec::with_capacity(range.len());
-    for (i, &(x, section, transition, number)) in places.seats[range].iter().enumerate() {
+    for &(x, section, transition, number) in &places.seats[range] {
         let pad = match &pad {
             Some(pad) => Some(pad_at(pad, x, findings)?),
             None => None,
@@ -77,16 +72,10 @@ pub fn lay_seats(
             LaidFoot::Sleeper { mass, support, seating, usp } => {
                 let support = match support {
                     LaidSupport::Stated(spring) => {
-                        let by = carried.get(i).map_or(1.0, |carried| carried.change);
                         let (stiffness, damping) = spring_at(spring, x, findings)?;
-                        let (stiffness, damping) = (scaled(stiffness, by), scaled(damping, by));
                         Some(Support { stiffness, damping, seating: *seating })
                     }
-                    LaidSupport::OfLayers { time } => carried.get(i).map(|carried| {
-                        let stiffness = Given::derived(carried.stiffness);
-                        let damping = Given { value: **time * *stiffness, origin: time.origin };
-                        Support { stiffness, damping, seating: *seating }
-                    }),
+                    LaidSupport::OfLayers => None,
                 };
                 let usp = usp.as_ref().map(|(usp, modulus)| usp.at(modulus, x));
                 Foot::Sleeper { mass: *mass, support, usp }
@@ -94,8 +83,8 @@ pub fn lay_seats(
             LaidFoot::Fixed(foot) => foot.clone(),
         };
         let (initial_settlement, sleeper) = (*settlement.value_at(x), built.sleeper_body());
-        let onto_subgrade = carried.get(i).map(|carried| carried.onto_subgrade);
-        seats.push(Seat { number, transition, x, section, pad, foot, sleeper, initial_settlement, onto_subgrade });
+        let stack = stacks.next();
+        seats.push(Seat { number, transition, x, section, pad, foot, sleeper, initial_settlement, stack });
     }
     Some(seats)
 }
@@ -106,11 +95,10 @@ fn lay_bed<'a>(
     places: &Places,
     seats: Range<usize>,
     cover: &dyn Fn(&str) -> Cover,
-    carrying: &Carrying,
     findings: &mut Findings,
 ) -> Option<LaidFoot<'a>> {
     let support = match &bed.support {
-        _ if bed.by_layers => carrying.damping_time.map(|time| LaidSupport::OfLayers { time }),
+        _ if bed.by_layers => Some(LaidSupport::OfLayers),
         Some(support) => lay_spring(support, places, "support", cover, findings).map(LaidSupport::Stated),
         None => None,
     };

@@ -10,6 +10,7 @@ use crate::check::findings::Findings;
 use crate::check::places::chainage::Places;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Beam, Given, Grains, Integrator, Solve, TimeStep, Update};
+use crate::solvers::foundation::Method;
 
 /// How the answer is computed, from a complete `solve`.
 pub fn solve(record: &Record, places: Option<&Places>, findings: &mut Findings) -> Option<Solve> {
@@ -59,6 +60,7 @@ pub fn solve(record: &Record, places: Option<&Places>, findings: &mut Findings) 
         other_laws,
         update: exchange?,
         update_span: update.origin.span(),
+        support_method: method(record).unwrap_or(Method::StressCone),
         integrator: integrator?,
         beam,
         elements_per_bay: Given { value: elements.value as u32, origin: record.get("elements_per_bay")?.origin },
@@ -69,6 +71,17 @@ pub fn solve(record: &Record, places: Option<&Places>, findings: &mut Findings) 
         seed: record.number("seed")?.value as u64,
         grains: grains?,
     })
+}
+
+fn method(solve: &Record) -> Option<Method> {
+    let Val::Word { word, arguments } = &solve.get("support_method")?.value else { return None };
+    if word.name == "stress_cone" {
+        return Some(Method::StressCone);
+    }
+    match arguments.get("neighbours")?.value {
+        Val::Number(n) => Some(Method::LayeredElastic { neighbours: n.value }),
+        _ => None,
+    }
 }
 
 fn adaptive(tolerance: Option<(f64, Span)>, cap: Option<(f64, Span)>, findings: &mut Findings) -> Option<Update> {
@@ -94,7 +107,7 @@ pub fn grains(record: &Record, places: Option<&Places>, findings: &mut Findings)
         _ => None,
     };
     Some(Grains {
-        tier: tier(record),
+        tier: Given { value: tier(record), origin: record.get("substructure")?.origin },
         window: window?,
         monolithic: record.word("coupling")? == "monolithic",
         support_from_passage: record.word("support_from")? == "passage",

@@ -37,10 +37,10 @@ pub fn track(record: &Record, layout: &Layout, asked: Asked, eval: &mut Evaluato
     let stood = stand(&layout.stretches, places, &mut eval.findings);
     let mut sound = layout.sound && stood.is_some();
     let stood = stood.unwrap_or_default();
-    let mut carrying = Carrying::new(asked, usual_damping_time(eval));
+    let carrying = Carrying { asked, damping_time: usual_damping_time(eval) };
     let mut parts = Parts::default();
     for section in 0..layout.built.len() {
-        sound &= add_section(&mut parts, layout, section, &stood, &mut carrying, eval);
+        sound &= add_section(&mut parts, layout, section, &stood, carrying, eval);
     }
     if !sound {
         return None;
@@ -73,7 +73,7 @@ fn add_section(
     layout: &Layout,
     section: usize,
     stood: &[Instance],
-    carrying: &mut Carrying,
+    carrying: Carrying,
     eval: &mut Evaluator<'_>,
 ) -> bool {
     let (places, built, form) = (&layout.places, &layout.built[section], &*layout.forms[section]);
@@ -135,5 +135,6 @@ fn whole_section(
         spacing: spacing?,
         slab: built.slab.clone(),
         layers,
+        layers_span: Some(built.layers_span),
     })
 }

@@ -34,7 +34,7 @@ pub fn change_seats(
     stood: &[Instance],
     places: &Places,
     laid: &mut [Seat],
-    carrying: &mut Carrying,
+    carrying: Carrying,
     eval: &mut Evaluator<'_>,
 ) -> bool {
     let whole = places.seats_of(unchanged.section);
@@ -77,7 +77,7 @@ fn changed(
     stretches: &[&Instance],
     places: &Places,
     seats: Range<usize>,
-    carrying: &mut Carrying,
+    carrying: Carrying,
     eval: &mut Evaluator<'_>,
 ) -> Option<Vec<Seat>> {
     let Unchanged { form, section, layers } = *unchanged;

@@ -25,12 +25,12 @@ impl Tier for Equilibrium {
         let Some(Loading::Static(loads)) = &draft.scenario.loading else {
             return Err("no constant loads act on the track".into());
         };
-        if !draft.scenario.track.is_sprung() {
+        if !draft.is_sprung() {
             return Err("rails, pads or supports of known stiffness are missing".into());
         }
         let node = track::track(draft.scenario);
         let cost = cost::at_rest(&node);
-        let supports = SpringsNode { supports: track::supports(&draft.scenario.track) };
+        let supports = SpringsNode { supports: draft.supports.clone() };
         let nodes =
             vec![Node::new("track", Model::Track(Box::new(node))), Node::new("substructure", Model::Springs(supports))];
         Ok(Proposal {

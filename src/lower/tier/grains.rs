@@ -1,7 +1,7 @@
 //! Tiers `cells`, `zone` and `full`: grains under the sleepers of a track, one cell for each distinct sleeper, under the bays that
 //! differ, or under all of the window. This version plans them and cannot run them.
 
-use super::{ExpectedError, Proposal, Tier, edges};
+use super::{ExpectedError, Proposal, Tier, edges, waiting};
 use crate::graph::{GrainsNode, Model, Node, PointLoad, Schedule, SoilLayer, SoilNode};
 use crate::lower::bed::{self, BedUse, beds};
 use crate::lower::tier::rig::cost::grains_under_track;
@@ -108,7 +108,7 @@ fn propose(draft: &Draft<'_>, what: &str, length: f64) -> Result<Proposal, Strin
         why: "the scene asks for grains, and this version plans them without running them".into(),
         error: ExpectedError { share: None, evidence: "its error is not measured yet".into() },
         runs: false,
-        refusals: Vec::new(),
+        refusals: waiting::refusal(scenario).into_iter().collect(),
     })
 }
 

@@ -3,8 +3,8 @@
 use super::{ExpectedError, Proposal, Tier, edges};
 use crate::graph::{LawNode, Model, NamedLaw, Node, Schedule};
 use crate::lower::outlook::Outlook;
-use crate::lower::{Draft, cost, track};
-use crate::scenario::{Loading, Origin, Scenario, Seat, SettlementLaw, law_argument};
+use crate::lower::{Draft, cost, supports, track};
+use crate::scenario::{Loading, Scenario, SettlementLaw, law_argument};
 use crate::schema::Reads;
 use crate::solvers::settlement::{Form, Logarithm};
 
@@ -39,13 +39,13 @@ impl Tier for SettlementLaws {
         if !matches!(scenario.loading, Some(Loading::Traffic(_))) {
             return Err("no train runs, and a law settles by trains".into());
         }
-        if !scenario.track.is_sprung() {
+        if !draft.is_sprung() {
             return Err("rails, pads or supports of known stiffness are missing".into());
         }
         let Some(blocks) = &draft.blocks else { return Err("the traffic cannot be cut into blocks".into()) };
         let node = track::track(scenario);
         let law = LawNode {
-            supports: track::supports(&scenario.track),
+            supports: draft.supports.clone(),
             law: named(&scenario.solve.law),
             followers: scenario.solve.other_laws.iter().map(named).collect(),
         };
@@ -70,8 +70,7 @@ impl Tier for SettlementLaws {
 
 /// Whether a sleeper stands on layers alone.
 fn stands_on_layers(scenario: &Scenario) -> bool {
-    let derived = |seat: &Seat| seat.support().is_some_and(|support| support.stiffness.origin == Origin::Derived);
-    scenario.track.seats.iter().any(|seat| derived(seat) && seat.onto_subgrade.is_some())
+    scenario.track.seats.iter().any(supports::stands_on_layers)
 }
 
 fn named(law: &SettlementLaw) -> NamedLaw {

@@ -7,6 +7,7 @@ mod equilibrium;
 mod grains;
 mod law;
 mod rig;
+mod waiting;
 
 pub use equilibrium::Equilibrium;
 pub use grains::{Cells, Full, Zone};
@@ -14,7 +15,7 @@ pub use law::SettlementLaws;
 pub use rig::TestRig;
 
 use super::{Draft, Pass};
-use crate::diag::Diagnostic;
+use crate::diag::{Diagnostic, has_errors};
 use crate::graph::{Cost, Edge, Node, Quantity, Rejected, Schedule};
 use crate::scenario;
 use crate::schema::Reads;
@@ -50,7 +51,7 @@ pub struct Proposal {
     pub error: ExpectedError,
     /// Whether this version can run it.
     pub runs: bool,
-    /// What stands against it.
+    /// What stands against running it.
     pub refusals: Vec<Diagnostic>,
 }
 
@@ -72,7 +73,7 @@ impl Pass for ChooseTier<'_> {
     }
 
     fn run(&self, draft: &mut Draft<'_>) {
-        let word = asked(draft.scenario.solve.grains.tier);
+        let word = asked(*draft.scenario.solve.grains.tier);
         let mut rejected = Vec::new();
         let mut offers: Vec<(&'static str, Proposal)> = Vec::new();
         for tier in self.0 {
@@ -88,7 +89,10 @@ impl Pass for ChooseTier<'_> {
             b.runs.cmp(&a.runs).then(seconds(a).total_cmp(&seconds(b)))
         });
         let mut offers = offers.into_iter();
-        let Some((name, taken)) = offers.next() else { return };
+        let Some((name, taken)) = offers.next() else {
+            draft.diagnostics.extend(waiting::refusal(draft.scenario));
+            return;
+        };
         rejected.extend(offers.map(|(name, proposal)| dearer(name, &proposal)));
         draft.tier = Some(name);
         take(draft, taken, rejected);
@@ -97,10 +101,11 @@ impl Pass for ChooseTier<'_> {
 
 fn take(draft: &mut Draft<'_>, taken: Proposal, rejected: Vec<Rejected>) {
     let Proposal { nodes, edges, schedule, cost, what, why, refusals, runs, .. } = taken;
-    draft.diagnostics.extend(refusals);
+    draft.refusals = refusals;
     (draft.nodes, draft.edges) = (nodes, edges);
     (draft.schedule, draft.cost) = (Some(schedule), Some(cost));
-    draft.runs = runs;
+    // whatever its tier says, a plan against which an error stands is only looked at
+    draft.runs = runs && !has_errors(&draft.refusals);
     draft.decide_against("tier", what, why, rejected);
 }
 

@@ -125,7 +125,15 @@ impl TestTables {
     /// What expressions are about.
     pub fn view<'a>(&'a self, track: &'a Track) -> Tables<'a> {
         let TestTables { sleepers, histories, scalars } = self;
-        Tables { sleepers: SleeperTable::Cycles(sleepers), blocks: &[], rail: &[], histories, scalars, track }
+        Tables {
+            sleepers: SleeperTable::Cycles(sleepers),
+            blocks: &[],
+            rail: &[],
+            histories,
+            scalars,
+            track,
+            supports: &[],
+        }
     }
 }
 

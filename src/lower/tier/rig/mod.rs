@@ -52,13 +52,13 @@ impl Tier for TestRig {
             return Err("no loads act on sleepers or a bed without rails".into());
         }
         let mut refusals = refusals::refusals(scenario);
-        let found = if refusals.is_empty() { beds(scenario, BedUse::Rig) } else { Ok(Vec::new()) };
-        let mut nodes = Vec::new();
-        match found.map(|beds| beds.into_iter().next()) {
-            Ok(Some(plan)) => nodes = self.nodes(scenario, plan),
-            Ok(None) => {}
-            Err(more) => refusals.extend(more),
-        }
+        let nodes = match beds(scenario, BedUse::Rig) {
+            Ok(beds) => beds.into_iter().next().map_or(Vec::new(), |bed| self.nodes(scenario, bed)),
+            Err(more) => {
+                refusals.extend(more);
+                Vec::new()
+            }
+        };
         let tests = Tests { packings: scenario.solve.grains.repeats, kept: kept(scenario, cycles(&loads(scenario))) };
         Ok(Proposal {
             edges: edges(&nodes),
@@ -138,12 +138,14 @@ fn loads(scenario: &Scenario) -> Vec<RigLoad> {
             .iter()
             .map(|load| RigLoad {
                 name: load.name.clone(),
+                span: load.span,
                 on: load.on,
                 x: load.x,
                 force: Force::Constant(load.force),
                 confinement: None,
                 speed: Given::derived(0.0),
                 cycles: 1,
+                changes: None,
             })
             .collect(),
         _ => Vec::new(),

@@ -1,15 +1,20 @@
 //! What no rig can be made of, told before anything is packed.
 
 use super::{acts_on, has_grains, loads};
-use crate::diag::{Code, Diagnostic};
-use crate::scenario::{Foot, Force, RigLoad, Scenario, Target};
+use crate::diag::{Code, Diagnostic, Span};
+use crate::scenario::{Foot, Force, RigLoad, Scenario, Seat, Target};
 use crate::units::number;
 
 /// Every mistake of a rig.
 pub(super) fn refusals(scenario: &Scenario) -> Vec<Diagnostic> {
     if let Some(section) = scenario.track.sections.iter().find(|section| !has_grains(section)) {
         let message = format!("a rig stands on grains, and `{}` has no layer of them", section.name);
-        return vec![refused(message, "give its trackform `layers` with a `granular` on top")];
+        return vec![refused(
+            message,
+            section.layers_span,
+            "no grains",
+            "give its trackform `layers` with a `granular` on top",
+        )];
     }
     let mut found = Vec::new();
     one_bed(scenario, &mut found);
@@ -18,46 +23,47 @@ pub(super) fn refusals(scenario: &Scenario) -> Vec<Diagnostic> {
         && loads.iter().any(|load| load.on == Target::Bed)
     {
         let message = format!("`{}` and `{}` act together with a plate over the whole bed", first.name, second.name);
-        found.push(refused(message, "a plate leaves no room for another load: keep one"));
+        let help = "a plate leaves no room for another load: keep one";
+        found.push(refused(message, Some(second.span), "a second load", help));
     } else if loads.iter().all(|load| load.on == Target::Sleepers) {
-        sleepers(scenario, &mut found);
+        sleepers(scenario, &loads, &mut found);
         one_load_each(scenario, &loads, &mut found);
     }
     one_rhythm(&loads, &mut found);
     found
 }
 
-fn refused(message: String, help: &str) -> Diagnostic {
-    Diagnostic::new(Code::E0611, message).help(help)
+fn refused(message: String, at: Option<Span>, text: &str, help: &str) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0611, message).help(help);
+    match at {
+        Some(span) => diagnostic.at(span, text),
+        None => diagnostic,
+    }
 }
 
 fn one_bed(scenario: &Scenario, found: &mut Vec<Diagnostic>) {
     let sections = &scenario.track.sections;
     if let [first, second, ..] = sections.as_slice() {
         let message = format!("a rig stands on one bed, and `{}` lies beside `{}`", second.name, first.name);
-        let at = second.length_origin.span();
-        let mistake = refused(message, "keep one section, and run the other as a scene of its own");
-        found.push(match at {
-            Some(span) => mistake.at(span, "a second bed"),
-            None => mistake,
-        });
+        let help = "keep one section, and run the other as a scene of its own";
+        found.push(refused(message, second.length_origin.span(), "a second bed", help));
     }
 }
 
-fn sleepers(scenario: &Scenario, found: &mut Vec<Diagnostic>) {
+fn sleepers(scenario: &Scenario, loads: &[RigLoad], found: &mut Vec<Diagnostic>) {
     let track = &scenario.track;
     let Some(seat) = track.seats.first() else { return };
     let spacing = track.sections[seat.section].spacing;
     let Some(body) = seat.sleeper.filter(|_| matches!(seat.foot, Foot::Sleeper { .. })) else {
-        found.push(refused(
-            "a rig loads sleepers, and this track has none".to_owned(),
-            "give the trackform a `sleeper`",
-        ));
+        let message = "a rig loads sleepers, and this track has none".to_owned();
+        let at = loads.first().map(|load| load.span);
+        found.push(refused(message, at, "loads a sleeper", "give the trackform a `sleeper`"));
         return;
     };
-    if track.seats.iter().any(|seat| seat.usp().is_some()) {
+    if let Some(usp) = track.seats.iter().find_map(Seat::usp) {
         let message = "under sleeper pads on grains are not in this version".to_owned();
-        found.push(refused(message, "leave `usp` out: sleepers of a rig lie on the grains themselves"));
+        let help = "leave `usp` out: sleepers of a rig lie on the grains themselves";
+        found.push(refused(message, usp.stiffness.origin.span(), "softer than grains", help));
     }
     if body.base_width >= track.shortest_bay() {
         let message = format!(
@@ -65,11 +71,8 @@ fn sleepers(scenario: &Scenario, found: &mut Vec<Diagnostic>) {
             number((body.base_width * 1e3).round()),
             number((track.shortest_bay() * 1e3).round())
         );
-        let mistake = refused(message, "a wider `spacing`, or a narrower `base_width`");
-        found.push(match spacing.origin.span() {
-            Some(span) => mistake.at(span, "too close"),
-            None => mistake,
-        });
+        let help = "a wider `spacing`, or a narrower `base_width`";
+        found.push(refused(message, spacing.origin.span(), "too close", help));
     }
 }
 
@@ -79,7 +82,8 @@ fn one_load_each(scenario: &Scenario, loads: &[RigLoad], found: &mut Vec<Diagnos
         if let [first, second, ..] = acting.as_slice() {
             let name = scenario.track.seat_name(seat);
             let message = format!("`{}` and `{}` both act on sleeper {name}", first.name, second.name);
-            found.push(refused(message, "a sleeper has one actuator: leave one of them out"));
+            let help = "a sleeper has one actuator: leave one of them out";
+            found.push(refused(message, Some(second.span), "a second actuator", help));
             return;
         }
     }
@@ -94,7 +98,8 @@ fn one_rhythm(loads: &[RigLoad], found: &mut Vec<Diagnostic>) {
             Force::Cyclic { frequency, .. } => {
                 if **frequency <= 0.0 {
                     let message = format!("`{}` comes back 0 times a second", load.name);
-                    found.push(refused(message, "a frequency above 0 Hz, or a constant force"));
+                    let help = "a frequency above 0 Hz, or a constant force";
+                    found.push(refused(message, frequency.origin.span(), "never", help));
                     continue;
                 }
                 **frequency
@@ -103,7 +108,8 @@ fn one_rhythm(loads: &[RigLoad], found: &mut Vec<Diagnostic>) {
                 if load.cycles > 1 || *load.speed > 0.0 {
                     let message =
                         format!("the forces of a file act once and in one place, `{}` asks for more", load.name);
-                    found.push(refused(message, "write every cycle into the file; leave `total` and `speed` out"));
+                    let help = "write every cycle into the file; leave `total` and `speed` out";
+                    found.push(refused(message, load.changes, "once, in one place", help));
                 }
                 1.0 / (points.last().map_or(0.0, |p| p[0]) - points.first().map_or(0.0, |p| p[0]))
             }
@@ -113,7 +119,8 @@ fn one_rhythm(loads: &[RigLoad], found: &mut Vec<Diagnostic>) {
         match first {
             Some((other, rhythm)) if rhythm != frequency || other.cycles != load.cycles => {
                 let message = format!("`{}` and `{}` differ in frequency or number of cycles", other.name, load.name);
-                found.push(refused(message, "the cycles of a rig are those of all its actuators"));
+                let help = "the cycles of a rig are those of all its actuators";
+                found.push(refused(message, Some(load.span), "in another rhythm", help));
                 return;
             }
             Some(_) => {}

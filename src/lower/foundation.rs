@@ -1,6 +1,6 @@
-//! The support of a seat from what lies under it: a function of plain data, each answer computed once.
+//! What layers are to the seats on them: a function of plain data, each answer computed once.
 
-use crate::scenario::{self, ApproachSlab, Material, SleeperBody};
+use crate::scenario::{ApproachSlab, Stack};
 use crate::solvers::foundation::{Bearing, Below, Footing, FoundationError, Layer, Method};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
@@ -9,44 +9,10 @@ use std::collections::{BTreeMap, HashMap};
 const CONCRETE: f64 = 0.2;
 /// Odemark's correction for a plate on softer ground.
 const ODEMARK: f64 = 0.9;
-/// Nearer to its hinge than this share of its length a plate is as stiff as there: the ground must keep a modulus.
-const AT_HINGE: f64 = 0.05;
-
-/// What lies under one seat, SI.
-pub struct Stack {
-    /// How half of the sleeper lies, and how far its neighbours are.
-    pub bearing: Bearing,
-    /// Downwards.
-    pub layers: Vec<Layer>,
-    /// An approach slab in these layers, and how far the seat is from its hinge, as share of its length.
-    pub plate: Option<(ApproachSlab, f64)>,
-    /// The layers with which the stated support of the seat goes, where a stretch has replaced them.
-    pub before: Option<Vec<Layer>>,
-}
-
-impl Stack {
-    /// What lies under a sleeper at a chainage, m, its neighbours so far away on the left and on the right, m; `None` where a
-    /// modulus is not known.
-    pub fn under(
-        body: &SleeperBody,
-        spacings: [f64; 2],
-        x: f64,
-        layers: &[scenario::Layer],
-        plate: Option<ApproachSlab>,
-        before: Option<&[scenario::Layer]>,
-    ) -> Option<Stack> {
-        Some(Stack {
-            bearing: bearing(body, spacings),
-            layers: continua(layers, x)?,
-            plate: plate.map(|plate| (plate, lever(&plate, x))),
-            before: before.and_then(|layers| continua(layers, x)),
-        })
-    }
-}
 
 /// What layers are to one seat.
 #[derive(Debug, Clone, Copy)]
-pub struct Carried {
+pub(super) struct Carried {
     /// N/m.
     pub stiffness: f64,
     /// Pressure on the lowest layer for each newton on the seat, 1/m^2.
@@ -64,46 +30,14 @@ type Stacked = (Bearing, Vec<Layer>);
 /// A question that has no answer yet, under its key.
 type Question<'a> = (&'a Vec<u64>, &'a Stacked);
 
-/// How supports are computed, and what has been: seats under several stretches are asked for again.
-pub struct Supports {
+/// How layers are followed down, and what has been found.
+pub(super) struct Foundations {
     method: Method,
     /// The lowest layer goes on without end.
     quiet_base: bool,
     /// Answers by the bits of what was asked.
     found: HashMap<Vec<u64>, Found>,
     footings: HashMap<Vec<u64>, Footing>,
-}
-
-/// How half a sleeper lies: its bearing area under the seat as far as the sleeper reaches.
-fn bearing(body: &SleeperBody, spacings: [f64; 2]) -> Bearing {
-    let half = 0.5 * body.length;
-    let length = (0.5 * body.base_area / body.base_width).min(half);
-    let to_centre = (0.5 * (body.seat_distance - length)).clamp(0.0, half - length);
-    Bearing { width: body.base_width, length, spacings, to_centre: Some(to_centre) }
-}
-
-/// Layers at a chainage as continua; `None` where a modulus is not known.
-fn continua(layers: &[scenario::Layer], x: f64) -> Option<Vec<Layer>> {
-    let continuum = |layer: &scenario::Layer| {
-        let (poisson_ratio, density, spread) = match &layer.material {
-            Material::Granular(granular) => (granular.poisson_ratio, granular.density, granular.spread),
-            Material::Soil(soil) => (soil.poisson_ratio, soil.density, soil.spread),
-        };
-        Some(Layer {
-            thickness: layer.thickness.at(x).max(0.0),
-            youngs_modulus: layer.youngs_modulus()?.at(x),
-            poisson_ratio: *poisson_ratio,
-            density: *density,
-            spread: *spread,
-        })
-    };
-    layers.iter().map(continuum).collect()
-}
-
-/// How far a load is from the hinge of a plate, as share of its length: by the lever, what of the load the ground bears.
-fn lever(plate: &ApproachSlab, x: f64) -> f64 {
-    let [structure, far] = plate.ends;
-    if plate.hinged { ((x - structure) / (far - structure)).abs().clamp(AT_HINGE, 1.0) } else { 1.0 }
 }
 
 /// Thickness of the ground that spreads a load as a plate on it does, m: `0.9 t (E / E_ground)^(1/3)` (Odemark 1949).
@@ -167,10 +101,10 @@ fn solve(footing: &mut Footing, stack: &[Layer], quiet_base: bool) -> Found {
     Ok((support.stiffness, support.pressures[stack.len() - 1]))
 }
 
-impl Supports {
+impl Foundations {
     /// Begins without any answer.
-    pub fn new(method: Method, quiet_base: bool) -> Supports {
-        Supports { method, quiet_base, found: HashMap::new(), footings: HashMap::new() }
+    pub fn new(method: Method, quiet_base: bool) -> Foundations {
+        Foundations { method, quiet_base, found: HashMap::new(), footings: HashMap::new() }
     }
 
     /// What stacks carry, in their order.
@@ -178,20 +112,20 @@ impl Supports {
     /// # Errors
     ///
     /// Where the layers of a seat, or those before, carry no sleeper.
-    pub fn carried(&mut self, stacks: &[Stack]) -> Vec<Result<Carried, FoundationError>> {
-        let with = |stack: &Stack, plate: &ApproachSlab, yields: f64| {
+    pub fn carried(&mut self, stacks: &[&Stack]) -> Vec<Result<Carried, FoundationError>> {
+        let with = |stack: &&Stack, plate: &ApproachSlab, yields: f64| {
             (stack.bearing, with_plate(stack.layers.clone(), plate, yields))
         };
-        let whole = |stack: &Stack| match &stack.plate {
+        let whole = |stack: &&Stack| match &stack.plate {
             Some((plate, lever)) => with(stack, plate, lever * lever),
             None => (stack.bearing, stack.layers.clone()),
         };
-        let pressed = |stack: &Stack| stack.plate.as_ref().map(|(plate, _)| with(stack, plate, 1.0));
-        let before = |stack: &Stack| stack.before.as_ref().map(|layers| (stack.bearing, layers.clone()));
+        let pressed = |stack: &&Stack| stack.plate.as_ref().map(|(plate, _)| with(stack, plate, 1.0));
+        let before = |stack: &&Stack| stack.before.as_ref().map(|layers| (stack.bearing, layers.clone()));
         let found = self.answers(&stacks.iter().map(whole).collect::<Vec<_>>());
         let mut pressed = self.answers(&stacks.iter().filter_map(pressed).collect::<Vec<_>>()).into_iter();
         let mut before = self.answers(&stacks.iter().filter_map(before).collect::<Vec<_>>()).into_iter();
-        let carried = |(stack, found): (&Stack, Found)| {
+        let carried = |(stack, found): (&&Stack, Found)| {
             let pressed = stack.plate.as_ref().and_then(|(_, lever)| Some((*lever, pressed.next()?)));
             let before = stack.before.as_ref().and_then(|_| before.next());
             let (stiffness, onto_subgrade) = found?;
@@ -206,10 +140,10 @@ impl Supports {
         stacks.iter().zip(found).map(carried).collect()
     }
 
-    /// Answers in the order of what is asked; each is computed once in a check, and those under different bearings side by
+    /// Answers in the order of what is asked; each is computed once, and those under different bearings side by
     /// side.
     fn answers(&mut self, asked: &[Stacked]) -> Vec<Found> {
-        let Supports { method, quiet_base, found, footings } = self;
+        let Foundations { method, quiet_base, found, footings } = self;
         let keys: Vec<Vec<u64>> = asked.iter().map(|(bearing, stack)| key(bearing, stack)).collect();
         let missing: BTreeMap<&Vec<u64>, &Stacked> =
             keys.iter().zip(asked).filter(|(key, _)| !found.contains_key(*key)).collect();

@@ -1,0 +1,67 @@
+//! What lies under one seat: its layers at its place, and how its sleeper lies on them.
+
+use crate::diag::Span;
+use crate::scenario::{self, ApproachSlab, Given, Material, SleeperBody, Stack};
+use crate::solvers::foundation::{Bearing, Layer};
+
+/// Nearer to its hinge than this share of its length a plate is as stiff as there: the ground must keep a modulus.
+const AT_HINGE: f64 = 0.05;
+
+/// The ground of some seats, of which each takes what lies at its place.
+pub struct Ground<'a> {
+    pub body: SleeperBody,
+    pub layers: &'a [scenario::Layer],
+    pub plate: Option<ApproachSlab>,
+    /// The layers with which a stated support goes, where a stretch has replaced them.
+    pub before: Option<&'a [scenario::Layer]>,
+    pub damping_time: Given,
+    /// Where the layers are given.
+    pub span: Span,
+}
+
+impl Ground<'_> {
+    /// What lies under a sleeper at a chainage, m, its neighbours so far away on the left and on the right, m; `None` where a
+    /// modulus is not known.
+    pub fn at_seat(&self, x: f64, spacings: [f64; 2]) -> Option<Stack> {
+        Some(Stack {
+            bearing: bearing(&self.body, spacings),
+            layers: continua(self.layers, x)?,
+            plate: self.plate.map(|plate| (plate, lever(&plate, x))),
+            before: self.before.and_then(|layers| continua(layers, x)),
+            damping_time: self.damping_time,
+            span: self.span,
+        })
+    }
+}
+
+/// How half a sleeper lies: its bearing area under the seat as far as the sleeper reaches.
+fn bearing(body: &SleeperBody, spacings: [f64; 2]) -> Bearing {
+    let half = 0.5 * body.length;
+    let length = (0.5 * body.base_area / body.base_width).min(half);
+    let to_centre = (0.5 * (body.seat_distance - length)).clamp(0.0, half - length);
+    Bearing { width: body.base_width, length, spacings, to_centre: Some(to_centre) }
+}
+
+/// Layers at a chainage as continua; `None` where a modulus is not known.
+fn continua(layers: &[scenario::Layer], x: f64) -> Option<Vec<Layer>> {
+    let continuum = |layer: &scenario::Layer| {
+        let (poisson_ratio, density, spread) = match &layer.material {
+            Material::Granular(granular) => (granular.poisson_ratio, granular.density, granular.spread),
+            Material::Soil(soil) => (soil.poisson_ratio, soil.density, soil.spread),
+        };
+        Some(Layer {
+            thickness: layer.thickness.at(x).max(0.0),
+            youngs_modulus: layer.youngs_modulus()?.at(x),
+            poisson_ratio: *poisson_ratio,
+            density: *density,
+            spread: *spread,
+        })
+    };
+    layers.iter().map(continuum).collect()
+}
+
+/// How far a load is from the hinge of a plate, as share of its length: by the lever, what of the load the ground bears.
+fn lever(plate: &ApproachSlab, x: f64) -> f64 {
+    let [structure, far] = plate.ends;
+    if plate.hinged { ((x - structure) / (far - structure)).abs().clamp(AT_HINGE, 1.0) } else { 1.0 }
+}
