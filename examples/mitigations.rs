@@ -150,11 +150,11 @@ fn run(scene: &str) -> Result<Effect, Box<dyn Error>> {
     let mut recorder = RunRecorder::new(&scenario, &plan);
     execute::execute(&plan, &mut recorder)?;
     let tables = &recorder.tables;
-    let scalars = summarise(&scenario, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+    let scalars = summarise(&scenario, &plan.supports, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
     let scalar = |name: &str| scalars.get(name).map(|s| s.value).ok_or(format!("no {name}"));
     let before: Vec<&RailRow> = tables.rail.iter().filter(|r| r.axles == 0 && r.x_m.abs() < NEAR).collect();
     let pressure = Measure { over: Some(LAST), ..Measure::new(Reduction::Max, Response::SubgradePressure) };
-    let view = tables.view(&recorder.histories, &scalars, &scenario.track);
+    let view = tables.view(&recorder.histories, &scalars, &scenario.track, &plan.supports);
     let subgrade = evaluate(&Expression::Measure(pressure), view);
     Ok(Effect {
         gradient: steepest(&before) / 1e6,

@@ -35,8 +35,8 @@ fn write(directory: &Path, figures: bool) -> Result<PathBuf, ResultsError> {
     if let Some(finished) = opened.finished() {
         // what is made again need not be there
         let made = |name: &str| name == PAGE || name.ends_with(".svg");
-        let read = finished.manifest().files.iter().filter(|file| !made(&file.name));
-        read.map(|file| finished.read(&file.name).map(drop)).collect::<Result<(), _>>()?;
+        let mut read = finished.manifest().files.iter().filter(|file| !made(&file.name));
+        read.try_for_each(|file| finished.read(&file.name).map(drop))?;
     }
     let pages = match results::read_tests(directory)? {
         Some(view) => test_pages(&view, figures),

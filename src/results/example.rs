@@ -408,6 +408,7 @@ fn finished(
         histories: &histories,
         scalars: &scalars,
         track: &scenario.track,
+        supports: &[],
     };
     let expectations = verdicts(&scenario, tables);
     let provenance = Provenance {

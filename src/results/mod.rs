@@ -47,7 +47,7 @@ pub use summary::{Provenance, Scalar, Summary, Verdict};
 pub use tables::{BlockRow, HistoryRow, RailRow, Row, SleeperRow, TampingRow, TrainRow};
 pub use vtk::{bodies_vtk, contacts_vtk};
 
-pub use crate::store::{Beds, FoundBed, bed_hash, checkpoint, write_atomically};
+pub use crate::store::{Beds, FoundBed, bed_hash, write_atomically};
 
 use crate::scenario::{Loading, Scenario};
 use serde::{Deserialize, Serialize};

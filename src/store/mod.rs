@@ -9,7 +9,6 @@
 
 mod atomic;
 mod beds;
-pub mod checkpoint;
 mod directory;
 mod disk;
 mod error;
