@@ -72,6 +72,11 @@ impl Graph {
         law.into_iter().flat_map(|node| std::iter::once(&node.law).chain(&node.followers))
     }
 
+    /// Whether a node of it is made of grains, packed or not.
+    pub fn has_grains(&self) -> bool {
+        self.nodes.iter().any(|node| matches!(node.model, Model::Grains(_) | Model::Bed(_)))
+    }
+
     /// Every bed of grains.
     pub fn beds(&self) -> impl Iterator<Item = &BedPlan> {
         self.nodes.iter().flat_map(|node| match &node.model {

@@ -26,7 +26,7 @@ pub(super) struct Bed<'a> {
 
 /// The granular layers of a scene whose plan has grains; none where a settlement law answers.
 pub(super) fn beds<'a>(scenario: &'a Scenario, graph: &Graph) -> Vec<Bed<'a>> {
-    if graph.beds().next().is_none() {
+    if !graph.has_grains() {
         return Vec::new();
     }
     let sections = scenario.track.sections.iter().enumerate();

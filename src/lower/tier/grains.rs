@@ -2,6 +2,7 @@
 //! differ, or under all of the window. This version plans them and cannot run them.
 
 use super::{ExpectedError, Proposal, Tier, edges, waiting};
+use crate::diag::Severity;
 use crate::graph::{GrainsNode, Model, Node, PointLoad, Schedule, SoilLayer, SoilNode};
 use crate::lower::bed::{BedUse, beds};
 use crate::lower::tier::rig::cost::grains_under_track;
@@ -54,7 +55,10 @@ fn propose(draft: &Draft<'_>, what: &str, length: f64) -> Result<Proposal, Strin
     let (beds, mut refusals) = match beds(scenario, BedUse::Track) {
         Ok(beds) if beds.is_empty() => return Err("no section has a layer of grains".into()),
         Ok(beds) => (beds, Vec::new()),
-        Err(refusals) => (Vec::new(), refusals),
+        // nothing packs them yet: that they cannot be packed is worth a word, and no reason to stop a check
+        Err(refusals) => {
+            (Vec::new(), refusals.into_iter().map(|refusal| refusal.severity(Severity::Warning)).collect())
+        }
     };
     refusals.extend(waiting::refusal(scenario));
     let schedule = match (&scenario.loading, &draft.blocks) {
