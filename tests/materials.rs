@@ -274,16 +274,17 @@ fn program(arguments: &[&str]) -> (Option<i32>, String) {
 }
 
 #[test]
-fn check_warns_of_grains_and_run_and_plan_stop() {
+fn grains_are_checked_and_planned_and_not_run() {
     let out = tempfile::tempdir().unwrap();
     let out = out.path().join("run");
     let scene = "scenarios/transition_full.track";
     let (status, said) = program(&["check", scene]);
     assert!(status == Some(0) && said.contains("warning E0604"), "{scene}: {said}");
-    for arguments in [vec!["plan", scene], vec!["run", scene, "--out", out.to_str().unwrap()]] {
-        let (status, said) = program(&arguments);
-        assert!(status == Some(1) && said.contains("error E0604"), "{arguments:?}: {said}");
-    }
+    // the plan is there to be looked at
+    let (status, said) = program(&["plan", scene]);
+    assert!(status == Some(0) && said.contains("warning E0604"), "{said}");
+    let (status, said) = program(&["run", scene, "--out", out.to_str().unwrap()]);
+    assert!(status == Some(1) && said.contains("error E0604"), "{said}");
     assert!(!out.exists(), "nothing is written for what cannot be run");
     let (status, said) = program(&["plan", "scenarios/transition_full.track", "--set", "solve.substructure=law"]);
     assert!(status == Some(0) && !said.contains("E0604"), "{said}");

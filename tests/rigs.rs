@@ -272,8 +272,7 @@ fn a_killed_rig_goes_on_with_the_same_answer() {
         words.iter().chain(more).map(|word| word.to_string()).collect::<Vec<_>>()
     };
     let mut first = Command::new(env!("CARGO_BIN_EXE_trackbed")).args(words("killed", &[])).spawn().unwrap();
-    // the first packing is kept when it is over; the second is under way then
-    while !Path::new(&path("killed/checkpoint.json")).exists() {
+    while !Path::new(&path("killed/.trackbed/checkpoint")).exists() {
         assert!(first.try_wait().unwrap().is_none(), "the run ended before it could be killed");
         std::thread::sleep(Duration::from_millis(5));
     }
