@@ -78,7 +78,8 @@ impl Scene {
         Scene { name: name.into(), ..self }
     }
 
-    /// As if the line at a path were edited: `open.pad.stiffness` and `60 MN/m`, or the name of a `let`.
+    /// Replaces the value at a path for this scene; the file stays as it is. Example: `open.pad.stiffness` and `60 MN/m`.
+    /// A path may also be the name of a `let`.
     pub fn set(mut self, path: impl Into<String>, value: impl Into<String>) -> Scene {
         self.edits.push(Override { path: path.into(), value: value.into() });
         self

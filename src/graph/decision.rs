@@ -33,7 +33,7 @@ pub struct Cost {
     pub work: Work,
 }
 
-/// Of what the cost is made.
+/// The work that the cost counts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Work {

@@ -68,7 +68,7 @@ pub enum TrackFoot {
 pub struct Responses {
     /// Grows whenever a response changes: the track is factored anew only then.
     pub revision: u64,
-    /// Of every seat; `None` without a sleeper.
+    /// The spring under each seat; `None` where no sleeper lies.
     pub seats: Vec<Option<Spring>>,
 }
 

@@ -19,7 +19,7 @@ pub struct Train {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Runs {
-    /// As x grows.
+    /// The train runs towards larger x.
     Forward,
     Backward,
     /// Every second train the other way, the first one forward.

@@ -54,7 +54,7 @@ fn only_asked_for(draft: &mut Draft<'_>) {
     draft.records = draft.scenario.records.iter().map(record).collect();
 }
 
-/// Of its quantities those that vary during a passage; the others stand in tables.
+/// The recorded quantities that vary during a passage; tables hold the others.
 fn record(record: &scenario::Record) -> Record {
     Record {
         quantities: record.quantities.iter().filter_map(|quantity| History::named(quantity.name())).collect(),

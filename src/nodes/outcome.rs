@@ -76,9 +76,9 @@ pub struct PassageOutcome {
 /// Forces of sleepers on their supports at equal intervals, R(t).
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeatForces {
-    /// s.
+    /// Time between two values, s.
     pub interval: f64,
-    /// Of every seat, N; empty of a seat without a sleeper.
+    /// The values at each seat, N; empty for a seat without a sleeper.
     pub seats: Vec<Vec<f64>>,
 }
 

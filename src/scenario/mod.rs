@@ -108,17 +108,6 @@ pub enum Update {
     Adaptive { tolerance: f64, cap: Option<f64> },
 }
 
-impl Update {
-    /// Axles of the block that begins after so many, where the policy knows without a look at forces.
-    pub fn axles_after(&self, before: u64) -> Option<u64> {
-        match *self {
-            Update::Fixed { axles } => Some(axles),
-            Update::Geometric { first, ratio } => Some(first.max((ratio * before as f64) as u64)),
-            Update::Adaptive { .. } => None,
-        }
-    }
-}
-
 /// Beam theory of the rail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Beam {

@@ -106,7 +106,7 @@ impl Train {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Direction {
-    /// As x grows.
+    /// The train runs towards larger x.
     Forward,
     Backward,
     /// Every second train the other way.

@@ -58,9 +58,9 @@ pub struct Proposal {
 /// By how much a tier is expected to be off.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExpectedError {
-    /// As a share of the largest settlement; `None` where nobody has measured it.
+    /// The error divided by the largest settlement; `None` where nobody has measured it.
     pub share: Option<f64>,
-    /// On what evidence.
+    /// The evidence for this share.
     pub evidence: String,
 }
 
