@@ -3,12 +3,12 @@
 use super::event::{Between, Checkpoint, Event, Listener, ScheduleState};
 use super::exchange::{Exchange, Work};
 use super::machine::{Ending, Machine, RunError};
-use super::step::Measured;
-use crate::graph::{Block, Blocks, Clock, Control, Graph, Runner, TrackNode, Update};
-use crate::nodes::{
-    Builders, Forces, Kept, Load, NodeError, PassageOutcome, Request, Substructure, Superstructure, TrackSystem,
-};
-use std::ops::{ControlFlow, Range};
+use super::pair::{Pair, settling};
+use super::step::{Done, Measured};
+use crate::graph::{Blocks, Clock, Control, Graph, Runner, Update};
+use crate::nodes::{Builders, Forces, Kept, NodeError, PassageOutcome, Request, Superstructure};
+use crate::store::Beds;
+use std::ops::ControlFlow;
 
 /// Runs the blocks of a graph, from the beginning or from a checkpoint.
 pub(super) fn run(
@@ -17,8 +17,8 @@ pub(super) fn run(
     listener: &mut dyn Listener,
     from: Option<Checkpoint>,
 ) -> Result<Ending, RunError> {
-    let at = |cause: NodeError| RunError::node(Clock::Axles(0), cause);
-    let (mut track, mut ground) = machine.track_on_ground().map_err(at)?;
+    let at = |axles: u64| move |cause: NodeError| RunError::node(Clock::Axles(axles), cause);
+    let (mut track, mut ground) = machine.track_on_ground().map_err(at(0))?;
     let (mut done, mut axles, mut control) = (0, 0, Control::default());
     if let Some(checkpoint) = from {
         let (Clock::Axles(count), ScheduleState::Blocks { blocks, control: kept, ground: state }) =
@@ -26,19 +26,22 @@ pub(super) fn run(
         else {
             return Err(RunError::ForeignCheckpoint);
         };
-        ground.restore(&state).map_err(at)?;
-        track.stand_on(ground.responses()).map_err(at)?;
+        ground.restore(&state).map_err(at(count))?;
+        track.stand_on(ground.responses()).map_err(at(count))?;
         (done, axles, control) = (blocks, count, kept);
     }
     let runs = machine.graph.track().map(settling).unwrap_or_default();
-    Run { blocks, track, ground, control, done, runs, listener }.go(axles)
+    let mut run = Run { blocks, pair: Pair { blocks, track, ground, control, runs }, done, listener };
+    Ok(match run.go(axles)? {
+        ControlFlow::Continue(()) => Ending::Finished,
+        ControlFlow::Break(()) => Ending::Stopped,
+    })
 }
 
 /// The first passage of a graph, over the track as the scene starts it; `None` where no train runs.
 pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunError> {
     let Some(blocks) = graph.blocks() else { return Ok(None) };
-    let executor = super::Executor::default().with_builders(Builders::default());
-    let machine = Machine { graph, executor: &executor };
+    let machine = Machine { graph, builders: &Builders::default(), beds: &Beds::default() };
     let at = |cause: NodeError| RunError::node(Clock::Axles(0), cause);
     let (track, ground) = machine.track_on_ground().map_err(at)?;
     let runner = Runner { kind: 0, direction: blocks.leading_direction() };
@@ -48,170 +51,128 @@ pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunErro
     Ok(Some(passage))
 }
 
-/// Stretches of neighbouring seats that can settle.
-fn settling(track: &TrackNode) -> Vec<Range<usize>> {
-    let mut runs: Vec<Range<usize>> = Vec::new();
-    for (i, _) in track.seats.iter().enumerate().filter(|(_, seat)| seat.is_ballasted()) {
-        match runs.last_mut() {
-            Some(run) if run.end == i => run.end += 1,
-            _ => runs.push(i..i + 1),
-        }
-    }
-    runs
-}
-
 /// A run of blocks on its way.
-pub(super) struct Run<'a, 'l> {
-    pub blocks: &'a Blocks,
-    track: TrackSystem<'a>,
-    ground: Box<dyn Substructure + 'a>,
-    pub control: Control,
+struct Run<'a, 'l> {
+    blocks: &'a Blocks,
+    pair: Pair<'a>,
     /// Blocks done.
     done: usize,
-    /// Stretches of neighbouring seats that can settle.
-    pub runs: Vec<Range<usize>>,
     listener: &'l mut dyn Listener,
 }
 
-/// Ends a function where a listener has ended the run.
+/// Whether the run goes on; a break says that a listener has ended it.
+type Going<T> = Result<ControlFlow<(), T>, RunError>;
+
+/// Tells an event, and leaves the function where a listener ends the run.
 macro_rules! tell {
     ($run:expr, $event:expr) => {
-        if let ControlFlow::Break(()) = $run.listener.hear(&$event) {
-            return Ok(Ending::Stopped);
+        if $run.listener.hear(&$event).is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
+    };
+}
+
+/// The value of a step that went on; leaves the function where a listener has ended the run.
+macro_rules! going {
+    ($step:expr) => {
+        match $step? {
+            ControlFlow::Continue(value) => value,
+            ControlFlow::Break(()) => return Ok(ControlFlow::Break(())),
         }
     };
 }
 
 impl Run<'_, '_> {
-    fn go(mut self, axles: u64) -> Result<Ending, RunError> {
-        let mut here = self.arrive(axles, self.ground.settlement())?;
+    fn go(&mut self, axles: u64) -> Going<()> {
+        let mut here = self.pair.arrive(axles, self.pair.ground.settlement())?;
         if self.done == 0 {
-            tell!(self, Event::Laws { axles: 0, settlement: &self.ground.settlement_by_law() });
+            tell!(self, Event::Laws { axles: 0, settlement: &self.pair.ground.settlement_by_law() });
         }
         loop {
-            if let Some((state, passages)) = here.recorded() {
-                tell!(self, Event::Rest { axles: here.axles, state });
-                for (runner, passage) in passages {
-                    tell!(self, Event::Passage { axles: here.axles, runner, passage });
-                }
-            }
+            going!(self.show(&here));
             if here.axles >= self.blocks.total {
                 break;
             }
-            let mut work = Measured::default();
-            if self.blocks.tamped_after(here.axles).next().is_some() {
-                work.add(&here, Work::default());
-                let Some(tamped) = self.tamp(here.axles)? else { return Ok(Ending::Stopped) };
-                here = tamped;
-            }
-            let revision = self.ground.responses().revision;
-            let done = match self.blocks.adaptive() {
-                Some((tolerance, cap)) => self.adaptive(&mut here, tolerance, cap)?,
-                None => self.prescribed(&mut here)?,
-            };
-            let after = self.ground.settlement();
-            let passages: Vec<&PassageOutcome> =
-                done.block.runs.iter().filter_map(|(runner, _)| here.passage(*runner)).collect();
-            work.add(&here, Work::default());
-            // what the ground did may differ from what it predicted, and it may answer otherwise: the passages ahead are lost then
-            let (next, lost) = match done.next {
-                Some(next) if next.settlement == after && self.ground.responses().revision == revision => {
-                    (Some(next), None)
-                }
-                lost => (None, lost),
-            };
-            lost.iter().for_each(|lost| work.add(lost, Work::default()));
-            let measured = done.measured.with(&work);
-            let (block, before) = (Some((&done.block, &measured)), &here.settlement);
-            tell!(self, Event::Block { axles: here.axles, block, passages: &passages, before, after: &after });
-            self.done += 1;
-            let axles = here.axles + done.block.axles;
-            tell!(self, Event::Laws { axles, settlement: &self.ground.settlement_by_law() });
-            let (blocks, control, ground) = (self.done, self.control, &self.ground);
-            let state = || {
-                let state = ScheduleState::Blocks { blocks, control, ground: ground.save()? };
-                Ok(Checkpoint { clock: Clock::Axles(axles), state })
-            };
-            tell!(self, Event::Between(Between { is_last: false, state: &state }));
-            let all = self.done as u64 + self.blocks_left(axles, done.block.axles) + 1;
-            tell!(self, Event::Progress { done: self.done as u64, all });
-            here = match next {
-                Some(next) => next,
-                None => self.arrive(axles, after)?,
-            };
+            here = going!(self.block(here));
         }
         let passages: Vec<&PassageOutcome> = here.passages().collect();
         let (before, after) = (&here.settlement, &here.settlement);
         tell!(self, Event::Block { axles: here.axles, block: None, passages: &passages, before, after });
         tell!(self, Event::Progress { done: self.done as u64 + 1, all: self.done as u64 + 1 });
-        Ok(Ending::Finished)
+        Ok(ControlFlow::Continue(()))
     }
 
-    /// The track after so many axles on this settlement (m), with the passages that the next block is expected to need.
-    pub fn arrive(&self, axles: u64, settlement: Vec<f64>) -> Result<Exchange, RunError> {
-        let due = self.blocks.due(axles, self.expected(axles));
-        let mut exchange = Exchange::new(axles, settlement, due.shown);
-        self.ensure(&mut exchange, &due.passages)?;
-        Ok(exchange)
+    /// Tells the state and the passages that a record shows.
+    fn show(&mut self, here: &Exchange) -> Going<()> {
+        let Some((state, passages)) = here.recorded() else { return Ok(ControlFlow::Continue(())) };
+        tell!(self, Event::Rest { axles: here.axles, state });
+        for (runner, passage) in passages {
+            tell!(self, Event::Passage { axles: here.axles, runner, passage });
+        }
+        Ok(ControlFlow::Continue(()))
     }
 
-    /// Trains that the next block is expected to have at most.
-    fn expected(&self, axles: u64) -> u64 {
-        let wanted = self.blocks.wanted(axles).map(|wanted| self.control.bounded(wanted));
-        wanted.unwrap_or_else(|| self.blocks.trains_left(axles))
+    /// Tamps what is due, lets one block pass, and arrives at its end.
+    fn block(&mut self, mut here: Exchange) -> Going<Exchange> {
+        let mut work = Measured::default();
+        if self.blocks.tamped_after(here.axles).next().is_some() {
+            work.add(&here, Work::default());
+            here = going!(self.tamp(here.axles));
+        }
+        let revision = self.pair.ground.responses().revision;
+        let Done { block, measured, next } = match self.blocks.adaptive() {
+            Some((tolerance, cap)) => self.pair.adaptive(&mut here, tolerance, cap)?,
+            None => self.pair.prescribed(&mut here)?,
+        };
+        work.add(&here, Work::default());
+        let after = self.pair.ground.settlement();
+        // what the ground did may differ from what it predicted, and it may answer otherwise: the passages ahead are lost then
+        let same = |next: &Exchange| next.settlement == after && self.pair.ground.responses().revision == revision;
+        let (next, lost) = if next.as_ref().is_some_and(same) { (next, None) } else { (None, next) };
+        lost.iter().for_each(|lost| work.add(lost, Work::default()));
+        let measured = measured.with(&work);
+        let passed = block.runs.iter().filter_map(|(runner, _)| here.passage(*runner));
+        let passages: Vec<&PassageOutcome> = passed.collect();
+        let (told, before) = (Some((&block, &measured)), &here.settlement);
+        tell!(self, Event::Block { axles: here.axles, block: told, passages: &passages, before, after: &after });
+        going!(self.between(here.axles + block.axles, block.axles));
+        Ok(ControlFlow::Continue(match next {
+            Some(next) => next,
+            None => self.pair.arrive(here.axles + block.axles, after)?,
+        }))
     }
 
-    /// Tamps what is due, and arrives at the same count on the track as it lies then; `None` where a listener ended the run.
-    fn tamp(&mut self, axles: u64) -> Result<Option<Exchange>, RunError> {
-        let before = self.ground.settlement();
+    /// Tells what stands after a block of `last` axles: the settlement by each law, a checkpoint for who wants one, and how far the run is.
+    fn between(&mut self, axles: u64, last: u64) -> Going<()> {
+        self.done += 1;
+        tell!(self, Event::Laws { axles, settlement: &self.pair.ground.settlement_by_law() });
+        let (blocks, control, ground) = (self.done, self.pair.control, &self.pair.ground);
+        let state = || {
+            let state = ScheduleState::Blocks { blocks, control, ground: ground.save()? };
+            Ok(Checkpoint { clock: Clock::Axles(axles), state })
+        };
+        tell!(self, Event::Between(Between { is_last: false, state: &state }));
+        let all = self.done as u64 + self.blocks_left(axles, last) + 1;
+        tell!(self, Event::Progress { done: self.done as u64, all });
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Tamps what is due, and arrives at the same count on the track as it lies then.
+    fn tamp(&mut self, axles: u64) -> Going<Exchange> {
+        let before = self.pair.ground.settlement();
         let mut seats = Vec::new();
         for tamping in self.blocks.tamped_after(axles) {
-            let tamped = self.ground.tamp(&tamping.seats, tamping.left);
+            let tamped = self.pair.ground.tamp(&tamping.seats, tamping.left);
             tamped.map_err(|cause| RunError::node(Clock::Axles(axles), cause))?;
             seats.extend(&tamping.seats);
         }
-        self.stand(axles)?;
-        let after = self.ground.settlement();
-        let tamped = self.listener.hear(&Event::Tamped { axles, seats: &seats, before: &before, after: &after });
-        let laws = self.listener.hear(&Event::Laws { axles, settlement: &self.ground.settlement_by_law() });
-        if tamped.is_break() || laws.is_break() {
-            return Ok(None);
-        }
+        self.pair.stand(axles)?;
+        let after = self.pair.ground.settlement();
+        tell!(self, Event::Tamped { axles, seats: &seats, before: &before, after: &after });
+        tell!(self, Event::Laws { axles, settlement: &self.pair.ground.settlement_by_law() });
         let mut exchange = Exchange::new(axles, after, Vec::new());
-        self.ensure(&mut exchange, &self.blocks.block(axles, self.expected(axles)).runners())?;
-        Ok(Some(exchange))
-    }
-
-    pub fn ensure(&self, exchange: &mut Exchange, runners: &[Runner]) -> Result<(), RunError> {
-        let clock = Clock::Axles(exchange.axles);
-        let done = exchange.ensure(&self.track, runners, self.ground.forces());
-        done.map_err(|cause| RunError::node(clock, cause))
-    }
-
-    /// The settlement of every seat that these loads would leave, m.
-    pub fn predict(&self, axles: u64, loads: &[Load<'_>]) -> Result<Vec<f64>, RunError> {
-        self.ground.predict(loads).map_err(|cause| RunError::node(Clock::Axles(axles), cause))
-    }
-
-    /// Settlement of every seat, m.
-    pub fn settlement(&self) -> Vec<f64> {
-        self.ground.settlement()
-    }
-
-    /// Lets a block pass, after which the track stands on what the ground answers then. A ground that fails is left as it was.
-    pub fn advance(&mut self, axles: u64, loads: &[Load<'_>]) -> Result<(), RunError> {
-        let mark = self.ground.mark();
-        if let Err(cause) = self.ground.advance(loads) {
-            self.ground.roll_back(mark);
-            return Err(RunError::node(Clock::Axles(axles), cause));
-        }
-        self.stand(axles)
-    }
-
-    /// Lets the track take the responses of the ground.
-    fn stand(&mut self, axles: u64) -> Result<(), RunError> {
-        let stood = self.track.stand_on(self.ground.responses());
-        stood.map_err(|cause| RunError::node(Clock::Axles(axles), cause))
+        self.pair.ensure(&mut exchange, &self.blocks.block(axles, self.pair.expected(axles)).runners())?;
+        Ok(ControlFlow::Continue(exchange))
     }
 
     /// Blocks from an axle count to the end, as far as one can know.
@@ -226,18 +187,5 @@ impl Run<'_, '_> {
                 (grown as u64).min(left.div_ceil(last))
             }
         }
-    }
-
-    /// Trains of a block of each kind, in a direction for which both exchanges have a passage.
-    pub fn of_both(&self, here: &Exchange, there: &Exchange, block: &Block) -> Vec<(Runner, u64)> {
-        use crate::solvers::track::Direction::{Backward, Forward};
-        let mut runs: Vec<(Runner, u64)> = Vec::new();
-        for kind in 0..=self.blocks.others.len() {
-            let trains = block.runs.iter().filter(|(runner, _)| runner.kind == kind).map(|(_, trains)| trains).sum();
-            let both = |runner: &Runner| here.passage(*runner).is_some() && there.passage(*runner).is_some();
-            let runner = [Forward, Backward].into_iter().map(|direction| Runner { kind, direction }).find(both);
-            runs.extend(runner.filter(|_| trains > 0).map(|runner| (runner, trains)));
-        }
-        runs
     }
 }

@@ -7,13 +7,16 @@ mod blocks;
 mod equilibrium;
 mod event;
 mod exchange;
+mod executor;
 mod machine;
 mod oscillation;
+mod pair;
 mod step;
 mod tests_of_beds;
 
 pub use event::{Between, Both, Checkpoint, Event, Listener, ScheduleState};
-pub use machine::{Custom, Ending, Executor, Machine, RunError};
+pub use executor::{Custom, Executor};
+pub use machine::{Ending, Machine, RunError};
 pub use step::Measured;
 
 pub use blocks::passage_as_built;

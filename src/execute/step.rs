@@ -1,9 +1,9 @@
 //! One block: as long as the scene prescribes and its exchange stays calm, or as long as its error allows.
 
-use super::blocks::Run;
 use super::exchange::{Exchange, Work};
 use super::machine::RunError;
 use super::oscillation::{amplification, sawtooth};
+use super::pair::Pair;
 use crate::graph::Block;
 
 /// What the exchange of a block was worth, and what it took.
@@ -39,7 +39,7 @@ const CALM: f64 = 0.5;
 /// Amplification from which the second-order step grows disturbances; it never turns their sign.
 const UNSTABLE: f64 = 2.0;
 
-impl Run<'_, '_> {
+impl Pair<'_> {
     /// A block of the length that the scene prescribes, with the forces of its start. Where it overshoots it is done again
     /// in halves until it is far from that, down to one train.
     pub fn prescribed(&mut self, here: &mut Exchange) -> Result<Done, RunError> {
@@ -75,7 +75,7 @@ impl Run<'_, '_> {
     /// How much more the trains of a block from `here` would settle with the forces of `there`, m: those of each kind all in
     /// a direction that was run at both. `None` where none was.
     fn change(&self, here: &Exchange, there: &Exchange, block: &Block) -> Result<Option<Vec<f64>>, RunError> {
-        let runs = self.of_both(here, there, block);
+        let runs = self.runs_of_both(here, there, block);
         if runs.is_empty() {
             return Ok(None);
         }

@@ -65,7 +65,7 @@ impl Test<'_, '_> {
         let seed = self.bed.bed.seed().wrapping_add(self.done.len() as u64);
         let ready = self.bed.bed.ready(seed).map_err(|cause| at(0, NodeError::Bed(cause)))?;
         let mut going_on = ControlFlow::Continue(());
-        let found = self.machine.beds().bed(&ready.recipe, |progress| {
+        let found = self.machine.beds.bed(&ready.recipe, |progress| {
             if going_on.is_continue() {
                 going_on = self.listener.hear(&Event::Packing(progress));
             }

@@ -4,8 +4,8 @@ use super::Figure;
 use super::chart::{Axis, Chart, Mark, Series};
 use super::counts::{self, Count};
 use super::number::{shown_unit, significant, whole};
-use super::scene::WIDTH;
 use super::svg::{Frame, Svg};
+use super::view::WIDTH;
 use crate::results::{RailRow, Run, SleeperRow};
 use crate::scenario::{Loading, Scenario};
 

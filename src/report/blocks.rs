@@ -3,8 +3,8 @@
 use super::Figure;
 use super::chart::{Axis, Chart, Mark, Series};
 use super::number::significant;
-use super::scene::WIDTH;
 use super::svg::{Frame, Svg};
+use super::view::WIDTH;
 use crate::results::{BlockRow, Run};
 
 const HEIGHT: f64 = 220.0;

@@ -2,9 +2,9 @@
 
 use super::layers::class;
 use super::number::plain;
-use super::scene::{WIDTH, seat_depth};
 use super::svg::{Anchor, Frame, Svg};
 use super::symbols::{draw_dimension, draw_stones};
+use super::view::{WIDTH, seat_depth};
 use crate::scenario::{Groundwork, Scenario, Seat, Section, SleeperBody};
 
 /// Sections side by side, at most.

@@ -1,7 +1,8 @@
 //! A scene before it runs, to be looked at: the track to scale, its layers, its cross-sections, their gradings and their grains.
 
-use super::scene::{WIDTH, draw_scene};
+use super::scene::draw_scene;
 use super::svg::Svg;
+use super::view::WIDTH;
 use super::{cross_section, gradings, layers, templates};
 use crate::scenario::Scenario;
 

@@ -2,8 +2,8 @@
 
 use super::chart::{Axis, Chart, Mark, Series};
 use super::number::plain;
-use super::scene::WIDTH;
 use super::svg::{Anchor, Frame, Svg};
+use super::view::WIDTH;
 use crate::scenario::{Grading, Scenario};
 
 const HEIGHT: f64 = 300.0;

@@ -1,9 +1,9 @@
 //! The layers along the track, to scale: each transition from below the rail down to the lowest layer.
 
 use super::number::plain;
-use super::scene::{View, scale, seat_depth};
 use super::svg::{Anchor, Frame, Svg, text_width};
 use super::symbols::draw_stones;
+use super::view::{View, scale, seat_depth};
 use crate::scenario::{ApproachSlab, Groundwork, Layer, Material, Scenario, Section};
 
 const MARGIN: f64 = 26.0;

@@ -39,9 +39,11 @@ mod stiffness;
 mod study;
 mod svg;
 mod symbols;
+mod table;
 mod templates;
 mod thin;
 mod vehicle;
+mod view;
 mod wheels;
 mod work_precision;
 

@@ -6,8 +6,9 @@ use super::chart::{Axis, Chart, Mark, Series};
 use super::number::{plain, significant, whole};
 use super::packed_readings as readings;
 use super::page::{opening, picture};
-use super::scene::WIDTH;
 use super::svg::{Frame, Svg, escape};
+use super::table::{TABLE_END, row, table_head};
+use super::view::WIDTH;
 use crate::results::{BedSummary, Grain, Link};
 use crate::solvers::granular::grains::Sample;
 use crate::solvers::granular::{Domain, Wall};
@@ -181,24 +182,4 @@ impl BedPage<'_> {
             svg: svg.finish(WIDTH, HEIGHT + 12.0, "Gradings asked and reached"),
         }
     }
-}
-
-pub(super) const TABLE_END: &str = "</tbody></table></div>";
-
-pub(super) fn table_head(title: &str, caption: &str, names: &[&str]) -> String {
-    let mut html = format!(
-        "<section><h2>{title}</h2><p class=\"caption\">{caption}</p><div class=\"scroll\"><table class=\"wide\"><thead><tr>"
-    );
-    for (k, name) in names.iter().enumerate() {
-        let _ = write!(html, "<th{}>{}</th>", if k == 0 { " class=\"text\"" } else { "" }, escape(name));
-    }
-    html + "</tr></thead><tbody>"
-}
-
-pub(super) fn row(html: &mut String, name: &str, cells: &[String]) {
-    let _ = write!(html, "<tr><td class=\"text\">{}</td>", escape(name));
-    for cell in cells {
-        let _ = write!(html, "<td>{}</td>", escape(cell));
-    }
-    *html += "</tr>";
 }

@@ -3,11 +3,11 @@
 use super::Figure;
 use super::chart::{Axis, Chart, Mark, Series};
 use super::number::{plain, significant, whole};
-use super::packed::{TABLE_END, row, table_head};
 use super::page::picture;
 use super::panels::{Names, panels};
-use super::scene::WIDTH;
 use super::svg::{Anchor, Frame, Svg};
+use super::table::{TABLE_END, row, table_head};
+use super::view::WIDTH;
 use crate::results::{BedReadings, Directions, PlateTest, ProfileRow};
 use std::f64::consts::PI;
 

@@ -2,8 +2,8 @@
 
 use super::Figure;
 use super::chart::{Axis, Chart, Mark, Series};
-use super::scene::WIDTH;
 use super::svg::{Frame, Svg};
+use super::view::WIDTH;
 
 const GAP: f64 = 14.0;
 

@@ -2,8 +2,8 @@
 //! make.
 
 use super::chart::{Axis, Chart, Mark, Series};
-use super::scene::WIDTH;
 use super::svg::{Anchor, Frame, Svg};
+use super::view::WIDTH;
 
 /// Clumps of so many pebbles, averaged over surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]

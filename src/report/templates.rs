@@ -2,8 +2,8 @@
 
 use super::grain::{Look, draw_pebbles, draw_surface};
 use super::number::plain;
-use super::scene::WIDTH;
 use super::svg::{Anchor, Svg};
+use super::view::WIDTH;
 use crate::scenario::{Granular, Scenario, Surfaces};
 use crate::solvers::granular::clump::Pebble;
 use crate::solvers::granular::grains::{self, ClumpShape, Fitted, GrainForm, Misfit};

@@ -1,9 +1,9 @@
 //! A train on the drawing: wheels and bogies where a passage starts, the car body as a symbol.
 
 use super::number::plain;
-use super::scene::View;
 use super::svg::{Anchor, Frame, Svg};
 use super::symbols::draw_spring;
+use super::view::View;
 use crate::scenario::{Direction, Scenario, Traffic, Vehicle};
 
 /// Heights above the rail's top, m: floor and roof of the car body.

@@ -23,9 +23,19 @@ impl ResultsError {
         StoreError::damaged(path, cause).into()
     }
 
+    /// A number that no file may hold.
+    pub(super) fn not_finite(table: &str, column: &str, row: usize) -> Self {
+        ResultsError::NotFinite { table: table.to_owned(), column: column.to_owned(), row }
+    }
+
     pub(crate) fn unwritable(path: &Path, cause: impl fmt::Display) -> Self {
         StoreError::unwritable(path, cause).into()
     }
+}
+
+/// Refuses a number that is not finite; `row` counts from 1.
+pub(super) fn check_finite(table: &str, column: &str, row: usize, value: f64) -> Result<(), ResultsError> {
+    if value.is_finite() { Ok(()) } else { Err(ResultsError::not_finite(table, column, row)) }
 }
 
 impl From<StoreError> for ResultsError {

@@ -4,6 +4,7 @@
 //! goes into `timings.json`, which is no part of the [`Run`]. A number that is not finite is refused before any file
 //! is touched.
 
+use super::error::check_finite;
 use super::histories::{self, HISTORIES};
 use super::{ResultsError, Row, Run, write_atomically};
 use serde::Serialize;
@@ -95,14 +96,6 @@ pub fn read_timings(directory: &Path) -> Result<BTreeMap<String, f64>, ResultsEr
     if path.exists() { read_json(&path) } else { Ok(BTreeMap::new()) }
 }
 
-pub(super) fn check_finite(table: &str, column: &str, row: usize, value: f64) -> Result<(), ResultsError> {
-    if value.is_finite() { Ok(()) } else { Err(not_finite(table, column, row)) }
-}
-
-fn not_finite(table: &str, column: &str, row: usize) -> ResultsError {
-    ResultsError::NotFinite { table: table.to_owned(), column: column.to_owned(), row }
-}
-
 fn summary_json(run: &Run, directory: &Path) -> Result<Vec<u8>, ResultsError> {
     let path = directory.join(SUMMARY);
     for (name, scalar) in &run.summary.scalars {
@@ -156,7 +149,7 @@ pub(super) fn table<R: Row>(rows: &[R], directory: &Path) -> Result<Vec<u8>, Res
 fn check_row<R: Row>(row: &R, number: usize, path: &Path) -> Result<(), ResultsError> {
     let fields = serde_json::to_value(row).map_err(|cause| ResultsError::unwritable(path, cause))?;
     match R::COLUMNS.iter().find(|column| fields[**column].is_null()) {
-        Some(column) => Err(not_finite(R::FILE, column, number)),
+        Some(column) => Err(ResultsError::not_finite(R::FILE, column, number)),
         None => Ok(()),
     }
 }

@@ -3,7 +3,7 @@
 //! Columns `axles` INT64, `time_s` DOUBLE, `quantity` UTF8, `id` UTF8, `x_m` DOUBLE, `value` DOUBLE, `train` UTF8; dictionaries
 //! where values repeat, compressed with Snappy. Equal rows make equal bytes: nothing of the file depends on the clock.
 
-use super::files::check_finite;
+use super::error::check_finite;
 use super::{HistoryRow, ResultsError};
 use bytes::Bytes;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};

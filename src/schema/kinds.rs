@@ -1,50 +1,9 @@
 //! The table of kinds and fields. Ranges are in the unit of their field; `per` names the basis of the range first.
 
-use super::{Alternative, Basis, Field, Form, Kind, Measure, Need, Role, Varies, Word};
+use super::fields::*;
+use super::{Alternative, Basis, Field, Form, Kind, Measure, Role, Word};
 use super::{materials, results, traffic};
 
-const fn field(name: &'static str, form: Form, need: Need, doc: &'static str) -> Field {
-    Field { name, form, need, doc, unread: false }
-}
-/// A field that no run reads yet.
-pub(super) const fn unread(field: Field) -> Field {
-    Field { unread: true, ..field }
-}
-pub(super) const fn required(name: &'static str, form: Form, doc: &'static str) -> Field {
-    field(name, form, Need::Required, doc)
-}
-pub(super) const fn optional(name: &'static str, form: Form, doc: &'static str) -> Field {
-    field(name, form, Need::Optional, doc)
-}
-pub(super) const fn default(name: &'static str, form: Form, text: &'static str, doc: &'static str) -> Field {
-    field(name, form, Need::Default(text), doc)
-}
-pub(super) const fn way(name: &'static str, form: Form, doc: &'static str) -> Field {
-    field(name, form, Need::Alternative, doc)
-}
-
-pub(super) const fn measure(unit: &'static str, min: f64, max: f64) -> Measure {
-    Measure { unit, min, max, basis: None, varies: Varies::No }
-}
-pub(super) const fn number(unit: &'static str, min: f64, max: f64) -> Form {
-    Form::Number(measure(unit, min, max))
-}
-pub(super) const fn per(unit: &'static str, min: f64, max: f64, basis: &'static Basis) -> Form {
-    Form::Number(Measure { basis: Some(basis), ..measure(unit, min, max) })
-}
-/// A number that may vary along the track.
-pub(super) const fn along(form: Form) -> Form {
-    varying(form, Varies::Yes)
-}
-const fn varying(form: Form, varies: Varies) -> Form {
-    match form {
-        Form::Number(m) => Form::Number(Measure { varies, ..m }),
-        other => other,
-    }
-}
-pub(super) const fn word(name: &'static str, doc: &'static str) -> Word {
-    Word { name, doc, arguments: &[], planned: false }
-}
 const fn planned(name: &'static str) -> Word {
     Word { name, doc: "not in this version", arguments: &[], planned: true }
 }
@@ -56,14 +15,6 @@ const fn side(name: &'static str, doc: &'static str) -> Word {
     )];
     Word { name, doc, arguments: SEATS, planned: false }
 }
-pub(super) const fn either(ways: &'static [&'static [&'static str]]) -> Alternative {
-    Alternative { ways, default: None, exclusive: false }
-}
-/// Ways that say different things: one of them, and no other.
-pub(super) const fn one_of(ways: &'static [&'static [&'static str]]) -> Alternative {
-    Alternative { exclusive: true, ..either(ways) }
-}
-
 /// What scatters along the track. Its first argument, the mean, and `sd` are of the field that varies.
 pub static RANDOM: Word = Word {
     name: "random",
@@ -90,9 +41,7 @@ pub static RANDOM: Word = Word {
 const SLEEPER_OR_SEAT: Basis = Basis { names: &[("sleeper", 0.5), ("seat", 1.0)], assumed: Some("sleeper") };
 const SEAT_OR_SLEEPER: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: None };
 const RAIL_OR_TRACK: Basis = Basis { names: &[("rail", 1.0), ("track", 0.5)], assumed: None };
-pub(super) const SEAT: Basis = Basis { names: &[("seat", 1.0), ("sleeper", 0.5)], assumed: Some("seat") };
 
-pub(super) const NONE: &[Word] = &[word("none", "absent")];
 const AUTO: &[Word] = &[word("auto", "chosen by the planner")];
 const USP: Form = Form::OneOf(&[Form::Object("usp"), Form::Words(NONE)]);
 const SEATING: Form = Form::OneOf(&[Form::Object("seating"), Form::Words(NONE)]);
@@ -106,8 +55,6 @@ const SUPPORT: Form = Form::OneOf(&[
     Form::Object("support"),
     Form::Words(&[word("rigid", "a seat that does not move"), word("none", "absent")]),
 ]);
-pub(super) const AXLES_OR_MASS: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 1e-6, 1e4)]);
-pub(super) const AXLE_COUNT: Form = number("axles", 0.0, 1e9);
 const TRACK_OR_RAIL: Basis = Basis { names: &[("track", 0.5), ("rail", 1.0)], assumed: Some("track") };
 const LAYERS: Form = Form::Pairs {
     key: &Form::OneOf(&[Form::Object("granular"), Form::Object("soil")]),

@@ -1,6 +1,6 @@
 //! The words of `law.form`: the settlement laws with their arguments. Letters are those of the publications.
 
-use super::kinds::{SEAT, default, number, per, required, word};
+use super::fields::{SEAT, default, number, per, required, word};
 use super::{Field, Form, Word};
 
 const fn law(name: &'static str, doc: &'static str, arguments: &'static [Field]) -> Word {

@@ -1,6 +1,6 @@
 //! Kinds of what lies under the sleepers: gradings, granular materials, soils.
 
-use super::kinds::{NONE, along, default, either, measure, number, optional, per, required, unread, way, word};
+use super::fields::{NONE, along, default, either, measure, number, optional, per, required, unread, way, word};
 use super::{Basis, Form, Kind, Role, Word};
 
 /// A contact is two particles in series.

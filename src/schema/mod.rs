@@ -3,6 +3,7 @@
 //! Checking, defaults and `trackbed docs` all read this table; a field is added in one place, `kinds.rs`.
 
 mod docs;
+mod fields;
 mod kinds;
 mod laws;
 mod materials;

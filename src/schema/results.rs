@@ -1,6 +1,6 @@
 //! Kinds of what is asked of a scene: records, expectations, studies.
 
-use super::kinds::{AXLE_COUNT, default, number, optional, required, word};
+use super::fields::{AXLE_COUNT, default, number, optional, required, word};
 use super::{Field, Form, Kind, Role, Word};
 
 const AXLES_MASS_OR_CYCLES: Form = Form::OneOf(&[AXLE_COUNT, number("MGT", 0.0, 1e4), number("cycles", 0.0, 1e9)]);

@@ -1,6 +1,6 @@
 //! Kinds of what loads the track: vehicles, trains, traffic, test loads.
 
-use super::kinds::{
+use super::fields::{
     AXLES_OR_MASS, along, default, either, measure, number, one_of, optional, per, required, unread, way, word,
 };
 use super::{Basis, Form, Kind, Measure, Role, Word};

@@ -5,8 +5,6 @@ use crate::diag::Diagnostic;
 use crate::execute::Executor;
 use crate::results::{self, RunRecorder, Tables, TestTables, Verdict};
 use crate::scenario::Study;
-use crate::scenario::response::Expectation;
-use crate::syntax::tree::Comparison;
 use serde::{Deserialize, Serialize};
 
 /// A point that has run.
@@ -48,16 +46,6 @@ impl PointResult {
         let runs: Result<Vec<OneRun>, PointOutcome> = repeats.iter().map(|repeat| repeat.0.clone()).collect();
         PointResult { number: point.number, outcome: runs.map_or_else(|failed| failed, |runs| gathered(&runs)) }
     }
-}
-
-/// What a comparison that needs no run says; `None` for the others.
-pub(super) fn condition(comparison: &Expectation) -> Option<bool> {
-    if comparison.operands.iter().any(|e| e.needs_a_run()) {
-        return None;
-    }
-    let values: Vec<f64> = comparison.operands.iter().map(results::known).collect::<Option<_>>()?;
-    let holds = |(pair, operator): (&[f64], &Comparison)| results::holds(pair[0], *operator, pair[1]);
-    Some(values.windows(2).zip(&comparison.operators).all(holds))
 }
 
 /// What one run says: what is measured, and whether each constraint is met.

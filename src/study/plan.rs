@@ -2,15 +2,15 @@
 //! other. What stands against points is said once, with how many it concerns and the values of the first.
 
 use super::design::{Level, design};
-use super::perform::condition;
 use crate::check::{Modules, Override};
 use crate::compile::{Compiled, compile, fingerprint};
 use crate::diag::{Code, Diagnostic, FileId, Label, Severity, Sources, Span};
 use crate::graph::Graph;
 use crate::results;
-use crate::scenario::response::Measure;
+use crate::scenario::response::{Expectation, Measure};
 use crate::scenario::{Study, Values};
 use crate::store::sha256;
+use crate::syntax::tree::Comparison;
 use crate::units::number;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -331,4 +331,14 @@ impl Finding {
 pub fn values(study: &Study, levels: &[Level]) -> String {
     let lines = study.axes.iter().zip(levels).map(|(axis, level)| format!("{} = {}", axis.path, level.text));
     lines.collect::<Vec<_>>().join(", ")
+}
+
+/// What a comparison that needs no run says; `None` for the others.
+fn condition(comparison: &Expectation) -> Option<bool> {
+    if comparison.operands.iter().any(|e| e.needs_a_run()) {
+        return None;
+    }
+    let values: Vec<f64> = comparison.operands.iter().map(results::known).collect::<Option<_>>()?;
+    let holds = |(pair, operator): (&[f64], &Comparison)| results::holds(pair[0], *operator, pair[1]);
+    Some(values.windows(2).zip(&comparison.operators).all(holds))
 }

@@ -1,6 +1,7 @@
 //! The directory of tests of packed beds.
 
-use super::super::files::{check_finite, json, table};
+use super::super::error::check_finite;
+use super::super::files::{json, table};
 use super::super::{NamedBytes, ResultsError, Row, bodies_vtk, contacts_vtk};
 use super::view::VIEW;
 use super::{BedTestsView, CycleRow, LoopRow, SensorRow, SpecimenRow, VolumeRow};

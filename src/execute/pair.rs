@@ -1,0 +1,90 @@
+//! The track and the ground under it on their way through the blocks: what a block may ask of both, whatever sets its length.
+
+use super::exchange::Exchange;
+use super::machine::RunError;
+use crate::graph::{Block, Blocks, Clock, Control, Runner, TrackNode};
+use crate::nodes::{Load, Substructure, Superstructure, TrackSystem};
+use crate::solvers::track::Direction::{Backward, Forward};
+use std::ops::Range;
+
+/// Stretches of neighbouring seats that can settle.
+pub(super) fn settling(track: &TrackNode) -> Vec<Range<usize>> {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for (i, _) in track.seats.iter().enumerate().filter(|(_, seat)| seat.is_ballasted()) {
+        match runs.last_mut() {
+            Some(run) if run.end == i => run.end += 1,
+            _ => runs.push(i..i + 1),
+        }
+    }
+    runs
+}
+
+/// A track on its ground.
+pub(super) struct Pair<'a> {
+    pub blocks: &'a Blocks,
+    pub track: TrackSystem<'a>,
+    pub ground: Box<dyn Substructure + 'a>,
+    pub control: Control,
+    /// Stretches of neighbouring seats that can settle.
+    pub runs: Vec<Range<usize>>,
+}
+
+impl Pair<'_> {
+    /// The track after so many axles on this settlement (m), with the passages that the next block is expected to need.
+    pub fn arrive(&self, axles: u64, settlement: Vec<f64>) -> Result<Exchange, RunError> {
+        let due = self.blocks.due(axles, self.expected(axles));
+        let mut exchange = Exchange::new(axles, settlement, due.shown);
+        self.ensure(&mut exchange, &due.passages)?;
+        Ok(exchange)
+    }
+
+    /// Trains that the next block is expected to have at most.
+    pub fn expected(&self, axles: u64) -> u64 {
+        let wanted = self.blocks.wanted(axles).map(|wanted| self.control.bounded(wanted));
+        wanted.unwrap_or_else(|| self.blocks.trains_left(axles))
+    }
+
+    pub fn ensure(&self, exchange: &mut Exchange, runners: &[Runner]) -> Result<(), RunError> {
+        let clock = Clock::Axles(exchange.axles);
+        let done = exchange.ensure(&self.track, runners, self.ground.forces());
+        done.map_err(|cause| RunError::node(clock, cause))
+    }
+
+    /// The settlement of every seat that these loads would leave, m.
+    pub fn predict(&self, axles: u64, loads: &[Load<'_>]) -> Result<Vec<f64>, RunError> {
+        self.ground.predict(loads).map_err(|cause| RunError::node(Clock::Axles(axles), cause))
+    }
+
+    /// Settlement of every seat, m.
+    pub fn settlement(&self) -> Vec<f64> {
+        self.ground.settlement()
+    }
+
+    /// Lets a block pass, after which the track stands on what the ground answers then. A ground that fails is left as it was.
+    pub fn advance(&mut self, axles: u64, loads: &[Load<'_>]) -> Result<(), RunError> {
+        let mark = self.ground.mark();
+        if let Err(cause) = self.ground.advance(loads) {
+            self.ground.roll_back(mark);
+            return Err(RunError::node(Clock::Axles(axles), cause));
+        }
+        self.stand(axles)
+    }
+
+    /// Lets the track take the responses of the ground.
+    pub fn stand(&mut self, axles: u64) -> Result<(), RunError> {
+        let stood = self.track.stand_on(self.ground.responses());
+        stood.map_err(|cause| RunError::node(Clock::Axles(axles), cause))
+    }
+
+    /// Trains of a block of each kind, in a direction for which both exchanges have a passage.
+    pub fn runs_of_both(&self, here: &Exchange, there: &Exchange, block: &Block) -> Vec<(Runner, u64)> {
+        let mut runs: Vec<(Runner, u64)> = Vec::new();
+        for kind in 0..=self.blocks.others.len() {
+            let trains = block.runs.iter().filter(|(runner, _)| runner.kind == kind).map(|(_, trains)| trains).sum();
+            let both = |runner: &Runner| here.passage(*runner).is_some() && there.passage(*runner).is_some();
+            let runner = [Forward, Backward].into_iter().map(|direction| Runner { kind, direction }).find(both);
+            runs.extend(runner.filter(|_| trains > 0).map(|runner| (runner, trains)));
+        }
+        runs
+    }
+}
