@@ -5,8 +5,8 @@
 //! closed: an item starts at column 0, no entry of a list starts with `name =`, and a closing bracket that is first
 //! on its line stands under the line that opened it.
 
+use super::draft::Draft;
 use super::limits;
-use super::prepare::Draft;
 use super::token::{Kind, Token, partner};
 use crate::diag::{Code, Diagnostic};
 

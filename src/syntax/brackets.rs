@@ -4,8 +4,8 @@
 use pest::Parser;
 use pest::iterators::Pair;
 
-use super::build::{Builder, first_line};
-use super::parse::{Grammar, Rule};
+use super::builder::{Builder, first_line};
+use super::grammar::{Grammar, Rule};
 use super::token::{self, Kind};
 use super::tree::{Entry, Field, Value, ValueKind};
 use super::value::Told;

@@ -2,47 +2,14 @@
 
 use pest::iterators::{Pair, Pairs};
 
+use super::builder::{Builder, first_line};
 use super::explain::Explained;
+use super::grammar::Rule;
 use super::limits;
-use super::parse::Rule;
-use super::prepare::Prepared;
 use super::tree::{Declaration, Field, Item, Let, Name, Path, Use, Value, ValueKind};
-use crate::diag::{Code, Diagnostic, Span};
-
-pub(super) struct Builder<'p> {
-    pub prepared: &'p Prepared<'p>,
-    pub diagnostics: &'p mut Vec<Diagnostic>,
-    /// Operations around the current place: the tree is as deep as they nest.
-    pub operations: usize,
-}
+use crate::diag::{Code, Diagnostic};
 
 impl<'p> Builder<'p> {
-    pub fn new(prepared: &'p Prepared<'p>, diagnostics: &'p mut Vec<Diagnostic>) -> Self {
-        Builder { prepared, diagnostics, operations: 0 }
-    }
-
-    pub fn report(&mut self, diagnostic: Diagnostic) {
-        if self.diagnostics.len() < limits::DIAGNOSTICS {
-            self.diagnostics.push(diagnostic);
-        }
-    }
-
-    pub fn is_full(&self) -> bool {
-        self.diagnostics.len() >= limits::DIAGNOSTICS
-    }
-
-    pub fn text(&self, start: usize, end: usize) -> &'p str {
-        &self.prepared.text[start..end]
-    }
-
-    pub fn span(&self, start: usize, end: usize) -> Span {
-        self.prepared.span(start, end)
-    }
-
-    pub fn span_of(&self, pair: &Pair<Rule>) -> Span {
-        self.span(pair.as_span().start(), pair.as_span().end())
-    }
-
     pub fn file(&mut self, pairs: Pairs<'p, Rule>) -> Vec<Item> {
         let mut items = Vec::new();
         let mut declarations = 0;
@@ -444,9 +411,4 @@ impl<'p> Builder<'p> {
     fn trimmed(&self, start: usize, end: usize) -> usize {
         start + self.text(start, end).trim_end().len()
     }
-}
-
-pub(super) fn first_line(text: &str) -> &str {
-    let line = text.lines().next().unwrap_or("");
-    line.split("//").next().unwrap_or("").trim_end().trim_end_matches(',')
 }

@@ -5,8 +5,8 @@ use pest::Parser;
 use pest::error::{Error, ErrorVariant, InputLocation};
 use pest::iterators::Pair;
 
-use super::build::{Builder, first_line};
-use super::parse::{Grammar, Rule};
+use super::builder::{Builder, first_line};
+use super::grammar::{Grammar, Rule};
 use super::token::{self, Kind, Token};
 use super::tree::{Name, Path};
 use crate::diag::{Code, Diagnostic};

@@ -3,7 +3,7 @@
 //!
 //! Only signs that are never right are dealt with here; what is wrong by its place alone is left to the grammar.
 
-use super::prepare::Draft;
+use super::draft::Draft;
 use super::token::{Kind, Token};
 use crate::diag::{Code, Diagnostic};
 

@@ -5,8 +5,9 @@
 
 use pest::Parser;
 
+use super::grammar::{Grammar, Rule};
 use super::layout::{self, Line};
-use super::parse::{Grammar, Rule, parse};
+use super::parse::parse;
 use super::token::{Kind, tokens};
 use crate::diag::{Diagnostic, FileId, has_errors};
 

@@ -1,7 +1,7 @@
 //! What to write instead of a spelling that other languages and spreadsheets have, where it shows at one sign or word.
 
-use super::build::Builder;
-use super::parse::Rule;
+use super::builder::Builder;
+use super::grammar::Rule;
 use super::token::{Kind, Token};
 
 impl Builder<'_> {

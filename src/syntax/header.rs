@@ -2,7 +2,7 @@
 //! reported once, and the text becomes what was meant before its brackets are looked at.
 
 use super::balance::starts_field;
-use super::prepare::Draft;
+use super::draft::Draft;
 use super::token::{Kind, Token};
 use crate::diag::{Code, Diagnostic};
 

@@ -7,10 +7,13 @@
 mod balance;
 mod brackets;
 mod build;
+mod builder;
 mod decode;
+mod draft;
 mod explain;
 mod foreign;
 mod format;
+mod grammar;
 mod habits;
 mod header;
 mod layout;

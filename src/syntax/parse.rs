@@ -1,17 +1,13 @@
 //! Reads a file whole: one tree, and every mistake of the text.
 
 use pest::Parser;
-use pest_derive::Parser;
 
-use super::build::Builder;
+use super::builder::Builder;
+use super::grammar::{Grammar, Rule};
 use super::limits;
 use super::prepare::prepare;
 use super::tree::Tree;
 use crate::diag::{self, Code, Diagnostic, FileId};
-
-#[derive(Parser)]
-#[grammar = "../grammar/track.pest"]
-pub(super) struct Grammar;
 
 /// Depths of brackets need a deep stack, and a caller's may be shallow.
 const STACK: usize = 32 << 20;

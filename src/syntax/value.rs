@@ -2,9 +2,9 @@
 
 use pest::iterators::Pair;
 
-use super::build::Builder;
+use super::builder::Builder;
+use super::grammar::Rule;
 use super::limits;
-use super::parse::Rule;
 use super::tree::{Argument, BinaryOp, Comparison, Entry, UnitText, Value, ValueKind};
 use crate::diag::{Code, Diagnostic, Span};
 
