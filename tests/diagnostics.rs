@@ -58,11 +58,11 @@ fn two_files() -> (Sources, Vec<Diagnostic>) {
     let library = sources.add("std/soils.track", "// soils\nsoil a { }\n", true);
     let diagnostics = vec![
         Diagnostic::new(Code::E0202, "`a` is declared twice")
-            .at(Span::new(main, 13, 14), "declared again here")
-            .at(Span::new(main, 4, 7), "brought in here")
-            .at(Span::new(library, 14, 15), "first declared here")
+            .label(Span::new(main, 13, 14), "declared again here")
+            .label(Span::new(main, 4, 7), "brought in here")
+            .label(Span::new(library, 14, 15), "first declared here")
             .help("choose another name"),
-        Diagnostic::new(Code::E0412, "`a` is used by nothing").at(Span::new(main, 13, 14), ""),
+        Diagnostic::new(Code::E0412, "`a` is used by nothing").label(Span::new(main, 13, 14), ""),
         Diagnostic::new(Code::E0601, "nothing to run").severity(Severity::Note),
     ];
     (sources, diagnostics)
@@ -124,7 +124,7 @@ proptest! {
         for (other, start, end, far, label) in labels {
             let place = |at: usize| if far { at * 50_000_000 } else { at };
             let span = Span { file: trackbed::diag::FileId(file.0 + other), start: place(start) as u32, end: place(end) as u32 };
-            diagnostic = diagnostic.at(span, label);
+            diagnostic = diagnostic.label(span, label);
         }
         let diagnostics = [diagnostic];
         let shown = human(&diagnostics, &sources, colour, width);

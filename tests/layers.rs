@@ -172,8 +172,8 @@ fn a_wedge_keeps_the_depth() {
     assert_eq!((work.start, work.end, work.layers.len()), (-12.0, 0.0, 3));
     for x in [-12.0, -7.3, -0.6, 0.0] {
         let treated = 1.2 * (x + 12.0) / 12.0;
-        assert!((work.layers[1].thickness.at(x) - treated).abs() < 1e-9);
-        assert!((work.layers[2].thickness.at(x) - (2.0 - treated)).abs() < 1e-9);
+        assert!((work.layers[1].thickness.value_at(x) - treated).abs() < 1e-9);
+        assert!((work.layers[2].thickness.value_at(x) - (2.0 - treated)).abs() < 1e-9);
     }
     for number in [-20, -13, -7, -1] {
         let treated = 1.2 * (seat(&scenario, number).x + 12.0) / 12.0;

@@ -1,7 +1,7 @@
 //! The house rules of `ARCHITECTURE.md`: every folder imports from lower floors only, and the tree in that page is the
 //! tree in `src/`.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -13,10 +13,10 @@ const FLOORS: &[(&str, u32)] = &[
     ("solvers", 1),
     ("syntax", 2),
     ("schema", 2),
+    ("graph", 2),
     ("scenario", 3),
     ("store", 3),
     ("check", 4),
-    ("graph", 4),
     ("lower", 5),
     ("nodes", 5),
     ("lint", 6),
@@ -34,9 +34,6 @@ const FLOORS: &[(&str, u32)] = &[
 /// What is planned and run knows SI numbers and no word of the language.
 const KNOW_NO_SCENE: &[&str] = &["graph", "nodes", "execute"];
 const SCENE: &[&str] = &["scenario", "schema", "syntax", "check"];
-
-/// To be deleted with the first commit that gives `store` files of its own: until then it re-exports what `results` holds.
-const ALLOWED_UNTIL_STORE_IS_THERE: &[(&str, &str)] = &[("store", "results")];
 
 /// Solvers that know `linalg` and nothing else of the program, each other neither.
 const SOLVERS: &[&str] = &["track", "granular", "continuum", "superstructure", "settlement", "foundation"];
@@ -102,8 +99,7 @@ fn folders_import_from_lower_floors_only() {
                 broken.push(format!("{}: `crate::{folder}` is no folder: {own} imports lib.rs", relative.display()));
                 continue;
             };
-            let allowed = ALLOWED_UNTIL_STORE_IS_THERE.contains(&(own.as_str(), folder.as_str()));
-            if folder != *own && other >= own_floor && !allowed {
+            if folder != *own && other >= own_floor {
                 broken.push(format!("{}: {own} ({own_floor}) imports {folder} ({other})", relative.display()));
             }
             let solver = SOLVERS.contains(&parts[1].trim_end_matches(".rs"));
@@ -187,4 +183,116 @@ fn files_hold_one_idea() {
         let first = fs::read_to_string(&path).unwrap();
         assert!(first.starts_with("//!"), "{} does not say what it is for", path.display());
     }
+}
+
+/// The name of a function alone does not say what `Length::of` or `profile.at` gives.
+#[test]
+fn names_say_what_they_are() {
+    for path in sources(Path::new("src")) {
+        let text = fs::read_to_string(&path).unwrap();
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        for (number, line) in lines.iter().enumerate() {
+            let place = format!("{}:{}", path.display(), number + 1);
+            for word in ["of", "at"] {
+                let named = [format!("pub fn {word}("), format!("pub fn {word}<"), format!("pub(super) fn {word}(")];
+                assert!(
+                    !named.iter().any(|name| line.contains(name.as_str())),
+                    "{place} has a function called `{word}`"
+                );
+            }
+            let first = line.starts_with("///") && (number == 0 || !lines[number - 1].starts_with("///"));
+            let subject = line.trim_start_matches('/').split_whitespace().next().unwrap_or("");
+            assert!(
+                !first || !["Of", "That", "As"].contains(&subject),
+                "{place} does not say its subject first: {line}"
+            );
+        }
+    }
+}
+
+/// Files import each other in one direction, so that each can be read on its own. Parts of one module (`mod.rs` and its files) are read together.
+#[test]
+fn files_have_no_circles() {
+    let files: Vec<PathBuf> = sources(Path::new("src"));
+    let module = |path: &Path| -> Vec<String> {
+        let relative = path.strip_prefix("src").unwrap().with_extension("");
+        let mut names: Vec<String> =
+            relative.components().map(|c| c.as_os_str().to_string_lossy().into_owned()).collect();
+        names.retain(|name| name != "mod" && name != "lib");
+        names
+    };
+    let modules: BTreeSet<Vec<String>> = files.iter().map(|path| module(path)).collect();
+    let mut edges: BTreeMap<Vec<String>, BTreeSet<Vec<String>>> = BTreeMap::new();
+    for path in &files {
+        let own = module(path);
+        let used = used(&code(path), &own);
+        let leaves = used.iter().filter_map(|names| {
+            (1..=names.len()).rev().map(|n| names[..n].to_vec()).find(|names| modules.contains(names))
+        });
+        // a folder stands for all its files: only paths to a file of its own count
+        let leaves = leaves.filter(|names| *names != own && !is_folder(names));
+        let leaves = leaves.collect();
+        edges.insert(own, leaves);
+    }
+    for start in edges.keys().filter(|names| !is_folder(names)) {
+        let (mut seen, mut open) = (BTreeSet::new(), vec![start]);
+        while let Some(names) = open.pop() {
+            for next in edges.get(names).into_iter().flatten() {
+                assert!(next != start, "`{}` and `{}` import each other", start.join("::"), names.join("::"));
+                if seen.insert(next) {
+                    open.push(next);
+                }
+            }
+        }
+    }
+}
+
+fn is_folder(names: &[String]) -> bool {
+    Path::new("src").join(names.iter().collect::<PathBuf>()).is_dir()
+}
+
+/// Absolute module paths of what a file imports, as far as its `use` lines and paths name them.
+fn used(code: &str, own: &[String]) -> Vec<Vec<String>> {
+    let mut found = Vec::new();
+    for statement in code.split(';').filter_map(|part| part.rsplit_once("use ").map(|(_, path)| path.trim())) {
+        let (mut base, mut rest) = (Vec::new(), statement);
+        if let Some(path) = rest.strip_prefix("crate::") {
+            rest = path;
+        } else if rest.starts_with("super::") {
+            base = own[..own.len() - 1].to_vec();
+            rest = rest.strip_prefix("super::").unwrap();
+            while let Some(path) = rest.strip_prefix("super::") {
+                base.pop();
+                rest = path;
+            }
+        } else {
+            continue;
+        }
+        for path in alternatives(rest) {
+            let names = path.split("::").map(|name| name.split(" as ").next().unwrap_or("").trim().to_owned());
+            found.push(base.iter().cloned().chain(names).collect());
+        }
+    }
+    found
+}
+
+/// `a::{b, c::{d}}` as `a::b` and `a::c::d`.
+fn alternatives(path: &str) -> Vec<String> {
+    let Some((head, group)) = path.split_once('{') else { return vec![path.trim().to_owned()] };
+    let group = group.rsplit_once('}').map_or(group, |(inner, _)| inner);
+    let (mut parts, mut depth, mut from) = (Vec::new(), 0, 0);
+    for (i, sign) in group.char_indices() {
+        match sign {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            ',' if depth == 0 => {
+                parts.push(&group[from..i]);
+                from = i + 1;
+            }
+            _ => {}
+        }
+    }
+    parts.push(&group[from..]);
+    let whole = parts.into_iter().filter(|part| !part.trim().is_empty()).flat_map(|part| alternatives(part.trim()));
+    whole.map(|part| format!("{}{part}", head.trim())).collect()
 }

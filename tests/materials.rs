@@ -64,7 +64,7 @@ fn the_papers_scene_is_checked_with_all_its_grains() {
     let scenario = compiled.scenario.unwrap();
     let [open, stiff] = scenario.track.sections.as_slice() else { panic!("two sections") };
     assert!(stiff.layers.is_empty() && stiff.slab.is_some(), "a slab takes the place of layers");
-    let layers: Vec<(&str, f64)> = open.layers.iter().map(|l| (l.name.as_str(), l.thickness.at(-10.0))).collect();
+    let layers: Vec<(&str, f64)> = open.layers.iter().map(|l| (l.name.as_str(), l.thickness.value_at(-10.0))).collect();
     assert_eq!(layers, [("ballast", 0.3), ("subballast", 0.3), ("subgrade", 1.0)]);
     let (ballast, sub) = (open.layers[0].granular().unwrap(), open.layers[1].granular().unwrap());
     assert!(
@@ -77,7 +77,7 @@ fn the_papers_scene_is_checked_with_all_its_grains() {
     assert_eq!((sub.shape.clone(), sub.packing.lifts, *sub.packing.pressure), (Shape::Spheres, 3, 200e3));
     assert_eq!((sub.grading.smallest(), *sub.local_damping, *sub.viscous_damping), (0.025, 0.2, 0.3));
     let subgrade = open.layers[2].soil().unwrap();
-    assert_eq!((subgrade.youngs_modulus.at(0.0), *subgrade.poisson_ratio), (472e6, 0.25));
+    assert_eq!((subgrade.youngs_modulus.value_at(0.0), *subgrade.poisson_ratio), (472e6, 0.25));
     assert_eq!((*subgrade.density, subgrade.strength), (2100.0, Strength::Elastic));
     assert_eq!(scenario.track.bed.half_width.map(|w| *w), Some(1.2));
     assert_eq!(scenario.track.bed.ends, BedEnds::Walls);
@@ -164,8 +164,8 @@ fn layers_are_replaced_by_their_names() {
         + "trackform deeper : open { layers.granite_31_63 = 450 mm }\n";
     let scenario = sound(&text, &NoModules);
     let layers = &scenario.track.sections[0].layers;
-    assert_eq!((layers[0].thickness.at(0.0), layers[1].thickness.at(0.0)), (0.45, 2.0));
-    assert_eq!(layers[1].soil().unwrap().youngs_modulus.at(0.0), 90e6, "a soil extended in place");
+    assert_eq!((layers[0].thickness.value_at(0.0), layers[1].thickness.value_at(0.0)), (0.45, 2.0));
+    assert_eq!(layers[1].soil().unwrap().youngs_modulus.value_at(0.0), 90e6, "a soil extended in place");
 }
 
 #[test]
@@ -175,8 +175,8 @@ fn a_wedge_varies_along_the_track() {
     let scenario = sound(&scene(before, layers, ""), &NoModules);
     let wedge = &scenario.track.sections[0].layers[1];
     for (x, thickness, modulus) in [(0.3, 0.1, 202.857142e6), (20.0, 0.45, 390.476190e6), (41.0, 0.8, 400e6)] {
-        assert!((wedge.thickness.at(x) - thickness).abs() < 1e-9, "{x}");
-        assert!((wedge.soil().unwrap().youngs_modulus.at(x) / modulus - 1.0).abs() < 1e-6, "{x}");
+        assert!((wedge.thickness.value_at(x) - thickness).abs() < 1e-9, "{x}");
+        assert!((wedge.soil().unwrap().youngs_modulus.value_at(x) / modulus - 1.0).abs() < 1e-6, "{x}");
     }
 }
 
@@ -186,7 +186,7 @@ fn bulk_and_shear_modulus_are_youngs_modulus_and_poissons_ratio() {
         let before = format!("soil fill {{ {fields}, density = 2 t/m^3 }}");
         let scenario = sound(&scene(&before, "ballasts.granite_31_63: 350 mm, fill: 2 m", ""), &NoModules);
         let soil = scenario.track.sections[0].layers[1].soil().unwrap().clone();
-        (soil.youngs_modulus.at(0.0), *soil.poisson_ratio)
+        (soil.youngs_modulus.value_at(0.0), *soil.poisson_ratio)
     };
     let (young, poisson) = (90e6, 0.3);
     let (bulk, shear) = (young / (3.0 * (1.0 - 2.0 * poisson)), young / (2.0 * (1.0 + poisson)));

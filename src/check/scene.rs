@@ -33,7 +33,7 @@ pub fn scene(eval: &mut Evaluator<'_>) -> (Option<Scenario>, Vec<Study>) {
         if !diag::has_errors(&eval.findings.diagnostics) {
             eval.findings.report(
                 Diagnostic::new(Code::E0601, "the file declares nothing")
-                    .at(Span::new(MAIN_FILE, 0, 0), "empty")
+                    .label(Span::new(MAIN_FILE, 0, 0), "empty")
                     .help("`trackbed new` writes a scene to begin with"),
             );
         }

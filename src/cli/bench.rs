@@ -172,7 +172,7 @@ impl Grains {
         let &Grains { copies, skin, warm, steps, repeat, .. } = self;
         let mut bar = progress::Patient::new("steps");
         let finished =
-            grains::measure::<R>(pile, &Request { copies, skin, warm, steps, repeat }, |done, all| bar.at(done, all));
+            grains::measure::<R>(pile, &Request { copies, skin, warm, steps, repeat }, |done, all| bar.show(done, all));
         drop(bar);
         let finished = match finished {
             Ok(finished) => finished,

@@ -202,7 +202,7 @@ fn refused(error: &FitError, law: &SettlementLaw, wanted: &[Wanted], measured: &
     match error {
         FitError::TooFew { needed } => {
             Diagnostic::new(Code::E0805, format!("at least {needed} measurements are needed"))
-                .at(Span::new(file, 0, 0), "too few")
+                .label(Span::new(file, 0, 0), "too few")
         }
         FitError::NoEffect { .. } if below.is_some() => Diagnostic::new(
             Code::E0806,

@@ -39,7 +39,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     let bar = progress::share();
     let settled = {
         bar.set_message("the scene's own run");
-        let settled = subject.settled(arguments.after, &mut |done, all| progress::at(&bar, done, all));
+        let settled = subject.settled(arguments.after, &mut |done, all| progress::set(&bar, done, all));
         match settled {
             Ok(settled) => settled,
             Err(outcome) => {
@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     bar.set_message("passages");
     let request = Request { halvings: arguments.halvings };
     let charted = chart(&subject.planned, &settled, &subject.scenario.title, request, &mut |done, all| {
-        progress::at(&bar, done, all);
+        progress::set(&bar, done, all);
     });
     bar.finish_and_clear();
     let chart = match charted {
@@ -140,7 +140,7 @@ fn text(chart: &Chart) -> String {
     out
 }
 
-/// As `solve` spells it.
+/// How `solve` spells it.
 fn spelled(v: &Variant) -> String {
     format!(
         "integrator = {}, time_step = {}, elements_per_bay = {}",

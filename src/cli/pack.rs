@@ -134,7 +134,7 @@ pub(super) fn beds(given: Option<&Path>) -> Beds {
 /// The bed of a plan and whether it was there already; a new one is kept.
 fn kept_or_built(beds: &Beds, plan: &BedRecipe) -> Result<(Packed<f32>, bool), Diagnostic> {
     let mut bar = progress::Patient::new("the bed");
-    let found = beds.bed(&plan.recipe, |progress| at(&mut bar, progress)).map_err(|error| {
+    let found = beds.bed(&plan.recipe, |progress| show_packing(&mut bar, progress)).map_err(|error| {
         Diagnostic::new(Code::E0810, error.to_string())
             .help("give the `packing` of the material more `local_damping`, or less `pressure`")
     })?;
@@ -143,8 +143,8 @@ fn kept_or_built(beds: &Beds, plan: &BedRecipe) -> Result<(Packed<f32>, bool), D
 }
 
 /// How far packing is.
-pub(super) fn at(bar: &mut progress::Patient, progress: &Progress) {
-    bar.at((1e4 * progress.share) as u64, 10_000);
+pub(super) fn show_packing(bar: &mut progress::Patient, progress: &Progress) {
+    bar.show((1e4 * progress.share) as u64, 10_000);
 }
 
 /// A bed that was damaged, or cannot be kept, is there all the same.
@@ -165,7 +165,7 @@ fn read(cache: Option<&Path>, plan: &BedRecipe, packed: &Packed<f32>) -> Result<
         Some(Ok(None)) | None => {}
     }
     let mut bar = progress::Patient::new("the plate");
-    let readings = results::read_bed(plan, packed, |done, all| bar.at(done as u64, all as u64))
+    let readings = results::read_bed(plan, packed, |done, all| bar.show(done as u64, all as u64))
         .map_err(|failure| format!("cannot measure the bed: {failure}"))?;
     if let Some(cache) = cache
         && let Err(error) = results::keep_readings(cache, plan, &readings)

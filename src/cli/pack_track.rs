@@ -15,7 +15,7 @@ pub(super) struct TrackArguments {
     /// Lay this many cells side by side, with held grains at the ends, and bring them to rest
     #[arg(long, value_name = "N")]
     bays: Option<NonZeroU32>,
-    /// Of so many cells, each packed from a seed of its own, mixed by chance
+    /// Pack so many cells, each from a seed of its own, and mix them by chance
     #[arg(long, value_name = "N", default_value = "1", requires = "bays")]
     cells: NonZeroU32,
 }
@@ -33,7 +33,7 @@ impl TrackArguments {
         let bays = self.bays?.get() as usize;
         let order = Order::mixed(cells.len(), bays, plan.recipe.seed);
         let mut bar = progress::Patient::new("the bed of the track");
-        let laid = lay(cells, &order, &plan.recipe, |progress| bar.at((1e4 * progress.share) as u64, 10_000));
+        let laid = lay(cells, &order, &plan.recipe, |progress| bar.show((1e4 * progress.share) as u64, 10_000));
         Some(laid.map_err(|error| {
             Diagnostic::new(Code::E0810, error.to_string())
                 .help("mix fewer cells: copies of one fit each other grain by grain")

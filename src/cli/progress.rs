@@ -39,7 +39,7 @@ fn left(state: &ProgressState, text: &mut dyn Write) {
     };
 }
 
-pub(super) fn at(bar: &ProgressBar, done: u64, all: u64) {
+pub(super) fn set(bar: &ProgressBar, done: u64, all: u64) {
     bar.set_length(all);
     bar.set_position(done);
 }
@@ -64,19 +64,19 @@ impl Patient {
     pub(super) fn seen(message: &'static str) -> Patient {
         let mut patient = Patient::new(message);
         if std::io::stderr().is_terminal() {
-            at(patient.shown(), 0, 1);
+            set(patient.shown(), 0, 1);
         }
         patient
     }
 
-    pub(super) fn at(&mut self, done: u64, all: u64) {
+    pub(super) fn show(&mut self, done: u64, all: u64) {
         if self.bar.is_none() && self.start.elapsed() < Duration::from_secs(2) {
             return;
         }
         if !std::io::stderr().is_terminal() {
             return self.tell(done, all);
         }
-        at(self.shown(), done, all);
+        set(self.shown(), done, all);
     }
 
     fn shown(&mut self) -> &ProgressBar {

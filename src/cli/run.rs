@@ -162,13 +162,13 @@ impl Shown {
 impl Listener for Shown {
     fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
         match event {
-            Event::Packing(progress) => pack::at(&mut self.bar, progress),
+            Event::Packing(progress) => pack::show_packing(&mut self.bar, progress),
             Event::Packed { found, .. } => {
                 pack::tell_loss(found);
                 self.bar = progress::Patient::new("the test");
             }
             Event::Tested { .. } if self.tests => self.bar = progress::Patient::new("the bed"),
-            Event::Progress { done, all } => self.bar.at(*done, *all),
+            Event::Progress { done, all } => self.bar.show(*done, *all),
             _ => {}
         }
         ControlFlow::Continue(())
@@ -180,7 +180,7 @@ fn warn(run: &Run, compiled: &Compiled) {
     let Some(found) = BlockRow::overshoot(&run.blocks) else { return };
     let diagnostic = Diagnostic::new(Code::E0807, found).help("write `update_every = adaptive`");
     let diagnostic = match compiled.origins.span(Parameter::Update) {
-        Some(span) => diagnostic.at(span, "too long between two exchanges"),
+        Some(span) => diagnostic.label(span, "too long between two exchanges"),
         None => diagnostic,
     };
     terminal::note(&render::human(&[diagnostic], &compiled.sources, terminal::colour(), terminal::width()));
@@ -299,7 +299,7 @@ fn verdicts(verdicts: &[Verdict], scenario: &Scenario, compiled: &Compiled) -> O
                 verdict.values.iter().map(|v| format!("{} {}", number(*v), verdict.unit)).collect();
             let found = verdict.problem.clone().unwrap_or_else(|| values.join(", "));
             Diagnostic::new(Code::E0804, format!("expected `{}`, found {found}", verdict.text))
-                .at(expectation.span, "not met")
+                .label(expectation.span, "not met")
         })
         .collect();
     if missed.is_empty() {

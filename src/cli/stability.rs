@@ -32,7 +32,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     let bar = progress::share();
     bar.set_message("passages");
     let mapped = stability(subject.scenario, &subject.planned, &mut |done, all| {
-        progress::at(&bar, done, all);
+        progress::set(&bar, done, all);
     });
     bar.finish_and_clear();
     let stability = match mapped {

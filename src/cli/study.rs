@@ -272,7 +272,7 @@ impl Work<'_> {
         let finished = self.known.iter().enumerate().filter(|(_, result)| result.is_some());
         let done = finished.map(|(index, _)| seconds(index) * f64::from(self.plan.study.repeats)).sum::<f64>()
             + self.runs.keys().map(|(index, _)| seconds(*index)).sum::<f64>();
-        self.bar.at((1e3 * done / self.plan.seconds().max(1e-9)) as u64, 1000);
+        self.bar.show((1e3 * done / self.plan.seconds().max(1e-9)) as u64, 1000);
     }
 }
 
@@ -331,7 +331,7 @@ fn failures(answer: &Answer, compiled: &Compiled) -> Outcome {
             let which =
                 if count == 1 { format!("point {first}") } else { format!("{count} points, the first {first},") };
             Diagnostic::new(Code::E0808, format!("{which} of study `{}` failed: {reason}", answer.study.name))
-                .at(answer.study.span, "the other points stand")
+                .label(answer.study.span, "the other points stand")
                 .help("its row in `study.csv` has the values; run it alone with `trackbed run` and `--set`")
         })
         .collect();

@@ -72,5 +72,5 @@ fn warning(why: &Why, fields: &[Stated]) -> Diagnostic {
     };
     let it = if several { "them out: they change" } else { "it out: it changes" };
     let warning = Diagnostic::new(Code::E0429, message).help(format!("take {it} nothing here"));
-    fields.iter().fold(warning, |warning, field| warning.at(field.span, label))
+    fields.iter().fold(warning, |warning, field| warning.label(field.span, label))
 }

@@ -56,7 +56,7 @@ impl Diagnostic {
     }
 
     /// Adds a place; the first one added is the place of the mistake.
-    pub fn at(mut self, span: Span, text: impl Into<String>) -> Self {
+    pub fn label(mut self, span: Span, text: impl Into<String>) -> Self {
         self.labels.push(Label { span, text: text.into() });
         self
     }

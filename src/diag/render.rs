@@ -101,7 +101,7 @@ fn floor(text: &str, offset: usize) -> usize {
 /// A source text as miette may see it.
 struct Excerpt<'a> {
     name: &'a str,
-    /// As the source, byte for byte, but with blanks for control characters.
+    /// The source, byte for byte, but with blanks for control characters.
     text: String,
     line_starts: Vec<usize>,
 }

@@ -4,7 +4,7 @@ use super::event::{Between, Checkpoint, Event, Listener, ScheduleState};
 use super::exchange::{Exchange, Work};
 use super::machine::{Ending, Machine, RunError};
 use super::pair::{Pair, settling};
-use super::step::{Done, Measured};
+use super::step::{BlockMeasures, Done};
 use crate::graph::{Blocks, Clock, Control, Graph, Runner, Update};
 use crate::nodes::{Builders, Forces, Kept, NodeError, PassageOutcome, Request, Superstructure};
 use crate::store::Beds;
@@ -114,7 +114,7 @@ impl Run<'_, '_> {
 
     /// Tamps what is due, lets one block pass, and arrives at its end.
     fn block(&mut self, mut here: Exchange) -> Going<Exchange> {
-        let mut work = Measured::default();
+        let mut work = BlockMeasures::default();
         if self.blocks.tamped_after(here.axles).next().is_some() {
             work.add(&here, Work::default());
             here = going!(self.tamp(here.axles));

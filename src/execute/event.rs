@@ -1,6 +1,6 @@
 //! What a run tells, and to whom: one kind of event for every schedule.
 
-use super::Measured;
+use super::BlockMeasures;
 use crate::graph::{BedRecipe, Block, Clock, Control, Runner};
 use crate::nodes::{NodeError, PassageOutcome, TestState, Tested, Unloaded};
 use crate::solvers::granular::Bed;
@@ -21,7 +21,7 @@ pub enum Event<'a> {
     /// the passages after the last block.
     Block {
         axles: u64,
-        block: Option<(&'a Block, &'a Measured)>,
+        block: Option<(&'a Block, &'a BlockMeasures)>,
         passages: &'a [&'a PassageOutcome],
         before: &'a [f64],
         after: &'a [f64],

@@ -17,7 +17,7 @@ mod tests_of_beds;
 pub use event::{Between, Both, Checkpoint, Event, Listener, ScheduleState};
 pub use executor::{Custom, Executor};
 pub use machine::{Ending, Machine, RunError};
-pub use step::Measured;
+pub use step::BlockMeasures;
 
 pub use blocks::passage_as_built;
 

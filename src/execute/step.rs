@@ -8,7 +8,7 @@ use crate::graph::Block;
 
 /// What the exchange of a block was worth, and what it took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Measured {
+pub struct BlockMeasures {
     /// Estimate of the error of settlement that the block adds at the worst seat, m; 0 for a block of one train.
     pub error: f64,
     /// By how much a disturbance of the settlement comes back with the other sign: above 1 the exchange overshoots, above 2
@@ -29,7 +29,7 @@ pub struct Measured {
 /// A block that has passed, and the exchange at its end where that has been computed.
 pub(super) struct Done {
     pub block: Block,
-    pub measured: Measured,
+    pub measured: BlockMeasures,
     pub next: Option<Exchange>,
 }
 
@@ -44,7 +44,7 @@ impl Pair<'_> {
     /// in halves until it is far from that, down to one train.
     pub fn prescribed(&mut self, here: &mut Exchange) -> Result<Done, RunError> {
         let wanted = self.blocks.wanted(here.axles).unwrap_or(1);
-        let mut measured = Measured::default();
+        let mut measured = BlockMeasures::default();
         loop {
             let trains = self.control.bounded(wanted);
             let block = self.blocks.block(here.axles, trains);
@@ -90,7 +90,7 @@ impl Pair<'_> {
     /// difference is the error of the first. What is kept is of second order: the first train passes with the forces of the
     /// start, as it truly does, all others with those of the middle. Two trains are therefore exact.
     pub fn adaptive(&mut self, here: &mut Exchange, tolerance: f64, cap: Option<f64>) -> Result<Done, RunError> {
-        let mut measured = Measured::default();
+        let mut measured = BlockMeasures::default();
         let mut most = self.blocks.trains_left(here.axles);
         let mut middle: Option<Exchange> = None;
         loop {
@@ -165,10 +165,10 @@ impl Pair<'_> {
     }
 }
 
-impl Measured {
+impl BlockMeasures {
     /// The same, with more work.
-    pub(super) fn with(self, more: &Measured) -> Measured {
-        Measured {
+    pub(super) fn with(self, more: &BlockMeasures) -> BlockMeasures {
+        BlockMeasures {
             passages: self.passages + more.passages,
             time_steps: self.time_steps + more.time_steps,
             newton_iterations: self.newton_iterations + more.newton_iterations,

@@ -19,7 +19,7 @@ pub(super) fn run(
         Some(_) => return Err(RunError::ForeignCheckpoint),
     };
     let none = NodeError::NoBuilder { node: "bed".into(), kind: "bed under actuators".into() };
-    let (bed, actuators) = machine.graph.bed_under_actuators().ok_or_else(|| at(0, none))?;
+    let (bed, actuators) = machine.graph.bed_under_actuators().ok_or_else(|| failed_after(0, none))?;
     let packings = tests.packings.max(1) as usize;
     while done.len() < packings {
         let mut test = Test { machine, tests, bed, actuators, listener, done: &done };
@@ -38,7 +38,7 @@ pub(super) fn run(
     Ok(Ending::Finished)
 }
 
-fn at(cycles: u64, cause: NodeError) -> RunError {
+fn failed_after(cycles: u64, cause: NodeError) -> RunError {
     RunError::node(Clock::Cycles(cycles), cause)
 }
 
@@ -63,14 +63,14 @@ impl Test<'_, '_> {
     /// Packs and tests, from what was kept of the test on; `None` where a listener ended it.
     fn run(&mut self, running: Option<TestState>) -> Result<Option<(Tested, Bed<f32>)>, RunError> {
         let seed = self.bed.bed.seed().wrapping_add(self.done.len() as u64);
-        let ready = self.bed.bed.ready(seed).map_err(|cause| at(0, NodeError::Bed(cause)))?;
+        let ready = self.bed.bed.ready(seed).map_err(|cause| failed_after(0, NodeError::Bed(cause)))?;
         let mut going_on = ControlFlow::Continue(());
         let found = self.machine.beds.bed(&ready.recipe, |progress| {
             if going_on.is_continue() {
                 going_on = self.listener.hear(&Event::Packing(progress));
             }
         });
-        let found = found.map_err(|cause| at(0, NodeError::Packing(cause)))?;
+        let found = found.map_err(|cause| failed_after(0, NodeError::Packing(cause)))?;
         if going_on.is_break() || self.listener.hear(&Event::Packed { bed: &ready, found: &found }).is_break() {
             return Ok(None);
         }
@@ -80,10 +80,10 @@ impl Test<'_, '_> {
             Some(state) => BedUnderActuators::restore(seed, state, &rig),
             None => BedUnderActuators::new(seed, found.packed, self.bed.copies, &rig),
         };
-        let mut test = begun.map_err(|cause| at(0, cause))?;
+        let mut test = begun.map_err(|cause| failed_after(0, cause))?;
         loop {
             let advanced = test.advance();
-            if !advanced.map_err(|cause| at(test.cycles(), cause))? {
+            if !advanced.map_err(|cause| failed_after(test.cycles(), cause))? {
                 return Ok(Some(test.finish()));
             }
             let (done, all) = test.pieces();

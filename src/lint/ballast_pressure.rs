@@ -44,7 +44,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         LARGEST / 1e3
     ));
     vec![match section.spacing.origin.span() {
-        Some(span) => diagnostic.at(span, "so far apart"),
+        Some(span) => diagnostic.label(span, "so far apart"),
         None => diagnostic,
     }]
 }

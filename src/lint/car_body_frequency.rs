@@ -37,7 +37,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             "wagons bounce at 1.5 .. 4 Hz, coaches at 0.7 .. 1.5 Hz: is each value of a wheel, a wheelset or a bogie?",
         );
         let diagnostic = match vehicle.secondary_stiffness.origin.span() {
-            Some(span) => diagnostic.at(span, "these springs"),
+            Some(span) => diagnostic.label(span, "these springs"),
             None => diagnostic,
         };
         if !found.contains(&diagnostic) {

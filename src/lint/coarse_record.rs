@@ -22,7 +22,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     for every in intervals {
         let mistake = too_fine(every, traffic).or_else(|| too_coarse(every, scenario, graph, traffic));
         let mistake = mistake.map(|mistake| match every.origin.span() {
-            Some(span) => mistake.at(span, "of these histories"),
+            Some(span) => mistake.label(span, "of these histories"),
             None => mistake,
         });
         found.extend(mistake.filter(|mistake| !found.contains(mistake)));
@@ -63,7 +63,7 @@ fn too_coarse(every: Given, scenario: &Scenario, graph: &Graph, traffic: Led<'_>
 /// What moves fastest of that which every history shows, and its frequency, Hz.
 fn fastest(scenario: &Scenario, graph: &Graph, traffic: Led<'_>) -> Option<(&'static str, f64)> {
     let (track, speed) = (&scenario.track, *traffic.train.speed);
-    let sections = (0..track.sections.len()).filter_map(|section| Winkler::of(track, &graph.supports, section));
+    let sections = (0..track.sections.len()).filter_map(|section| Winkler::of_section(track, &graph.supports, section));
     let vehicles = &traffic.train.vehicles;
     let wheels = sections.flat_map(|section| vehicles.iter().map(move |v| resonance(&section, v)).collect::<Vec<_>>());
     let axles = vehicles.iter().map(|vehicle| speed / *vehicle.wheelset_spacing);

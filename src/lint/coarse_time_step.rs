@@ -37,7 +37,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     )
     .help(format!("write `time_step = {} s`", number(rounded_down(needed))));
     vec![match scenario.solve.time_step.span() {
-        Some(span) => diagnostic.at(span, "coarse"),
+        Some(span) => diagnostic.label(span, "coarse"),
         None => diagnostic,
     }]
 }

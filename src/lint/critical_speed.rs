@@ -13,8 +13,8 @@ const LARGEST_SHARE: f64 = 0.6;
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let track = &scenario.track;
-    let sections =
-        (0..track.sections.len()).filter_map(|i| Some((i, Winkler::of(track, &graph.supports, i)?.critical_speed())));
+    let sections = (0..track.sections.len())
+        .filter_map(|i| Some((i, Winkler::of_section(track, &graph.supports, i)?.critical_speed())));
     let Some((section, critical)) = sections.min_by(|a, b| a.1.total_cmp(&b.1)) else { return Vec::new() };
     let speed = traffic.train.speed;
     if *speed < LARGEST_SHARE * critical {
@@ -32,7 +32,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     )
     .help("the waves of the support itself are not in this model: it errs to the safe side no longer");
     vec![match speed.origin.span() {
-        Some(span) => diagnostic.at(span, "near the critical speed"),
+        Some(span) => diagnostic.label(span, "near the critical speed"),
         None => diagnostic,
     }]
 }

@@ -1,6 +1,6 @@
 //! What speed adds to a static load, as design rules have it.
 
-/// Of the track: 0.1 is very good, 0.2 good, 0.3 poor.
+/// Quality of the track: 0.1 is very good, 0.2 good, 0.3 poor.
 const QUALITY: f64 = 0.2;
 /// Standard deviations that are allowed for: 99.7 % of loads stay below.
 const SAFETY: f64 = 3.0;

@@ -36,7 +36,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         )
         .help("the force under one sleeper hangs on the packing: finer ballast, or `repeats` for a band of confidence");
         found.push(match bed.granular.density.origin.span() {
-            Some(span) => diagnostic.at(span, format!("grains of `{}`", bed.layer.name)),
+            Some(span) => diagnostic.label(span, format!("grains of `{}`", bed.layer.name)),
             None => diagnostic,
         });
     }

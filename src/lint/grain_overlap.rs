@@ -45,7 +45,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         };
         let diagnostic = diagnostic.help(help);
         let diagnostic = match origin.span() {
-            Some(span) => diagnostic.at(span, "soft for this load"),
+            Some(span) => diagnostic.label(span, "soft for this load"),
             None => diagnostic,
         };
         if !found.contains(&diagnostic) {

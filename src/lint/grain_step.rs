@@ -4,7 +4,7 @@
 //! `K = Z k (1 + 2 r) / 3`. A leapfrog with dashpots of ratio beta and local damping alpha bears
 //! `dt = (2 / w) (sqrt(1 + xi^2) - xi) / sqrt(1 + alpha)`, `xi = beta sqrt(Z (1 + 2 r) / 3)`. The material with the least step is named.
 
-use super::grains::{Bed, approach, beds, contact_force};
+use super::grains::{GrainLayer, approach, beds, contact_force};
 use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
 use crate::scenario::{Contact, Scenario};
@@ -45,18 +45,18 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     };
     let places = [(step.origin, "too long"), (set_by, what)];
     vec![places.into_iter().fold(diagnostic, |diagnostic, (origin, text)| match origin.span() {
-        Some(span) => diagnostic.at(span, text),
+        Some(span) => diagnostic.label(span, text),
         None => diagnostic,
     })]
 }
 
-/// Of the smallest grain, kg.
-fn mass(bed: &Bed<'_>) -> f64 {
+/// Mass of the smallest grain, kg.
+fn mass(bed: &GrainLayer<'_>) -> f64 {
     PI / 6.0 * bed.granular.grading.smallest().powi(3) * *bed.granular.density
 }
 
 /// s.
-fn limit(bed: &Bed<'_>, pressure: f64) -> f64 {
+fn limit(bed: &GrainLayer<'_>, pressure: f64) -> f64 {
     let granular = bed.granular;
     let size = granular.grading.smallest();
     let (_, stiffness) = approach(&granular.contact, size, contact_force(size, pressure));

@@ -14,7 +14,7 @@ const CONTACTS: f64 = 6.0;
 
 /// A layer whose grains are modelled.
 #[derive(Clone, Copy)]
-pub(super) struct Bed<'a> {
+pub(super) struct GrainLayer<'a> {
     /// Index into the sections of the track.
     pub index: usize,
     pub section: &'a Section,
@@ -25,7 +25,7 @@ pub(super) struct Bed<'a> {
 }
 
 /// The granular layers of a scene whose plan has grains; none where a settlement law answers.
-pub(super) fn beds<'a>(scenario: &'a Scenario, graph: &Graph) -> Vec<Bed<'a>> {
+pub(super) fn beds<'a>(scenario: &'a Scenario, graph: &Graph) -> Vec<GrainLayer<'a>> {
     if !graph.nodes.iter().any(|node| matches!(node.model, Model::Bed(_) | Model::Grains(_))) {
         return Vec::new();
     }
@@ -34,7 +34,7 @@ pub(super) fn beds<'a>(scenario: &'a Scenario, graph: &Graph) -> Vec<Bed<'a>> {
         let numbered = section.layers.iter().enumerate();
         numbered.filter_map(move |(depth, layer)| {
             let granular = layer.granular()?;
-            Some(Bed { index, section, layer, granular, top: depth == 0 })
+            Some(GrainLayer { index, section, layer, granular, top: depth == 0 })
         })
     });
     layers.collect()
@@ -50,7 +50,7 @@ pub(super) fn of_sizes(granular: &Granular) -> Origin {
     granular.grading.cut_above.map_or(granular.density.origin, |cut| cut.origin)
 }
 
-impl Bed<'_> {
+impl GrainLayer<'_> {
     /// Pressure on the layer, Pa: that of its packing, under the sleepers at least that of a passing wheel, in a rig that of its loads.
     pub fn pressure(&self, scenario: &Scenario, graph: &Graph) -> f64 {
         let packed = *self.granular.packing.pressure;

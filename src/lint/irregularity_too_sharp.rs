@@ -35,7 +35,7 @@ fn too_sharp(profile: &Profile, radius: f64) -> Option<Diagnostic> {
         "level the data with a wheel's radius in mind: the model's wheel touches at one point and falls into every dip",
     );
     Some(match profile.origin.span() {
-        Some(span) => diagnostic.at(span, "sharper than the wheel"),
+        Some(span) => diagnostic.label(span, "sharper than the wheel"),
         None => diagnostic,
     })
 }

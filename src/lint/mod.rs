@@ -147,7 +147,7 @@ fn pointed(diagnostic: Diagnostic, scenario: &Scenario, law: &SettlementLaw, tex
         _ => None,
     };
     match law.origin.span().map(|span| (span, text)).or(traffic) {
-        Some((span, text)) => diagnostic.at(span, text),
+        Some((span, text)) => diagnostic.label(span, text),
         None => diagnostic,
     }
 }

@@ -3,7 +3,7 @@
 //! Its least side over D90, which nine tenths of the modelled mass pass: across, the width between side wall and middle of the track (or both side walls);
 //! along, a cell of three bays or the window. Laboratories ask for six grains across a specimen (ASTM D4767, not at hand).
 
-use super::grains::{Bed, beds, mm, of_sizes};
+use super::grains::{GrainLayer, beds, mm, of_sizes};
 use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::Graph;
 use crate::scenario::{Scenario, Tier};
@@ -32,7 +32,7 @@ struct Side {
     span: Option<Span>,
 }
 
-fn said(side: &Side, bed: &Bed<'_>) -> Diagnostic {
+fn said(side: &Side, bed: &GrainLayer<'_>) -> Diagnostic {
     let coarse = bed.granular.grading.d(90.0);
     let diagnostic = Diagnostic::new(
         Code::L1018,
@@ -47,7 +47,7 @@ fn said(side: &Side, bed: &Bed<'_>) -> Diagnostic {
     )
     .help(format!("{FEWEST} grains, {} m, keep the walls out of the answer", number(FEWEST * coarse)));
     match side.span.or_else(|| of_sizes(bed.granular).span()) {
-        Some(span) => diagnostic.at(span, "so few grains"),
+        Some(span) => diagnostic.label(span, "so few grains"),
         None => diagnostic,
     }
 }
@@ -61,7 +61,7 @@ fn across(scenario: &Scenario) -> Option<Side> {
     Some(Side { what: "wide", length: sides * half, span })
 }
 
-fn along(scenario: &Scenario, bed: &Bed<'_>) -> Option<Side> {
+fn along(scenario: &Scenario, bed: &GrainLayer<'_>) -> Option<Side> {
     if *scenario.solve.grains.tier == Tier::Cells {
         let spacing = bed.section.spacing;
         return Some(Side { what: "long, a cell of three bays", length: BAYS * *spacing, span: spacing.origin.span() });

@@ -69,7 +69,7 @@ const MIB: f64 = (1u64 << 20) as f64;
 fn said(message: String, limit: Given, help: &str) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::L1022, message).help(help);
     match limit.origin.span() {
-        Some(span) => diagnostic.at(span, "less than that"),
+        Some(span) => diagnostic.label(span, "less than that"),
         None => diagnostic,
     }
 }

@@ -66,7 +66,7 @@ impl Swinging {
             number((critical / 1e3).floor())
         ));
         match self.origin.span() {
-            Some(span) => diagnostic.at(span, "this damper"),
+            Some(span) => diagnostic.label(span, "this damper"),
             None => diagnostic,
         }
     }

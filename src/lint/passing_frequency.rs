@@ -47,7 +47,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
                     number((frequency * (1.0 + NEAR) * spacing * 3.6).ceil())
                 ));
                 let diagnostic = match speed.origin.span() {
-                    Some(span) => diagnostic.at(span, "this speed"),
+                    Some(span) => diagnostic.label(span, "this speed"),
                     None => diagnostic,
                 };
                 if !found.contains(&diagnostic) {

@@ -21,7 +21,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let wheel = heaviest / Vehicle::AXLES as f64 * *scenario.solve.gravity;
     let factor = amplification(*speed);
     let stress = |section: usize| {
-        let winkler = Winkler::of(track, &graph.supports, section)?;
+        let winkler = Winkler::of_section(track, &graph.supports, section)?;
         let moment = wheel / (4.0 * winkler.lambda());
         Some((section, moment, factor * moment / track.sections[section].rail.as_ref()?.foot_modulus()))
     };
@@ -42,7 +42,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     )
     .help(format!("{} MPa are usual at most: a stiffer rail or support, lighter axles or less speed", LARGEST / 1e6));
     vec![match section.rail.as_ref().and_then(|rail| rail.bending_stiffness.origin.span()) {
-        Some(span) => diagnostic.at(span, "of this rail"),
+        Some(span) => diagnostic.label(span, "of this rail"),
         None => diagnostic,
     }]
 }

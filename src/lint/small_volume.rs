@@ -3,7 +3,7 @@
 //! Least side of the volume over the median grain d50 of the layer at its depth. Below three the mean is that of a few grains, and the
 //! next packing has another.
 
-use super::grains::{Bed, beds, mm};
+use super::grains::{GrainLayer, beds, mm};
 use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
 use crate::scenario::{Scenario, Volume, VolumeRecord};
@@ -32,7 +32,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         )
         .help(format!("{FEWEST} of them, {} mm, are a mean; `repeats` gives its scatter", mm(FEWEST * median)));
         found.push(match record.span {
-            Some(span) => diagnostic.at(span, "a few grains"),
+            Some(span) => diagnostic.label(span, "a few grains"),
             None => diagnostic,
         });
     }
@@ -48,7 +48,7 @@ fn least_side(volume: Volume) -> f64 {
 }
 
 /// The layer of grains in which a record lies, under its first ballasted seat.
-fn at_depth<'a>(scenario: &'a Scenario, graph: &Graph, record: &VolumeRecord) -> Option<Bed<'a>> {
+fn at_depth<'a>(scenario: &'a Scenario, graph: &Graph, record: &VolumeRecord) -> Option<GrainLayer<'a>> {
     let sections = record.seats.iter().filter_map(|seat| scenario.track.seats.get(*seat)).map(|seat| seat.section);
     let section = sections.into_iter().find(|section| !scenario.track.sections[*section].layers.is_empty())?;
     let layers = &scenario.track.sections[section].layers;

@@ -45,7 +45,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
                 false => seat.pad.as_ref().map(|pad| pad.stiffness),
             };
             if let Some(span) = seat.and_then(stiffness).and_then(|given| given.origin.span()) {
-                diagnostic = diagnostic.at(span, format!("section `{}`", track.sections[section].name));
+                diagnostic = diagnostic.label(span, format!("section `{}`", track.sections[section].name));
             }
         }
         found.push(diagnostic);

@@ -42,7 +42,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             let diagnostic = Diagnostic::new(Code::L1016, message)
                 .help("20 .. 100 MN/m are usual under half a sleeper: is the value of a seat, a sleeper or the track?");
             match origin.span() {
-                Some(span) => diagnostic.at(span, "this support"),
+                Some(span) => diagnostic.label(span, "this support"),
                 None => diagnostic,
             }
         };

@@ -40,11 +40,11 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             Varying::Profile(profile) => profile.origin.span(),
         };
         let diagnostic = match thickness_span {
-            Some(span) => diagnostic.at(span, "this thickness"),
+            Some(span) => diagnostic.label(span, "this thickness"),
             None => diagnostic,
         };
         found.push(match of_sizes(bed.granular).span() {
-            Some(span) => diagnostic.at(span, format!("grains of `{}`", bed.layer.name)),
+            Some(span) => diagnostic.label(span, format!("grains of `{}`", bed.layer.name)),
             None => diagnostic,
         });
     }

@@ -33,7 +33,7 @@ fn near_ends(scenario: &Scenario, graph: &Graph, traffic: Led<'_>) -> Vec<Diagno
         (last, track.end() - traffic.blocks.passage.right, "right"),
     ];
     let near = ends.into_iter().filter_map(|(section, distance, side)| {
-        let needed = LENGTHS / Winkler::of(track, &graph.supports, section)?.lambda();
+        let needed = LENGTHS / Winkler::of_section(track, &graph.supports, section)?.lambda();
         let form = &track.sections[section];
         let diagnostic = Diagnostic::new(
             Code::L1003,
@@ -81,7 +81,7 @@ fn sparsely_passed(scenario: &Scenario, traffic: Led<'_>, section: usize) -> Opt
 /// Points at the length of a section.
 fn at_length(diagnostic: Diagnostic, section: &Section) -> Diagnostic {
     match section.length_origin.span() {
-        Some(span) => diagnostic.at(span, format!("section `{}`", section.name)),
+        Some(span) => diagnostic.label(span, format!("section `{}`", section.name)),
         None => diagnostic,
     }
 }

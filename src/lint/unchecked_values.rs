@@ -12,7 +12,7 @@ pub(super) fn check(scenario: &Scenario, _: &Graph) -> Vec<Diagnostic> {
             let diagnostic = Diagnostic::new(Code::L1010, message)
                 .help("give the values of your data sheet with a `source`; `trackbed resolve` shows which they are");
             match entry.span {
-                Some(span) => diagnostic.at(span, "unchecked"),
+                Some(span) => diagnostic.label(span, "unchecked"),
                 None => diagnostic,
             }
         })

@@ -39,7 +39,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     )
     .help("write `update_every = adaptive`");
     vec![match scenario.solve.update_span {
-        Some(span) => diagnostic.at(span, "too long a block"),
+        Some(span) => diagnostic.label(span, "too long a block"),
         None => diagnostic,
     }]
 }

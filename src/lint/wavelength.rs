@@ -25,7 +25,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         let diagnostic = Diagnostic::new(Code::L1026, message).help(help);
         let labels = [(level.origin.span(), "these waves"), (setting, what)];
         labels.into_iter().fold(diagnostic, |d, (span, text)| match span {
-            Some(span) => d.at(span, text),
+            Some(span) => d.label(span, text),
             None => d,
         })
     };

@@ -14,7 +14,7 @@ use crate::units::number;
 /// Frequencies closer than this share are near.
 const NEAR: f64 = 0.1;
 
-/// Of a wheel and the track in phase, Hz.
+/// Natural frequency of a wheel and the track in phase, Hz.
 pub(super) fn resonance(track: &Winkler, vehicle: &Vehicle) -> f64 {
     let mass = *vehicle.wheel_mass + 1.5 * track.mass / track.lambda();
     (track.rail_stiffness() / mass).sqrt() / (2.0 * std::f64::consts::PI)
@@ -25,7 +25,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let (track, speed) = (&scenario.track, traffic.train.speed);
     let mut found = Vec::new();
     for (i, section) in track.sections.iter().enumerate() {
-        let Some(winkler) = Winkler::of(track, &graph.supports, i) else { continue };
+        let Some(winkler) = Winkler::of_section(track, &graph.supports, i) else { continue };
         let passing = *speed / *section.spacing;
         for vehicle in &traffic.train.vehicles {
             let frequency = resonance(&winkler, vehicle);
@@ -49,7 +49,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
                 bound(1.0 + NEAR)
             ));
             let diagnostic = match speed.origin.span() {
-                Some(span) => diagnostic.at(span, "this speed"),
+                Some(span) => diagnostic.label(span, "this speed"),
                 None => diagnostic,
             };
             if !found.contains(&diagnostic) {

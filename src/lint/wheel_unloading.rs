@@ -53,7 +53,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         LARGEST_SHARE * 100.0
     ));
     vec![match profile.origin.span() {
-        Some(span) => diagnostic.at(span, "this level"),
+        Some(span) => diagnostic.label(span, "this level"),
         None => diagnostic,
     }]
 }

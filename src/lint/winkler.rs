@@ -18,11 +18,11 @@ pub struct Winkler {
 impl Winkler {
     /// A seat is pad and support in series; a slab adds its foundation over one bay. Where they vary, those of the
     /// section's left end. `None` without seats, or where rail, pads or supports are not known.
-    pub fn of(track: &Track, supports: &[SupportNode], section: usize) -> Option<Winkler> {
+    pub fn of_section(track: &Track, supports: &[SupportNode], section: usize) -> Option<Winkler> {
         Winkler::beside(track, supports, section, track.sections[section].start)
     }
 
-    /// As at the seat of a section that is nearest to a chainage.
+    /// The track at the seat of a section that is nearest to a chainage.
     pub fn beside(track: &Track, supports: &[SupportNode], section: usize, x: f64) -> Option<Winkler> {
         let Section { rail, slab, .. } = &track.sections[section];
         let from = |index: &usize| (track.seats[*index].x - x).abs();
@@ -68,7 +68,7 @@ impl Winkler {
 pub(super) struct SeatLoad {
     pub section: usize,
     pub winkler: Winkler,
-    /// Of the seats, m.
+    /// Spacing of the seats, m.
     pub spacing: f64,
     /// N.
     pub wheel: f64,
@@ -87,7 +87,7 @@ pub(super) fn seat_load(scenario: &Scenario, graph: &Graph, traffic: Led<'_>, se
     let heaviest = traffic.train.vehicles.iter().map(Vehicle::mass).fold(0.0, f64::max);
     let wheel = heaviest / Vehicle::AXLES as f64 * gravity;
     let first = track.seats_of(section).find(|seat| track.seats[*seat].is_ballasted())?;
-    let winkler = Winkler::of(track, &graph.supports, section)?;
+    let winkler = Winkler::of_section(track, &graph.supports, section)?;
     let spacing = track.bay(first);
     let support = graph.supports.get(first)?.support?;
     let force = wheel * winkler.seat_share(spacing) + winkler.mass * spacing * gravity;

@@ -220,7 +220,7 @@ fn filling(layer: &Layer, granular: &Granular, x: f64) -> Result<Filling, Diagno
         density: *granular.density,
         surface,
         wall_friction: *granular.wall_friction,
-        thickness: layer.thickness.at(x),
+        thickness: layer.thickness.value_at(x),
         lifts: granular.packing.lifts,
         pressure: *granular.packing.pressure,
         packing: Packing {
@@ -239,7 +239,7 @@ fn mm(length: f64) -> String {
 fn refused(why: &str, at: Option<Span>) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::E0610, format!("this bed cannot be packed: {why}"));
     match at {
-        Some(span) => diagnostic.at(span, "asked for here"),
+        Some(span) => diagnostic.label(span, "asked for here"),
         None => diagnostic,
     }
 }

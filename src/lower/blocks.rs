@@ -84,7 +84,7 @@ impl Pass for Cut {
 fn blocks(draft: &mut Draft<'_>, traffic: &Traffic) -> Option<Blocks> {
     let scenario = draft.scenario;
     let total = *traffic.total;
-    let mut update = update(scenario.solve.update);
+    let mut update = scenario.solve.update;
     // counts of a mix have gone to the nearest train
     let mut sound = traffic.is_mixed() || whole_trains(draft, traffic, &mut update);
     let mut recorded: Vec<u64> =
@@ -106,21 +106,8 @@ fn blocks(draft: &mut Draft<'_>, traffic: &Traffic) -> Option<Blocks> {
     let mut passages = draft.passages.iter().copied();
     let (train, passage) = (track::train(&traffic.train), passages.next()?);
     let others = traffic.others.iter().map(track::train).zip(passages).collect();
-    let tampings = scenario.tampings.iter().map(tamping).collect();
+    let tampings = scenario.tampings.clone();
     Some(Blocks { train, passage, others, sequence, update, cure: true, share: true, recorded, tampings, stops, total })
-}
-
-fn update(update: scenario::Update) -> Update {
-    match update {
-        scenario::Update::Fixed { axles } => Update::Fixed { axles },
-        scenario::Update::Geometric { first, ratio } => Update::Geometric { first, ratio },
-        scenario::Update::Adaptive { tolerance, cap } => Update::Adaptive { tolerance, cap },
-    }
-}
-
-fn tamping(tamping: &scenario::Tamping) -> Tamping {
-    let scenario::Tamping { name, after, seats, left } = tamping.clone();
-    Tamping { name, after, seats, left }
 }
 
 fn told(tamping: &Tamping) -> (String, String) {
@@ -149,7 +136,7 @@ fn few_enough(draft: &mut Draft<'_>, update: Update, total: u64) -> bool {
     let mut mistake = Diagnostic::new(Code::E0103, message)
         .help("let them grow with the axles, `update_every = adaptive(0.003 mm)` or `geometric(4 axles, ratio = 0.2)`");
     if let Some(span) = draft.scenario.solve.update_span {
-        mistake = mistake.at(span, "too short");
+        mistake = mistake.label(span, "too short");
     }
     draft.diagnostics.push(mistake);
     false
@@ -264,7 +251,7 @@ fn divides(draft: &mut Draft<'_>, count: u64, train: &scenario::Train, what: &st
                 format!("write `{below} axles` or `{} axles`", below + axles)
             });
     if let Some(span) = span {
-        mistake = mistake.at(span, "does not divide");
+        mistake = mistake.label(span, "does not divide");
     }
     draft.diagnostics.push(mistake);
     false

@@ -73,9 +73,9 @@ struct WorstSeat<'a> {
     blocks: &'a Blocks,
     tolerance: f64,
     cap: Option<f64>,
-    /// Of its support, N/m.
+    /// Stiffness of its support, N/m.
     stiffness: f64,
-    /// Of each kind of train: static contact forces, N, and how many vehicles of a train press so.
+    /// For each kind of train: static contact forces, N, and how many vehicles of a train press so.
     forces: Vec<Vec<(f64, u64)>>,
     state: SupportState,
     control: Control,

@@ -100,7 +100,7 @@ fn ends(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Option<(f6
         )
         .help(format!("make the track at least {} m long", number((base + 4.0 * MARGIN).ceil())));
         if let Some(span) = span {
-            mistake = mistake.at(span, "the vehicle's bogies stand here");
+            mistake = mistake.label(span, "the vehicle's bogies stand here");
         }
         draft.diagnostics.push(mistake);
         return None;
@@ -132,7 +132,7 @@ fn ends(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Option<(f6
                 ),
             );
             if let Some(span) = given.origin.span() {
-                mistake = mistake.at(span, "of the leading wheel");
+                mistake = mistake.label(span, "of the leading wheel");
             }
             draft.diagnostics.push(mistake);
             return None;
@@ -146,7 +146,7 @@ fn ends(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Option<(f6
         );
         for (given, text) in [(scenario.solve.start, "starts here"), (scenario.solve.finish, "ends here")] {
             if let Some(span) = given.and_then(|g| g.origin.span()) {
-                mistake = mistake.at(span, text);
+                mistake = mistake.label(span, text);
             }
         }
         draft.diagnostics.push(mistake);
@@ -201,7 +201,7 @@ fn time_step(draft: &mut Draft<'_>, scenario: &Scenario, train: &Train) -> Optio
             )
             .help(format!("write `time_step = {} s` or less", number(transit / 10.0)));
             if let Some(span) = given.origin.span() {
-                mistake = mistake.at(span, "too coarse");
+                mistake = mistake.label(span, "too coarse");
             }
             draft.diagnostics.push(mistake);
             return None;

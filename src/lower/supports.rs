@@ -144,6 +144,6 @@ fn carry_nothing(track: &Track, seat: &Seat, stack: &Stack, wrong: &FoundationEr
     };
     let form = &track.sections[seat.section].name;
     Diagnostic::new(Code::E0407, format!("the layers of trackform `{form}` carry no sleeper at {place}: {wrong}"))
-        .at(stack.span, "its support is computed from these")
+        .label(stack.span, "its support is computed from these")
         .help("give every layer a thickness and a modulus there, and sleepers that do not lie on each other")
 }

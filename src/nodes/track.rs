@@ -23,7 +23,7 @@ pub struct TrackSystem<'a> {
 struct Built {
     responses: Responses,
     track: Arc<Track>,
-    /// Of each kind of train.
+    /// Steps in time, for each kind of train.
     steps: Vec<Arc<Steps>>,
 }
 

@@ -155,7 +155,7 @@ impl<'a> BedTestsPage<'a> {
         )
     }
 
-    /// Of the sleeper that settles most, in the first packing.
+    /// Loops of the sleeper that settles most, in the first packing.
     fn loops(&self) -> Figure {
         let x = Axis { from_zero: true, ..Axis::new("Depth", ("mm", 1e-3)) };
         let mut chart = Chart::new(x, Axis { from_zero: true, ..Axis::new("Force of the actuator", ("kN", 1e3)) });
@@ -176,7 +176,7 @@ impl<'a> BedTestsPage<'a> {
         figure(chart, "loops", "Force against depth", &caption)
     }
 
-    /// Of a specimen whose sides give way.
+    /// Deviator stress of a specimen whose sides give way.
     fn deviator(&self) -> Option<Figure> {
         let y = Axis { from_zero: true, ..Axis::new("Deviator", ("kPa", 1e3)) };
         let caption =

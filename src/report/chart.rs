@@ -120,12 +120,12 @@ struct Plane {
     x: (f64, f64),
     y: (f64, f64),
     downwards: bool,
-    /// Of both axes.
+    /// Whether an axis is logarithmic: across, upwards.
     logarithmic: [bool; 2],
 }
 
 impl Plane {
-    fn at(&self, point: (f64, f64)) -> (f64, f64) {
+    fn point_at(&self, point: (f64, f64)) -> (f64, f64) {
         let share = |value: f64, (low, high): (f64, f64), logarithmic: bool| {
             if logarithmic { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) }
         };
@@ -230,8 +230,8 @@ impl Chart {
     fn draw_bands(&self, svg: &mut Svg, plane: &Plane) {
         let Frame { x: left, y, width, height } = plane.frame;
         for band in &self.bands {
-            let from = plane.at((band.from, 0.0)).0.max(left);
-            let to = plane.at((band.to, 0.0)).0.min(left + width);
+            let from = plane.point_at((band.from, 0.0)).0.max(left);
+            let to = plane.point_at((band.to, 0.0)).0.min(left + width);
             if to > from {
                 svg.rect(band.class, Frame { x: from, y, width: to - from, height });
             }
@@ -246,7 +246,7 @@ impl Chart {
         let marks = if logarithmic { decades(low, high) } else { ticks(low, high, rows(frame.height) + 1) };
         let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
         for mark in marks {
-            let y = plane.at((plane.x.0, mark * self.y.size)).1;
+            let y = plane.point_at((plane.x.0, mark * self.y.size)).1;
             let label = if logarithmic { plain(mark, 1) } else { tick_label(mark, step) };
             svg.line("grid", (frame.x, y), (right, y));
             svg.text("small muted", (frame.x - 7.0, y + 4.0), Anchor::End, &label);
@@ -257,7 +257,7 @@ impl Chart {
         let marks = if self.x.logarithmic { decades(low, high) } else { ticks(low, high, pieces as usize) };
         let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
         for mark in marks {
-            let x = plane.at((mark * self.x.size, plane.y.0)).0;
+            let x = plane.point_at((mark * self.x.size, plane.y.0)).0;
             svg.line("grid", (x, frame.y), (x, bottom));
             svg.line("axis", (x, bottom), (x, bottom + 4.0));
             svg.text("small muted", (x, bottom + 17.0), Anchor::Middle, &tick_label(mark, step));
@@ -265,7 +265,7 @@ impl Chart {
         svg.line("axis", (frame.x, bottom), (right, bottom));
         svg.line("axis", (frame.x, frame.y), (frame.x, bottom));
         if plane.y.0 < 0.0 && plane.y.1 > 0.0 {
-            let zero = plane.at((plane.x.0, 0.0)).1;
+            let zero = plane.point_at((plane.x.0, 0.0)).1;
             svg.line("axis", (frame.x, zero), (right, zero));
         }
         svg.text("", (frame.x + frame.width / 2.0, bottom + 35.0), Anchor::Middle, &self.x.title());
@@ -275,13 +275,13 @@ impl Chart {
     fn draw_seats(&self, svg: &mut Svg, plane: &Plane) {
         let Frame { x: left, y: top, width, .. } = plane.frame;
         let (Some(first), Some(last)) = (self.seats.first(), self.seats.last()) else { return };
-        let gap = (plane.at((last.0, 0.0)).0 - plane.at((first.0, 0.0)).0) / self.seats.len() as f64;
+        let gap = (plane.point_at((last.0, 0.0)).0 - plane.point_at((first.0, 0.0)).0) / self.seats.len() as f64;
         let fits = |step: &i32| f64::from(*step) * gap >= NUMBER;
         let step = [1, 2, 5, 10, 20, 50, 100, 200, 500].into_iter().find(fits).unwrap_or(1000);
         svg.text("small muted", (left - 7.0, top - 8.0), Anchor::End, "Seat");
         let mut free = left + 0.4 * NUMBER;
         for (place, number) in self.seats.iter().filter(|seat| seat.1 % step == 0) {
-            let x = plane.at((*place, 0.0)).0;
+            let x = plane.point_at((*place, 0.0)).0;
             if (free..=left + width).contains(&x) {
                 free = x + 0.9 * NUMBER;
                 svg.line("axis", (x, top - 4.0), (x, top));
@@ -300,7 +300,7 @@ impl Chart {
         let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
         svg.line("axis", (right, y), (right, y + height));
         for mark in marks {
-            let at = plane.at((plane.x.0, mark / factor)).1;
+            let at = plane.point_at((plane.x.0, mark / factor)).1;
             svg.line("axis", (right, at), (right + 4.0, at));
             svg.text("small muted", (right + 7.0, at + 4.0), Anchor::Start, &tick_label(mark, step));
         }
@@ -311,11 +311,11 @@ impl Chart {
     fn draw_names(&self, svg: &mut Svg, plane: &Plane) {
         let Frame { x: left, y: top, width, height } = plane.frame;
         for x in self.uprights.iter().filter(|x| (plane.x.0..=plane.x.1).contains(*x)) {
-            let x = plane.at((*x, 0.0)).0;
+            let x = plane.point_at((*x, 0.0)).0;
             svg.line("mark", (x, top), (x, top + height));
         }
         for (level, name) in &self.levels {
-            let y = plane.at((plane.x.0, *level)).1;
+            let y = plane.point_at((plane.x.0, *level)).1;
             svg.line("load", (left, y), (left + width, y));
             if !name.is_empty() {
                 // below the line where there is no room above it
@@ -324,8 +324,8 @@ impl Chart {
             }
         }
         for band in self.bands.iter().filter(|band| !band.label.is_empty()) {
-            let from = plane.at((band.from, 0.0)).0.max(left);
-            let to = plane.at((band.to, 0.0)).0.min(left + width);
+            let from = plane.point_at((band.from, 0.0)).0.max(left);
+            let to = plane.point_at((band.to, 0.0)).0.min(left + width);
             if to - from > text_width(&band.label) {
                 svg.text("small muted halo", ((from + to) / 2.0, top + 14.0), Anchor::Middle, &band.label);
             }
@@ -337,8 +337,8 @@ fn draw_series(svg: &mut Svg, plane: &Plane, series: &Series, chart: &Chart) {
     let class = |kind: &str| format!("{kind} {}", series.class);
     if let Mark::Bars(width) = series.mark {
         for (index, point) in series.points.iter().enumerate().filter(|(_, p)| finite(p)) {
-            let (left, top) = plane.at((point.0 - width / 2.0, point.1.max(0.0)));
-            let (right, bottom) = plane.at((point.0 + width / 2.0, point.1.min(0.0)));
+            let (left, top) = plane.point_at((point.0 - width / 2.0, point.1.max(0.0)));
+            let (right, bottom) = plane.point_at((point.0 + width / 2.0, point.1.min(0.0)));
             let (top, bottom) = (top.min(bottom), top.max(bottom));
             let frame = Frame { x: left, y: top, width: right - left, height: bottom - top };
             svg.titled_rect(&class("bar"), frame, &label(series, index, chart));
@@ -349,7 +349,7 @@ fn draw_series(svg: &mut Svg, plane: &Plane, series: &Series, chart: &Chart) {
         }
         return;
     }
-    let pixels: Vec<(f64, f64)> = series.points.iter().map(|point| plane.at(*point)).collect();
+    let pixels: Vec<(f64, f64)> = series.points.iter().map(|point| plane.point_at(*point)).collect();
     let (kind, column) = if series.mark == Mark::Faint { ("faint", 2.0) } else { ("line", 1.0) };
     for piece in pixels.split(|point| !finite(point)) {
         svg.path(&class(kind), &straighten(&thin(piece, column)), false, &series.name);
@@ -453,7 +453,7 @@ mod tests {
         let frame = Frame { x: 0.0, y: 0.0, width: 300.0, height: 200.0 };
         let plane = chart.plane(frame);
         assert_eq!(plane.y, (1e-3, 1.0));
-        let down = |value: f64| plane.at((0.0, value)).1;
+        let down = |value: f64| plane.point_at((0.0, value)).1;
         assert!((down(1e-3) - 200.0).abs() < 1e-9 && down(1.0).abs() < 1e-9);
         assert!((down(0.1) - 200.0 / 3.0).abs() < 1e-9, "{}", down(0.1));
         let mut svg = Svg::default();

@@ -6,7 +6,7 @@ use crate::results::Run;
 use crate::scenario::{Scenario, Section};
 use std::collections::BTreeSet;
 
-/// As many counts as a reader can tell apart.
+/// Counts that a reader can tell apart.
 const MOST: usize = 6;
 
 /// A recorded axle count that is drawn.

@@ -113,7 +113,7 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place
     }
     let mut named = f64::NEG_INFINITY;
     for layer in layers {
-        let thickness = layer.thickness.at(cut.x);
+        let thickness = layer.thickness.value_at(cut.x);
         if thickness < 1e-3 {
             continue;
         }

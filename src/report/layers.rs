@@ -85,7 +85,7 @@ fn depth(scenario: &Scenario, number: usize, start: f64, end: f64) -> f64 {
     let parts = scenario.track.ground(number);
     let deepest = |part: &Groundwork| {
         let (from, to) = (part.start.max(start), part.end.min(end));
-        let all = |x: f64| part.layers.iter().map(|layer| layer.thickness.at(x)).sum::<f64>();
+        let all = |x: f64| part.layers.iter().map(|layer| layer.thickness.value_at(x)).sum::<f64>();
         if from < to { all(from).max(all(0.5 * (from + to))).max(all(to)) } else { 0.0 }
     };
     parts.iter().map(deepest).fold(0.0, f64::max).min(DEEPEST)
@@ -121,8 +121,11 @@ fn draw_part(svg: &mut Svg, view: &View, part: &Groundwork, under: f64) {
     let places: Vec<f64> = (0..=steps as usize).map(|k| start + (end - start) * k as f64 / steps).collect();
     let mut upper: Vec<f64> = vec![under; places.len()];
     for layer in &part.layers {
-        let lower: Vec<f64> =
-            places.iter().zip(&upper).map(|(x, top)| (top + layer.thickness.at(*x)).min(under + DEEPEST)).collect();
+        let lower: Vec<f64> = places
+            .iter()
+            .zip(&upper)
+            .map(|(x, top)| (top + layer.thickness.value_at(*x)).min(under + DEEPEST))
+            .collect();
         draw_layer(svg, view, layer, &places, (&upper, &lower));
         upper = lower;
     }
@@ -187,9 +190,9 @@ fn label(layer: &Layer, places: &[f64]) -> String {
             format!("{} to {}", show(first), show(last))
         }
     };
-    let mut text = format!("{}: {} mm", layer.name, range(&|x| 1e3 * layer.thickness.at(x), 4));
+    let mut text = format!("{}: {} mm", layer.name, range(&|x| 1e3 * layer.thickness.value_at(x), 4));
     if let Some(modulus) = layer.youngs_modulus() {
-        text += &format!(", {} MPa", range(&|x| 1e-6 * modulus.at(x), 3));
+        text += &format!(", {} MPa", range(&|x| 1e-6 * modulus.value_at(x), 3));
     }
     text
 }

@@ -40,7 +40,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     fixed(value, (digits as f64 - 1.0 - magnitude).clamp(0.0, 9.0) as usize)
 }
 
-/// As [`significant`], without zeros behind the point: for numbers that a person chose, as a spacing of 0.6 m.
+/// The number as [`significant`] writes it, without zeros behind the point: for numbers that a person chose, as a spacing of 0.6 m.
 pub fn plain(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
     if text.contains('.') && !text.contains('e') {

@@ -13,7 +13,7 @@ pub struct PebbleRow {
     pub volume: f64,
     /// Mean distance of the surfaces over the size of the grain.
     pub distance: f64,
-    /// Of the inertia tensor, as a share.
+    /// Error of the inertia tensor, as a share.
     pub inertia: f64,
     /// Pairs of pebbles that are tested for a pair of grains that touch.
     pub tests: f64,

@@ -147,7 +147,7 @@ impl<'a> Picture<'a> {
         else {
             return;
         };
-        let at = |factor: f64| plane.at(seconds * factor, error(errors) * 2.0 / (factor * factor));
+        let at = |factor: f64| plane.point(seconds * factor, error(errors) * 2.0 / (factor * factor));
         svg.line("mark", at(0.25), at(8.0));
     }
 
@@ -160,13 +160,13 @@ impl<'a> Picture<'a> {
             .filter_map(|p| p.outcome.done().map(|(seconds, errors)| (seconds, error(errors))))
             .collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let path: Vec<(f64, f64)> = points.into_iter().map(|(s, e)| plane.at(s, e)).collect();
+        let path: Vec<(f64, f64)> = points.into_iter().map(|(s, e)| plane.point(s, e)).collect();
         svg.path("frontier", &path, false, "nothing cheaper is better");
     }
 
     fn model(&self, svg: &mut Svg, plane: &Plane, error: ReadError) {
         let Some(model) = &self.chart.model_error else { return };
-        let (left, y) = plane.at(10f64.powf(plane.decades.0), error(model));
+        let (left, y) = plane.point(10f64.powf(plane.decades.0), error(model));
         svg.line("load", (left, y), (left + plane.frame.width, y));
         let text = format!("Euler against Timoshenko: {} %", significant(100.0 * error(model), 2));
         svg.text("small muted halo", (left + plane.frame.width - 6.0, y - 5.0), Anchor::End, &text);
@@ -177,7 +177,7 @@ impl<'a> Picture<'a> {
         for (index, method) in self.methods.iter().enumerate() {
             for (beam, kind) in [(other, "other"), (self.beam, "line")] {
                 let points = self.line(*method, beam);
-                let done = |p: &&Point| p.outcome.done().map(|(seconds, errors)| plane.at(seconds, error(errors)));
+                let done = |p: &&Point| p.outcome.done().map(|(seconds, errors)| plane.point(seconds, error(errors)));
                 for piece in points.split(|p| p.outcome.done().is_none()) {
                     let path: Vec<(f64, f64)> = piece.iter().filter_map(done).collect();
                     svg.path(&format!("{kind} {}", class(index)), &path, false, "");
@@ -187,7 +187,7 @@ impl<'a> Picture<'a> {
                         Some(at) if beam == self.beam => marker(svg, index, at, &title(point, error)),
                         Some(at) => svg.circle(&format!("hollow {}", class(index)), at, 2.4, &title(point, error)),
                         None => {
-                            let top = plane.at(point.outcome.seconds().max(10f64.powf(plane.decades.0)), self.most);
+                            let top = plane.point(point.outcome.seconds().max(10f64.powf(plane.decades.0)), self.most);
                             cross(svg, class(index), (top.0, top.1 + 8.0), &title(point, error));
                         }
                     }
@@ -200,7 +200,7 @@ impl<'a> Picture<'a> {
     fn varying(&self, svg: &mut Svg, plane: &Plane, error: ReadError) {
         let points = self.chart.points.iter().filter(|p| p.sweep == Sweep::Tolerance);
         let done: Vec<(&Point, (f64, f64))> = points
-            .filter_map(|p| p.outcome.done().map(|(seconds, errors)| (p, plane.at(seconds, error(errors)))))
+            .filter_map(|p| p.outcome.done().map(|(seconds, errors)| (p, plane.point(seconds, error(errors)))))
             .collect();
         let path: Vec<(f64, f64)> = done.iter().map(|(_, at)| *at).collect();
         svg.path(&format!("line {VARYING}"), &path, false, "");
@@ -213,7 +213,7 @@ impl<'a> Picture<'a> {
         let meshes = self.chart.points.iter().filter(|p| p.sweep == Sweep::Elements && p.variant.beam == self.beam);
         for point in meshes {
             let Some((seconds, errors)) = point.outcome.done() else { continue };
-            let at = plane.at(seconds, error(errors));
+            let at = plane.point(seconds, error(errors));
             svg.circle("hollow s0", at, 6.5, &title(point, error));
             svg.text("small", (at.0, at.1 + 4.0), Anchor::Middle, &point.variant.elements_per_bay.to_string());
         }
@@ -222,7 +222,7 @@ impl<'a> Picture<'a> {
     fn own(&self, svg: &mut Svg, plane: &Plane, error: ReadError) {
         let own = self.chart.points.iter().find(|p| p.default);
         if let Some((seconds, errors)) = own.and_then(|p| p.outcome.done()) {
-            svg.circle("ring", plane.at(seconds, error(errors)), 8.0, "the scene's own numerics");
+            svg.circle("ring", plane.point(seconds, error(errors)), 8.0, "the scene's own numerics");
         }
     }
 }
@@ -282,7 +282,7 @@ struct Plane {
 }
 
 impl Plane {
-    fn at(&self, seconds: f64, error: f64) -> (f64, f64) {
+    fn point(&self, seconds: f64, error: f64) -> (f64, f64) {
         let (low, high) = self.decades;
         let across = (seconds.max(1e-9).log10() - low) / (high - low);
         let (bottom, top) = (LEAST.log10(), self.most.log10());
@@ -301,7 +301,7 @@ impl Plane {
         let (right, bottom) = (f.x + f.width, f.y + f.height);
         for decade in -5..=self.most.log10().round() as i32 {
             let error = 10f64.powi(decade);
-            let y = self.at(1.0, error).1;
+            let y = self.point(1.0, error).1;
             svg.line("grid", (f.x, y), (right, y));
             svg.text("small muted", (f.x - 7.0, y + 4.0), Anchor::End, &format!("{} %", number(percent(decade))));
         }
@@ -312,7 +312,7 @@ impl Plane {
                 if log < self.decades.0 || log > self.decades.1 {
                     continue;
                 }
-                let x = self.at(seconds, 1.0).0;
+                let x = self.point(seconds, 1.0).0;
                 svg.line("grid", (x, f.y), (x, bottom));
                 let text = if seconds < 0.0999 {
                     format!("{} ms", round(seconds * 1e3))

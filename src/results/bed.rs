@@ -8,10 +8,10 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BedSummary {
     pub title: String,
-    /// Of the trackform.
+    /// Name of the trackform.
     pub section: String,
     pub hash: String,
-    /// Of the cell along the track and across, m.
+    /// Size of the cell along the track and across, m.
     pub plan_m: [f64; 2],
     pub bodies: usize,
     pub pebbles: usize,
@@ -30,7 +30,7 @@ pub struct BedLayer {
     /// m.
     pub thickness_asked_m: f64,
     pub thickness_m: f64,
-    /// Of the whole layer, walls included, and of what lies a quarter of its thickness inside.
+    /// Porosity of the whole layer, walls included, and of what lies a quarter of its thickness inside.
     pub porosity: f64,
     pub inner_porosity: f64,
     /// Largest distance between the curve that was asked for and that of the grains, as a share of the mass.

@@ -18,7 +18,7 @@ pub struct BedReadings {
     /// Slabs from the floor upwards, over the whole plan; at rest, without a plate.
     pub profile: Vec<ProfileRow>,
     pub directions: Directions,
-    /// Of contacts with more than the mean normal force.
+    /// Directions of contacts with more than the mean normal force.
     pub strong_directions: Directions,
     pub forces: ForceSpread,
     /// `None` where it failed, which a note then tells.
@@ -59,7 +59,7 @@ pub struct PlateTest {
     pub curve: Vec<LoadPoint>,
     /// First and second loading.
     pub stiffness_N_per_m: [f64; 2],
-    /// Of an equal half-space, Ev1 and Ev2; `None` for a plate over the whole cell.
+    /// Moduli of an equal half-space, Ev1 and Ev2; `None` for a plate over the whole cell.
     pub moduli_Pa: Option<[f64; 2]>,
     /// Under the plate at the first full pressure.
     pub loaded: Vec<ProfileRow>,
@@ -79,8 +79,8 @@ pub fn read_bed(
     let plate = press(plan, packed, &slabs, tell).map_err(|why| notes.push(format!("No stiffness: {why}."))).ok();
     Ok(BedReadings {
         profile: slabs.iter().filter_map(row).collect(),
-        directions: Directions::of(&survey, 0.0),
-        strong_directions: Directions::of(&survey, forces.mean),
+        directions: Directions::of_contacts(&survey, 0.0),
+        strong_directions: Directions::of_contacts(&survey, forces.mean),
         forces,
         plate,
         notes,
@@ -132,8 +132,8 @@ fn profile_row([from, to]: &[f64; 2], reading: &Reading) -> ProfileRow {
 }
 
 impl Directions {
-    /// Of the contacts with more than `least` N.
-    fn of(survey: &Survey, least: f64) -> Directions {
+    /// Directions of the contacts with more than `least` N.
+    fn of_contacts(survey: &Survey, least: f64) -> Directions {
         let fabric = Fabric::from_normals(survey.normals(least));
         let rose = Rose::from_normals(survey.normals(least));
         Directions { fabric, deviator: fabric.deviator(), anisotropy: fabric.anisotropy(), rose }

@@ -210,7 +210,8 @@ fn percentile(values: &[(f64, f64)], share: f64) -> Option<f64> {
 fn misfit(measure: &Measure, mut values: Vec<(f64, f64)>, measured: &[(f64, f64)]) -> Result<f64, String> {
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     values.dedup_by(|next, kept| (next.0 - kept.0).abs() < PLACE_TOLERANCE);
-    let squares: Vec<f64> = measured.iter().filter_map(|(x, value)| Some((at(&values, *x)? - value).powi(2))).collect();
+    let squares: Vec<f64> =
+        measured.iter().filter_map(|(x, value)| Some((value_at(&values, *x)? - value).powi(2))).collect();
     if squares.is_empty() {
         let [first, last] = [values[0].0, values[values.len() - 1].0];
         let name = measure.response.name();
@@ -220,7 +221,7 @@ fn misfit(measure: &Measure, mut values: Vec<(f64, f64)>, measured: &[(f64, f64)
 }
 
 /// The value at a place, straight between those beside it; `None` beyond them. Places ascend.
-fn at(values: &[(f64, f64)], x: f64) -> Option<f64> {
+fn value_at(values: &[(f64, f64)], x: f64) -> Option<f64> {
     let [first, last] = [values.first()?, values.last()?];
     if x < first.0 - PLACE_TOLERANCE || x > last.0 + PLACE_TOLERANCE {
         return None;

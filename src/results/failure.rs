@@ -45,7 +45,7 @@ fn of_track(clock: Clock, cause: &TrackError, graph: &Graph, origins: &Origins) 
     let labels = labels.into_iter().filter_map(|(span, text)| Some((span?, text)));
     let code = if matches!(cause, TrackError::RanAway { .. }) { Code::E0703 } else { Code::E0801 };
     let message = format!("after {axles} axles: {cause}");
-    labels.fold(Diagnostic::new(code, message).help(help), |d, (span, text)| d.at(span, text))
+    labels.fold(Diagnostic::new(code, message).help(help), |d, (span, text)| d.label(span, text))
 }
 
 struct Scene<'a> {
@@ -62,7 +62,7 @@ impl Scene<'_> {
                 (vec![self.time_step(), self.contact(), self.place(*x)], self.half_a_step())
             }
             TrackError::NoEquilibrium { x, .. } if axles > 0 => {
-                (vec![(self.at(Parameter::Update), "too long here".into()), self.place(*x)], self.half_a_block())
+                (vec![(self.span_of(Parameter::Update), "too long here".into()), self.place(*x)], self.half_a_block())
             }
             TrackError::NoEquilibrium { x, .. } => (
                 vec![self.place(*x), self.support(*x)],
@@ -76,7 +76,7 @@ impl Scene<'_> {
             TrackError::OffTrack { x, start, end } => {
                 let given = [(Parameter::Start, "starts here"), (Parameter::Finish, "ends here")];
                 let mut labels: Labels =
-                    given.iter().map(|(parameter, text)| (self.at(*parameter), (*text).into())).collect();
+                    given.iter().map(|(parameter, text)| (self.span_of(*parameter), (*text).into())).collect();
                 labels.push(self.place(x.clamp(*start, *end)));
                 let help = format!(
                     "keep every wheel and load between {} m and {} m, or lengthen a section by {} m",
@@ -92,7 +92,7 @@ impl Scene<'_> {
                     "the linear track cannot follow: write a lower `speed`{}, a stiffer support, or a smaller step in settlement",
                     speed.map_or(String::new(), |v| format!(", {} km/h", number((v * 1.8).round())))
                 );
-                let fast = (self.at(Parameter::Speed(0)), "at this speed".into());
+                let fast = (self.span_of(Parameter::Speed(0)), "at this speed".into());
                 (vec![self.place(*x), self.support(*x), fast], help)
             }
             TrackError::Model { x, .. } => {
@@ -104,7 +104,7 @@ impl Scene<'_> {
         }
     }
 
-    fn at(&self, parameter: Parameter) -> Option<Span> {
+    fn span_of(&self, parameter: Parameter) -> Option<Span> {
         self.origins.span(parameter)
     }
 
@@ -124,7 +124,7 @@ impl Scene<'_> {
         match self.section(x) {
             Some((index, section)) => {
                 let place = number((x * 1e3).round() / 1e3);
-                (self.at(Parameter::Section(index)), format!("x = {place} m lies in `{}`", section.name))
+                (self.span_of(Parameter::Section(index)), format!("x = {place} m lies in `{}`", section.name))
             }
             None => (None, String::new()),
         }
@@ -135,15 +135,15 @@ impl Scene<'_> {
         let seats = self.graph.track().map_or(&[][..], |track| &track.seats);
         let distance = |seat: usize| (seats[seat].x - x).abs();
         let nearest = (0..seats.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
-        (nearest.and_then(|seat| self.at(Parameter::Support(seat))), "the nearest support".into())
+        (nearest.and_then(|seat| self.span_of(Parameter::Support(seat))), "the nearest support".into())
     }
 
     fn time_step(&self) -> (Option<Span>, String) {
-        (self.at(Parameter::TimeStep), "too coarse here".into())
+        (self.span_of(Parameter::TimeStep), "too coarse here".into())
     }
 
     fn contact(&self) -> (Option<Span>, String) {
-        (self.at(Parameter::Contact(0)), "the contact of wheel and rail".into())
+        (self.span_of(Parameter::Contact(0)), "the contact of wheel and rail".into())
     }
 
     fn half_a_step(&self) -> String {
@@ -173,12 +173,12 @@ impl Scene<'_> {
 
     fn parameter(&self, name: TrackParameter) -> (Option<Span>, String) {
         let span = match name {
-            TrackParameter::Speed => self.at(Parameter::Speed(0)),
-            TrackParameter::TimeStep => self.at(Parameter::TimeStep),
-            TrackParameter::Gravity => self.at(Parameter::Gravity),
-            TrackParameter::ElementsPerBay => self.at(Parameter::ElementsPerBay),
-            TrackParameter::Distance => self.at(Parameter::Finish).or(self.at(Parameter::Start)),
-            TrackParameter::Vehicle(_) => self.at(Parameter::WheelMass(0)),
+            TrackParameter::Speed => self.span_of(Parameter::Speed(0)),
+            TrackParameter::TimeStep => self.span_of(Parameter::TimeStep),
+            TrackParameter::Gravity => self.span_of(Parameter::Gravity),
+            TrackParameter::ElementsPerBay => self.span_of(Parameter::ElementsPerBay),
+            TrackParameter::Distance => self.span_of(Parameter::Finish).or(self.span_of(Parameter::Start)),
+            TrackParameter::Vehicle(_) => self.span_of(Parameter::WheelMass(0)),
             _ => None,
         };
         (span, "given here".into())

@@ -11,7 +11,7 @@ pub struct Grain {
     pub radius: f64,
     /// In the order of making.
     pub body: u32,
-    /// Of the pebble's centre, half a step ago \[m/s\].
+    /// Velocity of the pebble's centre, half a step ago \[m/s\].
     pub velocity: [f64; 3],
     /// Since the reference \[m\]; none without one.
     pub displacement: Option<[f64; 3]>,
@@ -27,7 +27,7 @@ pub struct Link {
     /// \[m\]
     pub from: [f64; 3],
     pub to: [f64; 3],
-    /// Of the first and, where it is not a wall, of the second.
+    /// Body of the first and, where it is not a wall, of the second.
     pub bodies: (u32, Option<u32>),
     /// On the first \[N\].
     pub force: [f64; 3],

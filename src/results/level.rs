@@ -36,7 +36,7 @@ pub fn longitudinal_level(profile: &[(f64, f64)]) -> Option<LongitudinalLevel> {
     let pad = (PAD / step).ceil() as usize;
     // measured from the left end's level, so that the filters start at rest
     let mut samples = vec![0.0; pad];
-    samples.extend((0..=steps).map(|k| at(profile, first.0 + step * k as f64) - first.1));
+    samples.extend((0..=steps).map(|k| value_at(profile, first.0 + step * k as f64) - first.1));
     samples.extend(std::iter::repeat_n(last.1 - first.1, pad));
     for _ in 0..2 {
         for quality in QUALITIES {
@@ -56,7 +56,7 @@ pub fn longitudinal_level(profile: &[(f64, f64)]) -> Option<LongitudinalLevel> {
 }
 
 /// The profile at x, linear between its points.
-fn at(profile: &[(f64, f64)], x: f64) -> f64 {
+fn value_at(profile: &[(f64, f64)], x: f64) -> f64 {
     let right = profile.partition_point(|point| point.0 < x).clamp(1, profile.len() - 1);
     let (a, b) = (profile[right - 1], profile[right]);
     if b.0 > a.0 { a.1 + (b.1 - a.1) * ((x - a.0) / (b.0 - a.0)).clamp(0.0, 1.0) } else { b.1 }

@@ -5,7 +5,7 @@ use super::{
     BedSummary, BedTest, BedTests, BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Scalar,
     SleeperRow, SleeperTable, Tables, TampingRow, TrainRow, bed_summary, histories,
 };
-use crate::execute::{Between, Checkpoint, Event, Listener, Measured};
+use crate::execute::{Between, BlockMeasures, Checkpoint, Event, Listener};
 use crate::graph::{Block, Graph, Runner, SupportNode, TrackNode};
 use crate::nodes::{self, PassageOutcome, RailPoint, SeatOutcome, Tested, Unloaded};
 use crate::scenario::response::Response;
@@ -211,7 +211,7 @@ impl<'a> RunRecorder<'a> {
         }
     }
 
-    /// Of the support and the pad under a sleeper, N/m; 0 without one.
+    /// Stiffness of the support and the pad under a sleeper, N/m; 0 without one.
     fn support_stiffness(&self, seat: usize) -> f64 {
         self.supports.get(seat).and_then(|node| node.spring).map_or(0.0, |spring| spring.stiffness)
     }
@@ -372,17 +372,17 @@ impl RunRecorder<'_> {
     fn block(
         &mut self,
         axles: u64,
-        block: Option<(&Block, &Measured)>,
+        block: Option<(&Block, &BlockMeasures)>,
         passages: &[&PassageOutcome],
         before: &[f64],
         after: &[f64],
     ) {
         let sum = |of: fn(&PassageOutcome) -> u64| passages.iter().map(|p| of(p)).sum();
-        let last = || Measured {
+        let last = || BlockMeasures {
             passages: passages.len() as u64,
             time_steps: sum(|p| p.time_steps),
             newton_iterations: sum(|p| p.newton_iterations),
-            ..Measured::default()
+            ..BlockMeasures::default()
         };
         let measured = block.map_or_else(last, |(_, measured)| *measured);
         let block = block.map(|(block, _)| block);

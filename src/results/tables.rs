@@ -25,7 +25,7 @@ pub struct SleeperRow {
     pub max_contact_force_N: f64,
     pub max_rail_seat_load_N: f64,
     pub max_sleeper_displacement_m: f64,
-    /// Of support and under sleeper pad in series.
+    /// Stiffness of support and under sleeper pad in series.
     pub support_stiffness_N_per_m: f64,
     pub contact_loss_s: f64,
 }

@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// A layer of a section; the first of several lies under the sleepers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
-    /// That of its material.
+    /// Name of its material.
     pub name: String,
     pub material: Material,
     /// m.
@@ -25,11 +25,11 @@ pub enum Material {
 /// Ballast or sub-ballast: grains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Granular {
-    /// Of what is modelled: `scale` times the real one.
+    /// Grading of what is modelled: `scale` times the real one.
     pub grading: Grading,
     /// Size of modelled over real grains.
     pub scale: Given,
-    /// Of a grain, kg/m^3.
+    /// Density of a grain, kg/m^3.
     pub density: Given,
     pub shape: Shape,
     pub contact: Contact,
@@ -41,15 +41,15 @@ pub struct Granular {
     pub wall_friction: Given,
     /// Share of the force out of balance that opposes motion, under traffic.
     pub local_damping: Given,
-    /// Of a contact, as share of its critical damping, under traffic.
+    /// Damping of a contact, as share of its critical damping, under traffic.
     pub viscous_damping: Given,
     /// Whether a dashpot may pull grains that part.
     pub dashpots_pull: bool,
     pub packing: Packing,
     pub bond: Option<Bond>,
-    /// Of the layer as a continuum, Pa; grains do not read it.
+    /// Young's modulus of the layer as a continuum, Pa; grains do not read it.
     pub youngs_modulus: Option<Varying>,
-    /// Of the layer as a continuum.
+    /// Poisson's ratio of the layer as a continuum.
     pub poisson_ratio: Given,
     /// At which the layer spreads a load, rad against the vertical.
     pub spread: Given,
@@ -110,7 +110,7 @@ pub enum Surfaces {
 /// A closed surface of a size that means nothing: its grains have those of their grading.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Surface {
-    /// Of its file, or in the library.
+    /// Name in its file, or in the library.
     pub name: String,
     pub mesh: Arc<Mesh>,
 }
@@ -135,7 +135,7 @@ impl Shape {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Contact {
     Linear {
-        /// Of a contact, N/m.
+        /// Stiffness of a contact, N/m.
         stiffness: Given,
     },
     Hertz {
@@ -151,7 +151,7 @@ pub struct Packing {
     pub lifts: u32,
     /// On each lift, Pa.
     pub pressure: Given,
-    /// As those of [`Granular`], while grains are packed.
+    /// Friction while grains are packed; see [`Granular`].
     pub friction: Given,
     pub local_damping: Given,
     pub viscous_damping: Given,
@@ -160,7 +160,7 @@ pub struct Packing {
 /// Glue between grains.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Bond {
-    /// Of a contact, N/m.
+    /// Stiffness of a contact, N/m.
     pub stiffness: Given,
     /// N.
     pub tensile_strength: Given,
@@ -206,7 +206,7 @@ impl Layer {
         if let Material::Soil(soil) = &self.material { Some(soil) } else { None }
     }
 
-    /// As a continuum, Pa; `None` where grains are known by their contacts alone.
+    /// Young's modulus as a continuum, Pa; `None` where grains are known by their contacts alone.
     pub fn youngs_modulus(&self) -> Option<&Varying> {
         match &self.material {
             Material::Granular(granular) => granular.youngs_modulus.as_ref(),

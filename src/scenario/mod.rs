@@ -13,10 +13,10 @@ mod material;
 mod profile;
 pub mod response;
 mod study;
-mod tamping;
 mod track;
 mod traffic;
 
+pub use crate::graph::{Tamping, Update};
 pub use crate::solvers::track::{Integrator, Order, Sequence, Share, Spring};
 pub use bed::{Base, Bed, BedEnds, Grains, Tier, Volume, VolumeRecord};
 pub use given::{Given, Origin};
@@ -26,7 +26,6 @@ pub use library::{Evidence, LibraryEntry};
 pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soil, Strength, Surface, Surfaces};
 pub use profile::{Cubic, Curve, Piece, Profile, Varying};
 pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spread, Study, Values};
-pub use tamping::Tamping;
 pub use track::{
     ApproachSlab, AuxiliaryRailSpan, AuxiliaryRails, Foot, Groundwork, Pad, Rail, RailEnds, Seat, Seating, Section,
     Side, Slab, SleeperBody, Stack, Stretch, Support, Track, Transition, Usp,
@@ -96,18 +95,6 @@ pub struct Solve {
     pub grains: Grains,
 }
 
-/// After how many axles forces and settlement are exchanged.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum Update {
-    /// The same number of axles each time.
-    Fixed { axles: u64 },
-    /// `first` axles, then blocks of `ratio` times the axles so far, never smaller than `first`.
-    Geometric { first: u64, ratio: f64 },
-    /// Blocks as long as their estimated error of settlement allows: at most `tolerance` at any seat, m. `cap` bounds the
-    /// settlement of a block as well, m.
-    Adaptive { tolerance: f64, cap: Option<f64> },
-}
-
 /// Beam theory of the rail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Beam {
@@ -133,7 +120,7 @@ pub enum TimeStep {
     Auto,
     /// s.
     Fixed(Given),
-    /// As small as the wanted error of a step, relative to the answer, asks for.
+    /// Steps as small as the wanted error of a step, relative to the answer, asks for.
     Adaptive { tolerance: Given },
 }
 

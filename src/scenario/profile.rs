@@ -59,7 +59,7 @@ impl Profile {
 
 impl Varying {
     /// The value at a chainage.
-    pub fn at(&self, x: f64) -> f64 {
+    pub fn value_at(&self, x: f64) -> f64 {
         match self {
             Varying::Constant(given) => **given,
             Varying::Profile(profile) => profile.value(x),

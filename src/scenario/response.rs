@@ -38,7 +38,7 @@ pub enum Response {
     SleeperVelocity,
     /// m/s^2, downward.
     SleeperAcceleration,
-    /// Of support and under sleeper pad in series, N/m per seat.
+    /// Stiffness of support and under sleeper pad in series, N/m per seat.
     SupportStiffness,
     /// Time without contact of sleeper and support during a passage, s.
     ContactLoss,
@@ -126,7 +126,7 @@ pub enum Expression {
     Measure(Measure),
     Binary(Box<Expression>, BinaryOp, Box<Expression>),
     Negate(Box<Expression>),
-    /// Of one value or more.
+    /// A function of one value or more.
     Function(Function, Vec<Expression>),
 }
 
@@ -146,7 +146,7 @@ impl Expression {
 /// A comparison that must hold after the run: one more operand than operators.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Expectation {
-    /// As written, for messages.
+    /// The expression as written, for messages.
     pub text: String,
     pub span: Span,
     pub operands: Vec<Expression>,

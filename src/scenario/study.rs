@@ -26,7 +26,7 @@ pub struct Study {
 /// A value that varies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Axis {
-    /// As `--set` takes it.
+    /// The path as `--set` takes it.
     pub path: String,
     /// Where the path stands.
     pub span: Span,
@@ -44,7 +44,7 @@ pub enum Values {
 /// One entry of a list.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Choice {
-    /// As it would stand in the file.
+    /// The value as it would stand in the file.
     pub text: String,
     /// In the unit of the axis; `None` where it is no number.
     pub number: Option<f64>,
@@ -104,7 +104,7 @@ pub struct Objective {
 /// An expression of responses under its name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// As written.
+    /// The expression as written.
     pub text: String,
     pub expression: Expression,
     /// The unit in which it reads well, and its size in SI.

@@ -71,7 +71,7 @@ pub struct ApproachSlab {
     pub youngs_modulus: Given,
     /// kg/m^3.
     pub density: Given,
-    /// Of its top below the sleepers, m.
+    /// Depth of its top below the sleepers, m.
     pub depth: Given,
     /// Chainage of its ends, m; the first is that at the structure.
     pub ends: [f64; 2],
@@ -163,7 +163,7 @@ impl AuxiliaryRailSpan {
 /// Auxiliary rails as **one rail** carries them: half of what they are of the whole track.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AuxiliaryRails {
-    /// Of the whole track.
+    /// How many the whole track has.
     pub count: Given<u32>,
     /// `count / 2` times mass, stiffnesses and rotary inertia of one of them.
     pub rail: Rail,
@@ -302,7 +302,7 @@ pub struct SleeperBody {
     pub length: f64,
     pub base_width: f64,
     pub height: f64,
-    /// That bears on the ballast, m^2.
+    /// Area that bears on the ballast, m^2.
     pub base_area: f64,
     /// Between the rails, m.
     pub seat_distance: f64,
@@ -313,7 +313,7 @@ pub enum Foot {
     /// A rigid sleeper, its half mass in kg, on a support that can only push.
     Sleeper {
         mass: Given,
-        /// As it is stated; `None` where the layers, or only grains, say what it is.
+        /// The support as it is stated; `None` where the layers, or only grains, say what it is.
         support: Option<Support>,
         /// In series with the support.
         usp: Option<Usp>,

@@ -121,7 +121,7 @@ pub enum Varies {
     Yes,
 }
 
-/// Of what a value is: of one rail, or of a whole that the model halves.
+/// What a value belongs to: one rail, or a whole that the model halves.
 #[derive(Debug, PartialEq)]
 pub struct Basis {
     /// Names with the factor to the value of one rail; the range is of the first.
@@ -254,7 +254,7 @@ impl Form {
             Form::Text => "text in double quotes".into(),
             Form::Number(m) if m.unit.is_empty() => "a plain number".into(),
             Form::Number(m) => {
-                let dimension = crate::units::Dimension::of(m.unit);
+                let dimension = crate::units::Dimension::of_unit(m.unit);
                 match dimension.name() {
                     Some(name) => format!("{name} in `{}`", m.unit),
                     None if dimension.is_none() => format!("a share in `{}`", m.unit),

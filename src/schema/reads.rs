@@ -3,7 +3,7 @@
 /// Fields that a part of the program reads, and where it acts.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Reads {
-    /// As `kind.field`.
+    /// Fields as `kind.field`.
     pub fields: &'static [&'static str],
     /// Goes on after "they act only": `where trains run`.
     pub acts_where: &'static str,

@@ -39,7 +39,7 @@ pub struct Directory<D: Disk = FileSystem> {
     _lock: Lock,
 }
 
-/// Of the file that says whose work is under way; it is this very file that names the scene.
+/// Seal of the file that says whose work is under way; it is this very file that names the scene.
 const WORK: Seal<'_> = Seal { kind: "work", key: "" };
 
 /// Data that has been kept beside a checkpoint. A checkpoint that holds this names exactly the bytes that were kept.

@@ -132,7 +132,7 @@ fn check(scene: Scene<'_>, base: &Compiled, study: &Study, levels: &[Level], ove
         return Checked::LeftOut;
     }
     let places = Places { base: &base.sources, own: &compiled.sources, given: scene.set.len(), study, levels };
-    let placed = |d: &Diagnostic| (d.clone(), places.of(d));
+    let placed = |d: &Diagnostic| (d.clone(), places.place_of(d));
     let mut errors: Vec<_> = compiled.diagnostics.iter().filter(|d| d.is_error()).map(placed).collect();
     let run = compiled.runnable();
     errors.extend(own.zip(run).and_then(|(own, run)| leaves_open(run, own)).map(|d| (d, None)));
@@ -180,7 +180,7 @@ fn against_the_whole(plan: &Plan, all: usize) -> Option<Diagnostic> {
         let message = format!("every one of the {all} points of study `{}` breaks a condition", study.name);
         return Some(
             Diagnostic::new(Code::E0708, message)
-                .at(broken, "no point is left")
+                .label(broken, "no point is left")
                 .help("take the condition out, or vary further"),
         );
     }
@@ -196,7 +196,7 @@ fn against_the_whole(plan: &Plan, all: usize) -> Option<Diagnostic> {
             hours(budget)
         );
         Diagnostic::new(Code::E0709, message)
-            .at(span, "the budget")
+            .label(span, "the budget")
             .help("take fewer points or axles, or raise the budget")
     })
 }
@@ -209,7 +209,7 @@ fn without_seed(scene: Scene<'_>, plan: &Plan) -> Option<Diagnostic> {
     let name = &plan.study.name;
     let message = format!("study `{name}` cannot be repeated with another seed: {}", mistake.message);
     let help = mistake.help.clone();
-    Some(Diagnostic::new(Code::E0705, message).at(plan.study.span, "has `repeats`").maybe_help(help))
+    Some(Diagnostic::new(Code::E0705, message).label(plan.study.span, "has `repeats`").maybe_help(help))
 }
 
 /// Finds places of a point's sources in those of the scene.
@@ -223,7 +223,7 @@ struct Places<'a> {
 }
 
 impl Places<'_> {
-    fn of(&self, diagnostic: &Diagnostic) -> Option<Place> {
+    fn place_of(&self, diagnostic: &Diagnostic) -> Option<Place> {
         let labels: Vec<Label> = diagnostic
             .labels
             .iter()

@@ -9,7 +9,7 @@ use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-/// Of this machine.
+/// Cores of this machine.
 pub fn cores() -> usize {
     thread::available_parallelism().map_or(1, NonZero::get)
 }

@@ -74,9 +74,9 @@ fn starts_item(text: &str, tokens: &[Token], i: usize) -> Option<Certainty> {
         return None;
     }
     let kind = |k: usize| tokens.get(k).map(|t| t.kind);
-    let sign = |k: usize| tokens.get(k).map_or("", |t| t.of(text));
+    let sign = |k: usize| tokens.get(k).map_or("", |t| t.text(text));
     let named = kind(i + 1) == Some(Kind::Word);
-    if matches!(first.of(text), "use" | "let") && named {
+    if matches!(first.text(text), "use" | "let") && named {
         return Some(Certainty::Certain);
     }
     let mut next = i + 1 + usize::from(named);
@@ -102,7 +102,7 @@ fn starts_item(text: &str, tokens: &[Token], i: usize) -> Option<Certainty> {
 /// Whether the tokens from here on are `path =`, in whatever spelling.
 pub(super) fn starts_field(text: &str, tokens: &[Token], mut i: usize) -> bool {
     while tokens.get(i).is_some_and(|t| t.kind == Kind::Word) {
-        match tokens.get(i + 1).map_or("", |t| t.of(text)) {
+        match tokens.get(i + 1).map_or("", |t| t.text(text)) {
             "." => i += 2,
             sign => return matches!(sign, "=" | ":=" | "=>" | "->"),
         }
@@ -146,7 +146,7 @@ impl Scan<'_, '_> {
             Kind::Open(bracket) => {
                 if self.stack.len() == limits::DEPTH {
                     return Err(Diagnostic::new(Code::E0103, "more than 64 brackets inside each other")
-                        .at(self.draft.span(token.start, token.end), "the 65th")
+                        .label(self.draft.span(token.start, token.end), "the 65th")
                         .help("give the inner values names with `let`, or declare the inner objects"));
                 }
                 let Scan { indent, line, .. } = *self;
@@ -162,7 +162,7 @@ impl Scan<'_, '_> {
 
     /// Counts powers of powers: the parser goes one call deeper for each.
     fn sign(&mut self, token: Token) -> Result<(), Diagnostic> {
-        match token.of(self.draft.original) {
+        match token.text(self.draft.original) {
             "^" => {
                 self.powers += 1;
                 if let Some(top) = self.stack.last_mut() {
@@ -170,10 +170,10 @@ impl Scan<'_, '_> {
                 }
                 if self.powers > limits::POWERS {
                     return Err(Diagnostic::new(Code::E0103, "more than 64 powers in one value")
-                        .at(self.draft.span(token.start, token.end), "the 65th"));
+                        .label(self.draft.span(token.start, token.end), "the 65th"));
                 }
             }
-            "+" | "-" | "*" | "/" if self.last.is_none_or(|t| t.of(self.draft.original) != "^") => self.end_item(),
+            "+" | "-" | "*" | "/" if self.last.is_none_or(|t| t.text(self.draft.original) != "^") => self.end_item(),
             "," | ";" => self.end_item(),
             _ => {}
         }
@@ -193,7 +193,7 @@ impl Scan<'_, '_> {
         let (Some(top), Some(last)) = (self.stack.last_mut(), self.last) else { return };
         // Only the line that opened the bracket counts.
         if top.line_end == LineEnd::NotReached {
-            let goes_on = last.kind == Kind::Sign && !matches!(last.of(self.draft.original), "?" | "%");
+            let goes_on = last.kind == Kind::Sign && !matches!(last.text(self.draft.original), "?" | "%");
             let opens = last.start == top.token.start;
             top.line_end = if goes_on || opens { LineEnd::GoesOn } else { LineEnd::At(last.end) };
         }
@@ -298,8 +298,8 @@ impl Scan<'_, '_> {
             return self.report_extra(token, bracket);
         }
         let mistake = Diagnostic::new(Code::E0104, format!("`{open}` closed by `{bracket}`"))
-            .at(self.draft.span(token.start, token.end), format!("expected `{right}`"))
-            .at(self.draft.span(top.token.start, top.token.end), "opened here")
+            .label(self.draft.span(token.start, token.end), format!("expected `{right}`"))
+            .label(self.draft.span(top.token.start, top.token.end), "opened here")
             .help(format!("write `{right}` instead of `{bracket}`"));
         self.draft.report(mistake);
         self.draft.overwrite(&token, &right.to_string());
@@ -310,7 +310,7 @@ impl Scan<'_, '_> {
     fn report_extra(&mut self, token: Token, bracket: char) {
         self.draft.overwrite(&token, "");
         let mistake = Diagnostic::new(Code::E0104, format!("`{bracket}` closes nothing"))
-            .at(self.draft.span(token.start, token.end), format!("no `{}` is open here", partner(bracket)))
+            .label(self.draft.span(token.start, token.end), format!("no `{}` is open here", partner(bracket)))
             .help("remove it, or open its partner before it");
         self.draft.report(mistake);
     }
@@ -336,13 +336,13 @@ impl Scan<'_, '_> {
         }
         let line = self.draft.original[..at].matches('\n').count() + 1;
         let mut mistake = Diagnostic::new(Code::E0104, format!("`{bracket}` is never closed"))
-            .at(self.draft.span(token.start, token.end), "opened here")
+            .label(self.draft.span(token.start, token.end), "opened here")
             .help(format!("add `{right}`, most likely after line {line}"));
         if line == self.draft.original[..token.start].matches('\n').count() + 1 {
             mistake = mistake.help(format!("add `{right}`, most likely at the end of line {line}"));
         }
         if let Some(noticed) = noticed {
-            mistake = mistake.at(self.draft.span(noticed.start, noticed.end), "still open here");
+            mistake = mistake.label(self.draft.span(noticed.start, noticed.end), "still open here");
         }
         self.draft.report(mistake);
     }

@@ -35,7 +35,7 @@ impl<'p> Builder<'p> {
             let list = format!("{} = {}", path.trim(), listed(first.trim(), items));
             let last = start + items.trim_end().len();
             let mistake = Diagnostic::new(Code::E0101, "several values stand in brackets")
-                .at(self.span(start, last), "where a field is expected");
+                .label(self.span(start, last), "where a field is expected");
             self.report(mistake.help(format!("write `{list}`")));
         }
         field.value.kind = ValueKind::Error;
@@ -52,8 +52,8 @@ impl<'p> Builder<'p> {
                 Kind::Open(_) => depth += 1,
                 Kind::Close(_) if depth == 0 => break,
                 Kind::Close(_) => depth -= 1,
-                Kind::Sign if depth == 0 && token.of(text) == "," => item = token.start,
-                Kind::Sign if depth == 0 && token.of(text) == "=" => return &text[start..item],
+                Kind::Sign if depth == 0 && token.text(text) == "," => item = token.start,
+                Kind::Sign if depth == 0 && token.text(text) == "=" => return &text[start..item],
                 _ => {}
             }
             end = token.end;
@@ -90,7 +90,7 @@ impl<'p> Builder<'p> {
             None => ("braces hold fields, brackets hold items", format!("write `[{inner}]`")),
         };
         let at = self.span_of(&block);
-        self.report(Diagnostic::new(Code::E0101, message).at(at, "").help(help));
+        self.report(Diagnostic::new(Code::E0101, message).label(at, "").help(help));
         true
     }
 
@@ -104,7 +104,7 @@ impl<'p> Builder<'p> {
         let whole = group.as_str();
         let inner = first_line(whole.trim_start_matches('(').trim_start()).trim_end_matches(')').trim_end();
         let close = if whole.contains('\n') { "" } else { " }" };
-        let mistake = Diagnostic::new(Code::E0105, "fields stand in braces").at(span, "");
+        let mistake = Diagnostic::new(Code::E0105, "fields stand in braces").label(span, "");
         self.report(mistake.help(format!("write `{{ {inner}{close}`")));
         let mut told = Told { equals: true, colon: false };
         let mut fields = Vec::new();
@@ -125,7 +125,8 @@ impl<'p> Builder<'p> {
         let pairs: Option<Vec<String>> = entries.iter().map(|entry| Some(in_group(entry)?.1)).collect();
         let Some(pairs) = pairs.filter(|pairs| !pairs.is_empty()) else { return false };
         let at = self.span_of(list);
-        let mistake = Diagnostic::new(Code::E0105, "a pair in a list is `key: value`").at(at, "pairs in parentheses");
+        let mistake =
+            Diagnostic::new(Code::E0105, "a pair in a list is `key: value`").label(at, "pairs in parentheses");
         self.report(mistake.help(format!("write `[{}]`", pairs.join(", "))));
         true
     }

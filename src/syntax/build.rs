@@ -19,7 +19,7 @@ impl<'p> Builder<'p> {
                 declarations += 1;
                 if declarations > limits::DECLARATIONS {
                     let mistake = Diagnostic::new(Code::E0103, "more than 100000 declarations in one file");
-                    self.report(mistake.at(self.span(start, start), "").help("divide the file into modules"));
+                    self.report(mistake.label(self.span(start, start), "").help("divide the file into modules"));
                     break;
                 }
             }
@@ -94,7 +94,7 @@ impl<'p> Builder<'p> {
                     "put it into the braces of the declaration it belongs to".to_owned(),
                 )
             };
-            self.report(Diagnostic::new(Code::E0105, message).at(path.span, "").help(help));
+            self.report(Diagnostic::new(Code::E0105, message).label(path.span, "").help(help));
         }
         let span = path.span.to(value.span);
         let name = path.names.into_iter().next()?;
@@ -145,7 +145,7 @@ impl<'p> Builder<'p> {
             _ => return false,
         };
         let message = format!("`{}` does not belong into the header of a declaration", extra.text);
-        self.report(Diagnostic::new(Code::E0105, message).at(extra.span, "").help(help));
+        self.report(Diagnostic::new(Code::E0105, message).label(extra.span, "").help(help));
         true
     }
 
@@ -162,7 +162,7 @@ impl<'p> Builder<'p> {
                 Rule::missing => {
                     let mistake = Diagnostic::new(Code::E0101, "expected a name after `:`, found `{`");
                     let help = "name what is extended, or remove the `:`";
-                    self.report(mistake.at(self.span(colon, colon + 1), "").help(help));
+                    self.report(mistake.label(self.span(colon, colon + 1), "").help(help));
                     continue;
                 }
                 Rule::block => fields = self.block(part),
@@ -211,7 +211,7 @@ impl<'p> Builder<'p> {
         };
         if sound {
             let mistake = Diagnostic::new(Code::E0105, "`=` in the header of a declaration");
-            self.report(mistake.at(self.span_of(&equals), "").help(help));
+            self.report(mistake.label(self.span_of(&equals), "").help(help));
         }
         Some(Declaration { kind, name: Some(name), base, fields, docs, span })
     }
@@ -267,7 +267,7 @@ impl<'p> Builder<'p> {
         if wrong && sound {
             let rest = self.text(path_end, end).trim_start().trim_start_matches(':').trim_start();
             let help = format!("write `{} = {}`", path.text(), first_line(rest));
-            self.report(Diagnostic::new(Code::E0105, "a field is given with `=`").at(colon, "").help(help));
+            self.report(Diagnostic::new(Code::E0105, "a field is given with `=`").label(colon, "").help(help));
         }
         let span = path.span.to(value.span);
         fields.push(Field { path, value, docs, span });
@@ -285,7 +285,7 @@ impl<'p> Builder<'p> {
         let object = ValueKind::Object { base: None, fields: self.block(block.clone()) };
         let mut value = Value { kind: object, span };
         let help = format!("write `{} = {}`", path.text(), first_line(block.as_str()));
-        self.report(Diagnostic::new(Code::E0105, "a field is given with `=`").at(path.span, "").help(help));
+        self.report(Diagnostic::new(Code::E0105, "a field is given with `=`").label(path.span, "").help(help));
         if let Some(junk) = parts.next() {
             self.explain(Rule::exact_field, start, junk.as_span().start(), junk.as_span().end());
             value.kind = ValueKind::Error;
@@ -319,7 +319,7 @@ impl<'p> Builder<'p> {
         let [kind, name] = names.as_slice() else { return };
         let base = base.map_or(String::new(), |b| format!("{} ", b.text()));
         let mistake = Diagnostic::new(Code::E0101, "declaration inside a block")
-            .at(kind.span.to(name.span), "only values nest")
+            .label(kind.span.to(name.span), "only values nest")
             .help(format!("write `{} = {base}{{`, or move the declaration out of the block", kind.text));
         self.report(mistake);
         let path = Path { names: vec![kind.clone()], span: kind.span };
@@ -343,7 +343,7 @@ impl<'p> Builder<'p> {
                     let found = self.found(at);
                     let message = format!("expected a value after `{sign}`, found {found}");
                     let help = "write a value behind it, or take the line out";
-                    let mistake = Diagnostic::new(Code::E0101, message).at(self.span(at.saturating_sub(1), at), "");
+                    let mistake = Diagnostic::new(Code::E0101, message).label(self.span(at.saturating_sub(1), at), "");
                     self.report(mistake.help(help));
                 }
                 Some((Value { kind: ValueKind::Error, span: self.span(at, at) }, false))
@@ -379,7 +379,7 @@ impl<'p> Builder<'p> {
         let name = Name { text: pair.as_str().to_owned(), span: self.span_of(&pair) };
         if matches!(name.text.as_str(), "use" | "let" | "as" | "per") {
             let message = format!("`{}` is a word of the language, it cannot be a name", name.text);
-            self.report(Diagnostic::new(Code::E0207, message).at(name.span, "").help("choose another name"));
+            self.report(Diagnostic::new(Code::E0207, message).label(name.span, "").help("choose another name"));
         }
         name
     }

@@ -43,7 +43,9 @@ impl<'p> Builder<'p> {
         let Some(found) = token::next(text, at).filter(|t| t.kind != Kind::LineBreak) else {
             let mistake = Diagnostic::new(Code::E0101, message(&expected, &self.found(at)));
             let last = start + text[start..end.min(at.max(start))].trim_end().len();
-            self.report(mistake.at(self.span(last, last), "").maybe_help(self.way_out(exact, start, junk, end, None)));
+            self.report(
+                mistake.label(self.span(last, last), "").maybe_help(self.way_out(exact, start, junk, end, None)),
+            );
             return Explained::Other(path);
         };
         let found = self.whole_word(found);
@@ -53,13 +55,13 @@ impl<'p> Builder<'p> {
         let mistake = match self.swallowed(junk) {
             Some(next) => {
                 let message = format!("expected a comma or a line break before `{}`", next.text());
-                let mistake = Diagnostic::new(Code::E0101, message).at(next.span, "a new field starts here");
+                let mistake = Diagnostic::new(Code::E0101, message).label(next.span, "a new field starts here");
                 self.report(mistake.help(format!("write `, {}`", next.text())));
                 return Explained::Other(path);
             }
             None => {
                 let what = self.found(found.start);
-                Diagnostic::new(Code::E0101, message(&expected, &what)).at(self.span(found.start, found.end), "")
+                Diagnostic::new(Code::E0101, message(&expected, &what)).label(self.span(found.start, found.end), "")
             }
         };
         self.report(mistake.maybe_help(self.way_out(exact, start, junk, end, Some(found))));
@@ -79,14 +81,14 @@ impl<'p> Builder<'p> {
     pub fn unread(&mut self, error: &Error<Rule>) {
         let at = self.past_trivia(offset(error));
         let message = message(&expected(error), &self.found(at));
-        self.report(Diagnostic::new(Code::E0101, message).at(self.span(at, at), ""));
+        self.report(Diagnostic::new(Code::E0101, message).label(self.span(at, at), ""));
     }
 
     /// What to write instead, where that can be guessed.
     fn way_out(&self, exact: Rule, start: usize, junk: usize, end: usize, found: Option<Token>) -> Option<String> {
         let text: &'p str = &self.prepared.text;
         let part = first_line(&text[start..end]);
-        let word = found.map_or("", |t| t.of(text));
+        let word = found.map_or("", |t| t.text(text));
         if let Some(help) = self.habit(exact, start, part, found) {
             return Some(help);
         }
@@ -219,7 +221,7 @@ impl<'p> Builder<'p> {
             format!("write `{whole}.{decimals}`")
         };
         let mistake = Diagnostic::new(Code::E0105, "a decimal comma")
-            .at(self.span(start, at + decimals.len()), "a comma parts items")
+            .label(self.span(start, at + decimals.len()), "a comma parts items")
             .help(help);
         self.report(mistake);
     }
@@ -240,7 +242,7 @@ impl<'p> Builder<'p> {
                 "the end of the line".to_owned()
             }
             Some(token) => {
-                let shown: String = token.of(text).chars().take(40).collect();
+                let shown: String = token.text(text).chars().take(40).collect();
                 let escaped = shown.chars().any(char::is_control);
                 if escaped { format!("`{}`", shown.escape_debug()) } else { format!("`{shown}`") }
             }

@@ -18,7 +18,7 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
     // a habit shows all along a line, and is told once
     let mut told: Vec<&str> = Vec::new();
     for (i, token) in tokens.iter().enumerate() {
-        let text = token.of(draft.original);
+        let text = token.text(draft.original);
         match token.kind {
             Kind::LineBreak => {
                 told.clear();
@@ -43,7 +43,7 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
                 draft.overwrite(token, "?");
                 draft.poisoned.insert(token.start);
                 let mistake = Diagnostic::new(Code::E0106, "text without its closing quote")
-                    .at(draft.span(token.start, token.end), "opened here, and still open at the end of the line")
+                    .label(draft.span(token.start, token.end), "opened here, and still open at the end of the line")
                     .help(format!("write `{}\"`", text.trim_end()));
                 draft.report(mistake);
             }
@@ -112,7 +112,8 @@ fn in_header(text: &str, tokens: &[Token], i: usize) -> bool {
 /// Whether a sign stands between two numbers, the first perhaps with its unit.
 fn between_ends(text: &str, tokens: &[Token], i: usize) -> bool {
     let number = |token: Option<&Token>| token.is_some_and(|t| t.kind == Kind::Number);
-    let signed = tokens.get(i + 1).is_some_and(|t| matches!(t.of(text), "-" | "+" | "−")) && number(tokens.get(i + 2));
+    let signed =
+        tokens.get(i + 1).is_some_and(|t| matches!(t.text(text), "-" | "+" | "−")) && number(tokens.get(i + 2));
     let behind = i > 0 && matches!(tokens[i - 1].kind, Kind::Number | Kind::Word);
     behind && (number(tokens.get(i + 1)) || signed)
 }
@@ -156,12 +157,12 @@ fn bracket_around<'t>(text: &'t str, tokens: &[Token], i: usize) -> Option<&'t s
 
 fn report(draft: &mut Draft, token: &Token, message: impl Into<String>, help: String) {
     let end = draft.original[token.start..token.end].find('\n').map_or(token.end, |i| token.start + i);
-    let mistake = Diagnostic::new(Code::E0105, message).at(draft.span(token.start, end), "").help(help);
+    let mistake = Diagnostic::new(Code::E0105, message).label(draft.span(token.start, end), "").help(help);
     draft.report(mistake);
 }
 
 fn block_comment(draft: &mut Draft, token: &Token) {
-    let text = token.of(draft.original);
+    let text = token.text(draft.original);
     draft.overwrite(token, "");
     let inner = text.trim_start_matches("/*").trim_end_matches("*/");
     let lines = inner.lines().map(|l| l.trim().trim_start_matches('*').trim()).filter(|l| !l.is_empty());
@@ -175,7 +176,7 @@ fn block_comment(draft: &mut Draft, token: &Token) {
 }
 
 fn odd_text(draft: &mut Draft, token: &Token) {
-    let text = token.of(draft.original);
+    let text = token.text(draft.original);
     let mut inner = text.chars();
     inner.next();
     inner.next_back();
@@ -192,7 +193,7 @@ fn odd_text(draft: &mut Draft, token: &Token) {
 }
 
 fn look_alike(draft: &mut Draft, tokens: &[Token], i: usize) {
-    let text = tokens[i].of(draft.original);
+    let text = tokens[i].text(draft.original);
     if let Some((_, right)) = LOOK_ALIKES.iter().find(|(wrong, _)| *wrong == text) {
         draft.overwrite(&tokens[i], right);
         let spaced = if *right == "-" { right.to_string() } else { format!(" {right} ") };
@@ -224,7 +225,7 @@ fn rewritten(text: &str, tokens: &[Token], i: usize, sign: &str) -> String {
 
 /// The first and last token of the item around a token, on its line.
 fn item_around(text: &str, tokens: &[Token], i: usize) -> (usize, usize) {
-    let ends = |t: &Token| t.kind == Kind::LineBreak || t.is_comment() || matches!(t.of(text), "," | ";");
+    let ends = |t: &Token| t.kind == Kind::LineBreak || t.is_comment() || matches!(t.text(text), "," | ";");
     let mut depth = 0;
     let mut first = i;
     while first > 0 && i - first < 100 && !ends(&tokens[first - 1]) {

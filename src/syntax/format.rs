@@ -62,7 +62,7 @@ fn atoms(text: &str) -> Vec<Atom> {
         if token.start < until {
             continue;
         }
-        let words = token.of(text).to_owned();
+        let words = token.text(text).to_owned();
         let atom = match token.kind {
             Kind::LineBreak => {
                 match out.last_mut() {

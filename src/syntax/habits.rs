@@ -9,7 +9,7 @@ impl Builder<'_> {
     pub fn habit(&self, exact: Rule, start: usize, part: &str, found: Option<Token>) -> Option<String> {
         let text = &self.prepared.text;
         let found = found?;
-        let word = found.of(text);
+        let word = found.text(text);
         let (before, after) = (text[start..found.start.max(start)].trim(), &text[found.end..]);
         let rest = part.get(found.start.saturating_sub(start)..).unwrap_or_default();
         let digit = |c: char| c.is_ascii_digit();

@@ -11,9 +11,9 @@ pub(super) fn mend(draft: &mut Draft, tokens: &mut [Token]) {
     for i in 0..tokens.len() {
         let token = tokens[i];
         let starts_line = token.start == 0 || draft.original.as_bytes()[token.start - 1] == b'\n';
-        if token.kind == Kind::Word && starts_line && !matches!(token.of(draft.original), "use" | "let") {
+        if token.kind == Kind::Word && starts_line && !matches!(token.text(draft.original), "use" | "let") {
             open(draft, tokens, i);
-        } else if token.kind == Kind::Sign && matches!(token.of(draft.original), ":" | "=") {
+        } else if token.kind == Kind::Sign && matches!(token.text(draft.original), ":" | "=") {
             dashes(draft, tokens, i);
         }
     }
@@ -25,16 +25,16 @@ fn open(draft: &mut Draft, tokens: &mut [Token], i: usize) {
     let kind = |k: usize| tokens.get(k).map(|t| t.kind);
     let mut next = i + 1 + usize::from(kind(i + 1) == Some(Kind::Word));
     let bare = next;
-    if tokens.get(next).is_some_and(|t| t.of(text) == ":") && kind(next + 1) == Some(Kind::Word) {
+    if tokens.get(next).is_some_and(|t| t.text(text) == ":") && kind(next + 1) == Some(Kind::Word) {
         next += 1;
         while kind(next) == Some(Kind::Word) {
-            next += if tokens.get(next + 1).is_some_and(|t| t.of(text) == ".") { 2 } else { 1 };
+            next += if tokens.get(next + 1).is_some_and(|t| t.text(text) == ".") { 2 } else { 1 };
         }
     }
     let last = tokens[next.min(tokens.len()) - 1];
     let sign = tokens.get(next).copied();
     let bracket = matches!(sign.map(|t| t.kind), Some(Kind::Open('(' | '[')));
-    let colon = next == bare && sign.is_some_and(|t| t.of(text) == ":");
+    let colon = next == bare && sign.is_some_and(|t| t.text(text) == ":");
     let Some(first) = first_of_next_line(tokens, next + usize::from(bracket || colon)) else { return };
     let indented = tokens[first].start > 0 && text.as_bytes()[tokens[first].start - 1] != b'\n';
     if !indented || !starts_field(text, tokens, first) {
@@ -43,14 +43,14 @@ fn open(draft: &mut Draft, tokens: &mut [Token], i: usize) {
     let header = text[tokens[i].start..last.end].trim_end();
     let closer = closer(text, tokens, first);
     let message = match sign.filter(|_| bracket || colon) {
-        Some(sign) => format!("`{}` does not open a declaration: its fields stand in braces", sign.of(text)),
+        Some(sign) => format!("`{}` does not open a declaration: its fields stand in braces", sign.text(text)),
         None => "a declaration without braces around its fields".to_owned(),
     };
     let at = sign.filter(|_| bracket || colon).unwrap_or(last);
-    let mut mistake = Diagnostic::new(Code::E0105, message).at(draft.span(at.start, at.end), "");
+    let mut mistake = Diagnostic::new(Code::E0105, message).label(draft.span(at.start, at.end), "");
     let mut help = format!("write `{header} {{`");
     if let Some(wrong) = closer.map(|k| tokens[k]).filter(|t| t.kind != Kind::Close('}')) {
-        mistake = mistake.at(draft.span(wrong.start, wrong.end), "`}` closes it");
+        mistake = mistake.label(draft.span(wrong.start, wrong.end), "`}` closes it");
     } else if closer.is_none() {
         help += ", and `}` behind its last field";
     }
@@ -95,7 +95,7 @@ fn closer(text: &str, tokens: &[Token], first: usize) -> Option<usize> {
 /// A list by dashes, one item a line, behind the sign at `i`.
 fn dashes(draft: &mut Draft, tokens: &mut [Token], i: usize) {
     let text = draft.original;
-    let is_dash = |k: usize| tokens[k].of(text) == "-" && text[tokens[k].end..].starts_with([' ', '\t']);
+    let is_dash = |k: usize| tokens[k].text(text) == "-" && text[tokens[k].end..].starts_with([' ', '\t']);
     let Some(first) = first_of_next_line(tokens, i + 1).filter(|k| is_dash(*k)) else { return };
     let (mut dash, mut starts, mut items, mut end) = (Some(first), Vec::new(), Vec::new(), tokens[first].end);
     while let Some(k) = dash {
@@ -113,7 +113,7 @@ fn dashes(draft: &mut Draft, tokens: &mut [Token], i: usize) {
     let field = text[line..tokens[i].start].trim();
     let field = field.rsplit(['{', ',']).next().unwrap_or(field).trim();
     let at = draft.span(tokens[first].start, tokens[first].end);
-    let mistake = Diagnostic::new(Code::E0105, "a list stands in brackets, not behind dashes").at(at, "");
+    let mistake = Diagnostic::new(Code::E0105, "a list stands in brackets, not behind dashes").label(at, "");
     draft.report(mistake.help(format!("write `{field} = [{}]`", items.join(", "))));
     draft.overwrite(&tokens[i], "=");
     draft.insertions.push((tokens[i].end, '['));

@@ -26,7 +26,7 @@ pub fn parse(file: FileId, text: &str) -> (Tree, Vec<Diagnostic>) {
     });
     deep.unwrap_or_else(|| {
         let mistake = Diagnostic::new(Code::E0103, "brackets nest too deep for this machine's memory");
-        (Tree { file, items: Vec::new() }, vec![mistake.at(diag::Span::new(file, 0, 0), "")])
+        (Tree { file, items: Vec::new() }, vec![mistake.label(diag::Span::new(file, 0, 0), "")])
     })
 }
 
@@ -61,7 +61,7 @@ fn parse_here(file: FileId, text: &str) -> (Tree, Vec<Diagnostic>) {
         let last = diagnostics.last().and_then(|d| d.labels.first()).map(|l| l.span);
         let more = Diagnostic::new(Code::E0103, format!("more than {} mistakes in one file", limits::DIAGNOSTICS));
         diagnostics.push(match last {
-            Some(span) => more.at(span, "the last one shown"),
+            Some(span) => more.label(span, "the last one shown"),
             None => more,
         });
     }

@@ -53,7 +53,7 @@ pub(super) fn prepare(file: FileId, original: &str) -> (Option<Prepared<'_>>, Ve
     if original.len() > limits::BYTES {
         let size = original.len() as f64 / f64::from(1 << 20);
         let mistake = Diagnostic::new(Code::E0103, format!("file of {size:.1} MiB, where 8 MiB are the bound"))
-            .at(Span::new(file, 0, 0), "")
+            .label(Span::new(file, 0, 0), "")
             .help("move part of it to a module, or tables to a `file(\"...\")`");
         return (None, vec![mistake]);
     }

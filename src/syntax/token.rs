@@ -35,7 +35,7 @@ pub(super) struct Token {
 }
 
 impl Token {
-    pub fn of<'a>(&self, text: &'a str) -> &'a str {
+    pub fn text<'a>(&self, text: &'a str) -> &'a str {
         &text[self.start..self.end]
     }
 
@@ -56,7 +56,7 @@ pub(super) fn tokens(text: &str) -> Vec<Token> {
     while let Some(token) = next(text, at) {
         let mut end = token.end;
         if token.kind == (Kind::Text { closed: false }) {
-            end = token.start + unclosed_length(token.of(text), &out[line..]);
+            end = token.start + unclosed_length(token.text(text), &out[line..]);
         }
         if is_foreign_comment(text, &token, out.last()) {
             end = token.start + line_length(&text[token.start..]);

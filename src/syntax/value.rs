@@ -94,7 +94,7 @@ impl<'p> Builder<'p> {
         }
         if let (Some(dots), [from, to]) = (dots, ends.as_slice()) {
             let message = format!("`{}` between the ends of a range", dots.as_str());
-            let mistake = Diagnostic::new(Code::E0105, message).at(self.span_of(&dots), "expected `..`");
+            let mistake = Diagnostic::new(Code::E0105, message).label(self.span_of(&dots), "expected `..`");
             self.report(mistake.help(format!("write `{from} .. {to}`")));
         }
         let mut bounds = bounds.into_iter();
@@ -121,7 +121,9 @@ impl<'p> Builder<'p> {
         let span = self.span_of(&pair);
         if self.operations + own > limits::OPERATIONS {
             let message = format!("more than {} operations inside each other", limits::OPERATIONS);
-            self.report(Diagnostic::new(Code::E0103, message).at(span, "").help("give parts of it names with `let`"));
+            self.report(
+                Diagnostic::new(Code::E0103, message).label(span, "").help("give parts of it names with `let`"),
+            );
             return Value { kind: ValueKind::Error, span };
         }
         self.operations += own;
@@ -186,7 +188,7 @@ impl<'p> Builder<'p> {
 
     fn exponent_beyond(&mut self, span: Span) {
         let mistake = Diagnostic::new(Code::E0103, "exponent beyond -9 .. 9");
-        self.report(mistake.at(span, ""));
+        self.report(mistake.label(span, ""));
     }
 
     fn quantity(&mut self, pair: Pair<'p, Rule>) -> Value {
@@ -212,12 +214,12 @@ impl<'p> Builder<'p> {
                 None => right,
             };
             let mistake = Diagnostic::new(Code::E0105, "a decimal point has digits on both sides");
-            self.report(mistake.at(span, "").help(format!("write `{right}`")));
+            self.report(mistake.label(span, "").help(format!("write `{right}`")));
         }
         let value: f64 = digits.parse().unwrap_or(f64::NAN);
         if !value.is_finite() {
             let mistake = Diagnostic::new(Code::E0103, "number too large to be held");
-            self.report(mistake.at(span, "the largest is about 1.8e308"));
+            self.report(mistake.label(span, "the largest is about 1.8e308"));
             return Value { kind: ValueKind::Error, span };
         }
         Value { kind: ValueKind::Number { value, unit }, span }
@@ -254,7 +256,7 @@ impl<'p> Builder<'p> {
                     let c = other.map_or(String::new(), |(_, c)| c.to_string());
                     let at = self.span(start + 1 + i, start + 2 + i + c.len());
                     let mistake = Diagnostic::new(Code::E0101, format!("`\\{c}` in a text"));
-                    self.report(mistake.at(at, "only `\\\"` and `\\\\` are known").help(format!("write `\\\\{c}`")));
+                    self.report(mistake.label(at, "only `\\\"` and `\\\\` are known").help(format!("write `\\\\{c}`")));
                     return ValueKind::Error;
                 }
             }
@@ -312,7 +314,7 @@ impl<'p> Builder<'p> {
                     let at = sign.as_ref().map_or(start, |s| s.as_span().end());
                     let (shown, found) = (self.text(at - 1, at), self.found(at));
                     let message = format!("expected a value after `{shown}`, found {found}");
-                    self.report(Diagnostic::new(Code::E0101, message).at(self.span(at - 1, at), ""));
+                    self.report(Diagnostic::new(Code::E0101, message).label(self.span(at - 1, at), ""));
                     values.push(Value { kind: ValueKind::Error, span: self.span(at, at) });
                     sign = None;
                 }
@@ -338,7 +340,8 @@ impl<'p> Builder<'p> {
             && sign.as_rule() == Rule::equals
             && !std::mem::replace(&mut told.equals, true)
         {
-            let mistake = Diagnostic::new(Code::E0105, "a pair in a list has `:`, not `=`").at(self.span_of(sign), "");
+            let mistake =
+                Diagnostic::new(Code::E0105, "a pair in a list has `:`, not `=`").label(self.span_of(sign), "");
             self.report(mistake.help(format!("write `{key}: {value}`")));
         }
         let mut values = values.into_iter();
@@ -384,7 +387,7 @@ impl<'p> Builder<'p> {
             && sound
             && !std::mem::replace(&mut told.colon, true)
         {
-            let mistake = Diagnostic::new(Code::E0105, "an argument is given with `=`").at(self.span_of(&sign), "");
+            let mistake = Diagnostic::new(Code::E0105, "an argument is given with `=`").label(self.span_of(&sign), "");
             self.report(mistake.help(format!("write `{} = {text}`", name.text)));
         }
         Argument { name, value }
@@ -422,7 +425,7 @@ impl<'p> Builder<'p> {
             0 => "write a value between them, or take them out",
             _ => "lists stand in `[ ]`",
         };
-        self.report(mistake.at(span, "").help(help));
+        self.report(mistake.label(span, "").help(help));
         Value { kind: ValueKind::Error, span }
     }
 }

@@ -115,9 +115,9 @@ impl Outcome {
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Order {
     pub method: Integrator,
-    /// Of the rail that springs back from a small force, without a train.
+    /// Error of the rail that springs back from a small force, without a train.
     pub released: Option<f64>,
-    /// Of the wheel forces.
+    /// Error of the wheel forces.
     pub as_built: Option<f64>,
     pub settled: Option<f64>,
 }
@@ -216,7 +216,7 @@ pub fn chart(
     })
 }
 
-/// Of steps that vary.
+/// Tolerances of steps that vary.
 const STEP_TOLERANCES: [f64; 5] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7];
 
 /// Every passage, references first.

@@ -9,7 +9,7 @@ pub struct Planned {
     pub graph: Graph,
     pub origins: Origins,
     pub node: TrackNode,
-    /// As the scene starts: stiffness, damping and seating of the supports.
+    /// What the supports answer as the scene starts: stiffness, damping and seating.
     pub responses: Responses,
     pub blocks: Blocks,
 }

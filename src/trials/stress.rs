@@ -81,7 +81,7 @@ fn list(scenario: &Scenario) -> Vec<Hard> {
     let void = |depth: f64, sleepers: Option<usize>| Void { depth, sleepers }.settlement(track);
     let speed = |factor: f64| move |s: &mut Scenario| of_train(s, |t| t.speed.value = factor);
     let critical = (0..track.sections.len())
-        .filter_map(|i| Some(Winkler::of(track, &known, i)?.critical_speed()))
+        .filter_map(|i| Some(Winkler::of_section(track, &known, i)?.critical_speed()))
         .fold(f64::INFINITY, f64::min);
 
     let mut list = vec![

@@ -74,7 +74,7 @@ pub struct Case {
     /// Chainage of the hindmost wheel at the left and of the foremost at the right, m.
     pub left: f64,
     pub right: f64,
-    /// Of every seat, m.
+    /// Settlement of every seat, m.
     pub settlement: Vec<f64>,
 }
 
@@ -316,7 +316,7 @@ pub struct Errors {
     pub wheel_force: f64,
     /// The same as a root mean square over instants and wheels.
     pub wheel_force_rms: f64,
-    /// Of the largest wheel force.
+    /// Error of the largest wheel force.
     pub wheel_peak: f64,
     /// Largest difference of the peak load of a seat.
     pub seat_load: f64,

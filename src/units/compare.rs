@@ -53,7 +53,7 @@ mod tests {
 
     #[test]
     fn factors_stand_under_each_other() {
-        let text = compare(Dimension::of("MN/m"), Dimension::of("kN"));
+        let text = compare(Dimension::of_unit("MN/m"), Dimension::of_unit("kN"));
         assert_eq!(text, "expected  mass x time^-2   [a stiffness]\nfound     mass x time^-2 x length   [a force]");
     }
 }

@@ -38,7 +38,7 @@ impl Dimension {
     }
 
     /// The dimension of `unit`, which the program itself wrote.
-    pub fn of(unit: &str) -> Dimension {
+    pub fn of_unit(unit: &str) -> Dimension {
         parse_unit(unit).map_or(Dimension::NONE, |u| u.dimension)
     }
 
@@ -66,14 +66,14 @@ impl Dimension {
 
     /// What engineers call it, with a usual unit; `None` for an unnamed combination.
     pub fn name(self) -> Option<&'static str> {
-        NAMED.iter().find(|(_, unit)| Dimension::of(unit) == self).map(|(name, _)| *name)
+        NAMED.iter().find(|(_, unit)| Dimension::of_unit(unit) == self).map(|(name, _)| *name)
     }
 
     /// A unit in which a value of this dimension is usually written.
     pub fn usual_unit(self) -> String {
         NAMED
             .iter()
-            .find(|(_, unit)| Dimension::of(unit) == self)
+            .find(|(_, unit)| Dimension::of_unit(unit) == self)
             .map_or_else(|| self.si_unit(), |(_, u)| u.to_string())
     }
 

@@ -349,7 +349,7 @@ mod tests {
         fn the_si_unit_of_a_dimension_reads_back(a in -3i32..4, b in -3i32..4, c in -3i32..4) {
             let d = Dimension::MASS.power(a * 100).unwrap() * Dimension::LENGTH.power(b * 100).unwrap()
                 * Dimension::TIME.power(c * 100).unwrap();
-            prop_assert_eq!(Dimension::of(&d.si_unit()), d);
+            prop_assert_eq!(Dimension::of_unit(&d.si_unit()), d);
         }
     }
 }

@@ -34,7 +34,7 @@ impl Reader<'_, '_> {
         let ValueKind::Compare { operands, operators } = &value.kind else {
             self.eval.findings.report(
                 Diagnostic::new(Code::E0406, format!("expected a comparison, found {}", looks_like(&value.kind)))
-                    .at(value.span, "compares nothing")
+                    .label(value.span, "compares nothing")
                     .help("write something like `max(settlement) < 3 mm`"),
             );
             return None;
@@ -46,8 +46,8 @@ impl Reader<'_, '_> {
         if let Some(i) = typed.iter().position(|(_, d)| *d != first) {
             self.eval.findings.report(
                 Diagnostic::new(Code::E0305, "a comparison needs values of the same dimension")
-                    .at(operands[i].span, typed[i].1.describe())
-                    .at(operands[0].span, first.describe()),
+                    .label(operands[i].span, typed[i].1.describe())
+                    .label(operands[0].span, first.describe()),
             );
             return None;
         }
@@ -79,7 +79,7 @@ impl Reader<'_, '_> {
             if *self.operands == MOST_OPERANDS + 1 {
                 self.eval.findings.report(
                     Diagnostic::new(Code::E0103, format!("a comparison of more than {MOST_OPERANDS} operands"))
-                        .at(value.span, "given up here"),
+                        .label(value.span, "given up here"),
                 );
             }
             return None;
@@ -119,11 +119,11 @@ impl Reader<'_, '_> {
         {
             if response.place() == Place::Scene {
                 let measure = Measure::new(Reduction::Itself, response);
-                return Some((Expression::Measure(measure), Dimension::of(response.unit())));
+                return Some((Expression::Measure(measure), Dimension::of_unit(response.unit())));
             }
             self.eval.findings.report(
                 Diagnostic::new(Code::E0406, format!("`{}` has a value at many places", name.text))
-                    .at(name.span, "not one number")
+                    .label(name.span, "not one number")
                     .help(format!(
                         "write `max({})`, or `min`, `mean`, `rms`, `percentile` or `place_of_max` of it",
                         name.text
@@ -155,15 +155,15 @@ impl Reader<'_, '_> {
         if values.is_empty() || one && values.len() != 1 {
             let count = if one { "one value" } else { "at least one value" };
             let text = format!("`{}` takes {count}, found {}", word.text, values.len());
-            self.eval.findings.report(Diagnostic::new(Code::E0406, text).at(span, "here"));
+            self.eval.findings.report(Diagnostic::new(Code::E0406, text).label(span, "here"));
             return None;
         }
         let first = values[0].1;
         if let Some(other) = values.iter().position(|(_, dimension)| *dimension != first) {
             self.eval.findings.report(
                 Diagnostic::new(Code::E0305, format!("`{}` needs values of the same dimension", word.text))
-                    .at(arguments[other].value.span, values[other].1.describe())
-                    .at(arguments[0].value.span, first.describe()),
+                    .label(arguments[other].value.span, values[other].1.describe())
+                    .label(arguments[0].value.span, first.describe()),
             );
             return None;
         }
@@ -179,8 +179,8 @@ impl Reader<'_, '_> {
             _ => {
                 self.eval.findings.report(
                     Diagnostic::new(Code::E0305, format!("`{}` needs two values of the same dimension", op.symbol()))
-                        .at(left, a.1.describe())
-                        .at(right, b.1.describe()),
+                        .label(left, a.1.describe())
+                        .label(right, b.1.describe()),
                 );
                 return None;
             }
@@ -197,7 +197,7 @@ impl Reader<'_, '_> {
                 let names: Vec<String> = BASES.iter().map(|(basis, _)| format!("`per {basis}`")).collect();
                 self.eval.findings.report(
                     Diagnostic::new(Code::E0304, format!("expected {}, found `per {name}`", or_list(&names)))
-                        .at(*span, "not of this"),
+                        .label(*span, "not of this"),
                 );
                 None
             }
@@ -212,7 +212,7 @@ impl Reader<'_, '_> {
         }
         if ![Dimension::AXLES, Dimension::MASS, Dimension::CYCLES].contains(&raw.dimension) {
             let text = format!("expected a number of axles or the mass carried, found {}", raw.dimension.describe());
-            self.eval.findings.report(Diagnostic::new(Code::E0302, text).at(raw.span, "not counted"));
+            self.eval.findings.report(Diagnostic::new(Code::E0302, text).label(raw.span, "not counted"));
             return None;
         }
         let count = Number { value: raw.value, dimension: raw.dimension, basis: None, factor: 1.0 };
@@ -243,7 +243,7 @@ pub fn unit_of(value: &Value) -> Option<String> {
 /// The unit in which engineers read such a value; a place stays in metres.
 fn shown_unit(dimension: Dimension, expression: &Expression) -> String {
     let place = matches!(expression, Expression::Measure(m) if m.reduction == Reduction::PlaceOfMax);
-    let small = ["mm", "mm/s", "kPa"].into_iter().find(|unit| Dimension::of(unit) == dimension);
+    let small = ["mm", "mm/s", "kPa"].into_iter().find(|unit| Dimension::of_unit(unit) == dimension);
     match small {
         Some("mm") if place => "m".to_string(),
         Some(unit) => unit.to_string(),

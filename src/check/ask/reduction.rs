@@ -17,9 +17,9 @@ const REDUCTIONS: [&str; 7] = ["max", "min", "mean", "rms", "percentile", "place
 
 /// What a measured column must be of, by the SI unit of the response that is held against it.
 static MEASURED: [schema::Measure; 8] =
-    [of("N"), of("N m"), of("m"), of("m/s"), of("m/s^2"), of("N/m"), of("Pa"), of("s")];
+    [any_in("N"), any_in("N m"), any_in("m"), any_in("m/s"), any_in("m/s^2"), any_in("N/m"), any_in("Pa"), any_in("s")];
 
-const fn of(unit: &'static str) -> schema::Measure {
+const fn any_in(unit: &'static str) -> schema::Measure {
     schema::Measure { unit, min: f64::MIN, max: f64::MAX, basis: None, varies: Varies::No }
 }
 
@@ -53,7 +53,7 @@ impl Reader<'_, '_> {
             _ => {
                 self.eval.findings.report(
                     Diagnostic::new(Code::E0406, format!("`{}` needs a response", word.text))
-                        .at(word.span, "of what?")
+                        .label(word.span, "of what?")
                         .help(format!("write something like `{}(settlement)`", word.text)),
                 );
                 return None;
@@ -73,7 +73,7 @@ impl Reader<'_, '_> {
                         Code::E0406,
                         format!("expected the name of a transition, found {}", looks_like(other)),
                     )
-                    .at(span, "not a transition"),
+                    .label(span, "not a transition"),
                 );
                 return None;
             }
@@ -96,7 +96,7 @@ impl Reader<'_, '_> {
                     let near = nearest(name, ["over", "from", "after"]).map(|n| format!("did you mean `{n}`?"));
                     self.eval.findings.report(
                         Diagnostic::new(Code::E0402, format!("`{}` has no such argument", word.text))
-                            .at(place, "unknown argument")
+                            .label(place, "unknown argument")
                             .help(near.unwrap_or_else(|| {
                                 "it takes `over = span`, `from = transition` and `after = axles`".into()
                             })),
@@ -106,7 +106,7 @@ impl Reader<'_, '_> {
             }
         }
         let unit = if by_place { "m" } else { response.unit() };
-        Some((Expression::Measure(measure), Dimension::of(unit)))
+        Some((Expression::Measure(measure), Dimension::of_unit(unit)))
     }
 
     /// The reduction that a word names, and how many arguments by place it and its response take.
@@ -133,7 +133,7 @@ impl Reader<'_, '_> {
         let Some(share) = arguments.get(1).filter(|argument| argument.name.is_none()) else {
             self.eval.findings.report(
                 Diagnostic::new(Code::E0403, "`percentile` needs the share of values that lie below")
-                    .at(word.span, "which one?")
+                    .label(word.span, "which one?")
                     .help("write something like `percentile(wheel_force, 95 %)`"),
             );
             return None;
@@ -141,12 +141,12 @@ impl Reader<'_, '_> {
         let raw = self.eval.raw(&share.value, scope)?;
         if !raw.dimension.is_none() {
             let text = format!("expected a share in `%`, found {}", raw.dimension.describe());
-            self.eval.findings.report(Diagnostic::new(Code::E0302, text).at(raw.span, "not a share"));
+            self.eval.findings.report(Diagnostic::new(Code::E0302, text).label(raw.span, "not a share"));
             return None;
         }
         if !(0.0..=1.0).contains(&raw.value) {
             let text = format!("expected 0 .. 100 %, found {} %", crate::units::number(100.0 * raw.value));
-            self.eval.findings.report(Diagnostic::new(Code::E0405, text).at(raw.span, "out of range"));
+            self.eval.findings.report(Diagnostic::new(Code::E0405, text).label(raw.span, "out of range"));
             return None;
         }
         Some(Reduction::Percentile(raw.value))
@@ -163,7 +163,7 @@ impl Reader<'_, '_> {
         let Some((file, columns, span)) = file else {
             self.eval.findings.report(
                 Diagnostic::new(Code::E0403, "`misfit` needs the file of what was measured")
-                    .at(word.span, "against what?")
+                    .label(word.span, "against what?")
                     .help(format!("write something like `misfit({}, file(\"measured.csv\"))`", response.name())),
             );
             return None;
@@ -172,7 +172,7 @@ impl Reader<'_, '_> {
             let text = format!("`{}` is no value along the track", response.name());
             self.eval
                 .findings
-                .report(Diagnostic::new(Code::E0406, text).at(arguments[0].value.span, "held against no file"));
+                .report(Diagnostic::new(Code::E0406, text).label(arguments[0].value.span, "held against no file"));
             return None;
         };
         let Some(ShapeKind::Table { rows, .. }) = self.eval.data_profile(measure, file, columns, None, span) else {

@@ -26,7 +26,7 @@ fn study(record: &Record, asked: &Questions, eval: &mut Evaluator<'_>) -> Option
     if !record.partial && !goals.iter().any(|(_, name)| record.get(name).is_some()) && record.get("report").is_none() {
         findings.report(
             Diagnostic::new(Code::E0403, format!("study `{}` asks for nothing", record.name))
-                .at(record.span, "needs `minimise`, `maximise` or `report`")
+                .label(record.span, "needs `minimise`, `maximise` or `report`")
                 .help("write something like `minimise = differential_settlement`"),
         );
     }
@@ -71,8 +71,8 @@ fn varied_once(paths: &[(String, Span)], findings: &mut Findings) -> bool {
         };
         findings.report(
             Diagnostic::new(Code::E0707, message)
-                .at(*span, "again here")
-                .at(*place, "first here")
+                .label(*span, "again here")
+                .label(*place, "first here")
                 .help("keep one of the two; values that belong together vary as entries of one list"),
         );
     }
@@ -88,7 +88,7 @@ fn of_this_file(paths: &[(String, Span)], main: &Scope, findings: &mut Findings)
             known = false;
             findings.report(
                 Diagnostic::new(Code::E0704, format!("this file declares nothing called `{first}` to vary"))
-                    .at(*span, "varied here")
+                    .label(*span, "varied here")
                     .help(format!("declare `{first}` in the main file; it may extend what a module has")),
             );
         }
@@ -107,11 +107,11 @@ fn sampled(sampling: Sampling, axes: &[Axis], record: &Record, findings: &mut Fi
                     Code::E0706,
                     format!("a grid needs lists or steps, and `{}` has neither", axis.path),
                 )
-                .at(axis.span, "has every value between two ends")
+                .label(axis.span, "has every value between two ends")
                 .help("write `steps(a .. b, count = 5)`, or `sampling = sobol(32)`"),
                 None if points > MOST_POINTS => {
                     Diagnostic::new(Code::E0706, format!("the grid has more than {MOST_POINTS} points"))
-                        .at(record.span, "too many combinations")
+                        .label(record.span, "too many combinations")
                         .help("write `sampling = sobol(64)`, which spreads so many points over all of them")
                 }
                 None => return true,
@@ -121,7 +121,7 @@ fn sampled(sampling: Sampling, axes: &[Axis], record: &Record, findings: &mut Fi
             Code::E0706,
             format!("`sobol` spreads over {MOST_SOBOL_AXES} values at most, found {}", axes.len()),
         )
-        .at(place, "too many values vary")
+        .label(place, "too many values vary")
         .help("write `latin_hypercube`"),
         _ => return true,
     };

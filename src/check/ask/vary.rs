@@ -22,7 +22,7 @@ const NOT_OF_THE_SCENE: [&str; 2] = ["study", "scenario"];
 
 /// Where a path leads.
 #[derive(Clone, Copy)]
-enum Target {
+enum Varied {
     Field(&'static Form),
     Let(ItemId),
 }
@@ -69,7 +69,7 @@ impl Reader<'_, '_> {
         let ValueKind::List { entries, unit: None } = &value.kind else {
             self.eval.findings.report(
                 Diagnostic::new(Code::E0406, format!("expected a list of pairs, found {}", looks_like(&value.kind)))
-                    .at(value.span, "names no path")
+                    .label(value.span, "names no path")
                     .help(help),
             );
             return None;
@@ -82,22 +82,22 @@ impl Reader<'_, '_> {
                     let place = found.map_or(entry.value.span, |(_, span)| span);
                     self.eval.findings.report(
                         Diagnostic::new(Code::E0406, format!("expected `path: {what}`"))
-                            .at(place, "no path")
+                            .label(place, "no path")
                             .help(&help),
                     );
                 }
             }
         }
         if entries.is_empty() {
-            self.eval
-                .findings
-                .report(Diagnostic::new(Code::E0406, "the list is empty").at(value.span, "varies nothing").help(&help));
+            self.eval.findings.report(
+                Diagnostic::new(Code::E0406, "the list is empty").label(value.span, "varies nothing").help(&help),
+            );
         }
         (!pairs.is_empty() && pairs.len() == entries.len()).then_some(pairs)
     }
 
     /// What a path of this file names.
-    fn target(&mut self, path: &Path, scope: ScopeId) -> Option<Target> {
+    fn target(&mut self, path: &Path, scope: ScopeId) -> Option<Varied> {
         let first = &path.names[0];
         let Some(&item) = self.eval.scopes[scope].names.get(&first.text) else {
             self.nothing_there(path, scope);
@@ -106,17 +106,19 @@ impl Reader<'_, '_> {
         let tree = self.eval.scopes[scope].tree.clone();
         let declaration = match &tree.items[item] {
             Item::Declaration(declaration) => declaration,
-            Item::Let(_) if path.names.len() == 1 => return Some(Target::Let(ItemId { scope, item })),
+            Item::Let(_) if path.names.len() == 1 => return Some(Varied::Let(ItemId { scope, item })),
             _ => {
                 let text = format!("there is nothing inside `{}` to vary", first.text);
-                self.eval.findings.report(Diagnostic::new(Code::E0704, text).at(path.names[1].span, "inside a `let`"));
+                self.eval
+                    .findings
+                    .report(Diagnostic::new(Code::E0704, text).label(path.names[1].span, "inside a `let`"));
                 return None;
             }
         };
         let kind = schema::kind(&declaration.kind.text)?;
         if NOT_OF_THE_SCENE.contains(&kind.name) {
             let text = format!("a study cannot vary a {}", kind.name);
-            self.eval.findings.report(Diagnostic::new(Code::E0704, text).at(first.span, "not a part of the scene"));
+            self.eval.findings.report(Diagnostic::new(Code::E0704, text).label(first.span, "not a part of the scene"));
             return None;
         }
         let [_, fields @ ..] = path.names.as_slice() else { return None };
@@ -124,12 +126,12 @@ impl Reader<'_, '_> {
             let example = kind.fields.first().map(|f| format!("such as `{}.{}`", first.text, f.name));
             self.eval.findings.report(
                 Diagnostic::new(Code::E0704, format!("`{}` is a whole {}", first.text, kind.name))
-                    .at(path.span, "name a field of it")
+                    .label(path.span, "name a field of it")
                     .maybe_help(example),
             );
             return None;
         }
-        self.field_at(kind, fields).map(Target::Field)
+        self.field_at(kind, fields).map(Varied::Field)
     }
 
     /// The first name of a path leads nowhere.
@@ -149,7 +151,7 @@ impl Reader<'_, '_> {
         };
         self.eval
             .findings
-            .report(Diagnostic::new(Code::E0704, message).at(first.span, "unknown here").maybe_help(help));
+            .report(Diagnostic::new(Code::E0704, message).label(first.span, "unknown here").maybe_help(help));
     }
 
     /// Follows fields into a kind, at last into an argument of a word or a pair by its key.
@@ -163,7 +165,7 @@ impl Reader<'_, '_> {
             let near = nearest(&name.text, kind.fields.iter().map(|f| f.name)).map(|n| format!("did you mean `{n}`?"));
             self.eval.findings.report(
                 Diagnostic::new(Code::E0704, format!("a {} has no `{}` to vary", kind.name, name.text))
-                    .at(name.span, "unknown field")
+                    .label(name.span, "unknown field")
                     .help(near.unwrap_or_else(|| format!("`trackbed docs {}` lists its fields", kind.name))),
             );
             return None;
@@ -182,21 +184,21 @@ impl Reader<'_, '_> {
         let near = nearest(&next.text, arguments().map(|a| a.name)).map(|n| format!("did you mean `{n}`?"));
         self.eval.findings.report(
             Diagnostic::new(Code::E0704, format!("there is no `{}` inside `{}` to vary", next.text, field.name))
-                .at(next.span, "not found")
+                .label(next.span, "not found")
                 .maybe_help(near),
         );
         None
     }
 
     /// Whether a value may stand where the path leads.
-    fn may_stand(&mut self, target: Target, value: &Value, scope: ScopeId) -> Option<()> {
+    fn may_stand(&mut self, target: Varied, value: &Value, scope: ScopeId) -> Option<()> {
         let before = self.eval.findings.errors();
         match target {
-            Target::Field(form) => {
+            Varied::Field(form) => {
                 let slot = self.eval.fit(form, value, scope);
                 self.read(form, &slot);
             }
-            Target::Let(id) => self.like_the_let(id, value, scope),
+            Varied::Let(id) => self.like_the_let(id, value, scope),
         }
         (self.eval.findings.errors() == before).then_some(())
     }
@@ -223,14 +225,14 @@ impl Reader<'_, '_> {
                     code,
                     format!("expected {}, found {}", own.dimension.describe(), raw.dimension.describe()),
                 )
-                .at(value.span, "of another dimension")
-                .at(binding.value.span, "than what it replaces"),
+                .label(value.span, "of another dimension")
+                .label(binding.value.span, "than what it replaces"),
             );
         }
     }
 
     /// The values of an axis, and what stands behind its numbers.
-    fn values(&mut self, target: Target, value: &Value, scope: ScopeId) -> Option<(String, Values)> {
+    fn values(&mut self, target: Varied, value: &Value, scope: ScopeId) -> Option<(String, Values)> {
         let (inner, per) = match &value.kind {
             ValueKind::Per(inner, per) => (&**inner, Some(per.clone())),
             _ => (value, None),
@@ -256,7 +258,7 @@ impl Reader<'_, '_> {
                     format!("expected a list, `from .. to`, {}, found {}", or_list(&words), looks_like(other));
                 self.eval.findings.report(
                     Diagnostic::new(Code::E0406, expected)
-                        .at(inner.span, "not several values")
+                        .label(inner.span, "not several values")
                         .help(near.map_or("write `[value, value]`".into(), |n| format!("did you mean `{n}`?"))),
                 );
                 None
@@ -266,7 +268,7 @@ impl Reader<'_, '_> {
 
     fn choices(
         &mut self,
-        target: Target,
+        target: Varied,
         entries: &[Entry],
         suffix: Suffix,
         scope: ScopeId,
@@ -283,7 +285,7 @@ impl Reader<'_, '_> {
             if let Some(key) = &entry.key {
                 self.eval
                     .findings
-                    .report(Diagnostic::new(Code::E0406, "expected a value, found a pair").at(key.span, "a key"));
+                    .report(Diagnostic::new(Code::E0406, "expected a value, found a pair").label(key.span, "a key"));
                 sound = false;
                 continue;
             }
@@ -317,7 +319,7 @@ impl Reader<'_, '_> {
     /// Both ends of a range in its unit, each held against the target.
     fn ends_of(
         &mut self,
-        target: Target,
+        target: Varied,
         from: &Value,
         to: &Value,
         per: Option<&Name>,
@@ -335,7 +337,7 @@ impl Reader<'_, '_> {
         if a.value >= b.value {
             let whole = from.span.to(to.span);
             self.eval.findings.report(
-                Diagnostic::new(Code::E0505, "a range must ascend").at(whole, "its first end is not the smaller"),
+                Diagnostic::new(Code::E0505, "a range must ascend").label(whole, "its first end is not the smaller"),
             );
             return None;
         }
@@ -347,14 +349,14 @@ impl Reader<'_, '_> {
     fn unlike(&mut self, a: &Raw, b: &Raw) {
         self.eval.findings.report(
             Diagnostic::new(Code::E0305, "both need the same dimension")
-                .at(a.span, a.dimension.describe())
-                .at(b.span, b.dimension.describe()),
+                .label(a.span, a.dimension.describe())
+                .label(b.span, b.dimension.describe()),
         );
     }
 
     fn distribution(
         &mut self,
-        target: Target,
+        target: Varied,
         word: &Name,
         arguments: &[Argument],
         per: Option<&Name>,
@@ -402,7 +404,7 @@ impl Reader<'_, '_> {
                 if !c.dimension.is_none() {
                     let found = c.dimension.describe();
                     let text = format!("expected a share such as `20 %`, found {found}");
-                    self.eval.findings.report(Diagnostic::new(Code::E0302, text).at(cov.span, found));
+                    self.eval.findings.report(Diagnostic::new(Code::E0302, text).label(cov.span, found));
                     return None;
                 }
                 self.positive(c.value, cov.span)?;
@@ -420,7 +422,9 @@ impl Reader<'_, '_> {
         if value > 0.0 {
             return Some(());
         }
-        self.eval.findings.report(Diagnostic::new(Code::E0405, "expected a value above zero").at(span, "out of range"));
+        self.eval
+            .findings
+            .report(Diagnostic::new(Code::E0405, "expected a value above zero").label(span, "out of range"));
         None
     }
 
@@ -433,7 +437,7 @@ impl Reader<'_, '_> {
         };
         self.eval.findings.report(
             Diagnostic::new(Code::E0406, format!("`{}` has other arguments", word.text))
-                .at(word.span, "not understood")
+                .label(word.span, "not understood")
                 .help(format!("write something like `{form}`")),
         );
         None
@@ -441,7 +445,7 @@ impl Reader<'_, '_> {
 
     fn steps(
         &mut self,
-        target: Target,
+        target: Varied,
         (from, to): (&Value, &Value),
         (how, step): (&Name, &Value),
         per: Option<&Name>,
@@ -472,7 +476,7 @@ impl Reader<'_, '_> {
             let message = format!("{} steps do not lead from {} to {} {unit}", number(intervals), number(a), number(b));
             self.eval.findings.report(
                 Diagnostic::new(Code::E0706, message.trim_end().to_string())
-                    .at(step.span, "not a whole number of steps")
+                    .label(step.span, "not a whole number of steps")
                     .help("write `count = 5` for five values, both ends included"),
             );
             return None;

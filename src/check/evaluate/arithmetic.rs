@@ -33,7 +33,7 @@ impl Evaluator<'_> {
             ValueKind::Error => None,
             ValueKind::Hole => {
                 self.findings
-                    .report(Diagnostic::new(Code::E0410, "`?` cannot take part in arithmetic").at(span, "a hole"));
+                    .report(Diagnostic::new(Code::E0410, "`?` cannot take part in arithmetic").label(span, "a hole"));
                 None
             }
             other => {
@@ -43,7 +43,7 @@ impl Evaluator<'_> {
                 };
                 self.findings.report(
                     Diagnostic::new(Code::E0406, format!("expected a number, found {}", looks_like(other)))
-                        .at(span, "not a number")
+                        .label(span, "not a number")
                         .maybe_help(unquoted),
                 );
                 None
@@ -106,7 +106,7 @@ impl Evaluator<'_> {
             _ => {
                 self.findings.report(
                     Diagnostic::new(Code::E0406, format!("expected a number, but `{}` is none", path.text()))
-                        .at(path.span, "not a number"),
+                        .label(path.span, "not a number"),
                 );
                 None
             }
@@ -130,8 +130,8 @@ impl Evaluator<'_> {
                     let help = self.instead_of_sum(left, op, right, [a.bare, b.bare]);
                     self.findings.report(
                         Diagnostic::new(Code::E0305, format!("`{}` needs two values of the same {same}", op.symbol()))
-                            .at(left.span, a.describe())
-                            .at(right.span, b.describe())
+                            .label(left.span, a.describe())
+                            .label(right.span, b.describe())
                             .maybe_help(help),
                     );
                     return None;
@@ -155,7 +155,7 @@ impl Evaluator<'_> {
                 let Some(dimension) = dimension else {
                     self.findings.report(
                         Diagnostic::new(Code::E0305, "an exponent is a plain number from -9 to 9")
-                            .at(right.span, b.dimension.describe())
+                            .label(right.span, b.dimension.describe())
                             .help("powers of ten stand in the number: `40e6 N/m`"),
                     );
                     return None;
@@ -192,7 +192,8 @@ impl Evaluator<'_> {
             return Some(raw);
         }
         self.findings.report(
-            Diagnostic::new(Code::E0405, "the result is not a finite number").at(span, "divides by zero or overflows"),
+            Diagnostic::new(Code::E0405, "the result is not a finite number")
+                .label(span, "divides by zero or overflows"),
         );
         None
     }
@@ -203,7 +204,7 @@ impl Evaluator<'_> {
             let near = crate::diag::nearest::nearest(&word.text, ["sqrt", "abs", "min", "max"]);
             self.findings.report(
                 Diagnostic::new(Code::E0408, format!("expected a number, found the word `{}`", word.text))
-                    .at(word.span, "not a function of numbers")
+                    .label(word.span, "not a function of numbers")
                     .help(near.map_or("functions of numbers are `sqrt`, `abs`, `min` and `max`".to_string(), |n| {
                         format!("did you mean `{n}`?")
                     })),
@@ -217,7 +218,7 @@ impl Evaluator<'_> {
             let count = if one { "one value" } else { "at least one value" };
             self.findings.report(
                 Diagnostic::new(Code::E0406, format!("`{}` takes {count}, found {}", word.text, values.len()))
-                    .at(span, "here"),
+                    .label(span, "here"),
             );
             return None;
         };
@@ -228,8 +229,8 @@ impl Evaluator<'_> {
             let same = if other.dimension == first.dimension { "basis" } else { "dimension" };
             self.findings.report(
                 Diagnostic::new(Code::E0305, format!("`{}` needs values of the same {same}", word.text))
-                    .at(other.span, other.describe())
-                    .at(first.span, first.describe()),
+                    .label(other.span, other.describe())
+                    .label(first.span, first.describe()),
             );
             return None;
         }
@@ -260,12 +261,12 @@ fn unit_mistake(unit: &UnitText, error: &UnitError) -> Diagnostic {
             });
             let such = "units are such as `mm`, `kN`, `MN/m`, `kN s/m`, `kg/m^3`, `km/h`, `axles`";
             Diagnostic::new(Code::E0303, format!("unknown unit `{symbol}`"))
-                .at(unit.span, "not a unit")
+                .label(unit.span, "not a unit")
                 .help(help.unwrap_or_else(|| such.to_owned()))
         }
         UnitError::Exponent => {
             Diagnostic::new(Code::E0103, format!("the exponents of `{}` go beyond -9 .. 9", unit.text))
-                .at(unit.span, "too large")
+                .label(unit.span, "too large")
         }
         UnitError::Form => {
             let help = match unit.text.contains('°') {
@@ -273,7 +274,7 @@ fn unit_mistake(unit: &UnitText, error: &UnitError) -> Diagnostic {
                 false => "units are such as `mm`, `kN`, `MN/m`, `kN s/m`, `kg/m^3`, `km/h`, `axles`",
             };
             Diagnostic::new(Code::E0303, format!("`{}` is not a unit", unit.text))
-                .at(unit.span, "not a unit")
+                .label(unit.span, "not a unit")
                 .help(help)
         }
     }

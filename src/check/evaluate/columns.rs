@@ -25,7 +25,7 @@ impl Evaluator<'_> {
         let Some((ValueKind::Text(name), span)) = arguments.first().map(|a| (&a.value.kind, a.value.span)) else {
             self.findings.report(
                 Diagnostic::new(Code::E0403, "`file` needs the name of a data file")
-                    .at(word.span, "which file?")
+                    .label(word.span, "which file?")
                     .help("write something like `file(\"level.csv\")`"),
             );
             return None;
@@ -43,7 +43,7 @@ impl Evaluator<'_> {
         let column = &table.columns[value];
         let dimension = column.unit.dimension;
         let raw = Raw { value: column.unit.factor, dimension, basis: per.clone(), span: whole, bare: false };
-        if dimension != Dimension::of(measure.unit) {
+        if dimension != Dimension::of_unit(measure.unit) {
             let expected = format!("expected {}", Form::Number(*measure).describe());
             self.wrong_dimension(&Raw { span: column.span, ..raw }, measure, &expected);
             return None;
@@ -64,8 +64,8 @@ impl Evaluator<'_> {
         let Some(place) = table.column("x").filter(|i| table.columns[*i].unit.dimension == Dimension::LENGTH) else {
             self.findings.report(
                 Diagnostic::new(Code::E0509, format!("`{file}` has no column `x` of places"))
-                    .at(table.header, format!("has {}", list()))
-                    .at(span, "read here")
+                    .label(table.header, format!("has {}", list()))
+                    .label(span, "read here")
                     .help("name the column of chainages `x_m`"),
             );
             return None;
@@ -80,18 +80,18 @@ impl Evaluator<'_> {
         }
         let mistake = match (&wanted, others.is_empty()) {
             (Some((name, asked)), _) => Diagnostic::new(Code::E0509, format!("`{file}` has no column `{name}`"))
-                .at(table.header, format!("has {}", list()))
-                .at(*asked, "asked for here")
+                .label(table.header, format!("has {}", list()))
+                .label(*asked, "asked for here")
                 .maybe_help(
                     nearest(name, table.columns.iter().map(|c| c.name.as_str()))
                         .map(|n| format!("did you mean `{n}`?")),
                 ),
             (None, true) => Diagnostic::new(Code::E0509, format!("`{file}` has places and no values"))
-                .at(table.header, "one column only")
-                .at(span, "read here"),
+                .label(table.header, "one column only")
+                .label(span, "read here"),
             (None, false) => Diagnostic::new(Code::E0509, format!("`{file}` has several columns of values"))
-                .at(table.header, format!("has {}", list()))
-                .at(span, "read here")
+                .label(table.header, format!("has {}", list()))
+                .label(span, "read here")
                 .help(format!("name one: `file(\"{file}\", column = {})`", table.columns[others[0]].name)),
         };
         self.findings.report(mistake);
@@ -116,9 +116,9 @@ impl Evaluator<'_> {
             if let Some(before) = last.filter(|before| before.value >= x.value) {
                 self.findings.report(
                     Diagnostic::new(Code::E0510, "the places of a data file ascend from row to row")
-                        .at(x.span, "not beyond the row before")
-                        .at(before.span, "the row before")
-                        .at(span, "read here"),
+                        .label(x.span, "not beyond the row before")
+                        .label(before.span, "the row before")
+                        .label(span, "read here"),
                 );
                 return None;
             }
@@ -135,8 +135,8 @@ impl Evaluator<'_> {
         if rows.len() < 2 && sound {
             self.findings.report(
                 Diagnostic::new(Code::E0510, format!("expected two rows of numbers or more, found {}", rows.len()))
-                    .at(table.header, "too few rows below")
-                    .at(span, "read here"),
+                    .label(table.header, "too few rows below")
+                    .label(span, "read here"),
             );
             return None;
         }

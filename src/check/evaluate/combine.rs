@@ -259,9 +259,9 @@ impl Evaluator<'_> {
 
     fn not_combined(&mut self, span: Span, why: &str, parts: [Span; 2]) {
         let mut mistake =
-            Diagnostic::new(Code::E0428, format!("these profiles do not combine: {why}")).at(span, "not worked out");
+            Diagnostic::new(Code::E0428, format!("these profiles do not combine: {why}")).label(span, "not worked out");
         for part in parts.into_iter().filter(|part| *part != span) {
-            mistake = mistake.at(part, "this one");
+            mistake = mistake.label(part, "this one");
         }
         self.findings.report(mistake.help(
             "numbers multiply, divide and add to a profile; profiles add where both are `ramp`, both `smooth`, or lists of the same places, \

@@ -55,7 +55,7 @@ impl Evaluator<'_> {
                     let (what, names) = (missing.join("` and `"), missing.join(" = ..., "));
                     self.findings.report(
                         Diagnostic::new(Code::E0403, format!("`{}` needs `{what}`", word.name))
-                            .at(slot.span, format!("without `{what}`"))
+                            .label(slot.span, format!("without `{what}`"))
                             .help(format!("write `{}({names} = ...)`", word.name)),
                     );
                 }
@@ -99,8 +99,8 @@ impl Evaluator<'_> {
         if let [(first, one), (second, other), ..] = given[..] {
             self.findings.report(
                 Diagnostic::new(Code::E0404, format!("`{first}` and `{second}` say two things where one can hold"))
-                    .at(other, "")
-                    .at(one, "")
+                    .label(other, "")
+                    .label(one, "")
                     .help("keep one of the two"),
             );
         }
@@ -113,7 +113,7 @@ impl Evaluator<'_> {
             format!("{} `{}`", record.kind.name, record.name)
         };
         let mistake = Diagnostic::new(Code::E0403, format!("{who} needs {what}"))
-            .at(record.span, "not given")
+            .label(record.span, "not given")
             .help(format!("`trackbed docs {}` says what it means", record.kind.name));
         record.lacks(what, mistake, &mut self.findings);
     }

@@ -147,7 +147,7 @@ impl Evaluator<'_> {
             {
                 self.findings.report(
                     Diagnostic::new(Code::E0412, format!("nothing uses `{name}`"))
-                        .at(span, "declared here")
+                        .label(span, "declared here")
                         .help("take it out, or use it"),
                 );
             }

@@ -92,7 +92,7 @@ impl<'m> Evaluator<'m> {
         if self.depth + steps > DEEPEST {
             self.findings.report(
                 Diagnostic::new(Code::E0103, "values lead to values that lead to values, too far to follow")
-                    .at(span, "given up here")
+                    .label(span, "given up here")
                     .help("write the value itself"),
             );
             return None;
@@ -118,7 +118,7 @@ impl<'m> Evaluator<'m> {
                 self.stack[start..].iter().map(|(item, _)| *item).chain([id]).map(|i| self.item_name(i)).collect();
             let mut mistake =
                 Diagnostic::new(Code::E0203, format!("{} need each other", quoted_list(&names[..names.len() - 1])))
-                    .at(place, "closes the circle")
+                    .label(place, "closes the circle")
                     .help(format!("the circle is {}", names.join(" -> ")));
             if names.len() == 2 {
                 mistake.message = format!("`{}` needs itself", names[0]);

@@ -30,7 +30,7 @@ impl Evaluator<'_> {
         if let ValueKind::Hole = value.kind {
             self.findings.report(
                 Diagnostic::new(Code::E0410, format!("`?` stands for {}{}", form.describe(), range_of(form)))
-                    .at(span, "to be given before a run")
+                    .label(span, "to be given before a run")
                     .help(self.fitting(form)),
             );
             return Slot { value: Val::Hole, span, origin };
@@ -161,7 +161,7 @@ impl Evaluator<'_> {
                         Code::E0406,
                         format!("expected {}, found {}", form.describe(), slot.value.describe()),
                     )
-                    .at(path.span, "of another form"),
+                    .label(path.span, "of another form"),
                 );
                 Some(error)
             }
@@ -215,7 +215,7 @@ impl Evaluator<'_> {
         self.superseded.push(span);
         self.findings.report(
             Diagnostic::new(Code::E0406, format!("expected {}, found {found}", form.describe()))
-                .at(span, found.to_string())
+                .label(span, found.to_string())
                 .maybe_help(instead),
         );
     }
@@ -310,8 +310,8 @@ impl Evaluator<'_> {
                     forms.iter().filter_map(|f| if let Form::Number(m) = f { Some(m) } else { None }).collect();
                 if let Some(first) = measures.first() {
                     let raw = self.raw(value, scope)?;
-                    let chosen = measures.iter().find(|m| Dimension::of(m.unit) == raw.dimension).unwrap_or(first);
-                    if measures.len() > 1 && Dimension::of(chosen.unit) != raw.dimension {
+                    let chosen = measures.iter().find(|m| Dimension::of_unit(m.unit) == raw.dimension).unwrap_or(first);
+                    if measures.len() > 1 && Dimension::of_unit(chosen.unit) != raw.dimension {
                         let units: Vec<String> = measures.iter().map(|m| format!("`{}`", m.unit)).collect();
                         self.wrong_dimension(&raw, first, &format!("expected {}", or_list(&units)));
                         return None;
@@ -365,7 +365,7 @@ impl Evaluator<'_> {
                 };
                 self.findings.report(
                     Diagnostic::new(Code::E0406, "expected a value, found a pair")
-                        .at(key.span, "a key where none belongs")
+                        .label(key.span, "a key where none belongs")
                         .help(help),
                 );
                 continue;
@@ -402,7 +402,7 @@ impl Evaluator<'_> {
                         self.superseded.push(value.span);
                         self.findings.report(
                             Diagnostic::new(Code::E0406, format!("expected {}", form.describe()))
-                                .at(entry.value.span, "a pair is needed here")
+                                .label(entry.value.span, "a pair is needed here")
                                 .help("write `[key: value]`"),
                         );
                     }
@@ -437,7 +437,7 @@ impl Evaluator<'_> {
         self.findings.diagnostics.truncate(before);
         self.findings.report(
             Diagnostic::new(Code::E0301, message)
-                .at(whole, "their unit is missing")
+                .label(whole, "their unit is missing")
                 .help(format!("write {}", or_list(&write))),
         );
     }

@@ -30,7 +30,7 @@ impl Evaluator<'_> {
 
     /// Checks dimension, basis and range.
     pub fn hold(&mut self, measure: &'static Measure, raw: Raw) -> Option<Number> {
-        let expected = Dimension::of(measure.unit);
+        let expected = Dimension::of_unit(measure.unit);
         if raw.dimension != expected {
             self.wrong_dimension(&raw, measure, &format!("expected {}", Form::Number(*measure).describe()));
             return None;
@@ -53,7 +53,7 @@ impl Evaluator<'_> {
                         number(shown)
                     ),
                 )
-                .at(raw.span, "out of range")
+                .label(raw.span, "out of range")
                 .maybe_help(self.in_range(measure, &raw, shown)),
             );
             return None;
@@ -82,7 +82,7 @@ impl Evaluator<'_> {
         let text = self.files.sources.text(raw.span).to_string();
         self.findings.report(
             Diagnostic::new(Code::E0304, format!("`per {name}` says nothing here: the value is of one thing only"))
-                .at(*span, "leave it out")
+                .label(*span, "leave it out")
                 .help(format!("write `{text}`")),
         );
         None
@@ -109,7 +109,7 @@ impl Evaluator<'_> {
                     };
                     self.findings.report(
                         Diagnostic::new(Code::E0304, format!("expected {}, found `per {name}`", basis.list()))
-                            .at(*span, "not of this")
+                            .label(*span, "not of this")
                             .help(help),
                     );
                     None
@@ -121,7 +121,7 @@ impl Evaluator<'_> {
                     let text = self.files.sources.text(raw.span).to_string();
                     self.findings.report(
                         Diagnostic::new(Code::E0304, format!("expected {}, found none of them", basis.list()))
-                            .at(raw.span, "could be of a half or of the whole")
+                            .label(raw.span, "could be of a half or of the whole")
                             .help(format!("write `{text} per {}`, if that is what it is", basis.names[0].0)),
                     );
                     None
@@ -132,19 +132,19 @@ impl Evaluator<'_> {
 
     /// Refuses a value of another dimension, or without its unit.
     pub(super) fn wrong_dimension(&mut self, raw: &Raw, measure: &Measure, expected: &str) {
-        let dimension = Dimension::of(measure.unit);
+        let dimension = Dimension::of_unit(measure.unit);
         let text = self.files.sources.text(raw.span).to_string();
         if raw.bare && raw.dimension.is_none() {
             self.findings.report(
                 Diagnostic::new(Code::E0301, format!("{expected}, found a number without a unit"))
-                    .at(raw.span, "its unit is missing")
+                    .label(raw.span, "its unit is missing")
                     .help(format!("write `{text} {}`, if that is the unit you meant", measure.unit)),
             );
             return;
         }
         self.findings.report(
             Diagnostic::new(Code::E0302, format!("{expected}, found {}", raw.dimension.describe()))
-                .at(raw.span, Quantity::new(raw.value, raw.dimension).show(&raw.dimension.usual_unit()))
+                .label(raw.span, Quantity::new(raw.value, raw.dimension).show(&raw.dimension.usual_unit()))
                 .help(crate::units::compare(dimension, raw.dimension)),
         );
     }
@@ -156,7 +156,7 @@ impl Evaluator<'_> {
         if !raw.dimension.is_none() {
             self.findings.report(
                 Diagnostic::new(Code::E0302, format!("expected a whole number, found {}", raw.dimension.describe()))
-                    .at(raw.span, "has a unit"),
+                    .label(raw.span, "has a unit"),
             );
             return None;
         }
@@ -166,7 +166,7 @@ impl Evaluator<'_> {
                     Code::E0405,
                     format!("expected a whole number from {min} to {max}, found {}", number(raw.value)),
                 )
-                .at(raw.span, "out of range"),
+                .label(raw.span, "out of range"),
             );
             return None;
         }
@@ -211,7 +211,7 @@ impl Evaluator<'_> {
             text.split_once("..").map(|(x, y)| format!("write the smaller end first: `{} .. {}`", y.trim(), x.trim()));
         self.findings.report(
             Diagnostic::new(Code::E0505, "a span must ascend")
-                .at(span, "its first end is the greater one")
+                .label(span, "its first end is the greater one")
                 .maybe_help(swapped),
         );
         None
@@ -231,14 +231,14 @@ impl Evaluator<'_> {
         let text = self.files.sources.text(raw.span).to_string();
         let mistake = if raw.bare {
             Diagnostic::new(Code::E0301, "expected a place in `m` or `sleepers`, found a number without a unit")
-                .at(raw.span, "its unit is missing")
+                .label(raw.span, "its unit is missing")
                 .help(format!("write `{text} sleepers` or `{text} m`"))
         } else {
             Diagnostic::new(
                 Code::E0302,
                 format!("expected a place in `m` or `sleepers`, found {}", raw.dimension.describe()),
             )
-            .at(raw.span, "not a place")
+            .label(raw.span, "not a place")
         };
         self.findings.report(mistake);
         None
@@ -257,7 +257,7 @@ impl Evaluator<'_> {
         if a.dimension != b.dimension {
             self.findings.report(
                 Diagnostic::new(Code::E0305, "both ends of a span are in `m`, or both in `sleepers`")
-                    .at(whole, "mixed")
+                    .label(whole, "mixed")
                     .help("a sleeper lies at its number times the spacing: write both ends in one of the two"),
             );
             return None;

@@ -8,7 +8,7 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Item, Name, Path};
 
 /// What a path names, and how many of its names are left to follow inside.
-pub struct Target {
+pub struct Resolved {
     pub id: ItemId,
     pub is_let: bool,
     pub taken: usize,
@@ -17,7 +17,7 @@ pub struct Target {
 impl Evaluator<'_> {
     /// The declaration or let that a path starts with; a diagnostic where there is none. `words` are what could have
     /// stood there besides names.
-    pub fn resolve(&mut self, path: &Path, scope: ScopeId, words: &[&str]) -> Option<Target> {
+    pub fn resolve(&mut self, path: &Path, scope: ScopeId, words: &[&str]) -> Option<Resolved> {
         let first = &path.names[0];
         // where a name is that of a module too, which has been reported, the longer path decides
         if let (Some(&module), Some(second)) = (self.scopes[scope].modules.get(&first.text), path.names.get(1))
@@ -36,7 +36,7 @@ impl Evaluator<'_> {
             let Some(second) = path.names.get(1) else {
                 self.findings.report(
                     Diagnostic::new(Code::E0201, format!("`{}` is a module, not a value", first.text))
-                        .at(path.span, "name something in it")
+                        .label(path.span, "name something in it")
                         .maybe_help(
                             self.scopes[module].names.keys().next().map(|n| format!("such as `{}.{n}`", first.text)),
                         ),
@@ -50,7 +50,7 @@ impl Evaluator<'_> {
             };
             self.findings.report(
                 Diagnostic::new(Code::E0201, format!("module `{}` has no `{}`", first.text, second.text))
-                    .at(second.span, "not found")
+                    .label(second.span, "not found")
                     .help(help),
             );
             return None;
@@ -69,10 +69,10 @@ impl Evaluator<'_> {
         }
     }
 
-    fn lookup(&self, scope: ScopeId, name: &Name, taken: usize) -> Option<Target> {
+    fn lookup(&self, scope: ScopeId, name: &Name, taken: usize) -> Option<Resolved> {
         let item = *self.scopes[scope].names.get(&name.text)?;
         let is_let = matches!(self.scopes[scope].tree.items.get(item), Some(Item::Let(_)));
-        Some(Target { id: ItemId { scope, item }, is_let, taken })
+        Some(Resolved { id: ItemId { scope, item }, is_let, taken })
     }
 
     fn unknown_name(&mut self, name: &Name, scope: ScopeId, words: &[&str]) {
@@ -101,7 +101,7 @@ impl Evaluator<'_> {
         };
         self.findings.report(
             Diagnostic::new(Code::E0201, format!("nothing is called `{}`", name.text))
-                .at(name.span, "unknown name")
+                .label(name.span, "unknown name")
                 .maybe_help(help),
         );
     }
@@ -135,14 +135,14 @@ impl Evaluator<'_> {
     }
 
     /// The slot that the rest of a path names inside a declaration.
-    pub fn slot_at(&mut self, target: &Target, path: &Path) -> Option<Slot> {
+    pub fn slot_at(&mut self, target: &Resolved, path: &Path) -> Option<Slot> {
         let record = self.record(target.id, path.span)?;
         let mut slot = Slot { value: Val::Record(record), span: path.span, origin: crate::scenario::Origin::Derived };
         for name in &path.names[target.taken..] {
             let Val::Record(record) = &slot.value else {
                 self.findings.report(
                     Diagnostic::new(Code::E0201, format!("there is nothing inside a value to call `{}`", name.text))
-                        .at(name.span, "not an object"),
+                        .label(name.span, "not an object"),
                 );
                 return None;
             };
@@ -156,8 +156,8 @@ impl Evaluator<'_> {
                                 Code::E0403,
                                 format!("`{}` says nothing about `{}`", record.name, name.text),
                             )
-                            .at(name.span, "not given there")
-                            .at(record.span, "declared here"),
+                            .label(name.span, "not given there")
+                            .label(record.span, "declared here"),
                         );
                     }
                     return None;

@@ -38,7 +38,7 @@ impl Evaluator<'_> {
         }
         self.findings.report(
             Diagnostic::new(Code::E0406, "this value is one number; it cannot vary along the track")
-                .at(value.span, "a profile"),
+                .label(value.span, "a profile"),
         );
         None
     }
@@ -60,7 +60,7 @@ impl Evaluator<'_> {
         let Some(near) = nearest(&word.text, PROFILES) else { return false };
         self.findings.report(
             Diagnostic::new(Code::E0408, format!("expected a number or a profile, found the word `{}`", word.text))
-                .at(word.span, "unknown word")
+                .label(word.span, "unknown word")
                 .help(format!("did you mean `{near}`?")),
         );
         true
@@ -145,7 +145,7 @@ impl Evaluator<'_> {
         let Some(first) = arguments.first().filter(|a| a.name.is_none()) else {
             self.findings.report(
                 Diagnostic::new(Code::E0403, format!("`{}` needs its two values", word.text))
-                    .at(word.span, "from what to what?")
+                    .label(word.span, "from what to what?")
                     .help(format!("write something like `{}(a .. b)`", word.text)),
             );
             return None;
@@ -160,7 +160,7 @@ impl Evaluator<'_> {
         let a = Raw { basis: a.basis.clone().or(per.clone()), ..a };
         let b = Raw { basis: b.basis.clone().or(per), ..b };
         // both ends are of the same wrong dimension, or lack the same `per`
-        if a.dimension == b.dimension && b.dimension != Dimension::of(measure.unit) {
+        if a.dimension == b.dimension && b.dimension != Dimension::of_unit(measure.unit) {
             let expected = format!("expected {}", Form::Number(*measure).describe());
             self.wrong_dimension(&Raw { span: range.span, ..b }, measure, &expected);
             return None;
@@ -182,13 +182,13 @@ impl Evaluator<'_> {
             let place = argument.name.as_ref().map_or(argument.value.span, |n| n.span);
             if seen.contains(&name) && !name.is_empty() {
                 let message = format!("`{name}` of `{}` is given twice", word.text);
-                self.findings.report(Diagnostic::new(Code::E0404, message).at(place, "again here"));
+                self.findings.report(Diagnostic::new(Code::E0404, message).label(place, "again here"));
                 return None;
             }
             if !(named.contains(&name) || name.is_empty() && i == 0) {
                 self.findings.report(
                     Diagnostic::new(Code::E0402, format!("`{}` has no such argument", word.text))
-                        .at(place, "unknown argument")
+                        .label(place, "unknown argument")
                         .help(format!("after its value it takes `{} = ...`", named.join(" = ...` and `"))),
                 );
                 return None;
@@ -225,7 +225,7 @@ impl Evaluator<'_> {
             let Some(key) = &entry.key else {
                 self.findings.report(
                     Diagnostic::new(Code::E0406, "expected a place and its value, found a value alone")
-                        .at(entry.value.span, "where?")
+                        .label(entry.value.span, "where?")
                         .help("write `[place: value]`"),
                 );
                 sound = false;
@@ -241,7 +241,7 @@ impl Evaluator<'_> {
                 if is_profile(&value) {
                     self.findings.report(
                         Diagnostic::new(Code::E0406, "at a place stands one value, found a profile")
-                            .at(value.span, "over which span?")
+                            .label(value.span, "over which span?")
                             .help("key the list by spans: `[-20 .. -6 m: ..., -6 .. 0 m: ...]`"),
                     );
                     sound = false;
@@ -272,7 +272,7 @@ impl Evaluator<'_> {
         if place.dimension != Dimension::SLEEPERS {
             self.findings.report(
                 Diagnostic::new(Code::E0406, "expected a span, found a place")
-                    .at(key.span, "among spans")
+                    .label(key.span, "among spans")
                     .help("key the whole list by spans, or the whole list by places"),
             );
             return None;

@@ -25,7 +25,7 @@ impl Evaluator<'_> {
         let Some(first) = arguments.first().filter(|a| a.name.is_none()) else {
             self.findings.report(
                 Diagnostic::new(Code::E0403, "`random` needs its mean")
-                    .at(word.span, "around which value?")
+                    .label(word.span, "around which value?")
                     .help("write something like `random(mean, cov = 10 %)`"),
             );
             return None;
@@ -68,7 +68,7 @@ impl Evaluator<'_> {
     fn one_sd<'a>(&mut self, sds: &[&'a Argument]) -> Option<Option<&'a Argument>> {
         if let [_, again, ..] = sds {
             self.findings.report(
-                Diagnostic::new(Code::E0404, "`sd` of `random` is given twice").at(again.value.span, "again here"),
+                Diagnostic::new(Code::E0404, "`sd` of `random` is given twice").label(again.value.span, "again here"),
             );
             return None;
         }
@@ -83,8 +83,8 @@ impl Evaluator<'_> {
         if !matches!(cov.value, Val::Error) {
             self.findings.report(
                 Diagnostic::new(Code::E0407, "`cov` and `sd` both say how much a random value scatters")
-                    .at(sd.value.span, "as a value")
-                    .at(cov.span, "as a share of the mean")
+                    .label(sd.value.span, "as a value")
+                    .label(cov.span, "as a share of the mean")
                     .help("keep one way of the two"),
             );
         }
@@ -102,14 +102,14 @@ impl Evaluator<'_> {
     ) -> Option<f64> {
         let raw = self.raw(value, scope)?;
         let raw = Raw { basis: raw.basis.clone().or(per).or(mean.basis.map(|b| (b.to_string(), raw.span))), ..raw };
-        if raw.dimension != Dimension::of(measure.unit) {
+        if raw.dimension != Dimension::of_unit(measure.unit) {
             self.wrong_dimension(&raw, measure, "expected a standard deviation of the same dimension as the mean");
             return None;
         }
         let (_, factor) = self.basis(measure, &raw)?;
         if raw.value <= 0.0 {
             self.findings.report(
-                Diagnostic::new(Code::E0405, "expected a positive standard deviation").at(raw.span, "out of range"),
+                Diagnostic::new(Code::E0405, "expected a positive standard deviation").label(raw.span, "out of range"),
             );
             return None;
         }
@@ -120,11 +120,11 @@ impl Evaluator<'_> {
     fn scatters(&mut self, mean: &Number, deviation: f64, log_normal: bool, span: Span) -> Option<()> {
         let mistake = if log_normal && mean.value <= 0.0 {
             Diagnostic::new(Code::E0405, "a log-normal value is positive, and so is its mean")
-                .at(span, "not above zero")
+                .label(span, "not above zero")
                 .help("`distribution = normal` takes any mean")
         } else if deviation == 0.0 {
             Diagnostic::new(Code::E0405, "a share of a mean of zero is nothing")
-                .at(span, "nothing would scatter")
+                .label(span, "nothing would scatter")
                 .help("say how much it scatters as a value: `sd = ...` instead of `cov`")
         } else {
             return Some(());

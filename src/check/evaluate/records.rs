@@ -46,7 +46,7 @@ impl Evaluator<'_> {
         if PLANNED_KINDS.contains(&name.text.as_str()) {
             self.findings.report(
                 Diagnostic::new(Code::E0411, format!("this version does not read `{}` yet", name.text))
-                    .at(name.span, "planned"),
+                    .label(name.span, "planned"),
             );
             return None;
         }
@@ -63,7 +63,7 @@ impl Evaluator<'_> {
         let help = near.map_or("`trackbed docs` lists the kinds".to_string(), |k| format!("did you mean `{k}`?"));
         self.findings.report(
             Diagnostic::new(Code::E0401, format!("unknown kind `{}`", name.text))
-                .at(name.span, "not a kind")
+                .label(name.span, "not a kind")
                 .help(help),
         );
         schema::kind(near?)
@@ -82,15 +82,15 @@ impl Evaluator<'_> {
                         Code::E0205,
                         format!("a {} cannot extend `{}`, which is a {}", kind.name, path.text(), record.kind.name),
                     )
-                    .at(path.span, format!("expected a {}, found a {}", kind.name, record.kind.name))
-                    .at(record.span, "declared here"),
+                    .label(path.span, format!("expected a {}, found a {}", kind.name, record.kind.name))
+                    .label(record.span, "declared here"),
                 );
                 None
             }
             _ => {
                 self.findings.report(
                     Diagnostic::new(Code::E0205, format!("a {} cannot extend `{}`", kind.name, path.text()))
-                        .at(path.span, "not an object"),
+                        .label(path.span, "not an object"),
                 );
                 None
             }
@@ -162,8 +162,8 @@ impl Evaluator<'_> {
                 };
                 self.findings.report(
                     Diagnostic::new(Code::E0404, message)
-                        .at(later.path.span, "again here")
-                        .at(first.path.span, "first given here")
+                        .label(later.path.span, "again here")
+                        .label(first.path.span, "first given here")
                         .help("keep one of the two"),
                 );
             }
@@ -274,7 +274,7 @@ impl Evaluator<'_> {
         }
         self.findings.report(
             Diagnostic::new(Code::E0402, format!("there is no `{}` inside `{}` to replace", name.text, known.name))
-                .at(name.span, "not found")
+                .label(name.span, "not found")
                 .help(format!("give the whole of it: `{} = ...`", known.name)),
         );
     }
@@ -290,7 +290,7 @@ impl Evaluator<'_> {
                     Code::E0411,
                     format!("this version does not read `{}` of `{}` yet", name.text, kind.name),
                 )
-                .at(name.span, "planned"),
+                .label(name.span, "planned"),
             );
             return None;
         }
@@ -298,7 +298,7 @@ impl Evaluator<'_> {
         let help = near.unwrap_or_else(|| format!("`trackbed docs {}` lists its fields", kind.name));
         self.findings.report(
             Diagnostic::new(Code::E0402, format!("`{}` has no field `{}`", kind.name, name.text))
-                .at(name.span, "unknown field")
+                .label(name.span, "unknown field")
                 .help(help),
         );
         None

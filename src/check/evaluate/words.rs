@@ -27,7 +27,7 @@ impl Evaluator<'_> {
             );
             self.findings.report(
                 Diagnostic::new(Code::E0408, format!("no response is called `{}`", name.text))
-                    .at(name.span, "unknown")
+                    .label(name.span, "unknown")
                     .help(help),
             );
         }
@@ -44,7 +44,7 @@ impl Evaluator<'_> {
             .map_or_else(|| format!("the rules are {}", rules.join(", ")), |n| format!("did you mean `{n}`?"));
         self.findings.report(
             Diagnostic::new(Code::E0408, format!("no rule is called `{}`", name.text))
-                .at(name.span, "unknown")
+                .label(name.span, "unknown")
                 .help(help),
         );
         None
@@ -57,7 +57,7 @@ impl Evaluator<'_> {
         let quoted: Vec<String> = known.iter().map(|w| format!("`{w}`")).collect();
         self.findings.report(
             Diagnostic::new(Code::E0408, format!("expected {}, found `{}`", or_list(&quoted), name.text))
-                .at(name.span, "unknown word")
+                .label(name.span, "unknown word")
                 .maybe_help(help),
         );
     }
@@ -67,7 +67,7 @@ impl Evaluator<'_> {
         if word.planned {
             self.findings.report(
                 Diagnostic::new(Code::E0411, format!("this version does not know `{}` yet", word.name))
-                    .at(name.span, "planned"),
+                    .label(name.span, "planned"),
             );
             return None;
         }
@@ -86,7 +86,7 @@ impl Evaluator<'_> {
                     if names.is_empty() { "it takes none".into() } else { format!("it takes {}", or_list(&names)) };
                 self.findings.report(
                     Diagnostic::new(Code::E0402, format!("`{}` has no such argument", word.name))
-                        .at(place, "unknown argument")
+                        .label(place, "unknown argument")
                         .help(help),
                 );
                 unknown = true;
@@ -96,7 +96,7 @@ impl Evaluator<'_> {
             if slots.insert(field.name, slot).is_some() {
                 self.findings.report(
                     Diagnostic::new(Code::E0404, format!("`{}` of `{}` is given twice", field.name, word.name))
-                        .at(argument.value.span, "again here"),
+                        .label(argument.value.span, "again here"),
                 );
             }
         }

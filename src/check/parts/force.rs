@@ -41,7 +41,7 @@ pub fn force_history(
         let mistake = Diagnostic::new(Code::E0509, format!("`{name}` has {what}"));
         let listed = table.columns.iter().map(|c| format!("`{}`", c.name)).collect::<Vec<_>>().join(", ");
         let help = "a file of forces has the columns `time_s,force_kN`";
-        findings.report(mistake.at(table.header, format!("has {listed}")).at(whole, "read here").help(help));
+        findings.report(mistake.label(table.header, format!("has {listed}")).label(whole, "read here").help(help));
         return None;
     };
     let mut last: Option<crate::check::text::table::Cell> = None;
@@ -51,17 +51,17 @@ pub fn force_history(
         if let Some(before) = last.filter(|before| before.value >= at.value) {
             findings.report(
                 Diagnostic::new(Code::E0510, "the times of a data file ascend from row to row")
-                    .at(at.span, "not after the row before")
-                    .at(before.span, "the row before")
-                    .at(whole, "read here"),
+                    .label(at.span, "not after the row before")
+                    .label(before.span, "the row before")
+                    .label(whole, "read here"),
             );
             return None;
         }
         if !(0.0..=LARGEST).contains(&value.value) {
             let message = format!("expected 0 .. 10000 kN, found {} kN", number(value.value / 1e3));
-            let mistake = Diagnostic::new(Code::E0405, message).at(value.span, "out of range");
+            let mistake = Diagnostic::new(Code::E0405, message).label(value.span, "out of range");
             findings.report(
-                mistake.at(whole, "read here").help("forces are positive down; a load does not lift the track"),
+                mistake.label(whole, "read here").help("forces are positive down; a load does not lift the track"),
             );
             return None;
         }
@@ -70,8 +70,8 @@ pub fn force_history(
     }
     if history.len() < 2 {
         let message = format!("expected two rows of numbers or more, found {}", history.len());
-        let mistake = Diagnostic::new(Code::E0510, message).at(table.header, "too few rows below");
-        findings.report(mistake.at(whole, "read here"));
+        let mistake = Diagnostic::new(Code::E0510, message).label(table.header, "too few rows below");
+        findings.report(mistake.label(whole, "read here"));
         return None;
     }
     Some(history)

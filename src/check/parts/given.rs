@@ -46,8 +46,8 @@ pub fn agree(
                 Code::E0407,
                 format!("the {what} of {} `{}` is said twice and differs", record.kind.name, record.name),
             )
-            .at(span, format!("{}: {}", known[0].0, show(first)))
-            .at(record.span, format!("{name}: {}", show(*other)))
+            .label(span, format!("{}: {}", known[0].0, show(first)))
+            .label(record.span, format!("{name}: {}", show(*other)))
             .help("keep one way of the two"),
         );
     }

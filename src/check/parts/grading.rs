@@ -88,7 +88,7 @@ fn log_normal(
     let three = |sign: f64| number((median * (sign * 2.0 * spread).exp() * 1e3).round().max(0.001));
     findings.report(
         Diagnostic::new(Code::E0415, "a log-normal grading has neither a smallest nor a largest grain")
-            .at(span, format!("without `{}`", missing.join("` and `")))
+            .label(span, format!("without `{}`", missing.join("` and `")))
             .help(format!(
                 "add both cuts; `cut_below = {} mm` and `cut_above = {} mm` leave 95 % of the mass",
                 three(-1.0),
@@ -107,8 +107,8 @@ fn sieves_of(name: &str, span: Span, files: &mut Files<'_>, findings: &mut Findi
     let (Some(size), Some(share)) = (of("size", Dimension::LENGTH), of("passing", Dimension::NONE)) else {
         findings.report(
             Diagnostic::new(Code::E0509, format!("`{name}` has no columns `size` and `passing`"))
-                .at(table.header, "other columns")
-                .at(span, "read here")
+                .label(table.header, "other columns")
+                .label(span, "read here")
                 .help("begin the file with `size_mm,passing_%`"),
         );
         return None;
@@ -125,8 +125,8 @@ fn sieves_of(name: &str, span: Span, files: &mut Files<'_>, findings: &mut Findi
                 sound = false;
                 findings.report(
                     Diagnostic::new(Code::E0510, format!("expected {what}"))
-                        .at(cell.span, "out of range")
-                        .at(span, "read here"),
+                        .label(cell.span, "out of range")
+                        .label(span, "read here"),
                 );
             }
         }
@@ -140,7 +140,7 @@ fn is_a_curve(sieves: &[Sieve], whole: Span, cuts: [Option<Option<Given>>; 2], f
     let [Some(first), Some(last)] = [sieves.first(), sieves.last()].map(|end| end.filter(|_| sieves.len() > 1)) else {
         findings.report(
             Diagnostic::new(Code::E0414, format!("a grading needs two sieves or more, found {}", sieves.len()))
-                .at(whole, "no curve")
+                .label(whole, "no curve")
                 .help("write something like `[22.4 mm: 0 %, 40 mm: 45 %, 63 mm: 100 %]`"),
         );
         return None;
@@ -158,8 +158,8 @@ fn is_a_curve(sieves: &[Sieve], whole: Span, cuts: [Option<Option<Given>>; 2], f
         sound = false;
         findings.report(
             Diagnostic::new(Code::E0414, mistake)
-                .at(pair[1].span, "not beyond the one before")
-                .at(pair[0].span, "the one before")
+                .label(pair[1].span, "not beyond the one before")
+                .label(pair[0].span, "the one before")
                 .help("list the sieves from fine to coarse, each with the share of the mass that passes it"),
         );
     }
@@ -171,7 +171,7 @@ fn is_a_curve(sieves: &[Sieve], whole: Span, cuts: [Option<Option<Given>>; 2], f
         let [size, share] = [number(first.size * 1e3), percent(first.share)];
         findings.report(
             Diagnostic::new(Code::E0414, format!("{share} % of the mass is finer than the finest sieve"))
-                .at(first.span, "the finest sieve")
+                .label(first.span, "the finest sieve")
                 .help(format!(
                     "begin with a size that nothing passes, such as `{} mm: 0 %`, or write `cut_below = {size} mm`",
                     number((first.size * 500.0 * 1e3).round() / 1e3)
@@ -183,7 +183,7 @@ fn is_a_curve(sieves: &[Sieve], whole: Span, cuts: [Option<Option<Given>>; 2], f
         let [size, share] = [number(last.size * 1e3), percent(1.0 - last.share)];
         findings.report(
             Diagnostic::new(Code::E0414, format!("{share} % of the mass is coarser than the coarsest sieve"))
-                .at(last.span, "the coarsest sieve")
+                .label(last.span, "the coarsest sieve")
                 .help(format!("end with a size that everything passes, or write `cut_above = {size} mm`")),
         );
     }
@@ -194,9 +194,9 @@ fn is_a_curve(sieves: &[Sieve], whole: Span, cuts: [Option<Option<Given>>; 2], f
 fn leaves_grains(record: &Record, grading: &Grading, findings: &mut Findings) -> Option<()> {
     let spans: Vec<Span> = ["cut_below", "cut_above"].iter().filter_map(|f| record.get(f)?.origin.span()).collect();
     let at = |diagnostic: Diagnostic, text: &str| match spans.split_first() {
-        Some((first, [])) => diagnostic.at(*first, text.to_string()),
-        Some((first, rest)) => diagnostic.at(*first, text.to_string()).at(rest[0], "and here"),
-        None => diagnostic.at(record.span, text.to_string()),
+        Some((first, [])) => diagnostic.label(*first, text.to_string()),
+        Some((first, rest)) => diagnostic.label(*first, text.to_string()).label(rest[0], "and here"),
+        None => diagnostic.label(record.span, text.to_string()),
     };
     let (name, [finest, coarsest]) = (&grading.name, grading.passing.ends());
     let share = if grading.smallest() < grading.largest() { grading.modelled_share() } else { 0.0 };

@@ -99,7 +99,7 @@ fn knows_moduli(
         let message = format!(
             "granular `{name}` under the stretch needs its `youngs_modulus`: the support changes as the layers do"
         );
-        findings.report(Diagnostic::new(Code::E0419, message).at(built.layers_span, "compared with the layers under them").help(
+        findings.report(Diagnostic::new(Code::E0419, message).label(built.layers_span, "compared with the layers under them").help(
             "add `youngs_modulus = 110 MPa` to it (ballast of Zhai, Wang and Lin 2004), or let the stretch state its `support`",
         ));
     }
@@ -114,8 +114,8 @@ fn without_modulus(form: &str, stratum: &Stratum, findings: &mut Findings) {
             Code::E0419,
             format!("granular `{name}` needs its `youngs_modulus`: the layers of trackform `{form}` carry its sleepers"),
         )
-        .at(at, "grains know contacts, not a modulus")
-        .at(used, "computed from here down")
+        .label(at, "grains know contacts, not a modulus")
+        .label(used, "computed from here down")
         .help(
             "add `youngs_modulus = 110 MPa` to it (ballast of Zhai, Wang and Lin 2004), or state the trackform's `support`",
         ),

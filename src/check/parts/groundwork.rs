@@ -73,8 +73,8 @@ pub fn has_ground(instance: &Instance, form: &Record, findings: &mut Findings) -
     );
     findings.report(
         Diagnostic::new(Code::E0418, message)
-            .at(slot.span, "in the place of what?")
-            .at(form.span, "no `layers`")
+            .label(slot.span, "in the place of what?")
+            .label(form.span, "no `layers`")
             .help("give the trackform its `layers`; its `support` may stay beside them and changes as they do"),
     );
     None
@@ -107,7 +107,7 @@ fn goes_as_deep(
     );
     findings.report(
         Diagnostic::new(Code::E0424, message)
-            .at(instance.stretch.get("layers").map_or(instance.over(), |slot| slot.span), "of another depth")
+            .label(instance.stretch.get("layers").map_or(instance.over(), |slot| slot.span), "of another depth")
             .help("write `rest` for the thickness of one layer: it takes what is left; a track on ground of another depth is a section of its own"),
     );
     false
@@ -139,6 +139,6 @@ fn holds_the_plate(
         "lay it higher with a smaller `depth`, or make the lowest layer deeper"
     };
     let at = plate.depth.origin.span().unwrap_or(slot.span);
-    findings.report(Diagnostic::new(Code::E0426, message).at(at, "depth of its top").help(help));
+    findings.report(Diagnostic::new(Code::E0426, message).label(at, "depth of its top").help(help));
     false
 }

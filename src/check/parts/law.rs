@@ -18,7 +18,7 @@ pub fn laws(slot: &Slot, findings: &mut Findings) -> Option<(SettlementLaw, Vec<
     if slots.is_empty() {
         findings.report(
             Diagnostic::new(Code::E0403, "`law` needs a law")
-                .at(slot.span, "empty")
+                .label(slot.span, "empty")
                 .help("write `law = laws.varandas_2014`"),
         );
         return None;
@@ -30,7 +30,7 @@ pub fn laws(slot: &Slot, findings: &mut Findings) -> Option<(SettlementLaw, Vec<
             Some(law) if laws.iter().any(|other| other.name == law.name) => {
                 findings.report(
                     Diagnostic::new(Code::E0404, format!("two laws are called `{}`", law.name))
-                        .at(slot.span, "again here")
+                        .label(slot.span, "again here")
                         .help("declare the second one under a name of its own: `law other : laws.NAME { ... }`"),
                 );
                 sound = false;
@@ -86,8 +86,8 @@ fn consistent(form: &mut Form, arguments: &BTreeMap<&'static str, Slot>, finding
                         number(law.final_threshold / 1e3)
                     ),
                 )
-                .at(span("final_threshold")?, "the threshold of a support that has settled")
-                .at(span("initial_threshold")?, "of a fresh one")
+                .label(span("final_threshold")?, "the threshold of a support that has settled")
+                .label(span("initial_threshold")?, "of a fresh one")
                 .help("a law that hardens has `final_threshold` at or above `initial_threshold`"),
             );
             None

@@ -23,7 +23,7 @@ pub const TOLERANCE: f64 = 1e-3;
 
 /// Depth of the lowest layer's bottom, m.
 pub fn depth(layers: &[Layer], x: f64) -> f64 {
-    layers.iter().map(|layer| layer.thickness.at(x)).sum()
+    layers.iter().map(|layer| layer.thickness.value_at(x)).sum()
 }
 
 /// A length in mm, for a message.
@@ -92,7 +92,7 @@ pub fn lay_strata(
         if before.is_empty() {
             findings.report(
                 Diagnostic::new(Code::E0421, "the trackform under the stretch has no layers whose depth could be kept")
-                    .at(span, "left of what?")
+                    .label(span, "left of what?")
                     .help("give the trackform its `layers`, or say every thickness here, such as `1 m`"),
             );
             return None;
@@ -128,7 +128,7 @@ fn left_over(
         );
         findings.report(
             Diagnostic::new(Code::E0423, message)
-                .at(span, "what is left of the depth")
+                .label(span, "what is left of the depth")
                 .help(format!("make the other layers thinner, or the last layer of trackform `{}` deeper", built.name)),
         );
         return None;
@@ -162,13 +162,13 @@ fn holds_its_grains(layer: &Layer, span: Span, findings: &mut Findings) -> bool 
         Code::E0511,
         format!("layer `{}` of {} mm is thinner than two of its grains", layer.name, mm(thickness)),
     )
-    .at(span, format!("its largest grain has {} mm", mm(largest)));
+    .label(span, format!("its largest grain has {} mm", mm(largest)));
     if let Some(cut) = granular.grading.cut_above.and_then(|cut| cut.origin.span()) {
-        mistake = mistake.at(cut, "grains up to this size");
+        mistake = mistake.label(cut, "grains up to this size");
     }
     let coarse = *granular.scale > 1.0;
     if let Some(scale) = granular.scale.origin.span().filter(|_| coarse) {
-        mistake = mistake.at(scale, "grains are modelled larger than they are");
+        mistake = mistake.label(scale, "grains are modelled larger than they are");
     }
     let smaller = if coarse { ", or model its grains with a smaller `scale`" } else { "" };
     findings.report(
@@ -198,9 +198,9 @@ pub fn bed(track: &Record, forms: &[Built], findings: &mut Findings) -> Option<B
             number(2.0 * *half),
             number(length)
         );
-        let mut mistake = Diagnostic::new(Code::E0420, message).at(span, "between its side walls");
+        let mut mistake = Diagnostic::new(Code::E0420, message).label(span, "between its side walls");
         if let Some(origin) = origin {
-            mistake = mistake.at(origin, "length of a sleeper");
+            mistake = mistake.label(origin, "length of a sleeper");
         }
         findings.report(mistake.help(format!(
             "write `bed_width = {} m per track` or more, or leave it out: the bed is then as wide as the sleepers",

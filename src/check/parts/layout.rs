@@ -54,7 +54,7 @@ pub fn layout(
     if plans.len() < pairs.len() || plans.is_empty() {
         if pairs.is_empty() {
             findings.report(
-                Diagnostic::new(Code::E0502, "a track needs at least one section").at(record.span, "no sections"),
+                Diagnostic::new(Code::E0502, "a track needs at least one section").label(record.span, "no sections"),
             );
         }
         return None;
@@ -95,7 +95,7 @@ fn sides(record: &Record, sections: usize, findings: &mut Findings) -> Option<Ve
                     Code::E0504,
                     format!("{sections} sections have {} transitions: say which side is which", sections - 1),
                 )
-                .at(record.span, "no `transitions` given")
+                .label(record.span, "no `transitions` given")
                 .help("add `transitions = [west: stiff_to_soft, east: soft_to_stiff]`"),
             );
             return None;
@@ -109,7 +109,7 @@ fn sides(record: &Record, sections: usize, findings: &mut Findings) -> Option<Ve
                 Code::E0504,
                 format!("{sections} sections have {} transitions, found {}", sections.saturating_sub(1), pairs.len()),
             )
-            .at(slot.span, "one for each inner boundary"),
+            .label(slot.span, "one for each inner boundary"),
         );
         return None;
     }
@@ -119,8 +119,8 @@ fn sides(record: &Record, sections: usize, findings: &mut Findings) -> Option<Ve
         if let Some((first, _)) = first {
             findings.report(
                 Diagnostic::new(Code::E0202, format!("two transitions are called `{text}`"))
-                    .at(name.span, "again here")
-                    .at(first.span, "first here"),
+                    .label(name.span, "again here")
+                    .label(first.span, "first here"),
             );
             return None;
         }
@@ -148,7 +148,7 @@ fn first_seats(record: &Record, plans: &mut [Plan], sides: &[(String, Side)], fi
             let text = format!("`seats` goes from {} m to {} m", number(before.value), number(behind.value));
             findings.report(
                 Diagnostic::new(Code::E0514, text)
-                    .at(slot.span, "from sleeper -1, before the boundary, to seat +1, on or behind it")
+                    .label(slot.span, "from sleeper -1, before the boundary, to seat +1, on or behind it")
                     .help("write something like `seats = -0.3 .. 0.3 m`"),
             );
             sound = false;

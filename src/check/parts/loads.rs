@@ -28,14 +28,15 @@ pub fn loads(
     if on == Target::Bed && !asked.rig {
         let message = "a plate presses on a bed of grains, and nothing of this scene asks for one";
         let help = "write `solve { substructure = full }`, with layers of grains and without trains";
-        findings.report(Diagnostic::new(Code::E0611, message).at(record.get("on")?.span, "no bed").help(help));
+        findings.report(Diagnostic::new(Code::E0611, message).label(record.get("on")?.span, "no bed").help(help));
         return None;
     }
     let sided = ["confinement", "strain"].into_iter().find_map(|field| Some((field, record.get(field)?.span)));
     if let Some((field, span)) = sided.filter(|_| on != Target::Bed) {
         let message =
             format!("`{field}` is of a specimen under a plate, and this load acts on the {}", record.word("on")?);
-        findings.report(Diagnostic::new(Code::E0611, message).at(span, "").help("write `on = bed`, or leave it out"));
+        findings
+            .report(Diagnostic::new(Code::E0611, message).label(span, "").help("write `on = bed`, or leave it out"));
         return None;
     }
     let force = match given(record, "strain") {
@@ -75,7 +76,7 @@ fn acting_force(record: &Record, on: Target, files: &mut Files<'_>, findings: &m
                 if arguments.get("per").is_none() && forces.is_some() {
                     let message = "the forces of a file are `per` what?";
                     let help = "write `per rail` or `per track`, or on sleepers `per seat` or `per sleeper`, behind it";
-                    findings.report(Diagnostic::new(Code::E0304, message).at(force.span, "").help(help));
+                    findings.report(Diagnostic::new(Code::E0304, message).label(force.span, "").help(help));
                 }
                 return None;
             };
@@ -92,7 +93,7 @@ fn acting_force(record: &Record, on: Target, files: &mut Files<'_>, findings: &m
     let allowed = if on == Target::Sleepers { ["seat", "sleeper"] } else { ["rail", "track"] };
     if !allowed.contains(&of) {
         let message = format!("a load on the {on_what} is `per {}` or `per {}`", allowed[0], allowed[1]);
-        findings.report(Diagnostic::new(Code::E0304, message).at(force.span, format!("per {of}")));
+        findings.report(Diagnostic::new(Code::E0304, message).label(force.span, format!("per {of}")));
         return None;
     }
     match history {

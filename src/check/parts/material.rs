@@ -97,7 +97,7 @@ fn grain_shape(record: &Record, files: &mut Files<'_>, findings: &mut Findings) 
     if let Some(part) = pebbles.iter().find(|n| n.fract() != 0.0) {
         findings.report(
             Diagnostic::new(Code::E0405, format!("a clump has a whole number of pebbles, found {}", number(*part)))
-                .at(slot.span, "not whole"),
+                .label(slot.span, "not whole"),
         );
         return None;
     }
@@ -121,7 +121,7 @@ fn contact(record: &Record, findings: &mut Findings) -> Option<Contact> {
     if record.get("contact_stiffness").is_none() {
         let message = format!("granular `{}` needs its `contact_stiffness` for `contact = linear`", record.name);
         let mistake = Diagnostic::new(Code::E0403, message)
-            .at(record.span, "not given")
+            .label(record.span, "not given")
             .help("add `contact_stiffness = 13 MN/m per contact`, or write `contact = hertz(...)`");
         record.lacks("contact_stiffness", mistake, findings);
     }
@@ -167,8 +167,8 @@ fn moduli(record: &Record, findings: &mut Findings) -> Option<Option<(Given, Giv
         );
         findings.report(
             Diagnostic::new(Code::E0407, message)
-                .at(span("bulk_modulus"), format!("K = {} MPa", number(k / 1e6)))
-                .at(span("shear_modulus"), format!("G = {} MPa", number(g / 1e6)))
+                .label(span("bulk_modulus"), format!("K = {} MPa", number(k / 1e6)))
+                .label(span("shear_modulus"), format!("G = {} MPa", number(g / 1e6)))
                 .help("K lies between 2/3 G and 50 G; or give `youngs_modulus` and `poisson_ratio` instead"),
         );
         return None;
@@ -189,8 +189,8 @@ fn strength(record: &Record, findings: &mut Findings) -> Option<Strength> {
         let shown = |angle: Given| number((angle.to_degrees() * 1e6).round() / 1e6);
         findings.report(
             Diagnostic::new(Code::E0407, format!("soil `{}` dilates more than it rubs", record.name))
-                .at(span("dilation"), format!("dilation of {} deg", shown(dilation)))
-                .at(span("friction_angle"), format!("friction angle of {} deg", shown(friction_angle)))
+                .label(span("dilation"), format!("dilation of {} deg", shown(dilation)))
+                .label(span("friction_angle"), format!("friction angle of {} deg", shown(friction_angle)))
                 .help("a soil would gain energy; dilation is mostly a third of the friction angle or less"),
         );
         return None;

@@ -46,8 +46,8 @@ pub fn approach_slab(
         let over = stretch.get("over").map_or(stretch.span, |over| over.span);
         findings.report(
             Diagnostic::new(Code::E0425, message)
-                .at(over, "its span")
-                .at(
+                .label(over, "its span")
+                .label(
                     record.get("hinged").filter(|s| s.span.file == record.span.file).map_or(record.span, |s| s.span),
                     "hinged",
                 )

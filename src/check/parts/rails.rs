@@ -68,7 +68,7 @@ pub fn auxiliary_rails(form: &Record, findings: &mut Findings) -> Option<Option<
     if let Some(span) = varies {
         findings.report(
             Diagnostic::new(Code::E0406, "the pads of auxiliary rails are the same all along them")
-                .at(span, "a profile"),
+                .label(span, "a profile"),
         );
         return None;
     }
@@ -106,9 +106,9 @@ fn without_shear(rail: &Record, asked: Option<Span>, findings: &mut Findings) {
     let name = if rail.name == "rail" { "the rail".into() } else { format!("rail `{}`", rail.name) };
     let mut mistake =
         Diagnostic::new(Code::E0403, format!("{name} needs its `shear_stiffness` for `beam = timoshenko`"))
-            .at(rail.span, "not given");
+            .label(rail.span, "not given");
     if let Some(span) = asked {
-        mistake = mistake.at(span, "asked for here");
+        mistake = mistake.label(span, "asked for here");
     }
     // 0.4 G A with G = 80.8 GPa and A = m / rho, to whole MN
     let mass = given(rail, "mass").or_else(|| Some(Given::derived(*given(rail, "density")? * *given(rail, "area")?)));

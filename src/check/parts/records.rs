@@ -88,7 +88,7 @@ fn recorded_cycles(slot: &Slot, cycles: u64, findings: &mut Findings) -> Option<
     if count > cycles {
         findings.report(
             Diagnostic::new(Code::E0602, format!("the run ends after {cycles} cycles"))
-                .at(slot.span, format!("{count} cycles are never reached")),
+                .label(slot.span, format!("{count} cycles are never reached")),
         );
         return None;
     }
@@ -118,7 +118,7 @@ fn without_grains(quantity: Response, span: Span, findings: &mut Findings) {
     let message = format!("`{}` is a response of grains, and this scene runs without them", quantity.name());
     findings.report(
         Diagnostic::new(Code::E0422, message)
-            .at(span, "not recorded")
+            .label(span, "not recorded")
             .help("it is kept for runs with `substructure = cells`, `zone` or `full`"),
     );
 }

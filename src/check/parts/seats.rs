@@ -2,7 +2,7 @@
 
 use super::ground::{Carrying, Under, stacks};
 use super::spring::{LaidSpring, lay_spring, pad_at, spring_at};
-use super::trackform::{Base, Bed, Built, Cushion};
+use super::trackform::{Base, Built, Cushion, UnderSleeper};
 use crate::check::evaluate::evaluator::Evaluator;
 use crate::check::evaluate::value::Val;
 use crate::check::findings::Findings;
@@ -77,7 +77,7 @@ pub fn lay_seats(
                     }
                     LaidSupport::OfLayers => None,
                 };
-                let usp = usp.as_ref().map(|(usp, modulus)| usp.at(modulus, x));
+                let usp = usp.as_ref().map(|(usp, modulus)| usp.pad_at(modulus, x));
                 Foot::Sleeper { mass: *mass, support, usp }
             }
             LaidFoot::Fixed(foot) => foot.clone(),
@@ -91,7 +91,7 @@ pub fn lay_seats(
 
 fn lay_bed<'a>(
     built: &Built,
-    bed: &'a Bed,
+    bed: &'a UnderSleeper,
     places: &Places,
     seats: Range<usize>,
     cover: &dyn Fn(&str) -> Cover,
@@ -147,7 +147,7 @@ fn seats_softly(
     let mut mistake = Diagnostic::new(Code::E0407, message);
     for (given, what) in [(seating.stiffness, "while it seats itself"), (stiffness, "under load")] {
         if let Some(span) = given.origin.span() {
-            mistake = mistake.at(span, format!("{} {what}", shown(given)));
+            mistake = mistake.label(span, format!("{} {what}", shown(given)));
         }
     }
     findings.report(mistake.help("ballast closes up under load: give `seating` the smaller stiffness"));
@@ -155,7 +155,7 @@ fn seats_softly(
 }
 
 impl Cushion {
-    fn at(&self, modulus: &Laid, x: f64) -> Usp {
+    fn pad_at(&self, modulus: &Laid, x: f64) -> Usp {
         let modulus = modulus.value_at(x);
         let stiffness = Given { value: *modulus * self.half_area, origin: modulus.origin };
         let damping = Given { value: *self.time * *stiffness, origin: Origin::Derived };

@@ -89,8 +89,8 @@ fn adaptive(tolerance: Option<(f64, Span)>, cap: Option<(f64, Span)>, findings: 
     if let Some((_, of_block)) = cap.filter(|(cap, _)| *cap < tolerance) {
         findings.report(
             Diagnostic::new(Code::E0407, "a block may settle less than it may err")
-                .at(of_error, "error of a block")
-                .at(of_block, "settlement of a block")
+                .label(of_error, "error of a block")
+                .label(of_block, "settlement of a block")
                 .help("make `cap` larger than `tolerance`, or leave it out"),
         );
         return None;

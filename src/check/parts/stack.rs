@@ -50,8 +50,8 @@ fn continua(layers: &[scenario::Layer], x: f64) -> Option<Vec<Layer>> {
             Material::Soil(soil) => (soil.poisson_ratio, soil.density, soil.spread),
         };
         Some(Layer {
-            thickness: layer.thickness.at(x).max(0.0),
-            youngs_modulus: layer.youngs_modulus()?.at(x),
+            thickness: layer.thickness.value_at(x).max(0.0),
+            youngs_modulus: layer.youngs_modulus()?.value_at(x),
             poisson_ratio: *poisson_ratio,
             density: *density,
             spread: *spread,

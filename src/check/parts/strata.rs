@@ -49,8 +49,8 @@ pub fn strata(form: &Record, of_stretch: bool, files: &mut Files<'_>, findings: 
     if let (Some(first), Some(second)) = (rests.next(), rests.next()) {
         findings.report(
             Diagnostic::new(Code::E0423, "two layers cannot both take what is left of the depth")
-                .at(second.span, "again here")
-                .at(first.span, "first here")
+                .label(second.span, "again here")
+                .label(first.span, "first here")
                 .help("say the thickness of all layers but one"),
         );
         return None;
@@ -74,7 +74,7 @@ fn stratum(
         Val::Word { .. } => {
             findings.report(
                 Diagnostic::new(Code::E0421, "only the layers of a stretch can take what is left")
-                    .at(thickness.span, "left of what?")
+                    .label(thickness.span, "left of what?")
                     .help(
                         "a stretch keeps the depth of the trackform under it; a trackform itself says every thickness, such as `1 m`",
                     ),

@@ -88,7 +88,10 @@ fn stand_one(stretch: &Rc<Record>, places: &Places, findings: &mut Findings) -> 
         if seats.is_empty() {
             findings.report(
                 Diagnostic::new(Code::E0417, format!("no sleeper lies in stretch `{}`", stretch.name))
-                    .at(over, format!("from {} m to {} m", number(ends[0].min(ends[1])), number(ends[0].max(ends[1]))))
+                    .label(
+                        over,
+                        format!("from {} m to {} m", number(ends[0].min(ends[1])), number(ends[0].max(ends[1]))),
+                    )
                     .help("lengthen the span, or give it in sleepers"),
             );
             return None;
@@ -110,7 +113,7 @@ fn says_something(stretch: &Record, findings: &mut Findings) -> bool {
     if nothing && !stretch.partial {
         findings.report(
             Diagnostic::new(Code::E0417, format!("stretch `{}` changes nothing", stretch.name))
-                .at(stretch.span, "says where, not what")
+                .label(stretch.span, "says where, not what")
                 .help("say what differs there, such as `usp = usps.medium` or `pad.stiffness = 60 MN/m`"),
         );
     }
@@ -123,7 +126,7 @@ fn says_something(stretch: &Record, findings: &mut Findings) -> bool {
                     Code::E0411,
                     format!("this version does not change the `{}` in a stretch yet", name.text),
                 )
-                .at(change.field.path.span, "the same along its section")
+                .label(change.field.path.span, "the same along its section")
                 .help("make it a section of the track with a trackform of its own"),
             );
             sound = false;
@@ -205,7 +208,7 @@ fn clash(first: &Instance, a: &Change, later: &Instance, b: &Change, seats: &str
     let (one, two) = (&first.stretch.name, &later.stretch.name);
     if first.stretch.span == later.stretch.span {
         let mistake = Diagnostic::new(Code::E0512, format!("stretch `{one}` meets itself at {seats}"));
-        return mistake.at(first.over(), "reaches too far").help("shorten its span, or list it once");
+        return mistake.label(first.over(), "reaches too far").help("shorten its span, or list it once");
     }
     let (path, other) = (a.field.path.text(), b.field.path.text());
     let message = match path == other {
@@ -213,8 +216,8 @@ fn clash(first: &Instance, a: &Change, later: &Instance, b: &Change, seats: &str
         false => format!("stretch `{one}` sets `{path}` and stretch `{two}` `{other}` at {seats}"),
     };
     Diagnostic::new(Code::E0512, message)
-        .at(b.field.path.span, format!("set by `{two}`"))
-        .at(a.field.path.span, format!("set by `{one}`"))
+        .label(b.field.path.span, format!("set by `{two}`"))
+        .label(a.field.path.span, format!("set by `{one}`"))
         .help("let one span end where the other begins, or set it in one of them")
 }
 
@@ -252,7 +255,7 @@ fn settle(slot: &mut Slot, ground: &Instance) {
 /// Two stretches that put a plate under the same seats.
 fn two_plates(first: &Instance, later: &Instance, seats: &str) -> Diagnostic {
     Diagnostic::new(Code::E0512, format!("two approach slabs lie in one place at {seats}"))
-        .at(later.over(), format!("that of `{}`", later.stretch.name))
-        .at(first.over(), format!("that of `{}`", first.stretch.name))
+        .label(later.over(), format!("that of `{}`", later.stretch.name))
+        .label(first.over(), format!("that of `{}`", first.stretch.name))
         .help("let one span end where the other begins")
 }

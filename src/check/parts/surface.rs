@@ -41,7 +41,7 @@ pub fn grain_surfaces(
     let Val::List(slots) = &from.value else { return None };
     if slots.is_empty() {
         let mistake = Diagnostic::new(Code::E0406, "expected one surface at least, found an empty list");
-        findings.report(mistake.at(from.span, "no surface").help("leave `from` out for angular shapes"));
+        findings.report(mistake.label(from.span, "no surface").help("leave `from` out for angular shapes"));
         return None;
     }
     let surfaces: Vec<Option<Surface>> = slots.iter().map(|slot| grain_surface(slot, files, findings)).collect();
@@ -59,8 +59,8 @@ fn one_form(word: &Word, arguments: &Arguments, from: &Slot, findings: &mut Find
         }
         findings.report(
             Diagnostic::new(Code::E0407, format!("`from` and `{name}` both say which shapes grains have"))
-                .at(slot.span, "of angular shapes")
-                .at(from.span, "these surfaces have forms of their own")
+                .label(slot.span, "of angular shapes")
+                .label(from.span, "these surfaces have forms of their own")
                 .help(format!("keep one of the two: `{name}` is of the shapes that are made where no `from` stands")),
         );
         sound = None;

@@ -23,7 +23,7 @@ pub fn tampings(
         if !asked.traffic {
             findings.report(
                 Diagnostic::new(Code::E0427, format!("`{}` tamps a track that no train settles", record.name))
-                    .at(record.span, "without an effect")
+                    .label(record.span, "without an effect")
                     .help("add `traffic`, or take the tamping out"),
             );
             continue;
@@ -56,7 +56,7 @@ fn tamping(
     if seats.is_empty() {
         findings.report(
             Diagnostic::new(Code::E0427, format!("`{}` reaches no sleeper on ballast", record.name))
-                .at(over, "nothing to tamp here")
+                .label(over, "nothing to tamp here")
                 .help("tamp sleepers on a support that settles: `over = -20 .. -1 sleepers`"),
         );
         return None;
@@ -81,7 +81,7 @@ fn tamped_after(record: &Record, counted: Option<&Counted>, findings: &mut Findi
         };
         findings.report(
             Diagnostic::new(Code::E0427, format!("`{}` comes when it changes nothing", record.name))
-                .at(*span, why)
+                .label(*span, why)
                 .help("tamp between the first and the last train"),
         );
         sound = false;
@@ -103,8 +103,8 @@ fn tamped_once(tampings: &[(Tamping, Vec<Span>)], findings: &mut Findings) -> bo
             let Some(first) = same.or(other) else { continue };
             findings.report(
                 Diagnostic::new(Code::E0427, format!("sleepers are tamped twice after {count} axles"))
-                    .at(span, "again here")
-                    .at(first, "first tamped here")
+                    .label(span, "again here")
+                    .label(first, "first tamped here")
                     .help("keep one of the two, or let them reach other sleepers"),
             );
             sound = false;

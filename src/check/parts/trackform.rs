@@ -34,13 +34,13 @@ pub struct Built {
 
 /// What the pads stand on.
 pub enum Base {
-    Sleeper(Box<Bed>),
+    Sleeper(Box<UnderSleeper>),
     Rigid,
     Slab,
 }
 
 /// A sleeper and what lies under it.
-pub struct Bed {
+pub struct UnderSleeper {
     pub mass: Option<Given>,
     pub support: Option<Damped>,
     /// Whether the layers carry it, and nothing that is stated.
@@ -115,8 +115,8 @@ fn under_the_pads(
         if let (Some(_), Some(slab), Some(slot)) = (sleeper, form.get("slab"), form.get("sleeper")) {
             findings.report(
                 Diagnostic::new(Code::E0407, format!("trackform `{}` has a slab and sleepers", form.name))
-                    .at(slab.span, "a slab")
-                    .at(slot.span, "and sleepers")
+                    .label(slab.span, "a slab")
+                    .label(slot.span, "and sleepers")
                     .help("write `sleeper = none`: the pads stand on the slab"),
             );
         }
@@ -147,7 +147,7 @@ fn under_the_pads(
     let record = if by_layers { None } else { part(form, "support", "or layers, under the sleepers", findings) };
     let seating = if by_layers { Some(None) } else { record.as_ref().and_then(|r| seating(r)) };
     let support = record.and_then(|s| damped(&s));
-    (Some(Base::Sleeper(Box::new(Bed { mass, support, by_layers, seating, usp }))), None)
+    (Some(Base::Sleeper(Box::new(UnderSleeper { mass, support, by_layers, seating, usp }))), None)
 }
 
 /// Refuses what only a sleeper on a support can have.
@@ -165,8 +165,8 @@ fn without_support(form: &Record, field: &str, stands: &str, findings: &mut Find
                 format!("trackform `{}` {stands} and has a `{name}`, which only sleepers on a support have", form.name);
             findings.report(
                 Diagnostic::new(Code::E0407, message)
-                    .at(slot.span, format!("`{name}`"))
-                    .at(base, "instead of a support that gives")
+                    .label(slot.span, format!("`{name}`"))
+                    .label(base, "instead of a support that gives")
                     .help(format!("write `{name} = {nothing}`")),
             );
         }
@@ -197,7 +197,7 @@ fn part(form: &Record, name: &str, why: &str, findings: &mut Findings) -> Option
     if !form.unknown(name) {
         let span = form.get(name).map_or(form.span, |slot| slot.span);
         let mistake = Diagnostic::new(Code::E0403, format!("trackform `{}` needs a `{name}` {why}", form.name))
-            .at(span, "not given");
+            .label(span, "not given");
         form.lacks(name, mistake, findings);
     }
     None
@@ -240,7 +240,7 @@ fn bears(sleeper: &Record, findings: &mut Findings) {
                     number(length * width)
                 ),
             )
-            .at(span, "larger than the base")
+            .label(span, "larger than the base")
             .help("give the whole sleeper's `length` and `base_width` too"),
         );
     }

@@ -61,7 +61,7 @@ pub fn traffic(record: &Record, places: Option<&Places>, findings: &mut Findings
 /// The share of each train with its place; they sum to the whole, and each train has one.
 fn shares(pairs: &[(Slot, Slot)], span: Span, findings: &mut Findings) -> Option<Vec<(f64, Span)>> {
     if pairs.is_empty() {
-        findings.report(Diagnostic::new(Code::E0403, "traffic needs a train").at(span, "empty"));
+        findings.report(Diagnostic::new(Code::E0403, "traffic needs a train").label(span, "empty"));
         return None;
     }
     let name = |slot: &Slot| if let Val::Record(train) = &slot.value { Some(train.name.clone()) } else { None };
@@ -72,8 +72,8 @@ fn shares(pairs: &[(Slot, Slot)], span: Span, findings: &mut Findings) -> Option
     if let Some((name, again, first)) = twice {
         findings.report(
             Diagnostic::new(Code::E0404, format!("train `{name}` is given twice"))
-                .at(again, "again here")
-                .at(first, "first given here")
+                .label(again, "again here")
+                .label(first, "first given here")
                 .help("give it one share"),
         );
         return None;
@@ -90,10 +90,10 @@ fn shares(pairs: &[(Slot, Slot)], span: Span, findings: &mut Findings) -> Option
     let text = format!("the shares of the trains sum to {} %, not to 100 %", number(100.0 * sum));
     let mut mistake = Diagnostic::new(Code::E0407, text);
     mistake = match shares.as_slice() {
-        [(_, only)] => mistake.at(*only, "of `total`").help("a train that runs alone needs no share: leave it out"),
+        [(_, only)] => mistake.label(*only, "of `total`").help("a train that runs alone needs no share: leave it out"),
         _ => {
             let labelled = shares.iter().fold(mistake, |mistake, (share, span)| {
-                mistake.at(*span, format!("{} % of `total`", number(100.0 * share)))
+                mistake.label(*span, format!("{} % of `total`", number(100.0 * share)))
             });
             let names: Vec<String> = pairs.iter().filter_map(|(train, _)| name(train)).collect();
             let each = |(name, (share, _)): (&String, &(f64, Span))| {
@@ -133,8 +133,8 @@ fn trains_of_mix(
                         carried(one)
                     ),
                 )
-                .at(*place, "no train of it would run")
-                .at(span, "of all traffic")
+                .label(*place, "no train of it would run")
+                .label(span, "of all traffic")
                 .help("leave the train out, or let more traffic run"),
             );
             return None;
@@ -165,7 +165,7 @@ pub fn whole(count: f64, what: &str, span: Span, findings: &mut Findings) -> Opt
     if count.fract() != 0.0 {
         findings.report(
             Diagnostic::new(Code::E0405, format!("expected a whole number of {what}, found {}", number(count)))
-                .at(span, "not whole"),
+                .label(span, "not whole"),
         );
         return None;
     }
@@ -176,7 +176,7 @@ pub fn whole(count: f64, what: &str, span: Span, findings: &mut Findings) -> Opt
 pub fn not_counted(dimension: Dimension, counts: &str, span: Span, findings: &mut Findings) {
     let message = format!("this scene counts the {counts}, found {}", dimension.describe());
     let help = "counts are given in `axles` or as the mass carried, `MGT`, where trains run; in `cycles` where a load comes back";
-    findings.report(Diagnostic::new(Code::E0302, message).at(span, "not counted here").help(help));
+    findings.report(Diagnostic::new(Code::E0302, message).label(span, "not counted here").help(help));
 }
 
 /// The axle count at which something of a run happens: between two trains, and not after the last.
@@ -218,7 +218,7 @@ pub fn axle_count(
     if n.value > whole * (1.0 + ROUNDING) {
         let text = format!("the run ends after {} axles", counted.axles);
         let asked = if by_mass { "so much is".into() } else { format!("{} axles are", number(n.value)) };
-        findings.report(Diagnostic::new(Code::E0602, text).at(span, format!("{asked} never reached")));
+        findings.report(Diagnostic::new(Code::E0602, text).label(span, format!("{asked} never reached")));
         return None;
     }
     if as_total && n.value >= whole * (1.0 - ROUNDING) {
@@ -233,7 +233,7 @@ pub fn axle_count(
         let below = count / axles * axles;
         findings.report(
             Diagnostic::new(Code::E0602, format!("{count} axles are no whole number of trains of {axles} axles"))
-                .at(span, "in the middle of a train")
+                .label(span, "in the middle of a train")
                 .help(format!("write {below} or {} axles", below + axles)),
         );
         return None;

@@ -139,9 +139,9 @@ fn stands_right(
     let message = format!("stretch `{}` sets `{path}`, but {seats} stand on {what}", instance.stretch.name);
     findings.report(
         Diagnostic::new(Code::E0418, message)
-            .at(at, "only sleepers on a support have it")
-            .at(instance.over(), "reaches too far")
-            .at(ground, what)
+            .label(at, "only sleepers on a support have it")
+            .label(instance.over(), "reaches too far")
+            .label(ground, what)
             .help(
                 "end the span at the last sleeper, as `over = -20 .. -1 sleepers` does; pads can differ on both sides",
             ),
@@ -169,7 +169,7 @@ pub fn auxiliary_spans(
             let message = format!("the auxiliary rails of stretch `{}` lie on one sleeper", instance.stretch.name);
             eval.findings.report(
                 Diagnostic::new(Code::E0418, message)
-                    .at(instance.over(), "too short")
+                    .label(instance.over(), "too short")
                     .help("let them reach over two sleepers or more"),
             );
             return None;

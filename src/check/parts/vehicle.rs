@@ -65,9 +65,9 @@ fn axles_apart(record: &Record, vehicle: &Vehicle, findings: &mut Findings) -> b
     }
     let span = vehicle.bogie_spacing.origin.span().unwrap_or(record.span);
     let mut mistake = Diagnostic::new(Code::E0407, "the bogies stand in each other")
-        .at(span, format!("bogie centres {} m apart", number(*vehicle.bogie_spacing)));
+        .label(span, format!("bogie centres {} m apart", number(*vehicle.bogie_spacing)));
     if let Some(other) = vehicle.wheelset_spacing.origin.span() {
-        mistake = mistake.at(other, format!("axles of a bogie {} m apart", number(*vehicle.wheelset_spacing)));
+        mistake = mistake.label(other, format!("axles of a bogie {} m apart", number(*vehicle.wheelset_spacing)));
     }
     findings.report(mistake);
     false
@@ -96,8 +96,8 @@ fn car_body_mass(record: &Record, unsprung: f64, findings: &mut Findings) -> Opt
                         axle_load(axle)
                     ),
                 )
-                .at(span, format!("{} stated", axle_load(axle)))
-                .at(
+                .label(span, format!("{} stated", axle_load(axle)))
+                .label(
                     body.origin.span().unwrap_or(record.span),
                     format!(
                         "{} with bogies and wheelsets of {} make {}",
@@ -122,7 +122,7 @@ fn car_body_mass(record: &Record, unsprung: f64, findings: &mut Findings) -> Opt
                 Code::E0407,
                 format!("an axle load of {} leaves nothing for the car body of `{}`", axle_load(axle), record.name),
             )
-            .at(span, format!("bogies and wheelsets alone make {} an axle", tonnes(unsprung / 2.0))),
+            .label(span, format!("bogies and wheelsets alone make {} an axle", tonnes(unsprung / 2.0))),
         );
         return None;
     }
@@ -165,7 +165,7 @@ pub(super) fn train(record: &Record, places: Option<&Places>, findings: &mut Fin
     }
     if vehicles.is_empty() {
         findings.report(
-            Diagnostic::new(Code::E0403, format!("train `{}` has no vehicle", record.name)).at(record.span, "empty"),
+            Diagnostic::new(Code::E0403, format!("train `{}` has no vehicle", record.name)).label(record.span, "empty"),
         );
         return None;
     }
@@ -178,7 +178,7 @@ pub(super) fn train(record: &Record, places: Option<&Places>, findings: &mut Fin
         };
         findings.report(
             Diagnostic::new(Code::E0403, message)
-                .at(short.length.and_then(|l| l.origin.span()).unwrap_or(record.span), "over couplers")
+                .label(short.length.and_then(|l| l.origin.span()).unwrap_or(record.span), "over couplers")
                 .help(format!("add a `length` of more than {} m to the vehicle", number(short.wheel_offsets()[3]))),
         );
         return None;

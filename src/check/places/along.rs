@@ -131,7 +131,7 @@ fn ramp_curve(
         }
         findings.report(
             Diagnostic::new(Code::E0505, "a ramp runs over a distance, not at one place")
-                .at(span, format!("begins and ends at {} m", number(first))),
+                .label(span, format!("begins and ends at {} m", number(first))),
         );
         return None;
     }
@@ -172,8 +172,8 @@ fn lay_points(
             let message = if same { "one place has two values" } else { "the places of a profile follow each other" };
             findings.report(
                 Diagnostic::new(Code::E0507, message)
-                    .at(first.max(second), if same { "again here" } else { "goes back from here" })
-                    .at(first.min(second), if same { "first here" } else { "where the one before stands" }),
+                    .label(first.max(second), if same { "again here" } else { "goes back from here" })
+                    .label(first.min(second), if same { "first here" } else { "where the one before stands" }),
             );
             return None;
         }
@@ -207,8 +207,8 @@ fn lay_spans(
             let message = format!("{} is given twice from {} m to {} m", cover.what, number(from), number(to));
             findings.report(
                 Diagnostic::new(Code::E0507, message)
-                    .at(first.max(second), "overlaps")
-                    .at(first.min(second), "first given here"),
+                    .label(first.max(second), "overlaps")
+                    .label(first.min(second), "first given here"),
             );
             return None;
         }
@@ -260,7 +260,7 @@ fn profile_place(
     if sleepers {
         findings.report(
             Diagnostic::new(Code::E0504, "a track of several transitions has several sleepers of a number")
-                .at(span, "counted from which one?")
+                .label(span, "counted from which one?")
                 .help("give the places of a profile in metres of chainage: x = 0 is the first transition"),
         );
         return None;
@@ -269,7 +269,7 @@ fn profile_place(
     if at.value < start - TINY || at.value > end + TINY {
         let message = format!("the track reaches from {} m to {} m", number(start), number(end));
         let label = format!("x = {} m is off the track", number(at.value));
-        findings.report(Diagnostic::new(Code::E0501, message).at(span, label));
+        findings.report(Diagnostic::new(Code::E0501, message).label(span, label));
         return None;
     }
     Some((at.value, None))

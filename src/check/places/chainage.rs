@@ -33,7 +33,7 @@ impl Places {
                     let near = nearest(name, self.transitions.iter().map(|t| t.name.as_str()));
                     findings.report(
                         Diagnostic::new(Code::E0504, format!("no transition is called `{name}`"))
-                            .at(span, "unknown transition")
+                            .label(span, "unknown transition")
                             .maybe_help(near.map(|n| format!("did you mean `{n}`?"))),
                     );
                 }
@@ -43,7 +43,7 @@ impl Places {
                 let names: Vec<&str> = self.transitions.iter().map(|t| t.name.as_str()).collect();
                 findings.report(
                     Diagnostic::new(Code::E0504, "expected the transition from which this place counts, found none")
-                        .at(place, "the track has several")
+                        .label(place, "the track has several")
                         .help(format!("add `from = {}`", names.join("` or `from = "))),
                 );
                 None
@@ -87,7 +87,7 @@ impl Places {
                         Code::E0501,
                         format!("the track reaches from {} m to {} m", number(first), number(last)),
                     )
-                    .at(span, format!("x = {} m is off the track", number(x))),
+                    .label(span, format!("x = {} m is off the track", number(x))),
                 );
                 return None;
             }
@@ -104,7 +104,7 @@ impl Places {
                 };
                 findings.report(
                     Diagnostic::new(Code::E0501, message)
-                        .at(span, "not on the track")
+                        .label(span, "not on the track")
                         .help(format!("the track has {range}")),
                 );
                 None

@@ -21,8 +21,8 @@ fn transitions_named(record: &Record, places: &Places, place: Span, findings: &m
         if let Some(first) = first {
             findings.report(
                 Diagnostic::new(Code::E0404, format!("transition `{name}` is named twice"))
-                    .at(slot.span, "again here")
-                    .at(first, "first named here"),
+                    .label(slot.span, "again here")
+                    .label(first, "first named here"),
             );
             return None;
         }

@@ -74,10 +74,10 @@ pub fn no_gap(
         _ => {}
     }
     let mut mistake = Diagnostic::new(Code::E0506, message)
-        .at(at.0, at.1)
+        .label(at.0, at.1)
         .help("give it there too, or write `ramp(a .. b, over = span)`: its end values hold before and after the span");
     if let Some((span, text)) = second {
-        mistake = mistake.at(span, text);
+        mistake = mistake.label(span, text);
     }
     findings.report(mistake);
     None

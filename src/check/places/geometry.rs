@@ -65,7 +65,7 @@ pub fn lay_out(plans: &[Plan], sides: &[(String, Side)], seed: u64, findings: &m
         let Some(left) = most.checked_sub(seats.len()) else {
             findings.report(
                 Diagnostic::new(Code::E0103, format!("a track of more than {MOST_SEATS} seats"))
-                    .at(plan.span, "too many from here on"),
+                    .label(plan.span, "too many from here on"),
             );
             return None;
         };
@@ -156,7 +156,7 @@ fn lay_section(plan: &Plan, (left, right): (Edge, Edge), findings: &mut Findings
     if seats.is_empty() {
         findings.report(
             Diagnostic::new(Code::E0502, format!("section `{}` is too short to hold a seat", plan.name))
-                .at(plan.span, "too short"),
+                .label(plan.span, "too short"),
         );
         return None;
     }
@@ -169,7 +169,7 @@ fn whole_sleepers(plan: &Plan, findings: &mut Findings) -> Option<usize> {
     if n.fract() != 0.0 || n < 1.0 {
         findings.report(
             Diagnostic::new(Code::E0502, format!("a section holds a whole number of sleepers, found {}", number(n)))
-                .at(plan.span, "not a whole number"),
+                .label(plan.span, "not a whole number"),
         );
         return None;
     }
@@ -179,7 +179,7 @@ fn whole_sleepers(plan: &Plan, findings: &mut Findings) -> Option<usize> {
 fn too_short(plan: &Plan, findings: &mut Findings) {
     let (length, bay) = (number(plan.length.value), number(plan.spacing));
     let message = format!("section `{}` of {length} m is shorter than one bay of {bay} m", plan.name);
-    findings.report(Diagnostic::new(Code::E0502, message).at(plan.span, "too short"));
+    findings.report(Diagnostic::new(Code::E0502, message).label(plan.span, "too short"));
 }
 
 fn too_far(plan: &Plan, bays: usize, findings: &mut Findings) {
@@ -187,7 +187,7 @@ fn too_far(plan: &Plan, bays: usize, findings: &mut Findings) {
     let message = format!("stretches change the spacing of {changed} bays of section `{name}`, which has {bays}");
     findings.report(
         Diagnostic::new(Code::E0502, message)
-            .at(plan.span, "too few sleepers")
+            .label(plan.span, "too few sleepers")
             .help("shorten the stretches that set `spacing`, or lengthen the section"),
     );
 }
@@ -202,7 +202,7 @@ fn does_not_meet(plan: &Plan, usual: f64, findings: &mut Findings) {
         number(bay)
     );
     findings.report(
-        Diagnostic::new(Code::E0502, message).at(plan.span, "the counts from both transitions do not meet").help(
+        Diagnostic::new(Code::E0502, message).label(plan.span, "the counts from both transitions do not meet").help(
             format!(
                 "write `{} m` or `{} m`, or give the length in sleepers",
                 fits(usual.floor().max(0.0)),

@@ -108,7 +108,7 @@ fn within_range(
                 number(measure.max)
             ),
         )
-        .at(span, format!("drawn with seed {seed}, the furthest is {}{unit}", number((1e3 * worst).round() / 1e3)))
+        .label(span, format!("drawn with seed {seed}, the furthest is {}{unit}", number((1e3 * worst).round() / 1e3)))
         .help(help),
     );
     None

@@ -213,7 +213,7 @@ pub fn sleepers_apart(seats: &[Seat], forms: &[Rc<Record>], places: &Places, fin
         let span = form.get("spacing").map_or(form.span, |slot| slot.span);
         findings.report(
             Diagnostic::new(Code::E0407, message)
-                .at(span, "spacing of this section")
+                .label(span, "spacing of this section")
                 .help("lay them further apart, or give them a smaller `base_width`; stretches change both"),
         );
     }
@@ -222,7 +222,7 @@ pub fn sleepers_apart(seats: &[Seat], forms: &[Rc<Record>], places: &Places, fin
 
 fn only_graded(span: Span, how: &str, findings: &mut Findings) {
     let message = format!("this version takes a `spacing` that varies {how}");
-    findings.report(Diagnostic::new(Code::E0411, message).at(span, "not this one"));
+    findings.report(Diagnostic::new(Code::E0411, message).label(span, "not this one"));
 }
 
 /// The transitions from which a stretch counts, as far as there are such.
@@ -289,7 +289,7 @@ fn bays(graded: &[&Graded], bank: Bank, plan: &Plan, first: Option<f64>) -> Vec<
     let mut distance = 0.0;
     let mut changed = 0;
     if bank == Bank::Soft || first.is_some_and(|first| first > TINY) {
-        let graded = graded.iter().find_map(|g| g.at(1, distance, bank)).filter(|_| bank == Bank::Soft);
+        let graded = graded.iter().find_map(|g| g.spacing_at(1, distance, bank)).filter(|_| bank == Bank::Soft);
         let stated = first.or(graded);
         changed = usize::from(stated.is_some());
         bays.push(stated.unwrap_or(usual));
@@ -297,7 +297,7 @@ fn bays(graded: &[&Graded], bank: Bank, plan: &Plan, first: Option<f64>) -> Vec<
     }
     let mut sleeper = 1;
     while bays.len() < most && graded.iter().any(|g| g.goes_on(sleeper, distance, bank)) {
-        let bay = graded.iter().find_map(|g| g.at(sleeper, distance, bank));
+        let bay = graded.iter().find_map(|g| g.spacing_at(sleeper, distance, bank));
         bays.push(bay.unwrap_or(usual));
         distance += bay.unwrap_or(usual);
         changed = if bay.is_some() { bays.len() } else { changed };
@@ -325,7 +325,7 @@ impl Graded {
     }
 
     /// The spacing at a sleeper; `None` where it says nothing.
-    fn at(&self, sleeper: usize, distance: f64, bank: Bank) -> Option<f64> {
+    fn spacing_at(&self, sleeper: usize, distance: f64, bank: Bank) -> Option<f64> {
         let [a, b] = self.over.map(|end| end.value);
         let place = self.place(sleeper, distance, bank);
         // a span in metres that ends at the transition stays on its side
@@ -349,7 +349,7 @@ impl Graded {
 
 impl At {
     /// The place as a key of this dimension counts it.
-    fn of(self, key: Number) -> f64 {
+    fn counted_by(self, key: Number) -> f64 {
         if key.dimension == Dimension::SLEEPERS { step(self.sleeper, key) } else { self.metres }
     }
 }
@@ -392,19 +392,20 @@ impl Shape {
             ShapeKind::Ramp { from, to, smooth, over: own } => {
                 let [a, b] = own.map_or(over, |reach| [reach.from, reach.to]);
                 let [first, last] = [step(a.value, a), step(b.value, b)];
-                let share = if first == last { 0.0 } else { ((at.of(a) - first) / (last - first)).clamp(0.0, 1.0) };
+                let share =
+                    if first == last { 0.0 } else { ((at.counted_by(a) - first) / (last - first)).clamp(0.0, 1.0) };
                 let share = if *smooth { share * share * (3.0 - 2.0 * share) } else { share };
                 from.value + share * (to.value - from.value)
             }
             ShapeKind::Points(points) => {
                 let row = |i: usize| points.get(i).map(|(key, _, n)| [step(key.value, *key), n.value]);
-                points.first().map_or(0.0, |(key, ..)| between(points.len(), &row, at.of(*key)))
+                points.first().map_or(0.0, |(key, ..)| between(points.len(), &row, at.counted_by(*key)))
             }
             ShapeKind::Spans(spans) => {
                 // where two meet, the right one counts
                 let reach = |(reach, _): &&(Reach, Shape)| {
                     let [a, b] = [reach.from, reach.to].map(|end| step(end.value, end));
-                    let place = at.of(reach.from);
+                    let place = at.counted_by(reach.from);
                     (a.min(b) - place).max(place - a.max(b)).max(0.0)
                 };
                 let least = spans.iter().map(|span| reach(&span)).fold(f64::INFINITY, f64::min);

@@ -17,7 +17,7 @@ impl Literal {
         let usual = number.dimension.usual_unit();
         let si = number.dimension.si_unit();
         let units = unit_in(form, number.dimension).into_iter().chain([usual.as_str(), si.as_str()]);
-        let usable = units.filter(|unit| number.dimension == Dimension::of(unit));
+        let usable = units.filter(|unit| number.dimension == Dimension::of_unit(unit));
         for unit in usable {
             let factor = parse_unit(unit).map_or(1.0, |u| u.factor);
             if let Some(digits) = shortest(number.value, factor) {
@@ -51,7 +51,7 @@ fn per(number: Number) -> String {
 /// The unit that a form has for a dimension.
 fn unit_in(form: &Form, dimension: Dimension) -> Option<&'static str> {
     match form {
-        Form::Number(m) | Form::Interval(m) => Some(m.unit).filter(|unit| Dimension::of(unit) == dimension),
+        Form::Number(m) | Form::Interval(m) => Some(m.unit).filter(|unit| Dimension::of_unit(unit) == dimension),
         Form::OneOf(forms) => forms.iter().find_map(|form| unit_in(form, dimension)),
         Form::List(item) => unit_in(item, dimension),
         _ => None,
@@ -101,7 +101,7 @@ mod tests {
         fn a_literal_reads_back_to_the_same_bits(value in -1e12..1e12f64, unit in prop::sample::select(vec![
             "m", "mm", "km/h", "MN/m", "kN s/m", "N/mm^3", "%", "deg", "GN/m^1.5", "axles", "MGT", "cm^4",
         ])) {
-            let dimension = Dimension::of(unit);
+            let dimension = Dimension::of_unit(unit);
             let number = Number { value, dimension, basis: None, factor: 1.0 };
             let literal = Literal::new(number, &Form::Text);
             let factor = parse_unit(&literal.unit).map_or(1.0, |u| u.factor);

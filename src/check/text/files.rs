@@ -54,7 +54,7 @@ impl<'m> Files<'m> {
         let text = match decode(name, &bytes) {
             Ok(text) => text,
             Err(mistake) => {
-                findings.report(mistake.at(span, "read here"));
+                findings.report(mistake.label(span, "read here"));
                 return None;
             }
         };
@@ -62,7 +62,7 @@ impl<'m> Files<'m> {
         let (table, mistakes) = Table::read(file, name, &text);
         let sound = mistakes.is_empty();
         for mistake in mistakes {
-            findings.report(mistake.at(span, "read here"));
+            findings.report(mistake.label(span, "read here"));
         }
         table.filter(|_| sound)
     }
@@ -72,7 +72,7 @@ impl<'m> Files<'m> {
         match self.data(name) {
             Ok(bytes) => Some(bytes),
             Err(error) => {
-                findings.report(refusal(name, &error).at(span, "read here"));
+                findings.report(refusal(name, &error).label(span, "read here"));
                 None
             }
         }

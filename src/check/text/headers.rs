@@ -51,7 +51,7 @@ fn other_kind(d: &Declaration, kinds: &BTreeMap<&str, Option<&'static Kind>>) ->
     let name = d.name.as_ref().map_or(String::new(), |name| format!(" {}", name.text));
     let message = format!("a {} cannot extend `{}`, which is a {}", kind.name, base.text, of_base.name);
     let mistake = Diagnostic::new(Code::E0205, message)
-        .at(d.kind.span, format!("its fields are those of a {}", of_base.name))
+        .label(d.kind.span, format!("its fields are those of a {}", of_base.name))
         .help(format!("write `{}{name} : {}`", of_base.name, base.text));
     let mut mended = d.clone();
     mended.kind.text = of_base.name.to_string();
@@ -70,7 +70,7 @@ fn name_behind_colon(
         return None;
     }
     let mistake = Diagnostic::new(Code::E0201, format!("nothing is called `{}`", base.text))
-        .at(base.span, "behind `:` stands what is extended")
+        .label(base.span, "behind `:` stands what is extended")
         .help(format!("write `{} {} {{`, without the colon", kind.name, base.text));
     let mut mended = d.clone();
     mended.name = mended.base.take().and_then(|path| path.names.into_iter().next());

@@ -188,7 +188,7 @@ impl<'a> Loader<'a> {
                     ),
                 };
                 self.diagnostics
-                    .push(Diagnostic::new(Code::E0204, message).at(used.path.span, "not found").maybe_help(help));
+                    .push(Diagnostic::new(Code::E0204, message).label(used.path.span, "not found").maybe_help(help));
                 if names.len() == 1 {
                     brought.broken.extend(library::MODULES.iter().map(|(module, _)| module.to_string()));
                 }
@@ -207,8 +207,8 @@ impl<'a> Loader<'a> {
         {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0202, format!("two modules are called `{alias}`"))
-                    .at(place, "again here")
-                    .at(first, "first used here")
+                    .label(place, "again here")
+                    .label(first, "first used here")
                     .help(format!("give one of them another name: `use {} as other`", used.path.text())),
             );
             return;
@@ -243,7 +243,8 @@ impl<'a> Loader<'a> {
                     "the circle is {} -> {relative}; move what several of them need into a file of its own",
                     circle.join(" -> ")
                 );
-                self.diagnostics.push(Diagnostic::new(Code::E0206, message).at(span, "closes the circle").help(help));
+                self.diagnostics
+                    .push(Diagnostic::new(Code::E0206, message).label(span, "closes the circle").help(help));
                 return None;
             }
             None => {}
@@ -251,7 +252,7 @@ impl<'a> Loader<'a> {
         let Some(bytes) = self.modules.read(Path::new(&relative)) else {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0204, format!("there is no file `{relative}` below the main file's folder"))
-                    .at(span, "not found")
+                    .label(span, "not found")
                     .maybe_help(missing_file(names[0])),
             );
             return None;
@@ -259,7 +260,7 @@ impl<'a> Loader<'a> {
         match decode(&relative, &bytes) {
             Ok(text) => Some(self.load(&relative, text, &[])),
             Err(mistake) => {
-                self.diagnostics.push(mistake.at(span, "used here"));
+                self.diagnostics.push(mistake.label(span, "used here"));
                 None
             }
         }
@@ -281,14 +282,14 @@ impl<'a> Loader<'a> {
             if TAKEN.contains(&name.as_str()) {
                 self.diagnostics.push(
                     Diagnostic::new(Code::E0207, format!("`{name}` is a word of the language and cannot be a name"))
-                        .at(span, "choose another name"),
+                        .label(span, "choose another name"),
                 );
                 continue;
             }
             if let Some(first) = places.get(&name) {
                 let mistake = Diagnostic::new(Code::E0202, format!("`{name}` is declared twice"))
-                    .at(span, "again here")
-                    .at(*first, "first declared here");
+                    .label(span, "again here")
+                    .label(*first, "first declared here");
                 let mistake =
                     if nameless { mistake.help(format!("give each `{name}` a name of its own")) } else { mistake };
                 self.diagnostics.push(mistake);
@@ -297,7 +298,7 @@ impl<'a> Loader<'a> {
             if modules.contains_key(&name) && !nameless {
                 self.diagnostics.push(
                     Diagnostic::new(Code::E0202, format!("`{name}` is the name of a module too"))
-                        .at(span, "declared here")
+                        .label(span, "declared here")
                         .help("rename it, or give the module another name with `as`"),
                 );
             }
@@ -318,8 +319,8 @@ impl<'a> Loader<'a> {
                 // two nameless ones are reported as a name declared twice
                 Some(other) if once && (d.name.is_some() || other.name.is_some()) => self.diagnostics.push(
                     Diagnostic::new(Code::E0409, format!("a scene has one `{}`", d.kind.text))
-                        .at(d.kind.span, "second here")
-                        .at(other.kind.span, "first here"),
+                        .label(d.kind.span, "second here")
+                        .label(other.kind.span, "first here"),
                 ),
                 Some(_) => {}
                 None => {
@@ -330,8 +331,8 @@ impl<'a> Loader<'a> {
         if let (Some(traffic), Some(load)) = (first.get("traffic"), first.get("load")) {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0409, "a scene has `traffic` or `load`, not both")
-                    .at(load.kind.span, "a test load")
-                    .at(traffic.kind.span, "and traffic"),
+                    .label(load.kind.span, "a test load")
+                    .label(traffic.kind.span, "and traffic"),
             );
         }
     }

@@ -106,11 +106,11 @@ struct Reader {
 
 impl Reader {
     fn refuse(&mut self, message: &str, span: Span, label: &str) {
-        self.diagnostics.push(Diagnostic::new(Code::E0805, message).at(span, label));
+        self.diagnostics.push(Diagnostic::new(Code::E0805, message).label(span, label));
     }
 
     fn refuse_with(&mut self, message: &str, span: Span, label: &str, help: &str) {
-        self.diagnostics.push(Diagnostic::new(Code::E0805, message).at(span, label).help(help));
+        self.diagnostics.push(Diagnostic::new(Code::E0805, message).label(span, label).help(help));
     }
 
     fn axles_column(&mut self, names: &[Piece<'_>], header: &Piece<'_>) -> Option<usize> {
@@ -162,7 +162,7 @@ impl Reader {
                 } else {
                     cell.span(self.file)
                 };
-                self.diagnostics.push(Diagnostic::new(Code::E0805, mistake).at(place, "no number").maybe_help(help));
+                self.diagnostics.push(Diagnostic::new(Code::E0805, mistake).label(place, "no number").maybe_help(help));
                 None
             }
         }

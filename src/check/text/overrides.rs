@@ -42,7 +42,7 @@ pub fn apply(sources: &mut Sources, diagnostics: &mut Vec<Diagnostic>, tree: &mu
             if sound {
                 diagnostics.push(
                     Diagnostic::new(Code::E0101, format!("expected one value, found `{}`", wanted.value))
-                        .at(Span::new(file, 4, shown.len()), "more than one value")
+                        .label(Span::new(file, 4, shown.len()), "more than one value")
                         .help("give each path a `--set` of its own"),
                 );
             }
@@ -80,7 +80,7 @@ fn edit(tree: &mut Tree, names: &[Name], value: &Value, span: Span) -> Result<()
     }
     let near = nearest(first, known.iter().map(String::as_str)).map(|n| format!("did you mean `{n}`?"));
     Err(Diagnostic::new(Code::E0201, format!("the file declares nothing called `{first}` that could be set"))
-        .at(span, "unknown name")
+        .label(span, "unknown name")
         .maybe_help(
             near.or_else(|| Some("write `--set declaration.field=value`, or `--set name=value` for a `let`".into())),
         ))

@@ -13,10 +13,10 @@ pub fn read(name: &str, bytes: &[u8], span: Span, sources: &mut Sources, finding
         Err(error) => error,
     };
     let mistake = match &error {
-        StlError::Mesh(faults) => not_closed(name, &faults.faults).at(span, "read here"),
+        StlError::Mesh(faults) => not_closed(name, &faults.faults).label(span, "read here"),
         StlError::Bodies { count } => {
             Diagnostic::new(Code::E0607, format!("`{name}` holds {count} bodies, a grain is one"))
-                .at(span, "read here")
+                .label(span, "read here")
                 .help("keep the largest body, or write each into a file of its own and list them all")
         }
         StlError::Text { bytes: at, .. } => {
@@ -24,13 +24,13 @@ pub fn read(name: &str, bytes: &[u8], span: Span, sources: &mut Sources, finding
             let text = String::from_utf8_lossy(bytes).into_owned();
             let file = sources.add(name, text, false);
             Diagnostic::new(Code::E0606, format!("`{name}` cannot be read as STL: {error}"))
-                .at(Span::new(file, at.start, at.end), "does not go on as it must")
-                .at(span, "read here")
+                .label(Span::new(file, at.start, at.end), "does not go on as it must")
+                .label(span, "read here")
                 .help("write the file again, best as binary STL")
         }
         StlError::NotStl | StlError::Cut { .. } => {
             Diagnostic::new(Code::E0606, format!("`{name}` cannot be read as STL: {error}"))
-                .at(span, "read here")
+                .label(span, "read here")
                 .help("write the surface as STL, binary or text; every mesh tool can")
         }
     };

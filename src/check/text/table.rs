@@ -67,7 +67,7 @@ impl Reader {
             let span = Span::new(self.file, 0, 0);
             self.mistakes.push(
                 Diagnostic::new(Code::E0509, "the file is empty")
-                    .at(span, "no header")
+                    .label(span, "no header")
                     .help("begin it with the names and units of its columns, such as `x_m,level_mm`"),
             );
             return None;
@@ -75,7 +75,7 @@ impl Reader {
         let header = Span::new(self.file, start, start + line.trim_end().len());
         if line.contains(';') {
             let message = "columns are separated by commas, and numbers have a decimal point";
-            self.mistakes.push(Diagnostic::new(Code::E0509, message).at(header, "separated by semicolons"));
+            self.mistakes.push(Diagnostic::new(Code::E0509, message).label(header, "separated by semicolons"));
             return None;
         }
         let columns: Vec<Option<Column>> = cells(start, line).map(|(at, text)| self.column(at, text)).collect();
@@ -94,7 +94,7 @@ impl Reader {
         else {
             self.mistakes.push(
                 Diagnostic::new(Code::E0509, format!("column `{text}` does not say its unit"))
-                    .at(span, "name, `_` and unit are wanted")
+                    .label(span, "name, `_` and unit are wanted")
                     .help("write the unit after the name, such as `x_m` or `level_mm`"),
             );
             return None;
@@ -104,7 +104,7 @@ impl Reader {
             Err(_) => {
                 self.mistakes.push(
                     Diagnostic::new(Code::E0509, format!("column `{text}` has an unknown unit `{unit}`"))
-                        .at(span, "not a unit"),
+                        .label(span, "not a unit"),
                 );
                 None
             }
@@ -116,7 +116,7 @@ impl Reader {
         if found != columns.len() {
             let span = Span::new(self.file, start, start + line.trim_end().len());
             let message = format!("expected {} numbers in this row, found {found}", columns.len());
-            self.mistakes.push(Diagnostic::new(Code::E0510, message).at(span, "as many as columns are wanted"));
+            self.mistakes.push(Diagnostic::new(Code::E0510, message).label(span, "as many as columns are wanted"));
             return;
         }
         for ((at, text), column) in cells(start, line).zip(columns) {
@@ -127,7 +127,7 @@ impl Reader {
                     // the row keeps its length, the table is dropped
                     into.push(Cell { value: 0.0, span });
                     let message = format!("expected a number, found `{text}`");
-                    self.mistakes.push(Diagnostic::new(Code::E0510, message).at(span, "not a number"));
+                    self.mistakes.push(Diagnostic::new(Code::E0510, message).label(span, "not a number"));
                 }
             }
         }

@@ -129,8 +129,8 @@ fn soil(scenario: &Scenario) -> SoilNode {
         let of_soil = section.layers.iter().filter_map(|layer| match &layer.material {
             Material::Soil(soil) => Some(SoilLayer {
                 name: layer.name.clone(),
-                thickness: layer.thickness.at(middle(section)),
-                youngs_modulus: soil.youngs_modulus.at(middle(section)),
+                thickness: layer.thickness.value_at(middle(section)),
+                youngs_modulus: soil.youngs_modulus.value_at(middle(section)),
                 poisson_ratio: *soil.poisson_ratio,
             }),
             Material::Granular(_) => None,

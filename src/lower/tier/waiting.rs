@@ -54,7 +54,7 @@ fn unknown_stiffness(section: &Section) -> Diagnostic {
 fn waits(message: String, at: Option<Span>, text: &str, help: String) -> Diagnostic {
     let mut diagnostic = Diagnostic::new(Code::E0604, message);
     if let Some(span) = at {
-        diagnostic = diagnostic.at(span, text);
+        diagnostic = diagnostic.label(span, text);
     }
     diagnostic.help(help)
 }

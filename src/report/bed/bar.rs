@@ -25,7 +25,7 @@ pub(super) struct Bar {
 }
 
 impl Bar {
-    pub fn of(bed: &BedView) -> Bar {
+    pub fn for_bed(bed: &BedView) -> Bar {
         let mut values: Vec<f64> = bed.grains.iter().filter_map(|g| value(g, bed.colour)).collect();
         values.sort_by(f64::total_cmp);
         let largest = values.last().copied().unwrap_or(0.0);

@@ -59,9 +59,9 @@ pub struct BedView<'a> {
 /// The picture, valid on its own. A value that a grain has not, as a displacement without a reference, is drawn in grey.
 pub fn bed_svg(bed: &BedView) -> String {
     let mut svg = Svg::default();
-    let view = View::of(bed);
+    let view = View::for_bed(bed);
     let seen = seen(bed, &view);
-    let bar = Bar::of(bed);
+    let bar = Bar::for_bed(bed);
     svg.text("strong", (LEFT, 24.0), Anchor::Start, bed.title);
     let bodies = bed.grains.last().map_or(0, |g| u64::from(g.body) + 1);
     let count = match bodies == bed.grains.len() as u64 {
@@ -103,7 +103,7 @@ struct View {
 }
 
 impl View {
-    fn of(bed: &BedView) -> View {
+    fn for_bed(bed: &BedView) -> View {
         let (right, deep, nearness) = match bed.side {
             Side::X => (0, 1, -1.0),
             Side::Y => (1, 0, 1.0),
@@ -138,7 +138,7 @@ impl View {
         View { right, deep, nearness, low, high, scale, frame }
     }
 
-    fn at(&self, place: [f64; 3]) -> (f64, f64) {
+    fn projected(&self, place: [f64; 3]) -> (f64, f64) {
         let x = self.frame.x + (place[self.right] - self.low[0]) * self.scale;
         (x, self.frame.y + (self.high[1] - place[2]) * self.scale)
     }
@@ -186,7 +186,7 @@ fn seen(bed: &BedView, view: &View) -> Vec<u32> {
     let mut raster = Raster::new(view.frame.width, view.frame.height);
     order.retain(|&index| {
         let grain = &bed.grains[index as usize];
-        let (x, y) = view.at(grain.place);
+        let (x, y) = view.projected(grain.place);
         raster.cover(x - view.frame.x, y - view.frame.y, grain.radius * view.scale)
     });
     order.reverse();
@@ -201,7 +201,11 @@ fn draw_grains(svg: &mut Svg, bed: &BedView, view: &View, seen: &[u32], bar: &Ba
         |svg| {
             for &index in seen {
                 let grain = &bed.grains[index as usize];
-                svg.ball(&format!("url(#g{})", bar.ball(grain)), view.at(grain.place), grain.radius * view.scale);
+                svg.ball(
+                    &format!("url(#g{})", bar.ball(grain)),
+                    view.projected(grain.place),
+                    grain.radius * view.scale,
+                );
             }
         },
     );
@@ -227,7 +231,7 @@ fn draw_chains(svg: &mut Svg, bed: &BedView, view: &View, chains: &[&Link]) {
             let width = widest * link.size() / most;
             // what is thinner than a hair only greys the picture
             if width > 0.12 {
-                svg.stroke(view.at(link.from), view.at(link.to), width);
+                svg.stroke(view.projected(link.from), view.projected(link.to), width);
             }
         }
     });
@@ -236,7 +240,7 @@ fn draw_chains(svg: &mut Svg, bed: &BedView, view: &View, chains: &[&Link]) {
 fn draw_walls(svg: &mut Svg, bed: &BedView, view: &View) {
     for wall in bed.walls {
         let pose = wall.pose(bed.domain);
-        let at = |point: &nalgebra::Vector3<f64>| view.at(pose.to_space(point).into());
+        let at = |point: &nalgebra::Vector3<f64>| view.projected(pose.to_space(point).into());
         match &wall.shape {
             Shape::Plane { normal } => {
                 draw_plane(svg, view, pose.position.into(), pose.direction_to_space(normal).into())
@@ -267,7 +271,7 @@ fn draw_plane(svg: &mut Svg, view: &View, point: [f64; 3], normal: [f64; 3]) {
     if normal[view.deep].abs() > 1e-3 || size == 0.0 {
         return; // it would cover the picture
     }
-    let (x, y) = view.at(point);
+    let (x, y) = view.projected(point);
     // on the picture, downwards is larger
     let (nx, ny) = (across / size, -up / size);
     let (tx, ty) = (-ny, nx);

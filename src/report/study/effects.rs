@@ -89,18 +89,18 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
         let values: Vec<f64> = group.rows.iter().filter_map(|row| value(*row)).collect();
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let (low, high) = values.iter().fold((mean, mean), |(low, high), v| (low.min(*v), high.max(*v)));
-        svg.line("line s0", plane.at((group.x, low)), plane.at((group.x, high)));
-        means.push((plane.at((group.x, mean)), mean, values.len()));
+        svg.line("line s0", plane.point((group.x, low)), plane.point((group.x, high)));
+        means.push((plane.point((group.x, mean)), mean, values.len()));
     }
     for row in groups.iter().flat_map(|g| &g.rows) {
         if let Some(y) = value(*row) {
             let text = format!("point {}", answer.rows[*row].number);
-            svg.circle("faint", plane.at((numbers(*row), y)), 2.5, &text);
+            svg.circle("faint", plane.point((numbers(*row), y)), 2.5, &text);
             if scatter(*row) > 0.0 {
                 whisker(
                     svg,
-                    plane.at((numbers(*row), y - scatter(*row))),
-                    plane.at((numbers(*row), y + scatter(*row))),
+                    plane.point((numbers(*row), y - scatter(*row))),
+                    plane.point((numbers(*row), y + scatter(*row))),
                 );
             }
         }

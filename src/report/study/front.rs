@@ -30,12 +30,12 @@ pub(super) fn pareto(answer: &Answer) -> Option<(String, String)> {
     let below = (plane.frame.x + plane.frame.width / 2.0, SIZE.1 - 12.0);
     svg.text("strong", below, Anchor::Middle, &aimed(first));
     let best = answer.best();
-    let front: Vec<(f64, f64)> = best.iter().filter_map(|i| at(&answer.rows[*i])).map(|p| plane.at(p)).collect();
+    let front: Vec<(f64, f64)> = best.iter().filter_map(|i| at(&answer.rows[*i])).map(|p| plane.point(p)).collect();
     svg.path("frontier", &front, false, "");
     for (index, row) in answer.rows.iter().enumerate() {
         let Some(place) = at(row) else { continue };
         let text = format!("point {}: {}", row.number, answer.lines(row).join(", "));
-        let (x, y) = plane.at(place);
+        let (x, y) = plane.point(place);
         match (best.contains(&index), row.feasible()) {
             (true, _) => {
                 svg.circle("dot s1", (x, y), 5.5, &text);

@@ -22,7 +22,7 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
 }
 
 impl Plane {
-    pub fn at(&self, (x, y): (f64, f64)) -> (f64, f64) {
+    pub fn point(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let across = (x - self.x.0) / (self.x.1 - self.x.0);
         let up = (y - self.y.0) / (self.y.1 - self.y.0);
         (self.frame.x + across * self.frame.width, self.frame.y + (1.0 - up) * self.frame.height)
@@ -34,7 +34,7 @@ impl Plane {
         let count = (height / 26.0) as usize;
         let step = nice_step((self.y.1 - self.y.0) / count.max(1) as f64);
         for mark in ticks(self.y.0, self.y.1, count) {
-            let y = self.at((self.x.0, mark)).1;
+            let y = self.point((self.x.0, mark)).1;
             svg.line("grid", (left, y), (left + width, y));
             svg.text("small muted", (left - 7.0, y + 4.0), Anchor::End, &tick_label(mark, step));
         }
@@ -52,7 +52,7 @@ impl Plane {
 
     /// A mark of the level scale.
     pub fn mark(&self, svg: &mut Svg, x: f64, label: &str) {
-        let x = self.at((x, self.y.0)).0;
+        let x = self.point((x, self.y.0)).0;
         let bottom = self.frame.y + self.frame.height;
         svg.line("axis", (x, bottom), (x, bottom + 4.0));
         svg.text("small muted", (x, bottom + 17.0), Anchor::Middle, label);

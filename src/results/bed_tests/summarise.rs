@@ -25,7 +25,7 @@ pub(super) fn mean_and_confidence(values: &[f64]) -> (f64, Option<f64>) {
     (mean, Some(quantile * (variance / count).sqrt()))
 }
 
-/// Of the sleeper that settles most in each packing: mean over packings, and its confidence where there are several.
+/// Scalars of the sleeper that settles most in each packing: mean over packings, and its confidence where there are several.
 fn scalars(tests: &[BedTest], plate: Option<f64>) -> BTreeMap<String, Scalar> {
     let mut scalars = BTreeMap::new();
     let last = tests.iter().flat_map(|test| &test.answer.cycles).map(|cycle| cycle.number).max().unwrap_or(0);

@@ -16,7 +16,7 @@ use crate::units::number;
 /// A value at a point of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
-    /// As it would stand in the file.
+    /// The value as it would stand in the file.
     pub text: String,
     /// In the unit of the axis; `None` where it is no number.
     pub number: Option<f64>,

@@ -80,20 +80,20 @@ pub struct Measured {
     /// Contacts that touch at the end, with walls too, and pairs that a step computes.
     pub contacts: u64,
     pub listed_contacts: u64,
-    /// Of contacts that touch.
+    /// Updates of contacts that touch.
     pub contact_updates_per_second: f64,
-    /// Of translation and rotation, at the time of the last positions \[J\].
+    /// Kinetic energy of translation and rotation, at the time of the last positions \[J\].
     pub kinetic_energy: f64,
     pub rotational_energy: f64,
     pub lists_made: u64,
     pub skin_m: f64,
-    /// Of the whole program up to the last step, before anything was looked at.
+    /// Peak memory of the whole program up to the last step, before anything was looked at.
     pub peak_memory_bytes: Option<u64>,
     pub bytes_per_sphere: Option<f64>,
-    /// Of the timed steps; those of every repetition in the order of doing.
+    /// Seconds of the timed steps; those of every repetition in the order of doing.
     pub seconds: f64,
     pub all_seconds: Vec<f64>,
-    /// Of reading into a bed and making the first lists.
+    /// Seconds of reading into a bed and making the first lists.
     pub setup_seconds: f64,
     pub time: Shares,
     /// None until the machine has been measured.
@@ -235,7 +235,7 @@ fn sum_up<R: Real>(
     }
 }
 
-/// As the command line calls it.
+/// The precision as the command line calls it.
 fn precision<R: Real>() -> &'static str {
     if size_of::<R>() == size_of::<f32>() { "mixed" } else { "f64" }
 }

@@ -44,7 +44,7 @@ fn filling(scenario: &Scenario, section: &Section, area: f64) -> Filling {
         .iter()
         .filter_map(|layer| {
             let granular = layer.granular()?;
-            Some((layer.thickness.at(section.start), granular, granular.grading.curve().ok()?))
+            Some((layer.thickness.value_at(section.start), granular, granular.grading.curve().ok()?))
         })
         .collect();
     let pressure = |granular: &Granular| confinement(scenario).unwrap_or(*granular.packing.pressure);

@@ -152,7 +152,7 @@ fn loads(scenario: &Scenario) -> Vec<RigLoad> {
     }
 }
 
-/// Of a cycle, s; `rest` is the [`rest_time`] of the bed.
+/// Period of a cycle, s; `rest` is the [`rest_time`] of the bed.
 fn period(loads: &[RigLoad], rest: f64) -> f64 {
     let of = |load: &RigLoad| match &load.force {
         Force::Constant(_) => None,
@@ -235,7 +235,7 @@ fn plate(scenario: &Scenario, load: &RigLoad, [length, across]: [f64; 2]) -> (St
     (body, force(load, share, 0.0))
 }
 
-/// Of an actuator, of one rail or of a share of it, `away` m behind the place of its load.
+/// Force of an actuator, of one rail or of a share of it, `away` m behind the place of its load.
 fn force(load: &RigLoad, share: f64, away: f64) -> Load {
     match &load.force {
         Force::Constant(force) => Load::Constant(share * **force),
@@ -251,7 +251,7 @@ fn force(load: &RigLoad, share: f64, away: f64) -> Load {
 /// Sensors under the rail seat, or across the whole bed.
 fn sensors(scenario: &Scenario, length: f64, width: f64) -> Vec<SensorNode> {
     let track = &scenario.track;
-    let top = track.sections[0].layers.first().map_or(0.0, |layer| layer.thickness.at(track.sections[0].start));
+    let top = track.sections[0].layers.first().map_or(0.0, |layer| layer.thickness.value_at(track.sections[0].start));
     let mut sensors = Vec::new();
     for record in &scenario.volumes {
         for seat in record.seats.iter().map(|seat| &track.seats[*seat]) {

@@ -36,7 +36,7 @@ pub(super) fn refusals(scenario: &Scenario) -> Vec<Diagnostic> {
 fn refused(message: String, at: Option<Span>, text: &str, help: &str) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::E0611, message).help(help);
     match at {
-        Some(span) => diagnostic.at(span, text),
+        Some(span) => diagnostic.label(span, text),
         None => diagnostic,
     }
 }

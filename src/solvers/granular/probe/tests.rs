@@ -8,7 +8,7 @@ use super::*;
 
 const RADIUS: f64 = 0.03;
 const SIDE: f64 = 0.5;
-/// Of a contact with floor and plate, N/m.
+/// Stiffness of a contact with floor and plate, N/m.
 const CONTACT: f64 = 1e7;
 
 /// Sixteen spheres in a square on a floor, apart from each other.

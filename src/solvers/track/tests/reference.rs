@@ -20,7 +20,7 @@ struct Plain<'a> {
     weight: DVector<f64>,
     contacts: Vec<WheelContact>,
     unknowns: Vec<Option<usize>>,
-    /// Of the rail by each wheel, at the ends of the last two steps.
+    /// Indentation of the rail by each wheel, at the ends of the last two steps.
     indentations: Vec<[f64; 2]>,
     u: DVector<f64>,
     v: DVector<f64>,

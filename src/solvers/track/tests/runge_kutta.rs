@@ -114,7 +114,7 @@ struct Study {
     wheels: (f64, f64),
     /// Differences of the solver to the oracle for each method and time step.
     errors: Vec<Vec<[f64; 4]>>,
-    /// Of the oracle to itself with a coarser tolerance.
+    /// Distance of the oracle to itself with a coarser tolerance.
     own: [f64; 4],
     /// Supports that began or ceased to carry.
     events: usize,

@@ -13,7 +13,7 @@ fn of_count(curve: &Curve, count: usize, seed: u64) -> Sample {
     curve.sample(count as f64 * curve.mean_volume(), seed).unwrap()
 }
 
-/// As many grains of the same curve, drawn one by one from very many.
+/// A sample with as many grains of the same curve, drawn one by one from very many.
 fn without_strata(curve: &Curve, count: usize, seed: u64) -> Sample {
     let many = of_count(curve, 20_000, seed).sizes;
     let mut random = Random::new(seed, 77);
