@@ -10,12 +10,13 @@ file or give the same answer. One core and two must give the same bytes.
 
 import pathlib
 import random
+import re
 import shutil
 import subprocess
 import sys
 import time
 
-binary, folder = sys.argv[1], pathlib.Path(sys.argv[2])
+binary, folder = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
 kills, damages = (int(sys.argv[k]) if len(sys.argv) > k else n for k, n in ((3, 200), (4, 100)))
 here = pathlib.Path(__file__).resolve().parent.parent
 random.seed(1)
@@ -26,7 +27,7 @@ TRACK = [
 ]
 RIG = ["run", here / "scenarios/box_test.track", "--set", "actuator.total=2 cycles", "--set", "stone.scale=1.8", "--set", "pressure.after=[1, 2] cycles"]
 PACK = ["pack", here / "scenarios/box_test.track", "--set", "stone.scale=1.8"]
-STUDY = ["study", here / "scenarios/study_pads.track", "--set", "traffic.total=40 axles"]
+STUDY = ["study", folder / "study.track", "--set", "traffic.total=40 axles", "--set", "solve.elements_per_bay=1", "--set", "solve.time_step=2e-4 s"]
 WORKS = {"track": TRACK, "rig": RIG, "pack": PACK, "study": STUDY}
 # differs between any two runs, or says where the cache lies
 CHANGING = {"timings.json", "manifest.json", "report.html", "study.html", "bed.html"}
@@ -167,7 +168,16 @@ def damage(found):
     return wrong
 
 
+def small_study():
+    """Three points of the shipped study, beside the scene that it takes its track from."""
+    text = (here / "scenarios/study_pads.track").read_text()
+    text = re.sub(r"(stiff.pad.stiffness: )\[[^]]*\]", r"\1[10, 40, 120]", text)
+    (folder / "study.track").write_text(text)
+    shutil.copy(here / "scenarios/transition.track", folder)
+
+
 shutil.rmtree(folder, ignore_errors=True)
 folder.mkdir(parents=True)
+small_study()
 known = references()
 sys.exit(1 if attack(known) + damage(known) else 0)

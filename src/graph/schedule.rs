@@ -19,6 +19,16 @@ pub enum Schedule {
     Custom { kind: String, parameters: serde_json::Value },
 }
 
+impl Schedule {
+    /// What a count of it is of.
+    pub fn clock(&self) -> fn(u64) -> Clock {
+        match self {
+            Schedule::Actuators(_) => Clock::Cycles,
+            Schedule::Static { .. } | Schedule::Blocks(_) | Schedule::Custom { .. } => Clock::Axles,
+        }
+    }
+}
+
 /// A constant force, N, positive down.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PointLoad {

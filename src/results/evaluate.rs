@@ -4,7 +4,7 @@
 //! time); velocities and accelerations come from histories, as do the wheels' and the rail's responses.
 
 use super::{BlockRow, HistoryRow, MeanCycleRow, RailRow, Scalar, SleeperRow, Verdict};
-use crate::graph::{Graph, Record, Schedule, SupportNode};
+use crate::graph::{Clock, Graph, Record, Schedule, SupportNode};
 use crate::scenario::response::{Expectation, Expression, Function, Measure, Place, Reduction, Response};
 use crate::scenario::{Scenario, Seat, Track};
 use crate::syntax::tree::{BinaryOp, Comparison};
@@ -39,6 +39,14 @@ pub enum SleeperTable<'a> {
 type Reading<'a> = (u64, &'a str, f64, f64);
 
 impl<'a> SleeperTable<'a> {
+    /// What its rows count.
+    fn clock(self) -> fn(u64) -> Clock {
+        match self {
+            SleeperTable::Axles(_) => Clock::Axles,
+            SleeperTable::Cycles(_) => Clock::Cycles,
+        }
+    }
+
     /// The column of a response; `None` where the table has none.
     fn column(self, response: Response) -> Option<Vec<Reading<'a>>> {
         Some(match self {
@@ -176,6 +184,7 @@ fn evaluate_measure(measure: &Measure, tables: Tables<'_>) -> Result<f64, String
     {
         return Ok(peak);
     }
+    let clock = tables.sleepers.clock();
     let values = values(measure, tables)?;
     let largest = || values.iter().copied().max_by(|a, b| a.1.total_cmp(&b.1));
     let mean = |of: fn(f64) -> f64| {
@@ -189,12 +198,12 @@ fn evaluate_measure(measure: &Measure, tables: Tables<'_>) -> Result<f64, String
         Reduction::Rms => mean(|value| value * value).map(f64::sqrt),
         Reduction::Percentile(share) => percentile(&values, *share),
         Reduction::Misfit(measured) if values.is_empty() => {
-            return Err(format!("{} to be held against {} measured values", absent(measure), measured.len()));
+            return Err(format!("{} to be held against {} measured values", absent(measure, clock), measured.len()));
         }
         Reduction::Misfit(measured) => return misfit(measure, values, measured),
         Reduction::Itself => return Err(format!("`{name}` has many values: take its max, min or mean")),
     };
-    result.or_else(|| peak(measure, tables)).ok_or_else(|| absent(measure))
+    result.or_else(|| peak(measure, tables)).ok_or_else(|| absent(measure, clock))
 }
 
 /// The value that a share of all values does not exceed: straight between the two nearest in order.
@@ -244,19 +253,19 @@ fn peak(measure: &Measure, tables: Tables<'_>) -> Option<f64> {
     scalar.filter(|_| everywhere_at_last).map(|s| s.value)
 }
 
-/// What an expression asks for and a run will not have, by what it keeps; `None` where it has all of it.
-pub fn not_kept(expression: &Expression, kept: &dyn Fn(&Measure) -> bool) -> Option<String> {
+/// What an expression asks for and a run of a graph will not have; `None` where it has all of it.
+pub fn not_kept(expression: &Expression, graph: &Graph) -> Option<String> {
     match expression {
         Expression::Number(_) => None,
-        Expression::Measure(measure) => (!kept(measure)).then(|| absent(measure)),
-        Expression::Negate(inner) => not_kept(inner, kept),
-        Expression::Function(_, of) => of.iter().find_map(|e| not_kept(e, kept)),
-        Expression::Binary(left, _, right) => not_kept(left, kept).or_else(|| not_kept(right, kept)),
+        Expression::Measure(measure) => (!is_kept(measure, graph)).then(|| absent(measure, graph.schedule.clock())),
+        Expression::Negate(inner) => not_kept(inner, graph),
+        Expression::Function(_, of) => of.iter().find_map(|e| not_kept(e, graph)),
+        Expression::Binary(left, _, right) => not_kept(left, graph).or_else(|| not_kept(right, graph)),
     }
 }
 
 /// Whether tables, peaks or histories of a run of a graph hold a response.
-pub fn is_kept(measure: &Measure, graph: &Graph) -> bool {
+fn is_kept(measure: &Measure, graph: &Graph) -> bool {
     if let Schedule::Actuators(_) = graph.schedule {
         return is_kept_by_tests(measure, graph);
     }
@@ -294,13 +303,14 @@ fn is_kept_by_tests(measure: &Measure, graph: &Graph) -> bool {
     }
 }
 
-fn absent(measure: &Measure) -> String {
+/// Says that nothing was recorded for a measure; `clock` makes a count one of axles or of cycles.
+fn absent(measure: &Measure, clock: fn(u64) -> Clock) -> String {
     let mut text = format!("no value of `{}`", measure.response.name());
     if let Some((from, to)) = measure.over {
         text += &format!(" between {from} m and {to} m");
     }
     if let Some(after) = measure.after {
-        text += &format!(" after {after} axles");
+        text += &format!(" after {}", clock(after));
     }
     text + " was recorded"
 }

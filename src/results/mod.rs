@@ -32,9 +32,7 @@ pub use bed_tests::{
     read_tests, test_files,
 };
 pub use error::ResultsError;
-pub use evaluate::{
-    SleeperTable, Tables, contact_pressures, evaluate, holds, is_kept, known, not_kept, verdict, verdicts,
-};
+pub use evaluate::{SleeperTable, Tables, contact_pressures, evaluate, holds, known, not_kept, verdict, verdicts};
 pub use failure::diagnose;
 pub use files::{NamedBytes, files, read, read_summary, read_timings, timings_file, write, write_files};
 pub use grains::{Grain, Link, grains, links, places};

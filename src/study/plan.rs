@@ -7,7 +7,7 @@ use crate::compile::{Compiled, compile, fingerprint};
 use crate::diag::{Code, Diagnostic, FileId, Label, Severity, Sources, Span};
 use crate::graph::Graph;
 use crate::results;
-use crate::scenario::response::{Expectation, Measure};
+use crate::scenario::response::Expectation;
 use crate::scenario::{Study, Values};
 use crate::store::sha256;
 use crate::syntax::tree::Comparison;
@@ -164,10 +164,9 @@ fn content(study: &Study, compiled: &Compiled) -> String {
 
 /// A study that asks for what no run keeps would learn so after the first one.
 fn leaves_open(graph: &Graph, study: &Study) -> Option<Diagnostic> {
-    let kept = |measure: &Measure| results::is_kept(measure, graph);
     let measured = study.measured();
     let compared = study.constraints.iter().flat_map(|c| &c.operands);
-    let why = measured.iter().map(|m| &m.expression).chain(compared).find_map(|e| results::not_kept(e, &kept))?;
+    let why = measured.iter().map(|m| &m.expression).chain(compared).find_map(|e| results::not_kept(e, graph))?;
     let help = "ask for what the tables hold (see section 6 of the guide), or `record` it at the seats of interest";
     Some(Diagnostic::new(Code::E0705, why).help(help))
 }

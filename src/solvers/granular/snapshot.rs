@@ -30,7 +30,7 @@ impl Party {
 /// A contact that carries a force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactState {
-    /// A body always comes first.
+    /// A body, and of two the one that was made first.
     pub first: Party,
     pub second: Party,
     /// On the first \[N\].
@@ -146,22 +146,7 @@ impl<R: Real> Bed<R> {
             if self.overlap(place).is_none() {
                 continue;
             }
-            let (a, b) = (self.contacts.first[place], self.contacts.second[place]);
-            let image = self.domain.shift(self.contacts.image[place]);
-            let apart = add(sub(self.offset(a), self.offset(b)), image);
-            let distance = norm(apart);
-            let normal = scale(apart, 1.0 / distance);
-            let arm = self.contacts.outcomes[place][6].to_f64();
-            states.push(ContactState {
-                first: self.party(a),
-                second: self.party(b),
-                force: force_of(&self.contacts.outcomes[place]),
-                normal,
-                // from places: an arm in single precision knows a hundredth of a small overlap
-                overlap: self.records[a as usize].radius() + self.records[b as usize].radius() - distance,
-                point: sub(self.place_of(a), scale(normal, arm)),
-                branch: add(sub(self.centre(a), self.centre(b)), image),
-            });
+            states.push(self.contact_state(place));
         }
         let pairs = self.contacts.len();
         for entry in &self.wall_contacts.entries {
@@ -184,9 +169,31 @@ impl<R: Real> Bed<R> {
         // in an order that depends on who meets only: sums over contacts must not know how lists were made
         states.sort_by_key(|contact: &ContactState| {
             let walled = contact.second.body().is_none();
-            (walled, contact.first.min(contact.second), contact.first.max(contact.second))
+            (walled, contact.first, contact.second)
         });
         states
+    }
+
+    /// The contact at this place of the list. Its first party is the lower one: which of two pebbles a list names first is chance, and
+    /// another after a resume.
+    fn contact_state(&self, place: usize) -> ContactState {
+        let (a, b) = (self.contacts.first[place], self.contacts.second[place]);
+        let (image, outcome) = (self.domain.shift(self.contacts.image[place]), &self.contacts.outcomes[place]);
+        let is_turned = self.party(b) < self.party(a);
+        let (a, b, sign, arm) = if is_turned { (b, a, -1.0, outcome[7]) } else { (a, b, 1.0, outcome[6]) };
+        let apart = add(sub(self.offset(a), self.offset(b)), scale(image, sign));
+        let distance = norm(apart);
+        let normal = scale(apart, 1.0 / distance);
+        ContactState {
+            first: self.party(a),
+            second: self.party(b),
+            force: scale(force_of(outcome), sign),
+            normal,
+            // from places: an arm in single precision knows a hundredth of a small overlap
+            overlap: self.records[a as usize].radius() + self.records[b as usize].radius() - distance,
+            point: sub(self.place_of(a), scale(normal, arm.to_f64())),
+            branch: add(sub(self.centre(a), self.centre(b)), scale(image, sign)),
+        }
     }
 
     fn party(&self, pebble: u32) -> Party {
