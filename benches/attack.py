@@ -56,8 +56,13 @@ def content(out):
 
 
 def newest(out):
-    times = [path.stat().st_mtime_ns for path in out.rglob("*") if path.exists()] if out.exists() else []
-    return max(times, default=0)
+    times = [0]
+    for path in out.rglob("*") if out.exists() else []:
+        try:
+            times.append(path.stat().st_mtime_ns)
+        except FileNotFoundError:  # the program has renamed it meanwhile
+            pass
+    return max(times)
 
 
 def kill_one(name, out, cache, resume, usual):

@@ -1,13 +1,17 @@
 //! Mixes of trains: their shares and order, what they do to the track together, and what is said against a mix that is none.
 
-use std::ops::ControlFlow;
 use trackbed::check::NoModules;
 use trackbed::diag::{Code, render};
-use trackbed::execute::{self, Checkpoint, Ending, Event, Executor, Listener};
+use trackbed::execute;
 use trackbed::graph::{Graph, Schedule};
 use trackbed::results::RunRecorder;
 use trackbed::scenario::Scenario;
 use trackbed::{Compiled, compile};
+
+mod common {
+    pub mod stopping;
+}
+use common::stopping::stops_and_goes_on;
 
 /// A transition zone that runs in a moment, and trains to run over it.
 const SCENE: &str = r#"use std
@@ -249,60 +253,15 @@ fn a_mix_that_is_none_is_refused() {
     }
 }
 
-/// Stops a run after some blocks, and keeps what it would take to go on.
-struct Stopping {
-    left: usize,
-    kept: Option<Checkpoint>,
-    blocks: Vec<(u64, Vec<u64>)>,
-}
-
-impl Listener for Stopping {
-    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
-        match event {
-            Event::Block { axles, after, .. } => {
-                self.blocks.push((*axles, after.iter().map(|s| s.to_bits()).collect()));
-            }
-            Event::Between(between) => {
-                let text = serde_json::to_string(&between.checkpoint().unwrap()).unwrap();
-                self.kept = Some(serde_json::from_str(&text).unwrap());
-                self.left -= 1;
-                if self.left == 0 {
-                    return ControlFlow::Break(());
-                }
-            }
-            Event::Progress { done, all } => assert!(done <= all),
-            _ => {}
-        }
-        ControlFlow::Continue(())
-    }
-}
-
-/// What a run leaves whole, and stopped after each of its blocks.
-fn stops_and_goes_on(rest: &str) {
-    let (_, graph) = parts(rest);
-    let run = |left: usize, from: Option<Checkpoint>| {
-        let mut recorder = Stopping { left, kept: None, blocks: Vec::new() };
-        let outcome = Executor::default().run(&graph, &mut recorder, from);
-        (recorder, outcome)
-    };
-    let (whole, outcome) = run(usize::MAX, None);
-    assert_eq!(outcome, Ok(Ending::Finished));
-    for stop in [1, whole.blocks.len() / 2, whole.blocks.len() - 2] {
-        let (mut begun, outcome) = run(stop, None);
-        assert_eq!(outcome, Ok(Ending::Stopped));
-        begun.blocks.extend(run(usize::MAX, begun.kept.take()).0.blocks);
-        assert!(begun.blocks == whole.blocks, "stopped after {stop}");
-    }
-}
-
 #[test]
 fn a_stopped_mix_goes_on_with_the_same_bits() {
-    stops_and_goes_on(
+    let (_, graph) = parts(
         "train back : heavy { direction = both }
 traffic { trains = [ore: 70 %, back: 30 %], total = 80 axles }
 solve { law = bed, elements_per_bay = 2, time_step = 2e-4 s }
 record { at = -3 sleepers, after = [0, 40, 80] axles, quantities = contact_force }",
     );
+    stops_and_goes_on(&graph, "a mix");
 }
 
 #[test]
@@ -343,7 +302,8 @@ record {{ at = -3 sleepers, after = [0, 60, 120] axles, quantities = contact_for
     // both laws begin afresh, and both stand in their table before and after
     let counts: Vec<u64> = some.laws.iter().map(|count| count.axles).collect();
     assert_eq!(counts.iter().filter(|axles| **axles == 60).count(), 2);
-    stops_and_goes_on(&scene("tamping spring { after = [24, 60] axles, over = -8 .. -1 sleepers, left = 10 % }"));
+    let (_, graph) = parts(&scene("tamping spring { after = [24, 60] axles, over = -8 .. -1 sleepers, left = 10 % }"));
+    stops_and_goes_on(&graph, "a tamped track");
 }
 
 #[test]

@@ -1,14 +1,18 @@
 //! The update interval: what a block of axles may be worth, what becomes of one that is too long, and that nothing of a run
 //! hangs on where it stopped or on how many threads it had.
 
-use std::ops::ControlFlow;
 use trackbed::check::NoModules;
-use trackbed::execute::{self, Checkpoint, Ending, Event, Executor, Listener};
+use trackbed::execute;
 use trackbed::graph::{Block, Graph, Schedule};
 use trackbed::results::{BlockRow, RunRecorder};
 use trackbed::scenario::Scenario;
 use trackbed::solvers::track::Direction;
 use trackbed::{Compiled, compile};
+
+mod common {
+    pub mod stopping;
+}
+use common::stopping::stops_and_goes_on;
 
 /// A transition zone that runs in a moment.
 const SCENE: &str = r#"
@@ -170,34 +174,6 @@ fn a_calm_run_overshoots_nowhere() {
     assert!(blocks.iter().any(|b| b.error_m > 0.0), "what a block errs is estimated for every policy");
 }
 
-/// Stops a run after some blocks, and keeps what it would take to go on.
-struct Stopping {
-    left: usize,
-    kept: Option<Checkpoint>,
-    blocks: Vec<(u64, Vec<u64>)>,
-}
-
-impl Listener for Stopping {
-    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
-        match event {
-            Event::Block { axles, after, .. } => {
-                self.blocks.push((*axles, after.iter().map(|s| s.to_bits()).collect()));
-            }
-            Event::Between(between) => {
-                let text = serde_json::to_string(&between.checkpoint().unwrap()).unwrap();
-                self.kept = Some(serde_json::from_str(&text).unwrap());
-                self.left -= 1;
-                if self.left == 0 {
-                    return ControlFlow::Break(());
-                }
-            }
-            Event::Progress { done, all } => assert!(done <= all),
-            _ => {}
-        }
-        ControlFlow::Continue(())
-    }
-}
-
 #[test]
 fn a_stopped_run_goes_on_with_the_same_bits() {
     for (blocks, direction) in [("adaptive", "both"), ("adaptive", "forward"), ("32 axles", "backward")] {
@@ -211,19 +187,7 @@ fn a_stopped_run_goes_on_with_the_same_bits() {
             ("total = 256", "total = 128"),
             ("[0, 100, 256]", "[0, 64, 128]"),
         ]));
-        let run = |left: usize, from: Option<Checkpoint>| {
-            let mut recorder = Stopping { left, kept: None, blocks: Vec::new() };
-            let outcome = Executor::default().run(&graph, &mut recorder, from);
-            (recorder, outcome)
-        };
-        let (whole, outcome) = run(usize::MAX, None);
-        assert_eq!(outcome, Ok(Ending::Finished));
-        for stop in [1, whole.blocks.len() / 2, whole.blocks.len() - 2] {
-            let (mut begun, outcome) = run(stop, None);
-            assert_eq!(outcome, Ok(Ending::Stopped));
-            begun.blocks.extend(run(usize::MAX, begun.kept.take()).0.blocks);
-            assert_eq!(begun.blocks, whole.blocks, "{blocks}, stopped after {stop}");
-        }
+        stops_and_goes_on(&graph, blocks);
     }
 }
 
