@@ -71,7 +71,7 @@ fn with_track(track_record: &Record, eval: &mut Evaluator<'_>) -> (Option<Scenar
     let traffic = traffic_record.as_ref().and_then(|record| traffic(record, places, &mut eval.findings));
     let (traffic, counted) = traffic.unzip();
     let counted = counted.as_ref();
-    let loads = load_records.iter().map(|record| loads(record, places, asked, &mut eval.files, &mut eval.findings));
+    let loads = load_records.iter().map(|record| loads(record, places, &mut eval.files, &mut eval.findings));
     let loads: Vec<Option<Vec<RigLoad>>> = loads.collect();
     let solve = solve(&solve_record, places, &mut eval.findings);
     if let Some(solve) = &solve {

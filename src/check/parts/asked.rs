@@ -35,8 +35,9 @@ impl Asked {
         let layers_do = tier.has_grains() || by_layers;
         let on = |load: &Record, words: &[&str]| load.word("on").is_some_and(|word| words.contains(&word));
         let under_load = !loads.is_empty() && loads.iter().all(|load| on(load, &["sleepers", "bed"]));
-        let rig = layers_do && !traffic && under_load;
-        let plate = rig && loads.iter().all(|load| on(load, &["bed"]));
+        let all_on_bed = !loads.is_empty() && loads.iter().all(|load| on(load, &["bed"]));
+        let rig = !traffic && under_load && (layers_do || all_on_bed);
+        let plate = rig && all_on_bed;
         Asked { layers_do, rig, plate, traffic }
     }
 }

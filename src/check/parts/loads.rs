@@ -1,6 +1,5 @@
 //! Test loads: where they act, and with which force.
 
-use super::asked::Asked;
 use super::force::force_history;
 use super::given::given;
 use crate::check::evaluate::number::Number;
@@ -16,7 +15,6 @@ use crate::scenario::{Force, Given, RigLoad, Target, Wave};
 pub fn loads(
     record: &Record,
     places: Option<&Places>,
-    asked: Asked,
     files: &mut Files<'_>,
     findings: &mut Findings,
 ) -> Option<Vec<RigLoad>> {
@@ -25,20 +23,6 @@ pub fn loads(
         "bed" => Target::Bed,
         _ => Target::Sleepers,
     };
-    if on == Target::Bed && !asked.rig {
-        let message = "a plate presses on a bed of grains, and nothing of this scene asks for one";
-        let help = "write `solve { substructure = full }`, with layers of grains and without trains";
-        findings.report(Diagnostic::new(Code::E0611, message).label(record.get("on")?.span, "no bed").help(help));
-        return None;
-    }
-    let sided = ["confinement", "strain"].into_iter().find_map(|field| Some((field, record.get(field)?.span)));
-    if let Some((field, span)) = sided.filter(|_| on != Target::Bed) {
-        let message =
-            format!("`{field}` is of a specimen under a plate, and this load acts on the {}", record.word("on")?);
-        findings
-            .report(Diagnostic::new(Code::E0611, message).label(span, "").help("write `on = bed`, or leave it out"));
-        return None;
-    }
     let force = match given(record, "strain") {
         Some(strain) => Force::Strain(strain),
         None => acting_force(record, on, files, findings)?,

@@ -25,6 +25,9 @@ impl Tier for Equilibrium {
         let Some(Loading::Static(loads)) = &draft.scenario.loading else {
             return Err("no constant loads act on the track".into());
         };
+        if loads.iter().any(|load| load.on == Target::Bed) {
+            return Err("a plate presses on a bed of grains".into());
+        }
         if !draft.is_sprung() {
             return Err("rails, pads or supports of known stiffness are missing".into());
         }

@@ -6,6 +6,7 @@
 mod equilibrium;
 mod grains;
 mod law;
+mod loads;
 mod rig;
 mod waiting;
 
@@ -89,12 +90,15 @@ impl Pass for ChooseTier<'_> {
             b.runs.cmp(&a.runs).then(seconds(a).total_cmp(&seconds(b)))
         });
         let mut offers = offers.into_iter();
-        let Some((name, taken)) = offers.next() else {
-            draft.diagnostics.extend(waiting::refusal(draft.scenario));
+        let Some((name, mut taken)) = offers.next() else {
+            let refused = loads::refusals(draft.scenario, None);
+            let waits = if refused.is_empty() { waiting::refusal(draft.scenario) } else { None };
+            draft.diagnostics.extend(refused.into_iter().chain(waits));
             return;
         };
         rejected.extend(offers.map(|(name, proposal)| dearer(name, &proposal)));
         draft.tier = Some(name);
+        taken.refusals.extend(loads::refusals(draft.scenario, Some(&taken.schedule)));
         take(draft, taken, rejected);
     }
 }

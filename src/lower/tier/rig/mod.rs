@@ -131,7 +131,7 @@ fn has_grains(section: &Section) -> bool {
 }
 
 /// All loads, those that stay as they are among them.
-fn loads(scenario: &Scenario) -> Vec<RigLoad> {
+pub(super) fn loads(scenario: &Scenario) -> Vec<RigLoad> {
     match &scenario.loading {
         Some(Loading::Rig(loads)) => loads.clone(),
         Some(Loading::Static(loads)) => loads

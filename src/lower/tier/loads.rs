@@ -1,0 +1,34 @@
+//! Test loads that the chosen plan cannot bear: a plate without a bed, and sides that give way where no plate is.
+
+use super::rig;
+use crate::diag::{Code, Diagnostic};
+use crate::graph::Schedule;
+use crate::scenario::{Force, RigLoad, Scenario, Target};
+
+/// What stands against the loads of a scene under a schedule; under none where no tier has a plan.
+pub(super) fn refusals(scenario: &Scenario, schedule: Option<&Schedule>) -> Vec<Diagnostic> {
+    let loads = rig::loads(scenario);
+    let has_bed = matches!(schedule, Some(Schedule::Actuators(_) | Schedule::Custom { .. }));
+    let on_bed = loads.iter().find(|load| load.on == Target::Bed && !has_bed);
+    on_bed.map(no_bed).into_iter().chain(loads.iter().find_map(sides)).collect()
+}
+
+fn no_bed(load: &RigLoad) -> Diagnostic {
+    let message = format!("plate `{}` presses on a bed of grains, and nothing of this scene asks for one", load.name);
+    let help = "write `solve { substructure = full }`, with layers of grains, without rails and without trains";
+    Diagnostic::new(Code::E0611, message).label(load.span, "no bed").help(help)
+}
+
+/// Confinement and strain of a load that no plate brings.
+fn sides(load: &RigLoad) -> Option<Diagnostic> {
+    let acts_on = match load.on {
+        Target::Rail => "rail",
+        Target::Sleepers => "sleepers",
+        Target::Bed => return None,
+    };
+    let strain = if let Force::Strain(strain) = &load.force { Some(("strain", strain)) } else { None };
+    let (field, stated) = load.confinement.as_ref().map(|given| ("confinement", given)).or(strain)?;
+    let message = format!("`{field}` is of a specimen under a plate, and this load acts on the {acts_on}");
+    let refused = Diagnostic::new(Code::E0611, message).help("write `on = bed`, or leave it out");
+    Some(refused.label(stated.origin.span().unwrap_or(load.span), ""))
+}
