@@ -80,10 +80,10 @@ fn propose(draft: &Draft<'_>, what: &str, length: f64) -> Result<Proposal, Strin
     if !scenario.track.has_rails() {
         return Err("there are no rails".into());
     }
-    let beds = match beds(scenario, BedUse::Track) {
+    let (beds, unpackable) = match beds(scenario, BedUse::Track) {
         Ok(beds) if beds.is_empty() => return Err("no section has a layer of grains".into()),
-        // what cannot be packed stands against a run, and this version runs none of these plans
-        found => found.unwrap_or_default(),
+        Ok(beds) => (beds, Vec::new()),
+        Err(refusals) => (Vec::new(), refusals),
     };
     let schedule = match (&scenario.loading, &draft.blocks) {
         (Some(Loading::Traffic(_)), Some(blocks)) => Schedule::Blocks(Box::new(blocks.clone())),
@@ -108,7 +108,7 @@ fn propose(draft: &Draft<'_>, what: &str, length: f64) -> Result<Proposal, Strin
         why: "the scene asks for grains, and this version plans them without running them".into(),
         error: ExpectedError { share: None, evidence: "its error is not measured yet".into() },
         runs: false,
-        refusals: waiting::refusal(scenario).into_iter().collect(),
+        refusals: waiting::refusal(scenario).into_iter().chain(unpackable).collect(),
     })
 }
 
