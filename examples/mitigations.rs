@@ -4,7 +4,7 @@
 
 use std::error::Error;
 use trackbed::check::Folder;
-use trackbed::results::{RailRow, RunRecorder, evaluate, summarise};
+use trackbed::results::{RailRow, RunRecorder, evaluate};
 use trackbed::scenario::response::{Expression, Measure, Reduction, Response};
 use trackbed::{compile, execute};
 
@@ -150,7 +150,7 @@ fn run(scene: &str) -> Result<Effect, Box<dyn Error>> {
     let mut recorder = RunRecorder::new(&scenario, &plan);
     execute::execute(&plan, &mut recorder)?;
     let tables = &recorder.tables;
-    let scalars = summarise(&scenario, &plan.supports, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+    let scalars = recorder.scalars();
     let scalar = |name: &str| scalars.get(name).map(|s| s.value).ok_or(format!("no {name}"));
     let before: Vec<&RailRow> = tables.rail.iter().filter(|r| r.axles == 0 && r.x_m.abs() < NEAR).collect();
     let pressure = Measure { over: Some(LAST), ..Measure::new(Reduction::Max, Response::SubgradePressure) };

@@ -105,13 +105,7 @@ fn outcome(text: &str) -> Result<(), Code> {
     trackbed::execute::execute(&graph, &mut recorder)
         .map_err(|error| trackbed::results::diagnose(&error, &graph, &compiled.origins).code)?;
     let (tables, histories) = (&recorder.tables, recorder.all_histories());
-    let scalars = trackbed::results::summarise(
-        &scenario,
-        &graph.supports,
-        &tables.sleepers,
-        &tables.blocks,
-        recorder.rail_maxima(),
-    );
+    let scalars = recorder.scalars();
     let view = tables.view(&histories, &scalars, &scenario.track, &graph.supports);
     if trackbed::results::BlockRow::overshoot(&tables.blocks).is_some() {
         return Err(Code::E0807);

@@ -71,8 +71,7 @@ fn a_run_answers_every_reduction_and_function() {
     let mut recorder = RunRecorder::new(&scenario, &plan);
     execute::execute(&plan, &mut recorder).unwrap();
     let (tables, histories) = (&recorder.tables, recorder.all_histories());
-    let scalars =
-        results::summarise(&scenario, &plan.supports, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+    let scalars = recorder.scalars();
     let view = tables.view(&histories, &scalars, &scenario.track, &plan.supports);
     for verdict in results::verdicts(&scenario, view) {
         assert!(verdict.met, "{}: {:?} {:?}", verdict.text, verdict.values, verdict.problem);

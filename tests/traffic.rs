@@ -254,6 +254,28 @@ fn a_mix_that_is_none_is_refused() {
 }
 
 #[test]
+fn each_train_is_held_against_its_own_static_load() {
+    let (scenario, graph) = parts(&traffic("trains = [ore: 50 %, heavy: 50 %]", "bed"));
+    let mut recorder = RunRecorder::new(&scenario, &graph);
+    execute::execute(&graph, &mut recorder).unwrap();
+    let last: Vec<_> = recorder.tables.trains.iter().filter(|row| row.axles == 120).collect();
+    assert_eq!(last.iter().map(|row| row.train.as_str()).collect::<Vec<_>>(), ["ore", "heavy"]);
+    for (row, tonnes) in last.iter().zip([20.0, 30.0]) {
+        // half an axle's load; ore wagons of the library are named by their axle load
+        assert!((row.static_wheel_load_N / (tonnes * 0.5e3 * 9.81) - 1.0).abs() < 0.03, "{row:?}");
+        assert_eq!(row.dynamic_amplification, row.max_wheel_force_N / row.static_wheel_load_N);
+        assert_eq!(row.wheel_unloading, 1.0 - row.min_wheel_force_N / row.static_wheel_load_N);
+    }
+    let scalars = recorder.scalars();
+    let worst = |of: fn(&trackbed::results::TrainRow) -> f64| last.iter().map(|row| of(row)).fold(0.0, f64::max);
+    assert_eq!(scalars["dynamic_amplification"].value, worst(|row| row.dynamic_amplification));
+    assert_eq!(scalars["wheel_unloading"].value, worst(|row| row.wheel_unloading));
+    // the light train's least force is no sign that the heavy train loses a third of its load
+    let mistaken = 1.0 - scalars["min_wheel_force"].value / last[1].static_wheel_load_N;
+    assert!(mistaken > 0.3 && scalars["wheel_unloading"].value < 0.2, "{mistaken}: {scalars:?}");
+}
+
+#[test]
 fn a_stopped_mix_goes_on_with_the_same_bits() {
     let (_, graph) = parts(
         "train back : heavy { direction = both }

@@ -252,13 +252,14 @@ fn summary(run: &Run, page: &Path, seconds: f64) {
 /// A scalar, how it is called, its unit, and that unit in SI.
 type Line = (&'static str, &'static str, &'static str, f64);
 
-const OF_TRACKS: [Line; 9] = [
+const OF_TRACKS: [Line; 10] = [
     ("max_settlement", "largest settlement", "mm", 1e-3),
     ("max_settlement_x", "  at", "m", 1.0),
     ("far_field_settlement", "far-field settlement", "mm", 1e-3),
     ("voided_sleepers", "voided sleepers", "", 1.0),
     ("max_wheel_force", "largest wheel force", "kN", 1e3),
     ("dynamic_amplification", "dynamic amplification", "", 1.0),
+    ("wheel_unloading", "wheel load missing", "%", 0.01),
     ("max_rail_seat_load", "largest rail seat load", "kN", 1e3),
     ("max_rail_moment", "largest rail moment", "kN m", 1e3),
     ("max_rail_displacement", "largest rail displacement", "mm", 1e-3),

@@ -44,6 +44,12 @@ impl Train {
         self.mass() / self.axles() as f64
     }
 
+    /// Static force of every wheel, N, the leading one first: those of a vehicle carry alike.
+    pub fn static_wheel_loads(&self, gravity: f64) -> impl Iterator<Item = f64> + '_ {
+        let load = move |vehicle: &Vehicle| vehicle.mass() * gravity / AXLES as f64;
+        self.vehicles.iter().flat_map(move |(vehicle, _)| std::iter::repeat_n(load(vehicle), AXLES as usize))
+    }
+
     /// Distance from the first to the last wheel, m.
     pub fn wheel_base(&self) -> f64 {
         self.vehicles.last().map_or(0.0, |(vehicle, offset)| offset + vehicle.wheel_offsets()[3])

@@ -59,6 +59,10 @@ pub struct PassageOutcome {
     /// N.
     pub max_wheel_force: f64,
     pub min_wheel_force: f64,
+    /// Largest force of any wheel over the static force of this wheel, and the largest share of its static force that a wheel lacks;
+    /// `None` without gravity.
+    pub amplification: Option<f64>,
+    pub unloading: Option<f64>,
     /// Sagging, at rail nodes, N m.
     pub max_rail_moment: f64,
     /// Smallest and largest sagging moment of every rail node, N m.

@@ -82,11 +82,14 @@ impl<'a> TrackSystem<'a> {
         let (mut outcomes, mut peaks) = at_seats(&envelope, settlement.len());
         self.complete(plan.passed(train), &mut outcomes, &mut peaks);
         let largest = |range: &[(f64, f64)]| range.iter().map(|r| r.1).fold(f64::NEG_INFINITY, f64::max);
+        let shares = shares_of_static(train, self.node.gravity, &envelope.wheel_forces);
         let outcome = PassageOutcome {
             seats: outcomes,
             peaks,
             max_wheel_force: largest(&envelope.wheel_forces),
             min_wheel_force: envelope.wheel_forces.iter().map(|r| r.0).fold(f64::INFINITY, f64::min),
+            amplification: shares.map(|(_, most)| most),
+            unloading: shares.map(|(least, _)| 1.0 - least),
             max_rail_moment: largest(&envelope.rail_moments),
             rail_moments: envelope.rail_moments,
             rail_displacements: envelope.rail_displacements,
@@ -186,4 +189,15 @@ impl Superstructure for TrackSystem<'_> {
     fn passage(&self, request: Request<'_>) -> Result<(Unloaded, PassageOutcome), NodeError> {
         self.run(request)
     }
+}
+
+/// The least and the largest force of any wheel over its static force; `None` without gravity. Forces are of wheel after wheel.
+fn shares_of_static(train: &Train, gravity: f64, forces: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let loads = train.static_wheel_loads(gravity);
+    let shares = forces
+        .iter()
+        .zip(loads)
+        .filter(|(_, load)| *load > 0.0)
+        .map(|((least, most), load)| (least / load, most / load));
+    shares.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
 }

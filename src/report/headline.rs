@@ -3,7 +3,7 @@
 use super::limits;
 use super::number::{plain, shown_unit, significant, whole};
 use super::svg::escape;
-use crate::results::{RailRow, Run, SleeperRow, mean_wheel_load, static_wheel_load};
+use crate::results::{RailRow, Run, SleeperRow, TrainRow, mean_wheel_load, worst_train};
 use crate::scenario::Loading;
 use std::fmt::Write;
 
@@ -116,23 +116,29 @@ fn settlement_lines(run: &Run) -> Vec<Line> {
 fn force_lines(run: &Run) -> Vec<Line> {
     let mut lines = Vec::new();
     if let Some(force) = scalar(run, "max_wheel_force") {
-        let factor = scalar(run, "dynamic_amplification");
+        let row = worst_train(&run.trains, |row| row.max_wheel_force_N);
         lines.push(Line {
             name: "Largest wheel force",
             value: amount(force, "N"),
-            place: factor.map_or(String::new(), |f| format!("{} \u{d7} the static wheel load", significant(f, 3))),
+            place: row.map_or(String::new(), |row| times_static(run, row)),
             limit: format!("{} kN (EN 14363)", plain(limits::WHEEL_FORCE / 1e3, 3)),
             kept: Some(force <= limits::WHEEL_FORCE),
         });
+        // where another train has the largest force of its own static load
+        let amplified = worst_train(&run.trains, |row| row.dynamic_amplification);
+        if let Some(amplified) = amplified.filter(|amplified| row.is_some_and(|row| row.train != amplified.train)) {
+            let place = times_static(run, amplified);
+            lines.extend(line("Largest amplification", Some(amplified.max_wheel_force_N), "N", place));
+        }
     }
-    if let (Some(force), Some(load)) = (scalar(run, "min_wheel_force"), static_wheel_load(&run.scenario)) {
-        let unloading = 1.0 - force / load;
+    if let Some(row) = worst_train(&run.trains, |row| row.wheel_unloading) {
+        let missing = significant(100.0 * row.wheel_unloading.max(0.0), 2);
         lines.push(Line {
             name: "Least wheel force",
-            value: amount(force, "N"),
-            place: format!("{} % of the static wheel load missing", significant(100.0 * unloading.max(0.0), 2)),
+            value: amount(row.min_wheel_force_N, "N"),
+            place: format!("{missing} % of {} missing", static_load(run, row)),
             limit: format!("{} %", plain(100.0 * limits::UNLOADING, 2)),
-            kept: Some(unloading <= limits::UNLOADING),
+            kept: Some(row.wheel_unloading <= limits::UNLOADING),
         });
     }
     let load = scalar(run, "max_rail_seat_load");
@@ -147,6 +153,22 @@ fn force_lines(run: &Run) -> Vec<Line> {
         });
     }
     lines
+}
+
+/// The largest force of a train over its static load, and whose it is.
+fn times_static(run: &Run, row: &TrainRow) -> String {
+    format!("{} \u{d7} {}", significant(row.dynamic_amplification, 3), static_load(run, row))
+}
+
+/// The static wheel load of a train, which is named where several run.
+fn static_load(run: &Run, row: &TrainRow) -> String {
+    let load = amount(row.static_wheel_load_N, "N");
+    match &run.scenario.loading {
+        Some(Loading::Traffic(traffic)) if traffic.is_mixed() => {
+            format!("the static wheel load of `{}`, {load}", row.train)
+        }
+        _ => format!("the static wheel load, {load}"),
+    }
 }
 
 fn rail_lines(run: &Run) -> Vec<Line> {

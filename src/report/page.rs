@@ -128,24 +128,41 @@ pub(super) fn picture(html: &mut String, figure: &Figure) {
     );
 }
 
-/// What each of several kinds of trains does at the last count.
+/// What each kind of train does at the last count, against its own static load.
 fn trains(html: &mut String, run: &Run) {
     let Some(last) = run.trains.iter().map(|row| row.axles).max() else { return };
+    let heads = [
+        ("trains so far", ""),
+        ("Static wheel load", "kN"),
+        ("Wheel force, largest", "kN"),
+        ("over its static load", ""),
+        ("Wheel force, least", "kN"),
+        ("of its static load missing", "%"),
+        ("Rail seat load", "kN"),
+        ("Contact force", "kN"),
+        ("Rail moment", "kN m"),
+    ];
+    let heads: String = heads.iter().map(|(name, unit)| format!("<th>{name}<small>{unit}</small></th>")).collect();
     let _ = write!(
         html,
         "<section id=\"trains\"><h2>Trains</h2><p class=\"caption\">Extremes of a passage of each kind of train after {} \
-         axles. Figures of one passage are of the first; histories of all are kept.</p><div class=\"scroll\"><table><tr>\
-         <th class=\"text\">train</th><th>trains so far</th><th>Wheel force, largest<small>kN</small></th>\
-         <th>Wheel force, least<small>kN</small></th><th>Rail seat load<small>kN</small></th>\
-         <th>Contact force<small>kN</small></th><th>Rail moment<small>kN m</small></th></tr>",
+         axles, each wheel against its own static load. Figures of one passage are of the first kind; histories of all are kept.</p>\
+         <div class=\"scroll\"><table><tr><th class=\"text\">train</th>{heads}</tr>",
         whole(last)
     );
     for row in run.trains.iter().filter(|row| row.axles == last) {
         let _ = write!(html, "<tr><td class=\"text\">{}</td><td>{}</td>", escape(&row.train), whole(row.passed));
-        let forces = [row.max_wheel_force_N, row.min_wheel_force_N, row.max_rail_seat_load_N, row.max_contact_force_N];
-        for value in forces.into_iter().chain([row.max_rail_moment_N_m]) {
-            let _ = write!(html, "<td>{}</td>", significant(value / 1e3, 3));
-        }
+        let cells = [
+            row.static_wheel_load_N / 1e3,
+            row.max_wheel_force_N / 1e3,
+            row.dynamic_amplification,
+            row.min_wheel_force_N / 1e3,
+            100.0 * row.wheel_unloading,
+            row.max_rail_seat_load_N / 1e3,
+            row.max_contact_force_N / 1e3,
+            row.max_rail_moment_N_m / 1e3,
+        ];
+        cells.iter().for_each(|value| *html += &format!("<td>{}</td>", significant(*value, 3)));
         *html += "</tr>";
     }
     *html += "</table></div></section>\n";

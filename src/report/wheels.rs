@@ -7,6 +7,7 @@ use super::counts;
 use super::number::significant;
 use super::panels::{Names, panels, share_scale};
 use crate::results::{Run, static_wheel_load};
+use crate::scenario::Loading;
 use crate::scenario::Track;
 
 const HEIGHT: f64 = 250.0;
@@ -24,6 +25,10 @@ fn close_up(track: &Track) -> Option<(f64, f64)> {
 
 pub fn wheel_force(run: &Run) -> Option<Figure> {
     let counts = counts::shown(run);
+    let load = match &run.scenario.loading {
+        Some(Loading::Traffic(traffic)) => static_wheel_load(&run.scenario, &traffic.train),
+        _ => None,
+    };
     let close = close_up(&run.scenario.track);
     let mut charts: Vec<Chart> = Vec::new();
     for wheel in 1..=WHEELS {
@@ -38,7 +43,7 @@ pub fn wheel_force(run: &Run) -> Option<Figure> {
                 chart.series.push(Series::new(count.short(), &count.class, Mark::Line, points));
             }
         }
-        if let Some(load) = static_wheel_load(&run.scenario) {
+        if let Some(load) = load {
             chart.levels = vec![(load, String::new())];
         }
         if !chart.is_empty() {
@@ -46,7 +51,7 @@ pub fn wheel_force(run: &Run) -> Option<Figure> {
         }
     }
     share_scale(charts.iter_mut(), HEIGHT - 90.0);
-    let load = static_wheel_load(&run.scenario).map_or(String::new(), |f| format!(", {} kN", significant(f / 1e3, 3)));
+    let load = load.map_or(String::new(), |f| format!(", {} kN", significant(f / 1e3, 3)));
     let place = if close.is_some() { " around the first transition" } else { "" };
     let caption = format!(
         "Force of each wheel of the leading vehicle on one rail, where the wheel stands{place}; dotted the static load{load}; the \

@@ -185,6 +185,23 @@ fn disturbance(x: f64, axles: u64) -> f64 {
     decay * (0.15 + 0.85 * progress(axles)) * (2.1 * x).sin()
 }
 
+/// What a wagon of 98.1 kN a wheel does whose largest wheel force is this one, N.
+fn train_row(axles: u64, largest: f64) -> TrainRow {
+    TrainRow {
+        axles,
+        train: "ore".into(),
+        passed: axles / 4,
+        static_wheel_load_N: 98.1e3,
+        max_wheel_force_N: largest,
+        min_wheel_force_N: 2.0 * 98.1e3 - largest,
+        max_rail_seat_load_N: 0.42 * largest,
+        max_contact_force_N: 0.4 * largest,
+        max_rail_moment_N_m: 21.3e3,
+        dynamic_amplification: largest / 98.1e3,
+        wheel_unloading: largest / 98.1e3 - 1.0,
+    }
+}
+
 fn filled(scenario: Scenario) -> Run {
     let (mut sleepers, mut histories, mut blocks, mut rail) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for axles in COUNTS {
@@ -400,7 +417,9 @@ fn finished(
     histories: Vec<HistoryRow>,
     rail: RailMaxima,
 ) -> Run {
-    let scalars = summarise(&scenario, &[], &sleepers, &blocks, rail);
+    let trains: Vec<TrainRow> =
+        blocks.last().map(|block| train_row(block.axles, block.max_wheel_force_N)).into_iter().collect();
+    let scalars = summarise(&scenario, &[], &sleepers, &blocks, &trains, rail);
     let tables = Tables {
         sleepers: SleeperTable::Axles(&sleepers),
         blocks: &blocks,
@@ -428,7 +447,7 @@ fn finished(
         blocks,
         laws: vec![],
         rail: vec![],
-        trains: vec![],
+        trains,
         tampings: vec![],
         histories,
         tests: None,

@@ -1,6 +1,6 @@
 //! Everything that a finished run says, from its recorder.
 
-use super::{Provenance, Run, RunRecorder, Summary, TestTables, law_rows, summarise, summarise_laws, verdicts};
+use super::{Provenance, Run, RunRecorder, Summary, TestTables, law_rows, summarise_laws, verdicts};
 use crate::diag::Sources;
 use crate::graph::Graph;
 use crate::scenario::Scenario;
@@ -25,8 +25,7 @@ impl Run {
         }
         let histories = recorder.all_histories();
         let laws = law_rows(scenario, &tables.laws);
-        let mut scalars =
-            summarise(scenario, &graph.supports, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+        let mut scalars = recorder.scalars();
         scalars.extend(summarise_laws(scenario, &laws));
         let view = tables.view(&histories, &scalars, &scenario.track, &graph.supports);
         let expectations = verdicts(scenario, view);

@@ -40,7 +40,9 @@ pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};
 pub use level::{LongitudinalLevel, longitudinal_level};
 pub use recorder::{RunRecorder, RunTables};
 pub use states::remove as remove_states;
-pub use summarise::{RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise};
+pub use summarise::{
+    RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise, worst_train,
+};
 pub use summary::{Provenance, Scalar, Summary, Verdict};
 pub use tables::{BlockRow, HistoryRow, RailRow, Row, SleeperRow, TampingRow, TrainRow};
 pub use vtk::{bodies_vtk, contacts_vtk};

@@ -3,7 +3,7 @@
 
 use super::{
     BedSummary, BedTest, BedTests, BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Scalar,
-    SleeperRow, SleeperTable, Tables, TampingRow, TrainRow, bed_summary, histories,
+    SleeperRow, SleeperTable, Tables, TampingRow, TrainRow, bed_summary, histories, static_wheel_load, summarise,
 };
 use crate::execute::{Between, BlockMeasures, Checkpoint, Event, Listener};
 use crate::graph::{Block, Graph, Runner, SupportNode, TrackNode};
@@ -154,7 +154,13 @@ impl<'a> RunRecorder<'a> {
         self.histories.iter().chain(&self.tables.settlements).cloned().collect()
     }
 
-    pub fn rail_maxima(&self) -> RailMaxima {
+    /// The scalars that its tables allow.
+    pub fn scalars(&self) -> BTreeMap<String, Scalar> {
+        let RunTables { sleepers, blocks, trains, .. } = &self.tables;
+        summarise(self.scenario, self.supports, sleepers, blocks, trains, self.rail_maxima())
+    }
+
+    fn rail_maxima(&self) -> RailMaxima {
         RailMaxima {
             moment: self.tables.max_rail_moment,
             displacement: self.tables.max_rail_displacement,
@@ -262,20 +268,24 @@ impl<'a> RunRecorder<'a> {
         self.tables.max_foot_stress = self.tables.max_foot_stress.into_iter().chain(stress).reduce(f64::max);
     }
 
-    /// The passage of one of several kinds of trains.
+    /// The passage of a kind of train.
     fn keep_train(&mut self, axles: u64, runner: Runner, passage: &PassageOutcome) {
-        let Some(traffic) = self.traffic().filter(|traffic| traffic.is_mixed()) else { return };
+        let Some(traffic) = self.traffic() else { return };
+        let Some(train) = traffic.trains().nth(runner.kind) else { return };
         let sequence = traffic.sequence();
         let largest = |of: fn(&SeatOutcome) -> f64| passage.seats.iter().map(of).fold(0.0, f64::max);
         self.tables.trains.push(TrainRow {
             axles,
-            train: self.train_name(runner),
+            train: train.name.clone(),
             passed: sequence.counts(sequence.within(axles))[runner.kind],
+            static_wheel_load_N: static_wheel_load(self.scenario, train).unwrap_or(0.0),
             max_wheel_force_N: passage.max_wheel_force,
             min_wheel_force_N: passage.min_wheel_force,
             max_rail_seat_load_N: largest(|seat| seat.max_rail_seat_load),
             max_contact_force_N: largest(|seat| seat.max_contact_force),
             max_rail_moment_N_m: passage.max_rail_moment,
+            dynamic_amplification: passage.amplification.unwrap_or(0.0),
+            wheel_unloading: passage.unloading.unwrap_or(0.0),
         });
     }
 

@@ -1,7 +1,7 @@
 //! The scalars of `summary.json`, from the tables: every extreme is that after the last axle count.
 
 use super::evaluate::subgrade_pressures;
-use super::{BlockRow, LongitudinalLevel, RailRow, Scalar, SleeperRow, longitudinal_level};
+use super::{BlockRow, LongitudinalLevel, RailRow, Scalar, SleeperRow, TrainRow, longitudinal_level};
 use crate::graph::SupportNode;
 use crate::scenario::{Loading, Scenario, Seat, Train, Vehicle};
 use std::collections::{BTreeMap, HashMap};
@@ -48,6 +48,7 @@ pub fn summarise(
     supports: &[SupportNode],
     sleepers: &[SleeperRow],
     blocks: &[BlockRow],
+    trains: &[TrainRow],
     rail: RailMaxima,
 ) -> BTreeMap<String, Scalar> {
     let axles = last_count(sleepers, blocks);
@@ -97,27 +98,24 @@ pub fn summarise(
         put("overshot_blocks", Some(blocks.iter().map(|b| b.overshot).sum::<u64>() as f64), "1");
         put("max_wheel_force", Some(block.max_wheel_force_N), "N");
         put("min_wheel_force", Some(block.min_wheel_force_N), "N");
-        let amplification = heaviest_wheel_load(scenario).map(|load| block.max_wheel_force_N / load);
-        put("dynamic_amplification", amplification, "1");
+        let worst = |measure: fn(&TrainRow) -> f64| worst_train(trains, measure).map(measure);
+        put("dynamic_amplification", worst(|row| row.dynamic_amplification), "1");
+        put("wheel_unloading", worst(|row| row.wheel_unloading), "1");
     }
     scalars
 }
 
-/// The static load of the wheels of the leading train's heaviest vehicle, N; `None` without traffic or without gravity.
-pub fn static_wheel_load(scenario: &Scenario) -> Option<f64> {
-    let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
-    wheel_load(scenario, &traffic.train)
-}
-
-/// The same of the heaviest vehicle of all trains.
-fn heaviest_wheel_load(scenario: &Scenario) -> Option<f64> {
-    let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
-    largest(traffic.trains().filter_map(|train| wheel_load(scenario, train)))
-}
-
-fn wheel_load(scenario: &Scenario, train: &Train) -> Option<f64> {
+/// The static force of a wheel of the train's heaviest vehicle, N; `None` without gravity.
+pub fn static_wheel_load(scenario: &Scenario, train: &Train) -> Option<f64> {
     let loads = train.vehicles.iter().map(|v| v.mass() * *scenario.solve.gravity / Vehicle::AXLES as f64);
     largest(loads).filter(|load| *load > 0.0)
+}
+
+/// The row of the last count whose train does worst, each against its own static load.
+pub fn worst_train(trains: &[TrainRow], measure: fn(&TrainRow) -> f64) -> Option<&TrainRow> {
+    let last = trains.iter().map(|row| row.axles).max();
+    let rows = trains.iter().filter(|row| Some(row.axles) == last && row.static_wheel_load_N > 0.0);
+    rows.max_by(|a, b| measure(a).total_cmp(&measure(b)))
 }
 
 /// The load under which the stiffness at rail level is taken, N; `None` without traffic or without gravity.
@@ -185,7 +183,7 @@ mod tests {
     #[test]
     fn the_example_has_the_scalars_of_its_making() {
         let run = example::transition();
-        let scalars = summarise(&run.scenario, &[], &run.sleepers, &run.blocks, RailMaxima::default());
+        let scalars = summarise(&run.scenario, &[], &run.sleepers, &run.blocks, &run.trains, RailMaxima::default());
         let value = |name: &str| scalars[name].value;
         assert_eq!(value("axles"), 500.0);
         assert!((value("far_field_settlement") - 1.2e-3).abs() < 1e-9);
@@ -200,7 +198,7 @@ mod tests {
     fn a_short_track_takes_its_far_half() {
         let mut run = example::transition();
         run.scenario.track.seats.retain(|seat| seat.x > -2.5);
-        let scalars = summarise(&run.scenario, &[], &run.sleepers, &run.blocks, RailMaxima::default());
+        let scalars = summarise(&run.scenario, &[], &run.sleepers, &run.blocks, &run.trains, RailMaxima::default());
         // seats at -2.4, -1.8, -1.2 and -0.6: the far half is the first two
         let at = |x: f64| run.sleepers.iter().rfind(|r| (r.x_m - x).abs() < 1e-6).unwrap().settlement_m;
         assert!((scalars["far_field_settlement"].value - (at(-2.4) + at(-1.8)) / 2.0).abs() < 1e-12);

@@ -83,8 +83,7 @@ impl Row for RailRow {
     ];
 }
 
-/// One kind of train at one recorded axle count (`trains.csv`, where several share the track): extremes of its passage over the
-/// track as it lies then.
+/// One kind of train at one recorded axle count (`trains.csv`): extremes of its passage over the track as it lies then.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case)]
 pub struct TrainRow {
@@ -92,11 +91,17 @@ pub struct TrainRow {
     pub train: String,
     /// Trains of its kind that have passed.
     pub passed: u64,
+    /// Static force of a wheel of its heaviest vehicle; 0 without gravity.
+    pub static_wheel_load_N: f64,
     pub max_wheel_force_N: f64,
     pub min_wheel_force_N: f64,
     pub max_rail_seat_load_N: f64,
     pub max_contact_force_N: f64,
     pub max_rail_moment_N_m: f64,
+    /// Largest force of any wheel over the static force of this wheel, and the largest share of its static force that a wheel lacks;
+    /// 0 without gravity.
+    pub dynamic_amplification: f64,
+    pub wheel_unloading: f64,
 }
 
 impl Row for TrainRow {
@@ -105,11 +110,14 @@ impl Row for TrainRow {
         "axles",
         "train",
         "passed",
+        "static_wheel_load_N",
         "max_wheel_force_N",
         "min_wheel_force_N",
         "max_rail_seat_load_N",
         "max_contact_force_N",
         "max_rail_moment_N_m",
+        "dynamic_amplification",
+        "wheel_unloading",
     ];
 }
 

@@ -75,8 +75,7 @@ fn run(
         return answered(own, TestTables::new(tests).view(&scenario.track));
     }
     let histories = recorder.all_histories();
-    let scalars =
-        results::summarise(scenario, &graph.supports, &tables.sleepers, &tables.blocks, recorder.rail_maxima());
+    let scalars = recorder.scalars();
     answered(own, tables.view(&histories, &scalars, &scenario.track, &graph.supports))
 }
 
