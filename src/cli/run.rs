@@ -252,7 +252,10 @@ fn summary(run: &Run, page: &Path, seconds: f64) {
 /// A scalar, how it is called, its unit, and that unit in SI.
 type Line = (&'static str, &'static str, &'static str, f64);
 
-const OF_TRACKS: [Line; 10] = [
+const OF_TRACKS: [Line; 13] = [
+    ("settlement_step", "step at the structure", "mm", 1e-3),
+    ("level_change_wheelbase", "level change, wheelbase", "mm", 1e-3),
+    ("level_change_3m", "level change over 3 m", "mm", 1e-3),
     ("max_settlement", "largest settlement", "mm", 1e-3),
     ("max_settlement_x", "  at", "m", 1.0),
     ("far_field_settlement", "far-field settlement", "mm", 1e-3),

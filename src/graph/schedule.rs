@@ -194,6 +194,13 @@ impl Blocks {
         self.passage.passed(&self.train)
     }
 
+    /// Chainages between which every wheel of every kind of train comes and goes.
+    pub fn passed_by_all(&self) -> std::ops::Range<f64> {
+        let kinds = (0..=self.others.len()).map(|kind| self.kind(kind));
+        let ranges = kinds.map(|(train, plan)| plan.passed(train));
+        ranges.fold(f64::NEG_INFINITY..f64::INFINITY, |all, own| all.start.max(own.start)..all.end.min(own.end))
+    }
+
     /// The direction of the passage of the leading train that shows a state of the track.
     pub fn leading_direction(&self) -> Direction {
         self.train.leading_direction()

@@ -63,8 +63,9 @@ pub struct PassageOutcome {
     /// `None` without gravity.
     pub amplification: Option<f64>,
     pub unloading: Option<f64>,
-    /// Sagging, at rail nodes, N m.
+    /// Largest sagging moment, N m, and downward displacement from the unloaded state, m, of the rail nodes that every wheel passes.
     pub max_rail_moment: f64,
+    pub max_rail_displacement: f64,
     /// Smallest and largest sagging moment of every rail node, N m.
     pub rail_moments: Vec<(f64, f64)>,
     /// Smallest and largest downward displacement of every rail node from the unloaded state, m.

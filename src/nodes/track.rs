@@ -5,7 +5,7 @@ use super::steps::{Steps, steps_of_kinds};
 use super::{
     Kept, NodeError, PassageOutcome, RailPoint, Request, SeatOutcome, Superstructure, Unloaded, UnloadedSeat, profile,
 };
-use crate::graph::{Blocks, LoadedPart, PointLoad, Record, Responses, Runner, TrackNode, Train};
+use crate::graph::{Blocks, LoadedPart, PassagePlan, PointLoad, Record, Responses, Runner, TrackNode, Train};
 use crate::solvers::settlement::Peak;
 use crate::solvers::track::{Envelope, Loads, Run, StaticState, Track, TrackError, TrackLevel, solve_static};
 use std::ops::Range;
@@ -79,27 +79,59 @@ impl<'a> TrackSystem<'a> {
         let mut force_sampler = ForceSampler::new(forces, settlement.len(), plan.time_step);
         let counters = passage.run(&mut (&mut envelope, &mut (&mut sampler, &mut force_sampler)))?;
 
-        let (mut outcomes, mut peaks) = at_seats(&envelope, settlement.len());
-        self.complete(plan.passed(train), &mut outcomes, &mut peaks);
-        let largest = |range: &[(f64, f64)]| range.iter().map(|r| r.1).fold(f64::NEG_INFINITY, f64::max);
-        let shares = shares_of_static(train, self.node.gravity, &envelope.wheel_forces);
+        let seats = self.at_seats(&envelope, plan.passed(train));
         let outcome = PassageOutcome {
-            seats: outcomes,
+            time_steps: counters.steps as u64,
+            newton_iterations: counters.iterations as u64,
+            samples: sampler.samples,
+            forces: force_sampler.taken(),
+            ..self.extremes(train, plan, track, envelope, seats)
+        };
+        self.bounded(train, &outcome)?;
+        Ok((unloaded, outcome))
+    }
+
+    /// Extremes of a passage, without what it took and what was recorded of it.
+    fn extremes(
+        &self,
+        train: &Train,
+        plan: &PassagePlan,
+        track: &Track,
+        envelope: Envelope,
+        (seats, peaks): (Vec<SeatOutcome>, Vec<Vec<Peak>>),
+    ) -> PassageOutcome {
+        let largest = |range: &[(f64, f64)]| range.iter().map(|r| r.1).fold(f64::NEG_INFINITY, f64::max);
+        let passed = plan.passed(train);
+        let over_the_way = |range: &[(f64, f64)]| {
+            let places = range.iter().zip(track.nodes());
+            let whole: Vec<(f64, f64)> = places.filter(|(_, x)| passed.contains(*x)).map(|(r, _)| *r).collect();
+            // no place of a short way is passed by every wheel
+            largest(if whole.is_empty() { range } else { &whole })
+        };
+        let shares = shares_of_static(train, self.node.gravity, &envelope.wheel_forces);
+        PassageOutcome {
+            seats,
             peaks,
             max_wheel_force: largest(&envelope.wheel_forces),
             min_wheel_force: envelope.wheel_forces.iter().map(|r| r.0).fold(f64::INFINITY, f64::min),
             amplification: shares.map(|(_, most)| most),
             unloading: shares.map(|(least, _)| 1.0 - least),
-            max_rail_moment: largest(&envelope.rail_moments),
+            max_rail_moment: over_the_way(&envelope.rail_moments),
+            max_rail_displacement: over_the_way(&envelope.rail_displacements),
             rail_moments: envelope.rail_moments,
             rail_displacements: envelope.rail_displacements,
-            time_steps: counters.steps as u64,
-            newton_iterations: counters.iterations as u64,
-            samples: sampler.samples,
-            forces: force_sampler.taken(),
-        };
-        self.bounded(train, &outcome)?;
-        Ok((unloaded, outcome))
+            time_steps: 0,
+            newton_iterations: 0,
+            samples: Vec::new(),
+            forces: None,
+        }
+    }
+
+    /// Extremes of every seat, and what each wheel does to its support at most, as if trains came from afar.
+    fn at_seats(&self, envelope: &Envelope, passed: Range<f64>) -> (Vec<SeatOutcome>, Vec<Vec<Peak>>) {
+        let (mut outcomes, mut peaks) = at_seats(envelope, self.node.seats.len());
+        self.complete(passed, &mut outcomes, &mut peaks);
+        (outcomes, peaks)
     }
 
     /// Refuses an outcome that has run away: it would settle the track by forces that no track bears.

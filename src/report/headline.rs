@@ -106,11 +106,28 @@ fn settlement_lines(run: &Run) -> Vec<Line> {
         kept: None,
     });
     let lines = [
+        line("Step at the structure", scalar(run, "settlement_step"), "m", step_place(run)),
+        line(
+            "Change of level, wheelbase",
+            scalar(run, "level_change_wheelbase"),
+            "m",
+            "of the unloaded rail".to_owned(),
+        ),
+        line("Change of level over 3 m", scalar(run, "level_change_3m"), "m", "of the unloaded rail".to_owned()),
         line("Largest settlement", scalar(run, "max_settlement"), "m", at_largest(run, |row| row.settlement_m)),
         line("Dip below the far field", scalar(run, "differential_settlement"), "m", far.unwrap_or_default()),
         voids,
     ];
     lines.into_iter().flatten().collect()
+}
+
+/// What the step says: which side lies lower, and at which transition where several have one.
+fn step_place(run: &Run) -> String {
+    let Some(step) = scalar(run, "settlement_step") else { return String::new() };
+    let lower = if step >= 0.0 { "the softer side lies lower" } else { "the stiffer side lies lower" };
+    let named = run.scenario.track.transitions.iter().map(|transition| &transition.name);
+    let of_name = |name: &&String| scalar(run, &format!("settlement_step_{name}")) == Some(step);
+    named.filter(|name| !name.is_empty()).find(of_name).map_or(lower.to_owned(), |name| format!("{lower}, at `{name}`"))
 }
 
 fn force_lines(run: &Run) -> Vec<Line> {

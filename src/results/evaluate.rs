@@ -47,12 +47,15 @@ impl<'a> SleeperTable<'a> {
         }
     }
 
-    /// The column of a response; `None` where the table has none.
-    fn column(self, response: Response) -> Option<Vec<Reading<'a>>> {
+    /// The column of a response, of the seats that every wheel passes or of those `everywhere`; `None` where the table has none.
+    fn column(self, response: Response, everywhere: bool) -> Option<Vec<Reading<'a>>> {
         Some(match self {
             SleeperTable::Axles(rows) => {
                 let column = sleeper_column(response)?;
-                rows.iter().map(|row| (row.axles, row.sleeper.as_str(), row.x_m, column(row))).collect()
+                // on a track shorter than the train no seat is passed by every wheel
+                let everywhere = everywhere || !rows.iter().any(|row| row.every_wheel_passes);
+                let whole = |row: &&SleeperRow| everywhere || row.every_wheel_passes;
+                rows.iter().filter(whole).map(|row| (row.axles, row.sleeper.as_str(), row.x_m, column(row))).collect()
             }
             SleeperTable::Cycles(rows) => {
                 let column = cycle_column(response)?;
@@ -321,11 +324,13 @@ fn values(measure: &Measure, tables: Tables<'_>) -> Result<Vec<(f64, f64)>, Stri
         Some((a, b)) => x >= a.min(b) - PLACE_TOLERANCE && x <= a.max(b) + PLACE_TOLERANCE,
         None => true,
     };
-    if let Some(column) = tables.sleepers.column(measure.response) {
+    // near the ends of the way wheels start and stop: only a span that is named reaches there
+    let everywhere = measure.over.is_some() || matches!(measure.reduction, Reduction::Misfit(_));
+    if let Some(column) = tables.sleepers.column(measure.response, everywhere) {
         return Ok(covered(column, measure, inside).map(|(_, _, x, value)| (x, value)).collect());
     }
     if matches!(measure.response, Response::ContactPressure | Response::SubgradePressure) {
-        let forces = tables.sleepers.column(Response::ContactForce).unwrap_or_default();
+        let forces = tables.sleepers.column(Response::ContactForce, everywhere).unwrap_or_default();
         let forces = covered(forces, measure, inside);
         return Ok(match measure.response {
             Response::ContactPressure => pressures_on_areas(tables.track, forces),

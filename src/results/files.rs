@@ -216,7 +216,15 @@ mod tests {
         names.sort();
         assert_eq!(
             names,
-            ["blocks.csv", "histories.parquet", "rail.csv", "scenario.json", "sleepers.csv", "summary.json"]
+            [
+                "blocks.csv",
+                "histories.parquet",
+                "rail.csv",
+                "scenario.json",
+                "sleepers.csv",
+                "summary.json",
+                "trains.csv"
+            ]
         );
         for name in names {
             assert!(fs::read(first.join(&name)).unwrap() == fs::read(second.join(&name)).unwrap(), "{name}");

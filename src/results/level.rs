@@ -56,7 +56,7 @@ pub fn longitudinal_level(profile: &[(f64, f64)]) -> Option<LongitudinalLevel> {
 }
 
 /// The profile at x, linear between its points.
-fn value_at(profile: &[(f64, f64)], x: f64) -> f64 {
+pub(super) fn value_at(profile: &[(f64, f64)], x: f64) -> f64 {
     let right = profile.partition_point(|point| point.0 < x).clamp(1, profile.len() - 1);
     let (a, b) = (profile[right - 1], profile[right]);
     if b.0 > a.0 { a.1 + (b.1 - a.1) * ((x - a.0) / (b.0 - a.0)).clamp(0.0, 1.0) } else { b.1 }

@@ -17,6 +17,7 @@ mod laws;
 mod level;
 mod recorder;
 mod states;
+mod steps;
 mod summarise;
 mod summary;
 mod tables;

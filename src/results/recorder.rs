@@ -6,7 +6,7 @@ use super::{
     SleeperRow, SleeperTable, Tables, TampingRow, TrainRow, bed_summary, histories, static_wheel_load, summarise,
 };
 use crate::execute::{Between, BlockMeasures, Checkpoint, Event, Listener};
-use crate::graph::{Block, Graph, Runner, SupportNode, TrackNode};
+use crate::graph::{Block, Blocks, Graph, Runner, SupportNode, TrackNode};
 use crate::nodes::{self, PassageOutcome, RailPoint, SeatOutcome, Tested, Unloaded};
 use crate::scenario::response::Response;
 use crate::scenario::{Loading, Scenario, Track, Traffic};
@@ -14,7 +14,7 @@ use crate::solvers::granular::Bed;
 use crate::store::{Directory, Piece};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::time::{Duration, Instant};
 
 /// The small tables of a run.
@@ -66,6 +66,8 @@ pub struct RunRecorder<'a> {
     scenario: &'a Scenario,
     track: Option<&'a TrackNode>,
     supports: &'a [SupportNode],
+    /// Chainages between which every wheel passes, m; everywhere where no train runs.
+    passed: Range<f64>,
     directory: Option<&'a Directory>,
     /// When a checkpoint is due.
     due: Option<Instant>,
@@ -95,6 +97,7 @@ impl<'a> RunRecorder<'a> {
             scenario,
             track: graph.track(),
             supports: &graph.supports,
+            passed: graph.blocks().map_or(f64::NEG_INFINITY..f64::INFINITY, Blocks::passed_by_all),
             directory: None,
             due: None,
             tables: RunTables { tests, ..RunTables::default() },
@@ -165,7 +168,7 @@ impl<'a> RunRecorder<'a> {
             moment: self.tables.max_rail_moment,
             displacement: self.tables.max_rail_displacement,
             foot_stress: self.tables.max_foot_stress,
-            ..RailMaxima::of_profile(self.scenario, &self.tables.rail)
+            ..RailMaxima::from_profile(self.scenario, &self.tables.rail, |x| self.counts(x))
         }
     }
 
@@ -207,7 +210,13 @@ impl<'a> RunRecorder<'a> {
     /// Largest tension in the rail's foot during a passage, Pa.
     fn foot_stress(&self, nodes: &[f64], passage: &PassageOutcome) -> Option<f64> {
         let stress = |(node, moment): (&f64, &(f64, f64))| Some(moment.1 / self.track().rail_at(*node)?.foot_modulus());
-        nodes.iter().zip(&passage.rail_moments).filter_map(stress).reduce(f64::max)
+        let places = nodes.iter().zip(&passage.rail_moments).filter(|(node, _)| self.counts(**node));
+        places.filter_map(stress).reduce(f64::max)
+    }
+
+    /// Whether a place counts in the extremes of a run: every wheel passes it, or none is passed so, as on a track shorter than the train.
+    fn counts(&self, x: f64) -> bool {
+        self.passed.contains(&x) || !self.track().seats.iter().any(|seat| self.passed.contains(&seat.x))
     }
 
     fn traffic(&self) -> Option<&'a Traffic> {
@@ -239,6 +248,7 @@ impl<'a> RunRecorder<'a> {
                 max_sleeper_displacement_m: outcome.max_sleeper_displacement,
                 support_stiffness_N_per_m: self.support_stiffness(index),
                 contact_loss_s: outcome.contact_loss,
+                every_wheel_passes: self.passed.contains(&seat.x),
             });
         }
     }
@@ -424,8 +434,7 @@ impl RunRecorder<'_> {
             self.keep_settlements(axles + block.axles, after);
         }
         self.tables.max_rail_moment = Some(largest(|p| p.max_rail_moment));
-        let deepest = |p: &PassageOutcome| p.rail_displacements.iter().map(|d| d.1).fold(f64::NEG_INFINITY, f64::max);
-        self.tables.max_rail_displacement = Some(largest(deepest));
+        self.tables.max_rail_displacement = Some(largest(|p| p.max_rail_displacement));
     }
 
     fn tamped(&mut self, axles: u64, seats: &[usize], before: &[f64], after: &[f64]) {
@@ -465,6 +474,7 @@ impl RunRecorder<'_> {
                 max_sleeper_displacement_m: rest.sleeper_level,
                 support_stiffness_N_per_m: self.support_stiffness(index),
                 contact_loss_s: 0.0,
+                every_wheel_passes: true,
             });
         }
         let largest = |of: fn(&RailPoint) -> f64| state.rail.iter().map(of).reduce(f64::max);

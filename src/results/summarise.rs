@@ -1,6 +1,7 @@
 //! The scalars of `summary.json`, from the tables: every extreme is that after the last axle count.
 
 use super::evaluate::subgrade_pressures;
+use super::steps::{LONG_BASE, largest_change, settlement_steps};
 use super::{BlockRow, LongitudinalLevel, RailRow, Scalar, SleeperRow, TrainRow, longitudinal_level};
 use crate::graph::SupportNode;
 use crate::scenario::{Loading, Scenario, Seat, Train, Vehicle};
@@ -21,6 +22,9 @@ pub struct RailMaxima {
     pub displacement: Option<f64>,
     /// Tension in the foot, Pa.
     pub foot_stress: Option<f64>,
+    /// Largest change of the unloaded level between two wheels of a bogie, and over 3 m, m.
+    pub change_wheelbase: Option<f64>,
+    pub change_3m: Option<f64>,
     /// Longitudinal level D1, largest from its mean and standard deviation, m: of the rail without a vehicle, and under a
     /// standing wheel.
     pub level: Option<(f64, f64)>,
@@ -28,18 +32,29 @@ pub struct RailMaxima {
 }
 
 impl RailMaxima {
-    /// What the rail's profile after the last axle count says.
-    pub fn of_profile(scenario: &Scenario, rail: &[RailRow]) -> Self {
+    /// What the rail's profile after the last axle count says, of the places that count.
+    pub fn from_profile(scenario: &Scenario, rail: &[RailRow], counts: impl Fn(f64) -> bool) -> Self {
         let last = rail.iter().map(|row| row.axles).max();
-        let rows: Vec<&RailRow> = rail.iter().filter(|row| Some(row.axles) == last).collect();
+        let rows: Vec<&RailRow> = rail.iter().filter(|row| Some(row.axles) == last && counts(row.x_m)).collect();
+        let unloaded: Vec<(f64, f64)> = rows.iter().map(|row| (row.x_m, row.level_m)).collect();
+        let change = |base: f64| largest_change(&unloaded, base);
         let level =
             |points: Vec<(f64, f64)>| longitudinal_level(&points).map(|l: LongitudinalLevel| (l.peak, l.deviation));
         RailMaxima {
-            level: level(rows.iter().map(|row| (row.x_m, row.level_m)).collect()),
+            change_wheelbase: wheelset_spacing(scenario).and_then(change),
+            change_3m: change(LONG_BASE),
+            level: level(unloaded.clone()),
             loaded_level: level(loaded_level(scenario, rows.iter().copied())),
             ..RailMaxima::default()
         }
     }
+}
+
+/// A scalar by name, where it exists, with its unit.
+type Entry = (String, Option<f64>, &'static str);
+
+fn entry(name: &str, value: Option<f64>, unit: &'static str) -> Entry {
+    (name.to_owned(), value, unit)
 }
 
 /// Computes the scalars that the tables allow; what does not exist on the scene is left out.
@@ -52,57 +67,104 @@ pub fn summarise(
     rail: RailMaxima,
 ) -> BTreeMap<String, Scalar> {
     let axles = last_count(sleepers, blocks);
+    let last = whole_rows(sleepers, axles);
+    let on_seats = [
+        entry("axles", Some(axles as f64), "1"),
+        entry("max_rail_seat_load", largest(last.iter().map(|row| row.max_rail_seat_load_N)), "N"),
+    ];
+    let entries = on_seats
+        .into_iter()
+        .chain(of_rail(rail))
+        .chain(of_ballast(scenario, supports, &last))
+        .chain(of_steps(scenario, sleepers, blocks))
+        .chain(of_blocks(blocks, trains));
+    entries.filter_map(|(name, value, unit)| Some((name, Scalar::new(value?, unit)))).collect()
+}
+
+fn of_rail(rail: RailMaxima) -> Vec<Entry> {
+    vec![
+        entry("max_rail_moment", rail.moment, "N m"),
+        entry("max_rail_displacement", rail.displacement, "m"),
+        entry("max_rail_foot_stress", rail.foot_stress, "Pa"),
+        entry("level_change_wheelbase", rail.change_wheelbase, "m"),
+        entry("level_change_3m", rail.change_3m, "m"),
+        entry("longitudinal_level_d1", rail.level.map(|l| l.0), "m"),
+        entry("longitudinal_level_d1_deviation", rail.level.map(|l| l.1), "m"),
+        entry("loaded_longitudinal_level_d1", rail.loaded_level.map(|l| l.0), "m"),
+        entry("loaded_longitudinal_level_d1_deviation", rail.loaded_level.map(|l| l.1), "m"),
+    ]
+}
+
+/// What lies under sleepers on ballast.
+fn of_ballast(scenario: &Scenario, supports: &[SupportNode], last: &[&SleeperRow]) -> Vec<Entry> {
+    let ballasted = ballasted(scenario, last);
+    if ballasted.is_empty() {
+        return Vec::new();
+    }
+    let dip = ballasted.iter().map(|(_, row)| *row).max_by(|a, b| a.settlement_m.total_cmp(&b.settlement_m));
+    let far_field = far_field(scenario, &ballasted);
+    let deepest = dip.map(|row| row.settlement_m);
+    let voided = ballasted.iter().filter(|(_, row)| row.void_m > VOID_THRESHOLD).count();
+    let pressure =
+        |(seat, row): &(&Seat, &SleeperRow)| Some(row.max_contact_force_N / scenario.track.bearing_area(seat)?);
+    let forces = ballasted.iter().map(|(_, row)| (row.axles, row.sleeper.as_str(), row.x_m, row.max_contact_force_N));
+    let deeper = subgrade_pressures(&scenario.track, supports, forces);
+    vec![
+        entry("max_settlement", deepest, "m"),
+        entry("max_settlement_x", dip.map(|row| row.x_m), "m"),
+        entry("far_field_settlement", far_field, "m"),
+        entry("differential_settlement", deepest.zip(far_field).map(|(deepest, far)| deepest - far), "m"),
+        entry("max_void", largest(ballasted.iter().map(|(_, row)| row.void_m)), "m"),
+        entry("voided_sleepers", Some(voided as f64), "1"),
+        entry("max_contact_force", largest(ballasted.iter().map(|(_, row)| row.max_contact_force_N)), "N"),
+        entry("max_contact_pressure", largest(ballasted.iter().filter_map(pressure)), "Pa"),
+        entry("max_subgrade_pressure", largest(deeper.into_iter().map(|(_, pressure)| pressure)), "Pa"),
+    ]
+}
+
+/// The step at each transition that traffic has made: the largest, and each under the name of its transition. A structure at an end of
+/// the model is one though no train runs over it whole.
+fn of_steps(scenario: &Scenario, sleepers: &[SleeperRow], blocks: &[BlockRow]) -> Vec<Entry> {
+    if blocks.is_empty() {
+        return Vec::new();
+    }
+    let axles = last_count(sleepers, blocks);
+    let last = sleepers.iter().filter(|row| row.axles == axles);
+    let settlements: Vec<(f64, f64)> = last.map(|row| (row.x_m, row.settlement_m)).collect();
+    let steps = settlement_steps(&scenario.track, &settlements);
+    let largest_step = steps.iter().map(|(_, step)| *step).max_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let named = steps.iter().filter(|(name, _)| !name.is_empty());
+    let named = named.map(|(name, step)| entry(&format!("settlement_step_{name}"), Some(*step), "m"));
+    std::iter::once(entry("settlement_step", largest_step, "m")).chain(named).collect()
+}
+
+/// How the exchanges went, and the wheels after the last of them.
+fn of_blocks(blocks: &[BlockRow], trains: &[TrainRow]) -> Vec<Entry> {
+    let Some(block) = blocks.last() else { return Vec::new() };
+    let worst = |measure: fn(&TrainRow) -> f64| worst_train(trains, measure).map(measure);
+    vec![
+        entry("update_error", Some(blocks.iter().map(|b| b.error_m).sum()), "m"),
+        entry("max_overshoot", largest(blocks.iter().map(|b| b.overshoot)), "1"),
+        entry("max_sawtooth", largest(blocks.iter().map(|b| b.sawtooth)), "1"),
+        entry("overshot_blocks", Some(blocks.iter().map(|b| b.overshot).sum::<u64>() as f64), "1"),
+        entry("max_wheel_force", Some(block.max_wheel_force_N), "N"),
+        entry("min_wheel_force", Some(block.min_wheel_force_N), "N"),
+        entry("dynamic_amplification", worst(|row| row.dynamic_amplification), "1"),
+        entry("wheel_unloading", worst(|row| row.wheel_unloading), "1"),
+    ]
+}
+
+/// The rows of a count that every wheel passes; all of them where none does, as on a track shorter than the train.
+fn whole_rows(sleepers: &[SleeperRow], axles: u64) -> Vec<&SleeperRow> {
     let last: Vec<&SleeperRow> = sleepers.iter().filter(|row| row.axles == axles).collect();
-    let mut scalars = BTreeMap::new();
-    let mut put = |name: &str, value: Option<f64>, unit: &str| {
-        if let Some(value) = value {
-            scalars.insert(name.to_owned(), Scalar::new(value, unit));
-        }
-    };
+    let whole: Vec<&SleeperRow> = last.iter().copied().filter(|row| row.every_wheel_passes).collect();
+    if whole.is_empty() { last } else { whole }
+}
 
-    put("axles", Some(axles as f64), "1");
-    put("max_rail_seat_load", largest(last.iter().map(|row| row.max_rail_seat_load_N)), "N");
-    put("max_rail_moment", rail.moment, "N m");
-    put("max_rail_displacement", rail.displacement, "m");
-    put("max_rail_foot_stress", rail.foot_stress, "Pa");
-    put("longitudinal_level_d1", rail.level.map(|l| l.0), "m");
-    put("longitudinal_level_d1_deviation", rail.level.map(|l| l.1), "m");
-    put("loaded_longitudinal_level_d1", rail.loaded_level.map(|l| l.0), "m");
-    put("loaded_longitudinal_level_d1_deviation", rail.loaded_level.map(|l| l.1), "m");
-
-    let ballasted = ballasted(scenario, &last);
-    if !ballasted.is_empty() {
-        let dip = ballasted.iter().map(|(_, row)| *row).max_by(|a, b| a.settlement_m.total_cmp(&b.settlement_m));
-        let far_field = far_field(scenario, &ballasted);
-        let deepest = dip.map(|row| row.settlement_m);
-        put("max_settlement", deepest, "m");
-        put("max_settlement_x", dip.map(|row| row.x_m), "m");
-        put("far_field_settlement", far_field, "m");
-        put("differential_settlement", deepest.zip(far_field).map(|(deepest, far)| deepest - far), "m");
-        put("max_void", largest(ballasted.iter().map(|(_, row)| row.void_m)), "m");
-        let voided = ballasted.iter().filter(|(_, row)| row.void_m > VOID_THRESHOLD).count();
-        put("voided_sleepers", Some(voided as f64), "1");
-        put("max_contact_force", largest(ballasted.iter().map(|(_, row)| row.max_contact_force_N)), "N");
-        let pressure =
-            |(seat, row): &(&Seat, &SleeperRow)| Some(row.max_contact_force_N / scenario.track.bearing_area(seat)?);
-        put("max_contact_pressure", largest(ballasted.iter().filter_map(pressure)), "Pa");
-        let forces =
-            ballasted.iter().map(|(_, row)| (row.axles, row.sleeper.as_str(), row.x_m, row.max_contact_force_N));
-        let deeper = subgrade_pressures(&scenario.track, supports, forces);
-        put("max_subgrade_pressure", largest(deeper.into_iter().map(|(_, pressure)| pressure)), "Pa");
-    }
-    if let Some(block) = blocks.last() {
-        put("update_error", Some(blocks.iter().map(|b| b.error_m).sum()), "m");
-        put("max_overshoot", largest(blocks.iter().map(|b| b.overshoot)), "1");
-        put("max_sawtooth", largest(blocks.iter().map(|b| b.sawtooth)), "1");
-        put("overshot_blocks", Some(blocks.iter().map(|b| b.overshot).sum::<u64>() as f64), "1");
-        put("max_wheel_force", Some(block.max_wheel_force_N), "N");
-        put("min_wheel_force", Some(block.min_wheel_force_N), "N");
-        let worst = |measure: fn(&TrainRow) -> f64| worst_train(trains, measure).map(measure);
-        put("dynamic_amplification", worst(|row| row.dynamic_amplification), "1");
-        put("wheel_unloading", worst(|row| row.wheel_unloading), "1");
-    }
-    scalars
+/// Distance of the wheelsets in a bogie of the leading vehicle, m.
+fn wheelset_spacing(scenario: &Scenario) -> Option<f64> {
+    let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
+    traffic.train.vehicles.first().map(|vehicle| vehicle.wheel_offsets()[1])
 }
 
 /// The static force of a wheel of the train's heaviest vehicle, N; `None` without gravity.

@@ -58,6 +58,12 @@ pub enum Response {
     DifferentialSettlement,
     /// Number of sleepers with a void.
     VoidedSleepers,
+    /// By how much the softer side of a transition lies below the stiffer one, m: the largest of all transitions.
+    SettlementStep,
+    /// Largest change of the unloaded level between two wheels of a bogie, m.
+    LevelChangeWheelbase,
+    /// Largest change of the unloaded level over 3 m, m.
+    LevelChange3m,
 }
 
 /// Where a response exists.
@@ -182,6 +188,9 @@ impl Response {
         Response::FarFieldSettlement,
         Response::DifferentialSettlement,
         Response::VoidedSleepers,
+        Response::SettlementStep,
+        Response::LevelChangeWheelbase,
+        Response::LevelChange3m,
     ];
 
     pub fn name(self) -> &'static str {
@@ -211,6 +220,9 @@ impl Response {
             Response::FarFieldSettlement => "far_field_settlement",
             Response::DifferentialSettlement => "differential_settlement",
             Response::VoidedSleepers => "voided_sleepers",
+            Response::SettlementStep => "settlement_step",
+            Response::LevelChangeWheelbase => "level_change_wheelbase",
+            Response::LevelChange3m => "level_change_3m",
         }
     }
 
@@ -229,7 +241,12 @@ impl Response {
             | Response::BallastStress
             | Response::Porosity
             | Response::CoordinationNumber => Place::Volume,
-            Response::FarFieldSettlement | Response::DifferentialSettlement | Response::VoidedSleepers => Place::Scene,
+            Response::FarFieldSettlement
+            | Response::DifferentialSettlement
+            | Response::VoidedSleepers
+            | Response::SettlementStep
+            | Response::LevelChangeWheelbase
+            | Response::LevelChange3m => Place::Scene,
             _ => Place::Seat,
         }
     }
