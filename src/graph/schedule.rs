@@ -194,11 +194,10 @@ impl Blocks {
         self.passage.passed(&self.train)
     }
 
-    /// Chainages between which every wheel of every kind of train comes and goes.
-    pub fn passed_by_all(&self) -> std::ops::Range<f64> {
+    /// Chainages between which every wheel of a train comes and goes, for each kind of train.
+    pub fn passed_by_kind(&self) -> Vec<std::ops::Range<f64>> {
         let kinds = (0..=self.others.len()).map(|kind| self.kind(kind));
-        let ranges = kinds.map(|(train, plan)| plan.passed(train));
-        ranges.fold(f64::NEG_INFINITY..f64::INFINITY, |all, own| all.start.max(own.start)..all.end.min(own.end))
+        kinds.map(|(train, plan)| plan.passed(train)).collect()
     }
 
     /// The direction of the passage of the leading train that shows a state of the track.

@@ -17,8 +17,8 @@ pub fn settlement(run: &Run) -> Option<Figure> {
     chart.series = per_seat(run, true, |row| row.settlement_m);
     chart.series.retain(|series| series.points.iter().any(|point| point.1.is_finite() && point.1 != 0.0));
     let caption = "Permanent settlement of each sleeper's support, downward as in the track; seats are numbered from the \
-         transition (dashed), negative on its softer side; shaded where no ballast carries the seats. Sleepers near the \
-         ends, which only some wheels of a train pass, take the mean of their neighbours.";
+         transition (dashed), negative on its softer side; shaded where no ballast carries the seats. Lighter near \
+         the ends: not every wheel of a train passes these sleepers, and they take the mean of ten neighbours.";
     figure(&chart, "settlement", "Settlement along the track", caption)
 }
 
@@ -112,18 +112,33 @@ pub fn along_profile(run: &Run, count: &Count, value: fn(&RailRow) -> f64) -> Se
     Series::new(&count.name, &count.class, Mark::Line, rows.map(|row| (row.x_m, value(row))).collect())
 }
 
-/// One series a count over the seats, of the ballasted ones only where the quantity is the ballast's.
+/// One series a count over the seats, of the ballasted ones only where the quantity is the ballast's; seats that not every train passes
+/// whole in a paler one.
 fn per_seat(run: &Run, ballasted: bool, value: fn(&SleeperRow) -> f64) -> Vec<Series> {
     let names = ballasted_names(&run.scenario);
+    let trains = match &run.scenario.loading {
+        Some(Loading::Traffic(traffic)) => traffic.trains().count(),
+        _ => 0,
+    };
     let of_count = |count: &Count| {
         let rows: Vec<&SleeperRow> = run.sleepers.iter().filter(|row| row.axles == count.axles).collect();
-        // A seat that has no such value interrupts the curve.
-        let value = |row: &SleeperRow| if ballasted && !names.contains(&row.sleeper) { f64::NAN } else { value(row) };
-        let points = rows.iter().map(|row| (row.x_m, value(row))).collect();
-        let labels = rows.iter().map(|row| row.sleeper.replace('-', "\u{2212}")).collect();
-        Series { labels, ..Series::new(&count.name, &count.class, Mark::Dots, points) }
+        let whole: Vec<bool> = rows.iter().map(|row| row.trains_passing >= trains).collect();
+        let labels: Vec<String> = rows.iter().map(|row| row.sleeper.replace('-', "\u{2212}")).collect();
+        // a seat that has no such value, or belongs to the other series, interrupts the curve
+        let series = |shown: &dyn Fn(usize) -> bool| {
+            let known = |row: &SleeperRow| !ballasted || names.contains(&row.sleeper);
+            let point =
+                |(i, row): (usize, &&SleeperRow)| (row.x_m, if known(row) && shown(i) { value(row) } else { f64::NAN });
+            let points = rows.iter().enumerate().map(point).collect();
+            Series { labels: labels.clone(), ..Series::new(&count.name, &count.class, Mark::Dots, points) }
+        };
+        // the last whole seat begins the paler curve, so that both meet
+        let beside = |i: usize| i > 0 && !whole[i - 1] || whole.get(i + 1) == Some(&false);
+        let pale = Series { pale: true, name: String::new(), ..series(&|i| !whole[i] || beside(i)) };
+        [series(&|i| whole[i]), pale]
     };
-    counts::shown(run).iter().map(of_count).collect()
+    let all = counts::shown(run).iter().flat_map(of_count).collect::<Vec<Series>>();
+    all.into_iter().filter(|series| series.points.iter().any(|point| point.1.is_finite())).collect()
 }
 
 /// Names of the seats that a settling support carries.

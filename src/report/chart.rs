@@ -71,11 +71,13 @@ pub struct Series {
     pub points: Vec<(f64, f64)>,
     /// What each point is, for those who point at it.
     pub labels: Vec<String>,
+    /// Whether it is drawn lighter: it belongs to the figure, and less is known of it.
+    pub pale: bool,
 }
 
 impl Series {
     pub fn new(name: &str, class: &str, mark: Mark, points: Vec<(f64, f64)>) -> Self {
-        Series { name: name.to_owned(), class: class.to_owned(), mark, points, labels: vec![] }
+        Series { name: name.to_owned(), class: class.to_owned(), mark, points, labels: vec![], pale: false }
     }
 }
 
@@ -190,7 +192,7 @@ impl Chart {
                 _ => svg.line(&class, (x, y - 4.0), (x + 20.0, y - 4.0)),
             }
             if series.mark == Mark::Dots {
-                draw_symbol(svg, &series.class, (x + 10.0, y - 4.0), 3.0, "");
+                draw_symbol(svg, (&series.class, ""), (x + 10.0, y - 4.0), 3.0, "");
             }
             svg.text("", (x + 25.0, y), Anchor::Start, &series.name);
             x += width(series);
@@ -334,7 +336,8 @@ impl Chart {
 }
 
 fn draw_series(svg: &mut Svg, plane: &Plane, series: &Series, chart: &Chart) {
-    let class = |kind: &str| format!("{kind} {}", series.class);
+    let pale = if series.pale { " pale" } else { "" };
+    let class = |kind: &str| format!("{kind} {}{pale}", series.class);
     if let Mark::Bars(width) = series.mark {
         for (index, point) in series.points.iter().enumerate().filter(|(_, p)| finite(p)) {
             let (left, top) = plane.point_at((point.0 - width / 2.0, point.1.max(0.0)));
@@ -357,14 +360,14 @@ fn draw_series(svg: &mut Svg, plane: &Plane, series: &Series, chart: &Chart) {
     if series.mark == Mark::Dots && series.points.len() <= 400 {
         let radius = if series.points.len() > 150 { 1.8 } else { 2.2 };
         for (index, pixel) in pixels.iter().enumerate().filter(|(_, p)| finite(p)) {
-            draw_symbol(svg, &series.class, *pixel, radius, &label(series, index, chart));
+            draw_symbol(svg, (&series.class, pale), *pixel, radius, &label(series, index, chart));
         }
     }
 }
 
 /// A symbol of its own for every colour that curves of one chart may have.
-fn draw_symbol(svg: &mut Svg, class: &str, (x, y): (f64, f64), radius: f64, title: &str) {
-    let kind = format!("dot {class}");
+fn draw_symbol(svg: &mut Svg, (class, pale): (&str, &str), (x, y): (f64, f64), radius: f64, title: &str) {
+    let kind = format!("dot {class}{pale}");
     let r = 1.25 * radius;
     match class {
         "s1" | "k2" => svg.path(&kind, &[(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)], true, title),

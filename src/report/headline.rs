@@ -82,7 +82,7 @@ fn line(name: &'static str, value: Option<f64>, unit: &str, place: String) -> Op
 fn at_largest(run: &Run, value: fn(&SleeperRow) -> f64) -> String {
     let last = run.sleepers.iter().map(|row| row.axles).max();
     let rows = run.sleepers.iter().filter(|row| Some(row.axles) == last && value(row).is_finite());
-    let row = rows.max_by(|a, b| value(a).total_cmp(&value(b)));
+    let row = SleeperRow::that_count(rows).into_iter().max_by(|a, b| value(a).total_cmp(&value(b)));
     row.map_or(String::new(), |row| format!("seat {}, {} m", row.sleeper.replace('-', "\u{2212}"), plain(row.x_m, 4)))
 }
 
@@ -127,7 +127,7 @@ fn step_place(run: &Run) -> String {
     let lower = if step >= 0.0 { "the softer side lies lower" } else { "the stiffer side lies lower" };
     let named = run.scenario.track.transitions.iter().map(|transition| &transition.name);
     let of_name = |name: &&String| scalar(run, &format!("settlement_step_{name}")) == Some(step);
-    named.filter(|name| !name.is_empty()).find(of_name).map_or(lower.to_owned(), |name| format!("{lower}, at `{name}`"))
+    named.filter(|name| !name.is_empty()).find(of_name).map_or(lower.to_owned(), |name| format!("{lower}, at {name}"))
 }
 
 fn force_lines(run: &Run) -> Vec<Line> {
@@ -153,7 +153,7 @@ fn force_lines(run: &Run) -> Vec<Line> {
         lines.push(Line {
             name: "Least wheel force",
             value: amount(row.min_wheel_force_N, "N"),
-            place: format!("{missing} % of {} missing", static_load(run, row)),
+            place: format!("{missing} % missing of {}", static_load(run, row)),
             limit: format!("{} %", plain(100.0 * limits::UNLOADING, 2)),
             kept: Some(row.wheel_unloading <= limits::UNLOADING),
         });
@@ -182,7 +182,7 @@ fn static_load(run: &Run, row: &TrainRow) -> String {
     let load = amount(row.static_wheel_load_N, "N");
     match &run.scenario.loading {
         Some(Loading::Traffic(traffic)) if traffic.is_mixed() => {
-            format!("the static wheel load of `{}`, {load}", row.train)
+            format!("the static wheel load of {}, {load}", row.train)
         }
         _ => format!("the static wheel load, {load}"),
     }

@@ -276,7 +276,7 @@ mod tests {
                     max_sleeper_displacement_m: 1e-3,
                     support_stiffness_N_per_m: 4e7,
                     contact_loss_s: 0.0,
-                    every_wheel_passes: true,
+                    trains_passing: 1,
                 });
             }
         }

@@ -47,15 +47,13 @@ impl<'a> SleeperTable<'a> {
         }
     }
 
-    /// The column of a response, of the seats that every wheel passes or of those `everywhere`; `None` where the table has none.
+    /// The column of a response, of the seats that count in extremes or of those `everywhere`; `None` where the table has none.
     fn column(self, response: Response, everywhere: bool) -> Option<Vec<Reading<'a>>> {
         Some(match self {
             SleeperTable::Axles(rows) => {
                 let column = sleeper_column(response)?;
-                // on a track shorter than the train no seat is passed by every wheel
-                let everywhere = everywhere || !rows.iter().any(|row| row.every_wheel_passes);
-                let whole = |row: &&SleeperRow| everywhere || row.every_wheel_passes;
-                rows.iter().filter(whole).map(|row| (row.axles, row.sleeper.as_str(), row.x_m, column(row))).collect()
+                let rows = if everywhere { rows.iter().collect() } else { SleeperRow::that_count(rows.iter()) };
+                rows.into_iter().map(|row| (row.axles, row.sleeper.as_str(), row.x_m, column(row))).collect()
             }
             SleeperTable::Cycles(rows) => {
                 let column = cycle_column(response)?;

@@ -223,7 +223,7 @@ fn filled(scenario: Scenario) -> Run {
                 max_sleeper_displacement_m: if seat.is_ballasted() { 0.8e-3 * (1.0 + near.abs()) } else { 0.0 },
                 support_stiffness_N_per_m: if seat.is_ballasted() { 40e6 } else { 0.0 },
                 contact_loss_s: if lifted { 0.04 } else { 0.0 },
-                every_wheel_passes: true,
+                trains_passing: 1,
             });
         }
         fill_passage(axles, &mut histories);
@@ -390,7 +390,7 @@ pub(crate) fn bench() -> Run {
         max_sleeper_displacement_m: 0.0,
         support_stiffness_N_per_m: 0.0,
         contact_loss_s: 0.0,
-        every_wheel_passes: true,
+        trains_passing: 1,
     };
     let sleepers = scenario.track.seats.iter().map(row).collect();
     let mut histories = Vec::new();

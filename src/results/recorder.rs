@@ -66,8 +66,8 @@ pub struct RunRecorder<'a> {
     scenario: &'a Scenario,
     track: Option<&'a TrackNode>,
     supports: &'a [SupportNode],
-    /// Chainages between which every wheel passes, m; everywhere where no train runs.
-    passed: Range<f64>,
+    /// Chainages between which every wheel of a train passes, m, for each kind of train.
+    passed: Vec<Range<f64>>,
     directory: Option<&'a Directory>,
     /// When a checkpoint is due.
     due: Option<Instant>,
@@ -97,7 +97,7 @@ impl<'a> RunRecorder<'a> {
             scenario,
             track: graph.track(),
             supports: &graph.supports,
-            passed: graph.blocks().map_or(f64::NEG_INFINITY..f64::INFINITY, Blocks::passed_by_all),
+            passed: graph.blocks().map(Blocks::passed_by_kind).unwrap_or_default(),
             directory: None,
             due: None,
             tables: RunTables { tests, ..RunTables::default() },
@@ -214,9 +214,15 @@ impl<'a> RunRecorder<'a> {
         places.filter_map(stress).reduce(f64::max)
     }
 
-    /// Whether a place counts in the extremes of a run: every wheel passes it, or none is passed so, as on a track shorter than the train.
+    /// Kinds of trains of which every wheel passes a place.
+    fn trains_passing(&self, x: f64) -> usize {
+        self.passed.iter().filter(|passed| passed.contains(&x)).count()
+    }
+
+    /// Whether a place counts in the extremes of a run: a train passes it whole, or none does anywhere, as on a track shorter than
+    /// the trains.
     fn counts(&self, x: f64) -> bool {
-        self.passed.contains(&x) || !self.track().seats.iter().any(|seat| self.passed.contains(&seat.x))
+        self.trains_passing(x) > 0 || !self.track().seats.iter().any(|seat| self.trains_passing(seat.x) > 0)
     }
 
     fn traffic(&self) -> Option<&'a Traffic> {
@@ -248,7 +254,7 @@ impl<'a> RunRecorder<'a> {
                 max_sleeper_displacement_m: outcome.max_sleeper_displacement,
                 support_stiffness_N_per_m: self.support_stiffness(index),
                 contact_loss_s: outcome.contact_loss,
-                every_wheel_passes: self.passed.contains(&seat.x),
+                trains_passing: self.trains_passing(seat.x),
             });
         }
     }
@@ -474,7 +480,7 @@ impl RunRecorder<'_> {
                 max_sleeper_displacement_m: rest.sleeper_level,
                 support_stiffness_N_per_m: self.support_stiffness(index),
                 contact_loss_s: 0.0,
-                every_wheel_passes: true,
+                trains_passing: 0,
             });
         }
         let largest = |of: fn(&RailPoint) -> f64| state.rail.iter().map(of).reduce(f64::max);

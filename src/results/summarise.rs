@@ -67,7 +67,7 @@ pub fn summarise(
     rail: RailMaxima,
 ) -> BTreeMap<String, Scalar> {
     let axles = last_count(sleepers, blocks);
-    let last = whole_rows(sleepers, axles);
+    let last = SleeperRow::that_count(sleepers.iter().filter(|row| row.axles == axles));
     let on_seats = [
         entry("axles", Some(axles as f64), "1"),
         entry("max_rail_seat_load", largest(last.iter().map(|row| row.max_rail_seat_load_N)), "N"),
@@ -152,13 +152,6 @@ fn of_blocks(blocks: &[BlockRow], trains: &[TrainRow]) -> Vec<Entry> {
         entry("dynamic_amplification", worst(|row| row.dynamic_amplification), "1"),
         entry("wheel_unloading", worst(|row| row.wheel_unloading), "1"),
     ]
-}
-
-/// The rows of a count that every wheel passes; all of them where none does, as on a track shorter than the train.
-fn whole_rows(sleepers: &[SleeperRow], axles: u64) -> Vec<&SleeperRow> {
-    let last: Vec<&SleeperRow> = sleepers.iter().filter(|row| row.axles == axles).collect();
-    let whole: Vec<&SleeperRow> = last.iter().copied().filter(|row| row.every_wheel_passes).collect();
-    if whole.is_empty() { last } else { whole }
 }
 
 /// Distance of the wheelsets in a bogie of the leading vehicle, m.

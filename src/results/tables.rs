@@ -28,9 +28,20 @@ pub struct SleeperRow {
     /// Stiffness of support and under sleeper pad in series.
     pub support_stiffness_N_per_m: f64,
     pub contact_loss_s: f64,
-    /// Whether every wheel of every train comes and goes over it. Near the ends of the way none does: forces, displacement and contact
-    /// loss are then the means of the nearest ten seats of the section that every wheel passes, and no extreme of the summary.
-    pub every_wheel_passes: bool,
+    /// Kinds of trains of which every wheel comes and goes over it. Near the ends of the way wheels start and stop: of a kind that does
+    /// not pass whole its forces, displacement and contact loss are the means of the nearest ten seats of the section that it passes.
+    /// A seat that no kind passes is no extreme of the summary.
+    pub trains_passing: usize,
+}
+
+impl SleeperRow {
+    /// Those of some rows that count in extremes: that a train passes whole; all of them where none does, as on a track shorter than the
+    /// trains, or in a static check.
+    pub fn that_count<'a>(rows: impl Iterator<Item = &'a SleeperRow>) -> Vec<&'a SleeperRow> {
+        let all: Vec<&SleeperRow> = rows.collect();
+        let whole: Vec<&SleeperRow> = all.iter().copied().filter(|row| row.trains_passing > 0).collect();
+        if whole.is_empty() { all } else { whole }
+    }
 }
 
 impl Row for SleeperRow {
@@ -47,7 +58,7 @@ impl Row for SleeperRow {
         "max_sleeper_displacement_m",
         "support_stiffness_N_per_m",
         "contact_loss_s",
-        "every_wheel_passes",
+        "trains_passing",
     ];
 }
 

@@ -2,6 +2,7 @@
 //! differ, or under all of the window. This version plans them and cannot run them.
 
 use super::{ExpectedError, Proposal, Tier, edges, waiting};
+use crate::diag::{Diagnostic, Severity};
 use crate::graph::{GrainsNode, Model, Node, PointLoad, Schedule, SoilLayer, SoilNode};
 use crate::lower::bed::{self, BedUse, beds};
 use crate::lower::tier::rig::cost::grains_under_track;
@@ -80,10 +81,13 @@ fn propose(draft: &Draft<'_>, what: &str, length: f64) -> Result<Proposal, Strin
     if !scenario.track.has_rails() {
         return Err("there are no rails".into());
     }
-    let (beds, unpackable) = match beds(scenario, BedUse::Track) {
+    let (beds, unpackable): (_, Vec<Diagnostic>) = match beds(scenario, BedUse::Track) {
         Ok(beds) if beds.is_empty() => return Err("no section has a layer of grains".into()),
         Ok(beds) => (beds, Vec::new()),
-        Err(refusals) => (Vec::new(), refusals),
+        // what cannot be packed stands against a run only, as E0604 does
+        Err(refusals) => {
+            (Vec::new(), refusals.into_iter().map(|refusal| refusal.severity(Severity::Warning)).collect())
+        }
     };
     let schedule = match (&scenario.loading, &draft.blocks) {
         (Some(Loading::Traffic(_)), Some(blocks)) => Schedule::Blocks(Box::new(blocks.clone())),
