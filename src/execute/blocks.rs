@@ -31,7 +31,7 @@ pub(super) fn run(
         (done, axles, control) = (blocks, count, kept);
     }
     let runs = machine.graph.track().map(settling).unwrap_or_default();
-    let mut run = Run { blocks, pair: Pair { blocks, track, ground, control, runs }, done, listener };
+    let mut run = Run { pair: Pair { blocks, track, ground, control, runs }, done, listener };
     Ok(match run.go(axles)? {
         ControlFlow::Continue(()) => Ending::Finished,
         ControlFlow::Break(()) => Ending::Stopped,
@@ -53,7 +53,6 @@ pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunErro
 
 /// A run of blocks on its way.
 struct Run<'a, 'l> {
-    blocks: &'a Blocks,
     pair: Pair<'a>,
     /// Blocks done.
     done: usize,
@@ -90,7 +89,7 @@ impl Run<'_, '_> {
         }
         loop {
             going!(self.show(&here));
-            if here.axles >= self.blocks.total {
+            if here.axles >= self.pair.blocks.total {
                 break;
             }
             here = going!(self.block(here));
@@ -115,12 +114,12 @@ impl Run<'_, '_> {
     /// Tamps what is due, lets one block pass, and arrives at its end.
     fn block(&mut self, mut here: Exchange) -> Going<Exchange> {
         let mut work = BlockMeasures::default();
-        if self.blocks.tamped_after(here.axles).next().is_some() {
+        if self.pair.blocks.tamped_after(here.axles).next().is_some() {
             work.add(&here, Work::default());
             here = going!(self.tamp(here.axles));
         }
         let revision = self.pair.ground.responses().revision;
-        let Done { block, measured, next } = match self.blocks.adaptive() {
+        let Done { block, measured, next } = match self.pair.blocks.adaptive() {
             Some((tolerance, cap)) => self.pair.adaptive(&mut here, tolerance, cap)?,
             None => self.pair.prescribed(&mut here)?,
         };
@@ -142,7 +141,7 @@ impl Run<'_, '_> {
         }))
     }
 
-    /// Tells what stands after a block of `last` axles: the settlement by each law, a checkpoint for who wants one, and how far the run is.
+    /// Ends a block of `last` axles: tells the settlement by each law, offers a checkpoint, and tells the progress.
     fn between(&mut self, axles: u64, last: u64) -> Going<()> {
         self.done += 1;
         tell!(self, Event::Laws { axles, settlement: &self.pair.ground.settlement_by_law() });
@@ -161,7 +160,7 @@ impl Run<'_, '_> {
     fn tamp(&mut self, axles: u64) -> Going<Exchange> {
         let before = self.pair.ground.settlement();
         let mut seats = Vec::new();
-        for tamping in self.blocks.tamped_after(axles) {
+        for tamping in self.pair.blocks.tamped_after(axles) {
             let tamped = self.pair.ground.tamp(&tamping.seats, tamping.left);
             tamped.map_err(|cause| RunError::node(Clock::Axles(axles), cause))?;
             seats.extend(&tamping.seats);
@@ -171,19 +170,19 @@ impl Run<'_, '_> {
         tell!(self, Event::Tamped { axles, seats: &seats, before: &before, after: &after });
         tell!(self, Event::Laws { axles, settlement: &self.pair.ground.settlement_by_law() });
         let mut exchange = Exchange::new(axles, after, Vec::new());
-        self.pair.ensure(&mut exchange, &self.blocks.block(axles, self.pair.expected(axles)).runners())?;
+        self.pair.ensure(&mut exchange, &self.pair.blocks.block(axles, self.pair.expected(axles)).runners())?;
         Ok(ControlFlow::Continue(exchange))
     }
 
     /// Blocks from an axle count to the end, as far as one can know.
     fn blocks_left(&self, axles: u64, last: u64) -> u64 {
-        let left = self.blocks.total - axles;
-        match self.blocks.update {
+        let left = self.pair.blocks.total - axles;
+        match self.pair.blocks.update {
             Update::Fixed { axles } => left.div_ceil(axles.max(1)),
             // blocks grow with the axles so far, or keep their length if that is not so
             Update::Geometric { .. } | Update::Adaptive { .. } => {
                 let growth = (last as f64 / axles as f64).min(1.0);
-                let grown = ((self.blocks.total as f64 / axles as f64).ln() / growth.ln_1p()).ceil();
+                let grown = ((self.pair.blocks.total as f64 / axles as f64).ln() / growth.ln_1p()).ceil();
                 (grown as u64).min(left.div_ceil(last))
             }
         }
