@@ -119,7 +119,13 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
         (Err(error), _) => return stop(compiled, results::diagnose(&error, graph, &compiled.origins)),
     }
     let computed = started.elapsed().as_secs_f64();
-    let run = Run::gather(&recorder, scenario, graph, &compiled.sources, fingerprint(&compiled.sources));
+    let run = Run::gather(
+        &recorder,
+        scenario,
+        graph,
+        (&compiled.sources, fingerprint(&compiled.sources)),
+        &compiled.diagnostics,
+    );
     let files = match files(&run, recorder.last_bed.take(), &arguments.out) {
         Ok(files) => files,
         Err(error) => return refused(&error),

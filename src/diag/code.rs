@@ -151,6 +151,8 @@ codes! {
     L1024 Warning "volume of few grains"
     L1025 Warning "histories sampled at another rate than they move"
     L1026 Warning "waves of the level too short for steps or elements"
+    L1040 Warning "softer side that is the stiffer one"
+    L1041 Warning "ballast on a structure under a law of force"
 }
 
 impl Code {
@@ -188,6 +190,8 @@ impl Code {
             Code::L1024 => "small_volume",
             Code::L1025 => "coarse_record",
             Code::L1026 => "wavelength",
+            Code::L1040 => "transition_sides",
+            Code::L1041 => "ballast_on_structure",
             _ => return None,
         })
     }

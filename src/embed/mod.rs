@@ -114,7 +114,13 @@ impl Scene {
             let mistake = results::diagnose(&error, graph, &compiled.origins);
             Stopped::refused(vec![mistake], &compiled.sources)
         })?;
-        Ok(Run::gather(&recorder, scenario, graph, &compiled.sources, fingerprint(&compiled.sources)))
+        Ok(Run::gather(
+            &recorder,
+            scenario,
+            graph,
+            (&compiled.sources, fingerprint(&compiled.sources)),
+            &compiled.diagnostics,
+        ))
     }
 }
 

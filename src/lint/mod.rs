@@ -3,6 +3,7 @@
 //! A rule is silenced by `scenario { allow = [rule: "reason"] }` and made an error by `deny`. A few are silent until `warn`
 //! or `deny` names them.
 
+mod ballast_on_structure;
 mod ballast_pressure;
 mod below_threshold;
 mod car_body_frequency;
@@ -27,6 +28,7 @@ mod stiffness_jump;
 mod support_stiffness;
 mod thin_layer;
 mod track_too_short;
+mod transition_sides;
 mod unchecked_values;
 mod update_overshoot;
 mod wavelength;
@@ -44,8 +46,10 @@ use std::borrow::Cow;
 
 type Rule = fn(&Scenario, &Graph) -> Vec<Diagnostic>;
 
-const RULES: [Rule; 26] = [
+const RULES: [Rule; 28] = [
+    transition_sides::check,
     stiffness_jump::check,
+    ballast_on_structure::check,
     critical_speed::check,
     track_too_short::check,
     law_outside_calibration::check,

@@ -2,7 +2,7 @@
 
 use super::Led;
 use crate::graph::{Graph, SupportNode};
-use crate::scenario::{Foot, Scenario, Section, Track, Vehicle};
+use crate::scenario::{Foot, Scenario, Section, Track, Vehicle, point_stiffness};
 use crate::solvers::settlement::Peak;
 
 /// A section smeared along the rail.
@@ -24,10 +24,14 @@ impl Winkler {
 
     /// The track at the seat of a section that is nearest to a chainage.
     pub fn beside(track: &Track, supports: &[SupportNode], section: usize, x: f64) -> Option<Winkler> {
-        let Section { rail, slab, .. } = &track.sections[section];
         let from = |index: &usize| (track.seats[*index].x - x).abs();
-        let index = track.seats_of(section).min_by(|a, b| from(a).total_cmp(&from(b)))?;
+        Winkler::at_seat(track, supports, track.seats_of(section).min_by(|a, b| from(a).total_cmp(&from(b)))?)
+    }
+
+    /// The track at a seat.
+    pub fn at_seat(track: &Track, supports: &[SupportNode], index: usize) -> Option<Winkler> {
         let seat = &track.seats[index];
+        let Section { rail, slab, .. } = &track.sections[seat.section];
         let spacing = track.bay(index);
         let (below, mass) = match (&seat.foot, slab) {
             (Foot::Sleeper { mass, .. }, _) => (1.0 / supports.get(index)?.spring?.stiffness, **mass / spacing),
@@ -50,7 +54,7 @@ impl Winkler {
 
     /// Static stiffness at rail level, N/m: 2 k / lambda.
     pub fn rail_stiffness(&self) -> f64 {
-        2.0 * self.modulus / self.lambda()
+        point_stiffness(self.modulus, self.bending_stiffness)
     }
 
     /// Speed at which a moving load resonates with bending waves, m/s: (4 k EI / m^2)^(1/4).

@@ -5,6 +5,7 @@ use super::bed::{BedView, Colour, Side, bed_svg};
 use super::chart::{Axis, Chart, Mark, Series};
 use super::number::{significant, whole};
 use super::page::{expectations, opening, picture, provenance, subtitle};
+use super::reliance::reliance;
 use super::svg::{Frame, Svg, escape};
 use super::view::WIDTH;
 use crate::results::{BedTest, BedTests, BedTestsView, Run};
@@ -33,6 +34,7 @@ impl<'a> BedTestsPage<'a> {
         let run = self.run;
         let mut html = opening(&run.scenario.title, &subtitle(&run.scenario));
         self.headline(&mut html);
+        reliance(&mut html, &run.summary.reliance);
         expectations(&mut html, &run.summary.expectations);
         self.figures().iter().for_each(|figure| picture(&mut html, figure));
         self.beds(&mut html);

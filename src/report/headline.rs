@@ -127,7 +127,13 @@ fn step_place(run: &Run) -> String {
     let lower = if step >= 0.0 { "the softer side lies lower" } else { "the stiffer side lies lower" };
     let named = run.scenario.track.transitions.iter().map(|transition| &transition.name);
     let of_name = |name: &&String| scalar(run, &format!("settlement_step_{name}")) == Some(step);
-    named.filter(|name| !name.is_empty()).find(of_name).map_or(lower.to_owned(), |name| format!("{lower}, at {name}"))
+    let at = named.filter(|name| !name.is_empty()).find(of_name).map_or(String::new(), |name| format!(", at {name}"));
+    let law = &run.scenario.solve.law;
+    let why = match step < 0.0 && law.law.knows_forces_alone() {
+        true => format!(": law {} counts the larger forces there and knows no subgrade", law.name),
+        false => String::new(),
+    };
+    format!("{lower}{at}{why}")
 }
 
 fn force_lines(run: &Run) -> Vec<Line> {

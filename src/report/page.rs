@@ -2,6 +2,7 @@
 
 use super::headline::headline;
 use super::number::{plain, significant, whole};
+use super::reliance::reliance;
 use super::scene::force;
 use super::svg::{STYLE, escape};
 use super::{Figure, figures, laws};
@@ -14,6 +15,7 @@ pub fn page(run: &Run) -> String {
     let mut html = opening(&run.scenario.title, &subtitle(&run.scenario));
     let figures = figures(run);
     headline(&mut html, run);
+    reliance(&mut html, &run.summary.reliance);
     laws::remarks(&mut html, run);
     expectations(&mut html, &run.summary.expectations);
     contents(&mut html, &figures, run);

@@ -444,7 +444,7 @@ fn finished(
         seed: 1,
         plan: "track        2D finite elements, 440 elements\nsubstructure law varandas, 69 seats\n".to_owned(),
     };
-    let summary = Summary { scalars, expectations, provenance };
+    let summary = Summary { scalars, expectations, reliance: Reliance::default(), provenance };
     Run {
         scenario,
         summary,

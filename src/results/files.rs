@@ -99,7 +99,7 @@ pub fn read_timings(directory: &Path) -> Result<BTreeMap<String, f64>, ResultsEr
 fn summary_json(run: &Run, directory: &Path) -> Result<Vec<u8>, ResultsError> {
     let path = directory.join(SUMMARY);
     for (name, scalar) in &run.summary.scalars {
-        if name == "expectations" || name == "provenance" {
+        if ["expectations", "reliance", "provenance"].contains(&name.as_str()) {
             return Err(ResultsError::unwritable(&path, format!("a scalar cannot be called `{name}`")));
         }
         check_finite(SUMMARY, name, 1, scalar.value)?;

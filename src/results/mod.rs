@@ -16,6 +16,7 @@ mod histories;
 mod laws;
 mod level;
 mod recorder;
+mod reliance;
 mod states;
 mod steps;
 mod summarise;
@@ -40,6 +41,7 @@ pub use grains::{Grain, Link, grains, links, places};
 pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};
 pub use level::{LongitudinalLevel, longitudinal_level};
 pub use recorder::{RunRecorder, RunTables};
+pub use reliance::{Reliance, Silenced, Unchecked, Warned};
 pub use states::remove as remove_states;
 pub use summarise::{
     RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise, worst_train,

@@ -1,5 +1,6 @@
 //! `summary.json`: the scalars of a run under their names, its expectations, and what made it.
 
+use super::Reliance;
 use crate::diag::Sources;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -10,6 +11,9 @@ pub struct Summary {
     #[serde(flatten)]
     pub scalars: BTreeMap<String, Scalar>,
     pub expectations: Vec<Verdict>,
+    /// What its numbers rest on; empty in a file of an older version.
+    #[serde(default)]
+    pub reliance: Reliance,
     pub provenance: Provenance,
 }
 

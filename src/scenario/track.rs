@@ -4,6 +4,7 @@ use super::{Bed, Given, Layer, Origin, Profile};
 use crate::diag::Span;
 use crate::solvers::foundation;
 use crate::solvers::track::Spring;
+use crate::units::number;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
@@ -114,6 +115,35 @@ pub struct Transition {
 pub enum Side {
     SoftToStiff,
     StiffToSoft,
+}
+
+impl Side {
+    /// The side of a word of the language.
+    pub fn of_word(word: &str) -> Option<Side> {
+        [Side::SoftToStiff, Side::StiffToSoft].into_iter().find(|side| side.word() == word)
+    }
+
+    /// Its word in the language.
+    pub fn word(self) -> &'static str {
+        match self {
+            Side::SoftToStiff => "soft_to_stiff",
+            Side::StiffToSoft => "stiff_to_soft",
+        }
+    }
+}
+
+/// A stiffness of the ground or of a structure in words: `40 MN/m per seat`.
+pub fn seat_stiffness(stiffness: f64) -> String {
+    match stiffness {
+        k if k.is_finite() => format!("{} MN/m per seat", number((k / 1e5).round() / 10.0)),
+        _ => "no give at all".to_owned(),
+    }
+}
+
+/// Static stiffness under a point load, N/m, of a long beam of a bending stiffness EI, N m^2, on a Winkler foundation of a modulus k,
+/// N/m per metre: `2 k / lambda`, lambda = (k / 4 EI)^(1/4). So stiff is a track at rail level, and a slab under one seat.
+pub fn point_stiffness(modulus: f64, bending_stiffness: f64) -> f64 {
+    2.0 * modulus / (modulus / (4.0 * bending_stiffness)).powf(0.25)
 }
 
 /// One rail.

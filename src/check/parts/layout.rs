@@ -1,6 +1,7 @@
 //! Where everything on a track lies: its sections and transitions as written, laid out to places.
 
 use super::asked::Asked;
+use super::sides::sides;
 use super::trackform::{Built, trackform};
 use crate::check::evaluate::value::{Record, Slot, Val};
 use crate::check::findings::Findings;
@@ -40,7 +41,6 @@ pub fn layout(
     // how many there are is not known where one could not be read
     let known = |slot: &Slot| !matches!(slot.value, Val::Error);
     let read = pairs.iter().all(|(key, length)| known(key) && known(length));
-    let sides = if read { sides(record, pairs.len(), findings) } else { None };
     let (stretches, sound) = listed(record);
     let mut forms: Vec<Rc<Record>> = Vec::new();
     let mut plans = Vec::new();
@@ -51,6 +51,7 @@ pub fn layout(
         plans.extend(plan(form, length));
     }
     let built: Vec<Built> = forms.iter().map(|form| trackform(form, false, asked, files, findings)).collect();
+    let sides = if read { sides(record, pairs.len(), &built, &plans, asked, findings) } else { None };
     if plans.len() < pairs.len() || plans.is_empty() {
         if pairs.is_empty() {
             findings.report(
@@ -81,59 +82,6 @@ fn listed(track: &Record) -> (Vec<Rc<Record>>, bool) {
     let found: Vec<Rc<Record>> = slots.iter().filter_map(record).collect();
     let sound = found.len() == slots.len();
     (found, sound)
-}
-
-/// Name and side of every boundary.
-fn sides(record: &Record, sections: usize, findings: &mut Findings) -> Option<Vec<(String, Side)>> {
-    let Some(slot) = record.get("transitions") else {
-        if sections > 2 && record.partial {
-            return None;
-        }
-        if sections > 2 {
-            findings.report(
-                Diagnostic::new(
-                    Code::E0504,
-                    format!("{sections} sections have {} transitions: say which side is which", sections - 1),
-                )
-                .label(record.span, "no `transitions` given")
-                .help("add `transitions = [west: stiff_to_soft, east: soft_to_stiff]`"),
-            );
-            return None;
-        }
-        return Some(vec![(String::new(), Side::SoftToStiff); sections.saturating_sub(1)]);
-    };
-    let Val::Pairs(pairs) = &slot.value else { return None };
-    if pairs.len() + 1 != sections {
-        findings.report(
-            Diagnostic::new(
-                Code::E0504,
-                format!("{sections} sections have {} transitions, found {}", sections.saturating_sub(1), pairs.len()),
-            )
-            .label(slot.span, "one for each inner boundary"),
-        );
-        return None;
-    }
-    for (i, (name, _)) in pairs.iter().enumerate() {
-        let Val::Text(text) = &name.value else { continue };
-        let first = pairs[..i].iter().find(|(n, _)| matches!(&n.value, Val::Text(t) if t == text));
-        if let Some((first, _)) = first {
-            findings.report(
-                Diagnostic::new(Code::E0202, format!("two transitions are called `{text}`"))
-                    .label(name.span, "again here")
-                    .label(first.span, "first here"),
-            );
-            return None;
-        }
-    }
-    pairs
-        .iter()
-        .map(|(name, side)| match (&name.value, &side.value) {
-            (Val::Text(name), Val::Word { word, .. }) => {
-                Some((name.clone(), if word.name == "soft_to_stiff" { Side::SoftToStiff } else { Side::StiffToSoft }))
-            }
-            _ => None,
-        })
-        .collect()
 }
 
 /// Places the seats beside a boundary where its transition states them.

@@ -16,6 +16,7 @@ mod plate;
 pub mod rails;
 pub mod records;
 mod seats;
+mod sides;
 pub mod solve;
 mod spring;
 mod stack;

@@ -154,6 +154,12 @@ impl Form {
 }
 
 impl Law {
+    /// Whether it sees nothing of a wheel but the force on the ballast: it settles more where a stiffer track loads a sleeper more, and
+    /// knows nothing of a subgrade that gives.
+    pub fn knows_forces_alone(&self) -> bool {
+        !matches!(self.form, Form::Guerin(_))
+    }
+
     /// Force below which a fresh support does not settle, N; `None` for laws without a threshold.
     pub fn threshold(&self) -> Option<f64> {
         match &self.form {

@@ -1,0 +1,248 @@
+//! What the answers of a run rest on, in sentences: what was warned of, what decides the answer, and how far to trust it.
+
+use super::{RunTables, Scalar};
+use crate::diag::{Code, Diagnostic, Severity, Sources, and_list};
+use crate::graph::Graph;
+use crate::scenario::{Evidence, Loading, Material, Scenario, SettlementLaw, Track};
+use crate::units::number;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What a reader has to know before a number is used. Sentences have source text in backticks.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Reliance {
+    /// How far the answer can be trusted, and how that is known.
+    pub confidence: Vec<String>,
+    /// Warnings of the check.
+    pub warnings: Vec<Warned>,
+    /// Rules that the scene silences.
+    pub silenced: Vec<Silenced>,
+    /// What the model takes for granted and the answer depends on.
+    pub assumptions: Vec<String>,
+    /// Values of the library that nobody has checked against their source.
+    pub unchecked: Vec<Unchecked>,
+}
+
+/// A warning of the check.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Warned {
+    pub code: String,
+    pub message: String,
+    /// File and line: `bridge.track:34`; empty where no line is to blame.
+    pub place: String,
+}
+
+/// A physics rule that the scene silences, and its reason.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Silenced {
+    pub rule: String,
+    /// What the rule warns of.
+    pub title: String,
+    pub reason: String,
+}
+
+/// An entry of the library that has not been checked.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Unchecked {
+    pub name: String,
+    pub source: String,
+}
+
+impl Reliance {
+    /// Of a run whose check said `diagnostics` of `sources`, and which has these tables and scalars.
+    pub fn new(
+        scenario: &Scenario,
+        graph: &Graph,
+        (diagnostics, sources): (&[Diagnostic], &Sources),
+        tables: &RunTables,
+        scalars: &BTreeMap<String, Scalar>,
+    ) -> Reliance {
+        let warnings: Vec<Warned> =
+            diagnostics.iter().filter(|d| d.severity == Severity::Warning).map(|d| warned(d, sources)).collect();
+        Reliance {
+            confidence: confidence(scenario, graph, &warnings, scalars),
+            silenced: silenced(scenario),
+            assumptions: assumptions(scenario, graph, tables),
+            unchecked: unchecked(scenario),
+            warnings,
+        }
+    }
+}
+
+fn warned(diagnostic: &Diagnostic, sources: &Sources) -> Warned {
+    let place = diagnostic.labels.first().map_or(String::new(), |label| {
+        let (file, line) = (sources.get(label.span.file), sources.position(label.span.file, label.span.start).line);
+        // the name alone: equal scenes give equal files wherever they lie
+        format!("{}:{line}", file.name.rsplit(['/', '\\']).next().unwrap_or(&file.name))
+    });
+    Warned { code: diagnostic.code.to_string(), message: diagnostic.message.clone(), place }
+}
+
+fn silenced(scenario: &Scenario) -> Vec<Silenced> {
+    let of_rule = |(rule, reason): &(String, String)| {
+        let title = Code::of_rule(rule).map_or("", Code::title).to_owned();
+        Silenced { rule: rule.clone(), title, reason: reason.clone() }
+    };
+    scenario.allow.iter().map(of_rule).collect()
+}
+
+fn unchecked(scenario: &Scenario) -> Vec<Unchecked> {
+    let mut found: Vec<Unchecked> = Vec::new();
+    for entry in scenario.library.iter().filter(|entry| entry.evidence == Evidence::Unchecked) {
+        if found.iter().all(|known| known.name != entry.name) {
+            found.push(Unchecked { name: entry.name.clone(), source: entry.source.clone() });
+        }
+    }
+    found
+}
+
+/// What is known of the error: of the laws, of the exchanges, of packings.
+fn confidence(
+    scenario: &Scenario,
+    graph: &Graph,
+    warnings: &[Warned],
+    scalars: &BTreeMap<String, Scalar>,
+) -> Vec<String> {
+    let mut told = Vec::new();
+    if graph.laws().next().is_some() {
+        told.push(spread_of_laws(scenario, warnings, scalars));
+        let error = scalars.get("update_error").filter(|error| error.value > 0.0);
+        told.extend(error.map(|error| {
+            let error = millimetres(error.value);
+            format!("exchanges of forces and settlement from time to time change the settlement by about {error}, as the run measured")
+        }));
+    }
+    if let Some(repeats) = scalars.get("repeats") {
+        told.push(match repeats.value as u64 {
+            1 => "one packing: the scatter between packings is not known; `repeats = 4` shows it".to_owned(),
+            n => format!("means of {n} packings; the bands are 95 % of the mean by their scatter"),
+        });
+    }
+    told
+}
+
+/// How far the laws of the scene lie from each other, and which of them are asked beyond their calibration.
+fn spread_of_laws(scenario: &Scenario, warnings: &[Warned], scalars: &BTreeMap<String, Scalar>) -> String {
+    let laws: Vec<&SettlementLaw> = std::iter::once(&scenario.solve.law).chain(&scenario.solve.other_laws).collect();
+    let beyond = |law: &&&SettlementLaw| {
+        let named = format!("law `{}`", law.name);
+        warnings.iter().any(|warned| warned.code == Code::L1004.as_str() && warned.message.starts_with(&named))
+    };
+    let outside: Vec<String> = laws.iter().filter(beyond).map(|law| format!("`{}`", law.name)).collect();
+    let outside = match outside.len() {
+        0 => String::new(),
+        1 => format!("; {} is outside its calibration", outside[0]),
+        _ => format!("; {} are outside their calibration", and_list(&outside)),
+    };
+    let mut largest: Vec<(f64, &str)> = laws
+        .iter()
+        .filter_map(|law| Some((scalars.get(&format!("laws.{}.max_settlement", law.name))?.value, law.name.as_str())))
+        .collect();
+    largest.sort_by(|a, b| a.0.total_cmp(&b.0));
+    match (&largest[..], scalars.get("law_spread")) {
+        ([least, .., most], Some(spread)) => format!(
+            "largest over smallest settlement of the {} laws: {}, from {} by `{}` to {} by `{}`{outside}",
+            largest.len(),
+            number(rounded(spread.value)),
+            millimetres(least.0),
+            least.1,
+            millimetres(most.0),
+            most.1
+        ),
+        _ => format!(
+            "settlement is by one law, `{}`, and published laws differ by a factor of ten and more{outside}: compare designs by it, and \
+             name several laws to see the spread",
+            laws[0].name
+        ),
+    }
+}
+
+fn assumptions(scenario: &Scenario, graph: &Graph, tables: &RunTables) -> Vec<String> {
+    let mut told = Vec::new();
+    let traffic = matches!(scenario.loading, Some(Loading::Traffic(_)));
+    if graph.laws().next().is_some() {
+        let law = &scenario.solve.law;
+        let by = if law.law.knows_forces_alone() { "force" } else { "deflection" };
+        told.push(format!(
+            "each sleeper settles by law `{}` from the {by} on its own ballast; the subgrade does not settle",
+            law.name
+        ));
+    }
+    told.extend(supports(graph));
+    if traffic && scenario.track.irregularity.is_none() {
+        told.push(
+            "the rail is level as built: wheel forces change by stiffness, settlement and voids alone".to_owned(),
+        );
+    }
+    if traffic {
+        told.push("both rails are alike: one rail with half of each vehicle is computed".to_owned());
+        told.extend(at_the_ends(&scenario.track, tables));
+    }
+    told.extend(graph.decisions.iter().filter(|decision| decision.pass == "share").map(|d| d.what.clone()));
+    told.extend(coarse_grains(&scenario.track));
+    told
+}
+
+/// The stiffness of the supports, and that it stays.
+fn supports(graph: &Graph) -> Option<String> {
+    let of_springs = |find: fn(f64, f64) -> f64, from: f64| {
+        graph.supports.iter().filter_map(|node| node.support).map(|support| support.stiffness).fold(from, find)
+    };
+    let (least, most) = (of_springs(f64::min, f64::INFINITY), of_springs(f64::max, 0.0));
+    if most == 0.0 {
+        return None;
+    }
+    let (least, most) = (number(rounded(least / 1e6)), number(rounded(most / 1e6)));
+    let range = if least == most { most } else { format!("{least} to {most}") };
+    let how = graph.decisions.iter().find(|decision| decision.pass == "supports");
+    let how = how.map_or(String::new(), |decision| format!(" ({})", decision.what));
+    Some(format!("under the sleepers lie springs of {range} MN/m per seat, which keep their stiffness{how}"))
+}
+
+/// Seats that no train passes whole.
+fn at_the_ends(track: &Track, tables: &RunTables) -> Option<String> {
+    let last = tables.sleepers.iter().map(|row| row.axles).max()?;
+    let partly: Vec<f64> =
+        tables.sleepers.iter().filter(|row| row.axles == last && row.trains_passing == 0).map(|row| row.x_m).collect();
+    let near = track.transitions.iter().find(|t| partly.iter().any(|x| (x - t.x).abs() < 5.0));
+    let near = near.map_or(String::new(), |transition| {
+        let name = if transition.name.is_empty() { String::new() } else { format!(" `{}`", transition.name) };
+        format!("; transition{name} lies among them, so read nothing from it")
+    });
+    (!partly.is_empty()).then(|| {
+        format!(
+            "{} of {} seats near the ends see a part of each train: they take the mean of their neighbours and count in no extreme{near}",
+            partly.len(),
+            track.seats.len()
+        )
+    })
+}
+
+/// Layers whose grains are modelled larger than they are.
+fn coarse_grains(track: &Track) -> Vec<String> {
+    let mut told: Vec<String> = Vec::new();
+    for layer in track.sections.iter().flat_map(|section| &section.layers) {
+        let Material::Granular(granular) = &layer.material else { continue };
+        if *granular.scale > 1.0 {
+            let sentence =
+                format!("grains of layer `{}` are modelled {} times as large as they are", layer.name, *granular.scale);
+            if !told.contains(&sentence) {
+                told.push(sentence);
+            }
+        }
+    }
+    told
+}
+
+fn millimetres(length: f64) -> String {
+    format!("{} mm", number(rounded(length * 1e3)))
+}
+
+/// To two digits.
+fn rounded(value: f64) -> f64 {
+    if value == 0.0 {
+        return 0.0;
+    }
+    let size = 10f64.powi(1 - value.abs().log10().floor() as i32);
+    (value * size).round() / size
+}
