@@ -214,7 +214,7 @@ fn rail_lines(run: &Run) -> Vec<Line> {
         });
     }
     let limits = match &run.scenario.loading {
-        Some(Loading::Traffic(traffic)) => limits::longitudinal_level(*traffic.train.speed),
+        Some(Loading::Traffic(traffic)) => limits::longitudinal_level(traffic.line_speed()),
         _ => None,
     };
     let levels = [

@@ -27,7 +27,7 @@ pub fn level_d1(run: &Run) -> Option<Figure> {
     let loaded = chart("D1 under a standing wheel", |run, rows| loaded_level(&run.scenario, rows.iter().copied()));
     let mut charts = [unloaded, loaded];
     let limits = match &run.scenario.loading {
-        Some(Loading::Traffic(traffic)) => limits::longitudinal_level(*traffic.train.speed),
+        Some(Loading::Traffic(traffic)) => limits::longitudinal_level(traffic.line_speed()),
         _ => None,
     };
     let limit = limits.map_or(String::new(), |limits| add_limits(&mut charts, limits));

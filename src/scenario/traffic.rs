@@ -133,6 +133,11 @@ impl Traffic {
         std::iter::once(&self.train).chain(&self.others)
     }
 
+    /// Speed of the fastest train, m/s: limits of the level of a line go by it.
+    pub fn line_speed(&self) -> f64 {
+        self.trains().map(|train| *train.speed).fold(0.0, f64::max)
+    }
+
     /// Whether trains of several kinds run.
     pub fn is_mixed(&self) -> bool {
         !self.others.is_empty()
