@@ -68,7 +68,7 @@ pub fn seat_shares(run: &Run) -> Option<Figure> {
     let Some(Loading::Static(loads)) = &run.scenario.loading else { return None };
     let total: f64 = loads.iter().map(|load| *load.force).sum();
     let mut chart = track_chart(run, "Share of the load", "1", false);
-    chart.y = Axis { unit: "%", size: 0.01, from_zero: true, ..chart.y };
+    chart.y = Axis { unit: "%".into(), size: 0.01, from_zero: true, ..chart.y };
     let rows: Vec<&SleeperRow> = run.sleepers.iter().filter(|row| row.max_rail_seat_load_N.is_finite()).collect();
     if total <= 0.0 || rows.is_empty() {
         return None;

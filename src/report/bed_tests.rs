@@ -4,7 +4,8 @@ use super::Figure;
 use super::bed::{BedView, Colour, Side, bed_svg};
 use super::chart::{Axis, Chart, Mark, Series};
 use super::number::{significant, whole};
-use super::page::{expectations, opening, picture, provenance, subtitle};
+use super::page::{close, expectations, opening, picture, provenance, subtitle};
+use super::prose::prose;
 use super::reliance::reliance;
 use super::svg::{Frame, Svg, escape};
 use super::view::WIDTH;
@@ -39,7 +40,7 @@ impl<'a> BedTestsPage<'a> {
         self.figures().iter().for_each(|figure| picture(&mut html, figure));
         self.beds(&mut html);
         provenance(&mut html, &run.summary.provenance, &run.scenario);
-        html += "</main></body></html>\n";
+        close(&mut html);
         html
     }
 
@@ -60,7 +61,7 @@ impl<'a> BedTestsPage<'a> {
             ("Largest force of the bed on a sleeper or plate", "max_contact_force", "kN", 1e3),
             ("Grains", "grains", "", 1.0),
             ("Porosity inside the top layer, as packed", "porosity", "", 1.0),
-            ("Neighbours a grain of it, as packed", "coordination_number", "", 1.0),
+            ("Coordination number inside the top layer, as packed", "coordination_number", "", 1.0),
             ("Time steps of a test", "steps", "", 1.0),
         ];
         let scalar = |name: &str| self.run.summary.scalars.get(name).map(|scalar| scalar.value);
@@ -86,7 +87,12 @@ impl<'a> BedTestsPage<'a> {
             let Some(value) = scalar(name) else { continue };
             let band = scalar(&format!("{name}_confidence"));
             let band = band.map_or(String::new(), |half| format!(" \u{b1} {}", significant(half / size, 2)));
-            let value = significant(value / size, 4);
+            // grains and steps are counted, the rest is measured
+            let value = if unit.is_empty() && value.fract() == 0.0 {
+                whole(value as u64)
+            } else {
+                significant(value / size, 3)
+            };
             let _ = write!(html, "<tr><td class=\"text\">{label}</td><td><b>{value}</b>{band} {unit}</td></tr>");
         }
         *html += "</tbody></table></div></section>\n";
@@ -305,7 +311,7 @@ impl<'a> BedTestsPage<'a> {
             let _ = writeln!(html, "<p class=\"note\">Seed {}: {}.</p>", test.answer.seed, escape(&layers));
         }
         for note in self.tests.tests.first().map_or(&[][..], |test| &test.bed.notes) {
-            let _ = writeln!(html, "<p class=\"note\">{}</p>", escape(note));
+            let _ = writeln!(html, "<p class=\"note\">{}</p>", prose(note));
         }
         *html += "</section>\n";
     }

@@ -3,15 +3,18 @@
 //! Data come in SI and are shown in the axis's unit. What is not finite is a gap, never a mark. Long series are thinned
 //! to what the pixels can show, with every peak kept.
 
-use super::number::{nice_step, plain, significant, tick_label, ticks};
+use super::number::{nice_step, plain, tick_label, ticks};
+use super::plane::{Plane, decades, extent, finite, rows, widened};
+use super::readings;
+use super::series::{draw_series, draw_symbol};
 use super::svg::{Anchor, Frame, Svg, text_width};
-use super::thin::{straighten, thin};
+use std::borrow::Cow;
 
 /// A direction of the diagram.
 #[derive(Debug, Clone)]
 pub struct Axis {
     pub label: String,
-    pub unit: &'static str,
+    pub unit: Cow<'static, str>,
     /// Size of the shown unit in SI.
     pub size: f64,
     /// Larger values stand lower: settlement and deflection.
@@ -29,7 +32,7 @@ impl Axis {
     pub fn new(label: &str, (unit, size): (&'static str, f64)) -> Self {
         Axis {
             label: label.to_owned(),
-            unit,
+            unit: unit.into(),
             size,
             downwards: false,
             range: None,
@@ -73,11 +76,21 @@ pub struct Series {
     pub labels: Vec<String>,
     /// Whether it is drawn lighter: it belongs to the figure, and less is known of it.
     pub pale: bool,
+    /// Upright values at each step of a chart that moves, over the places of `points`, which hold the last step.
+    pub moving: Vec<Vec<f64>>,
 }
 
 impl Series {
     pub fn new(name: &str, class: &str, mark: Mark, points: Vec<(f64, f64)>) -> Self {
-        Series { name: name.to_owned(), class: class.to_owned(), mark, points, labels: vec![], pale: false }
+        Series {
+            name: name.to_owned(),
+            class: class.to_owned(),
+            mark,
+            points,
+            labels: vec![],
+            pale: false,
+            moving: vec![],
+        }
     }
 }
 
@@ -104,6 +117,8 @@ pub struct Chart {
     pub seats: Vec<(f64, i32)>,
     /// A second scale of the upright axis: its title, and its value per SI of the first.
     pub second: Option<(String, f64)>,
+    /// Names of the steps through which the page's script moves the curves; none where they stand.
+    pub steps: Vec<String>,
 }
 
 const LEFT: f64 = 56.0;
@@ -115,32 +130,15 @@ const PLACES: f64 = 18.0;
 /// Room of one number of a seat, px.
 const NUMBER: f64 = 36.0;
 const LEGEND_ROW: f64 = 19.0;
-
-/// The plane of the data, and how it lies on the picture.
-struct Plane {
-    frame: Frame,
-    x: (f64, f64),
-    y: (f64, f64),
-    downwards: bool,
-    /// Whether an axis is logarithmic: across, upwards.
-    logarithmic: [bool; 2],
-}
-
-impl Plane {
-    fn point_at(&self, point: (f64, f64)) -> (f64, f64) {
-        let share = |value: f64, (low, high): (f64, f64), logarithmic: bool| {
-            if logarithmic { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) }
-        };
-        let across = share(point.0, self.x, self.logarithmic[0]);
-        let up = share(point.1, self.y, self.logarithmic[1]);
-        let down = if self.downwards { up } else { 1.0 - up };
-        (self.frame.x + across * self.frame.width, self.frame.y + down * self.frame.height)
-    }
-}
+/// Room of a mark on the edge of the plane, px.
+const EDGE: f64 = 4.0;
+/// Digits of the marks of a logarithmic axis.
+const LOG_DIGITS: usize = 4;
 
 impl Chart {
     pub fn new(x: Axis, y: Axis) -> Self {
-        Chart { x, y, series: vec![], bands: vec![], uprights: vec![], levels: vec![], seats: vec![], second: None }
+        let (series, bands, uprights, levels) = (vec![], vec![], vec![], vec![]);
+        Chart { x, y, series, bands, uprights, levels, seats: vec![], second: None, steps: vec![] }
     }
 
     /// Whether there is anything to see.
@@ -150,6 +148,10 @@ impl Chart {
 
     /// Draws the diagram with its labels into `frame`. `id` is unique on a page.
     pub fn draw(&self, svg: &mut Svg, id: &str, frame: Frame) {
+        svg.group(r#"class="chart""#, |svg| self.draw_parts(svg, id, frame));
+    }
+
+    fn draw_parts(&self, svg: &mut Svg, id: &str, frame: Frame) {
         let top = self.draw_head(svg, frame) + if self.seats.is_empty() { 0.0 } else { PLACES };
         let right = if self.second.is_some() { RIGHT + SECOND } else { RIGHT };
         let plane = self.plane(Frame {
@@ -158,10 +160,14 @@ impl Chart {
             width: frame.width - LEFT - right,
             height: frame.y + frame.height - BOTTOM - top,
         });
+        readings::write(svg, self, &plane);
         self.draw_bands(svg, &plane);
         self.draw_axes(svg, &plane);
-        svg.clipped(id, plane.frame, |svg| {
-            self.series.iter().for_each(|series| draw_series(svg, &plane, series, self))
+        svg.clipped(id, self.room(&plane), |svg| {
+            for (index, series) in self.series.iter().enumerate() {
+                let group = format!(r#"class="series" data-series="{index}""#);
+                svg.group(&group, |svg| draw_series(svg, &plane, series, self));
+            }
         });
         self.draw_names(svg, &plane);
         self.draw_seats(svg, &plane);
@@ -170,34 +176,44 @@ impl Chart {
 
     /// The axis's title and the legend; gives the top of the plane.
     fn draw_head(&self, svg: &mut Svg, frame: Frame) -> f64 {
-        let title = self.y.title();
+        let title = match self.steps.last() {
+            Some(step) => format!("{}, {step}", self.y.title()),
+            None => self.y.title(),
+        };
         svg.text("strong", (frame.x + 6.0, frame.y + 14.0), Anchor::Start, &title);
-        let entries: Vec<&Series> =
-            self.series.iter().filter(|s| !s.name.is_empty() && s.mark != Mark::Faint).collect();
-        let width = |series: &&Series| text_width(&series.name) + 36.0;
-        let all: f64 = entries.iter().map(width).sum();
+        let named = |(_, series): &(usize, &Series)| !series.name.is_empty() && series.mark != Mark::Faint;
+        let entries: Vec<(usize, &Series)> = self.series.iter().enumerate().filter(named).collect();
+        let width = |series: &Series| text_width(&series.name) + 36.0;
+        let all: f64 = entries.iter().map(|(_, series)| width(series)).sum();
         let (left, right) = (frame.x + 6.0, frame.x + frame.width - RIGHT);
         let beside = right - all > left + text_width(&title) + 24.0;
         let (mut x, mut y) = if beside { (right - all, frame.y + 14.0) } else { (left, frame.y + 14.0 + LEGEND_ROW) };
-        for series in &entries {
+        for (index, series) in &entries {
             if x + width(series) > right + 8.0 && x > left {
                 (x, y) = (left, y + LEGEND_ROW);
             }
-            let class = format!("line {}", series.class);
-            match series.mark {
-                Mark::Bars(_) => svg.rect(
-                    &format!("bar {}", series.class),
-                    Frame { x: x + 6.0, y: y - 9.0, width: 10.0, height: 10.0 },
-                ),
-                _ => svg.line(&class, (x, y - 4.0), (x + 20.0, y - 4.0)),
-            }
-            if series.mark == Mark::Dots {
-                draw_symbol(svg, (&series.class, ""), (x + 10.0, y - 4.0), 3.0, "");
-            }
-            svg.text("", (x + 25.0, y), Anchor::Start, &series.name);
+            let group = format!(r#"class="entry" data-series="{index}""#);
+            svg.group(&group, |svg| draw_entry(svg, series, (x, y)));
             x += width(series);
         }
         if entries.is_empty() { frame.y + 24.0 } else { y + 10.0 }
+    }
+
+    /// The series in whose legend entry a series is counted: itself, or the named one of its colour.
+    pub fn entry(&self, index: usize) -> usize {
+        let class = &self.series[index].class;
+        let named = |other: &usize| !self.series[*other].name.is_empty() && self.series[*other].mark != Mark::Faint;
+        let alike = (0..self.series.len()).filter(|other| self.series[*other].class == *class && named(other));
+        if named(&index) { index } else { alike.min_by_key(|other| other.abs_diff(index)).unwrap_or(index) }
+    }
+
+    /// The plane with room for the marks on its edges; none to the sides where curves go on beyond them.
+    fn room(&self, plane: &Plane) -> Frame {
+        let Frame { x, y, width, height } = plane.frame;
+        let beyond = |x: f64| x < plane.x.0 || x > plane.x.1;
+        let goes_on = self.series.iter().flat_map(|series| &series.points).any(|point| beyond(point.0));
+        let side = if goes_on { 0.0 } else { EDGE };
+        Frame { x: x - side, y: y - EDGE, width: width + 2.0 * side, height: height + 2.0 * EDGE }
     }
 
     fn plane(&self, frame: Frame) -> Plane {
@@ -206,7 +222,9 @@ impl Chart {
         let inside = points().filter(|p| p.0 >= x.0 && p.0 <= x.1).map(|p| p.1);
         let y = self.y.range.unwrap_or_else(|| {
             let levels = self.levels.iter().map(|(level, _)| *level);
-            self.round_range(extent(inside.chain(levels).chain(self.y.from_zero.then_some(0.0))), frame.height)
+            let moving = self.series.iter().flat_map(|s| s.moving.iter().flatten().copied()).filter(|v| v.is_finite());
+            let all = inside.chain(moving).chain(levels).chain(self.y.from_zero.then_some(0.0));
+            self.round_range(extent(all), frame.height)
         });
         let logarithmic = [self.x.logarithmic, self.y.logarithmic];
         Plane { frame, x: widened(x), y: widened(y), downwards: self.y.downwards, logarithmic }
@@ -249,7 +267,7 @@ impl Chart {
         let step = marks.windows(2).next().map_or(1.0, |pair| pair[1] - pair[0]);
         for mark in marks {
             let y = plane.point_at((plane.x.0, mark * self.y.size)).1;
-            let label = if logarithmic { plain(mark, 1) } else { tick_label(mark, step) };
+            let label = if logarithmic { plain(mark, LOG_DIGITS) } else { tick_label(mark, step) };
             svg.line("grid", (frame.x, y), (right, y));
             svg.text("small muted", (frame.x - 7.0, y + 4.0), Anchor::End, &label);
         }
@@ -262,7 +280,8 @@ impl Chart {
             let x = plane.point_at((mark * self.x.size, plane.y.0)).0;
             svg.line("grid", (x, frame.y), (x, bottom));
             svg.line("axis", (x, bottom), (x, bottom + 4.0));
-            svg.text("small muted", (x, bottom + 17.0), Anchor::Middle, &tick_label(mark, step));
+            let label = if self.x.logarithmic { plain(mark, LOG_DIGITS) } else { tick_label(mark, step) };
+            svg.text("small muted", (x, bottom + 17.0), Anchor::Middle, &label);
         }
         svg.line("axis", (frame.x, bottom), (right, bottom));
         svg.line("axis", (frame.x, frame.y), (frame.x, bottom));
@@ -335,90 +354,19 @@ impl Chart {
     }
 }
 
-fn draw_series(svg: &mut Svg, plane: &Plane, series: &Series, chart: &Chart) {
-    let pale = if series.pale { " pale" } else { "" };
-    let class = |kind: &str| format!("{kind} {}{pale}", series.class);
-    if let Mark::Bars(width) = series.mark {
-        for (index, point) in series.points.iter().enumerate().filter(|(_, p)| finite(p)) {
-            let (left, top) = plane.point_at((point.0 - width / 2.0, point.1.max(0.0)));
-            let (right, bottom) = plane.point_at((point.0 + width / 2.0, point.1.min(0.0)));
-            let (top, bottom) = (top.min(bottom), top.max(bottom));
-            let frame = Frame { x: left, y: top, width: right - left, height: bottom - top };
-            svg.titled_rect(&class("bar"), frame, &label(series, index, chart));
-            if point.1 > 0.03 * plane.y.1 && frame.width > 14.0 {
-                let value = significant(point.1 / chart.y.size, 2);
-                svg.text("small halo", (left + frame.width / 2.0, top - 4.0), Anchor::Middle, &value);
-            }
+/// The mark of a series and its name.
+fn draw_entry(svg: &mut Svg, series: &Series, (x, y): (f64, f64)) {
+    match series.mark {
+        Mark::Bars(_) => {
+            let frame = Frame { x: x + 6.0, y: y - 9.0, width: 10.0, height: 10.0 };
+            svg.rect(&format!("bar {}", series.class), frame);
         }
-        return;
+        _ => svg.line(&format!("line {}", series.class), (x, y - 4.0), (x + 20.0, y - 4.0)),
     }
-    let pixels: Vec<(f64, f64)> = series.points.iter().map(|point| plane.point_at(*point)).collect();
-    let (kind, column) = if series.mark == Mark::Faint { ("faint", 2.0) } else { ("line", 1.0) };
-    for piece in pixels.split(|point| !finite(point)) {
-        svg.path(&class(kind), &straighten(&thin(piece, column)), false, &series.name);
+    if series.mark == Mark::Dots {
+        draw_symbol(svg, (&series.class, ""), (x + 10.0, y - 4.0), 3.0, "");
     }
-    if series.mark == Mark::Dots && series.points.len() <= 400 {
-        let radius = if series.points.len() > 150 { 1.8 } else { 2.2 };
-        for (index, pixel) in pixels.iter().enumerate().filter(|(_, p)| finite(p)) {
-            draw_symbol(svg, (&series.class, pale), *pixel, radius, &label(series, index, chart));
-        }
-    }
-}
-
-/// A symbol of its own for every colour that curves of one chart may have.
-fn draw_symbol(svg: &mut Svg, (class, pale): (&str, &str), (x, y): (f64, f64), radius: f64, title: &str) {
-    let kind = format!("dot {class}{pale}");
-    let r = 1.25 * radius;
-    match class {
-        "s1" | "k2" => svg.path(&kind, &[(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)], true, title),
-        "s2" | "k0" => {
-            let r = 1.2 * r;
-            svg.path(&kind, &[(x, y - r), (x + r, y + r), (x - r, y + r)], true, title);
-        }
-        "s3" | "k3" => {
-            let r = 1.25 * r;
-            svg.path(&kind, &[(x, y - r), (x + r, y), (x, y + r), (x - r, y)], true, title);
-        }
-        _ => svg.circle(&kind, (x, y), radius, title),
-    }
-}
-
-fn label(series: &Series, index: usize, chart: &Chart) -> String {
-    let (x, y) = series.points[index];
-    let what = series.labels.get(index).map_or("", String::as_str);
-    let value = |axis: &Axis, value: f64| format!("{} {}", significant(value / axis.size, 4), axis.unit);
-    let place = if what.is_empty() { value(&chart.x, x) } else { format!("{what} ({})", value(&chart.x, x)) };
-    let name = if series.name.is_empty() { String::new() } else { format!(", {}", series.name) };
-    format!("{place}{name}: {}", value(&chart.y, y))
-}
-
-fn finite(point: &(f64, f64)) -> bool {
-    point.0.is_finite() && point.1.is_finite()
-}
-
-/// Powers of ten, and twice and five times them where they are few.
-fn decades(low: f64, high: f64) -> Vec<f64> {
-    let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
-    let parts: &[f64] = if last - first > 4 { &[1.0] } else { &[1.0, 2.0, 5.0] };
-    let all = (first..=last).flat_map(|power| parts.iter().map(move |part| part * 10f64.powi(power)));
-    all.filter(|mark| (low * (1.0 - 1e-9)..=high * (1.0 + 1e-9)).contains(mark)).collect()
-}
-
-fn rows(height: f64) -> usize {
-    ((height / 36.0) as usize).max(2)
-}
-
-fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    widened(values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v))))
-}
-
-/// A range that has a length.
-fn widened((low, high): (f64, f64)) -> (f64, f64) {
-    if !(low.is_finite() && high.is_finite()) {
-        return (0.0, 1.0);
-    }
-    let least = (low.abs().max(high.abs()) * 1e-6).max(1e-9);
-    if high - low > least { (low, high) } else { (low - 500.0 * least, high + 500.0 * least) }
+    svg.text("", (x + 25.0, y), Anchor::Start, &series.name);
 }
 
 #[cfg(test)]

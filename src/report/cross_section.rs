@@ -3,9 +3,9 @@
 use super::layers::class;
 use super::number::plain;
 use super::svg::{Anchor, Frame, Svg};
-use super::symbols::{draw_dimension, draw_stones};
+use super::symbols::{draw_dimension, draw_stones, draw_usp};
 use super::view::{WIDTH, seat_depth};
-use crate::scenario::{Groundwork, Scenario, Seat, Section, SleeperBody};
+use crate::scenario::{Groundwork, Scenario, Seat, Section, SleeperBody, Usp};
 
 /// Sections side by side, at most.
 const COLUMNS: usize = 3;
@@ -39,6 +39,7 @@ impl Place {
 struct Cut<'a> {
     section: &'a Section,
     sleeper: &'a SleeperBody,
+    usp: Option<&'a Usp>,
     ground: Groundwork,
     /// Whether a stretch made it what it is.
     changed: bool,
@@ -61,13 +62,15 @@ fn cuts(scenario: &Scenario) -> Vec<Cut<'_>> {
             cut.ground.layers == ground.layers
                 && cut.ground.approach_slab.is_some() == ground.approach_slab.is_some()
                 && cut.sleeper == sleeper
+                && cut.usp.is_some() == seat.usp().is_some()
         };
         match cuts.iter_mut().find(same) {
             Some(cut) if distance(seat.x) < distance(cut.x) => cut.x = seat.x,
             Some(_) => {}
             None => {
                 let changed = track.groundworks.iter().any(|work| (work.start, work.end) == (ground.start, ground.end));
-                cuts.push(Cut { section, sleeper, ground: ground.clone(), changed, x: seat.x });
+                let changed = changed || track.stretches.iter().any(|s| s.start <= seat.x && seat.x <= s.end);
+                cuts.push(Cut { section, sleeper, usp: seat.usp(), ground: ground.clone(), changed, x: seat.x });
             }
         }
     }
@@ -139,6 +142,11 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place
         svg.text("small halo", (place.centre, area.y + 0.5 * area.height + 4.0), Anchor::Middle, "approach slab");
     }
     svg.rect("sleeper", place.area(-0.5 * length, 0.5 * length, foot, foot + height));
+    if let Some(usp) = cut.usp {
+        draw_usp(svg, place.area(-0.5 * length, 0.5 * length, foot + height, foot + height + usp.thickness));
+        let text = format!("under sleeper pad {} mm", plain(1e3 * usp.thickness, 3));
+        svg.text("small halo", (place.centre, place.top + (foot + height) * place.scale + 15.0), Anchor::Middle, &text);
+    }
     if let Some(rail) = &section.rail {
         [-0.5, 0.5].iter().for_each(|side| draw_rail(svg, place, side * gauge, [rail.height, foot]));
     }
@@ -153,9 +161,10 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place
     }
     let bottom = place.top + depth * place.scale;
     draw_widths(svg, place, &[(length, bottom + 24.0)]);
-    if 2.0 * half > length + 1e-6 {
-        draw_widths(svg, place, &[(2.0 * half, bottom + 50.0)]);
+    if 2.0 * half <= length + 1e-6 {
+        return bottom + 32.0;
     }
+    draw_widths(svg, place, &[(2.0 * half, bottom + 50.0)]);
     bottom + 58.0
 }
 

@@ -3,7 +3,7 @@
 use super::scene::draw_scene;
 use super::svg::Svg;
 use super::view::WIDTH;
-use super::{cross_section, gradings, layers, templates};
+use super::{Figure, cross_section, gradings, layers, templates};
 use crate::scenario::Scenario;
 
 /// Fields that only drawings read.
@@ -19,4 +19,27 @@ pub fn drawing_svg(scenario: &Scenario) -> String {
         y += height;
     }
     svg.finish(WIDTH, y, &format!("{}: the scene to scale", scenario.title))
+}
+
+/// The drawings of what lies under the track, as figures of a report: the layers along it, and sections across it.
+pub(super) fn ground_figures(scenario: &Scenario) -> Vec<Figure> {
+    let figure = |draw: fn(&mut Svg, &Scenario) -> f64, [id, title, caption]: [&str; 3]| {
+        let mut svg = Svg::default();
+        let height = draw(&mut svg, scenario);
+        let svg = svg.finish(WIDTH, height, title);
+        let figure = Figure { id: id.to_owned(), title: title.to_owned(), caption: caption.to_owned(), svg };
+        (height > 0.0).then_some(figure)
+    };
+    let along = [
+        "layers",
+        "The layers along the track",
+        "To scale, at each transition with the stretches near it that change the layers: thickness and Young's modulus of each \
+         layer, wedges, approach slabs, and pads under sleepers, which are drawn thicker where they would not be seen.",
+    ];
+    let across = [
+        "cross_sections",
+        "Sections across the track",
+        "To scale: each kind of sleeper on each kind of ground, as near to a transition as such sleepers lie.",
+    ];
+    [figure(layers::draw, along), figure(cross_section::draw, across)].into_iter().flatten().collect()
 }

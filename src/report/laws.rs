@@ -4,7 +4,7 @@ use super::Figure;
 use super::along::{figure, track_chart};
 use super::chart::{Axis, Chart, Mark, Series};
 use super::number::{plain, shown_unit, significant, whole};
-use super::svg::escape;
+use super::prose::prose;
 use crate::results::{LawRow, Run, unsettled};
 use std::fmt::Write;
 
@@ -23,7 +23,7 @@ pub fn spread(run: &Run) -> Vec<Figure> {
 /// Says under which laws nothing settled.
 pub fn remarks(html: &mut String, run: &Run) {
     for sentence in unsettled(&run.scenario, &run.blocks, &run.laws) {
-        let _ = writeln!(html, "<p class=\"caption\" role=\"note\">Note: {}.</p>", escape(&sentence));
+        let _ = writeln!(html, "<p class=\"caption\" role=\"note\">Note: {}.</p>", prose(&sentence));
     }
 }
 
@@ -151,6 +151,9 @@ mod tests {
         run.scenario.solve.other_laws.push(run.scenario.solve.law.clone());
         run.scenario.solve.other_laws[0].name = "other".to_owned();
         remarks(&mut html, &run);
-        assert!(html.contains("nothing settled under law `other`: the largest contact force was "), "{html}");
+        assert!(
+            html.contains("nothing settled under law <code>other</code>: the largest contact force was "),
+            "{html}"
+        );
     }
 }

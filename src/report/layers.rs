@@ -2,8 +2,8 @@
 
 use super::number::plain;
 use super::svg::{Anchor, Frame, Svg, text_width};
-use super::symbols::draw_stones;
-use super::view::{View, scale, seat_depth};
+use super::symbols::{draw_stones, draw_usp};
+use super::view::{View, WIDTH, scale, seat_depth};
 use crate::scenario::{ApproachSlab, Groundwork, Layer, Material, Scenario, Section};
 
 const MARGIN: f64 = 26.0;
@@ -45,6 +45,10 @@ fn draw_place(svg: &mut Svg, scenario: &Scenario, (place, title): (f64, &str), i
     let (start, end) = shown(scenario, place);
     let view = View { start, end, scale: scale(end - start), rail: top + 40.0 };
     svg.text("strong", (6.0, top + 18.0), Anchor::Start, title);
+    if track.seats.iter().any(|seat| seat.usp().is_some() && view.shows(seat.x)) {
+        draw_usp(svg, Frame { x: WIDTH - MARGIN - 130.0, y: top + 12.0, width: 14.0, height: 4.0 });
+        svg.text("small muted", (WIDTH - MARGIN, top + 18.0), Anchor::End, "under sleeper pad");
+    }
     let inside = |section: &Section| section.end > start && section.start < end;
     let sections = || track.sections.iter().enumerate().filter(|(_, section)| inside(section));
     let deepest = sections().map(|(n, _)| base(scenario, n) + depth(scenario, n, start, end)).fold(0.0, f64::max);
@@ -104,6 +108,9 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, view: &View, number: usize, 
         if let Some(sleeper) = &seat.sleeper {
             let half = 0.5 * sleeper.base_width;
             svg.rect("sleeper", view.area(seat.x - half, seat.x + half, under - sleeper.height, under));
+            if let Some(usp) = seat.usp() {
+                draw_usp(svg, view.area(seat.x - half, seat.x + half, under, under + usp.thickness));
+            }
         }
     }
     if let Some(rail) = &section.rail {

@@ -25,17 +25,21 @@ mod level;
 mod limits;
 mod moments;
 mod number;
+mod over_axles;
 mod packed;
 mod packed_readings;
 mod page;
 mod panels;
 mod pebbles;
+mod plane;
 mod pressure;
 mod prose;
+mod readings;
 mod reference;
 mod reliance;
 mod scene;
 mod seat_clock;
+mod series;
 mod stability;
 mod stiffness;
 mod study;
@@ -89,12 +93,14 @@ pub fn figures(run: &Run) -> Vec<Figure> {
         svg: scene_svg(&run.scenario),
     };
     let mut figures = vec![scene];
+    figures.extend(drawing::ground_figures(&run.scenario));
     if matches!(run.scenario.loading, Some(Loading::Static(_))) {
         figures.extend(
             [along::rail_displacement(run), along::rail_moment(run), along::seat_shares(run)].into_iter().flatten(),
         );
     } else {
         let along = [
+            over_axles::over_axles(run),
             stiffness::rail_stiffness(run),
             along::settlement(run),
             exchanges::settlement_with_axles(run),
@@ -137,6 +143,7 @@ mod tests {
         let ids: Vec<&str> = figures.iter().map(|figure| figure.id.as_str()).collect();
         let expected = [
             "scene",
+            "over_axles",
             "rail_stiffness",
             "settlement",
             "settlement_with_axles",
@@ -184,9 +191,10 @@ mod tests {
         let page = page(&run);
         assert!(page.len() < 1_500_000, "{}", page.len());
         assert!(page.contains("&lt;b&gt;&quot;A &amp; B&quot;&lt;/b&gt;") && !page.contains("<b>\"A"));
-        assert!(!page.contains("NaN") && !page.contains(">inf"));
+        let shown = &page[..page.find("<script>").unwrap()];
+        assert!(!shown.contains("NaN") && !shown.contains(">inf"));
         let outside = page.replace("http://www.w3.org/2000/svg", "");
-        assert!(!outside.contains("http") && !outside.contains("<script") && !outside.contains("url(\""));
+        assert!(!outside.contains("http") && !outside.contains(" src=") && !outside.contains("url(\""));
         let ids: Vec<&str> = page.split(" id=\"").skip(1).map(|rest| &rest[..rest.find('"').unwrap()]).collect();
         // every entry of the contents leads somewhere
         let entries: Vec<&str> = page.split("href=\"#").skip(1).map(|rest| &rest[..rest.find('"').unwrap()]).collect();

@@ -5,8 +5,9 @@ use super::bed::{BedView, Colour, Side, bed_svg};
 use super::chart::{Axis, Chart, Mark, Series};
 use super::number::{plain, significant, whole};
 use super::packed_readings as readings;
-use super::page::{opening, picture};
-use super::svg::{Frame, Svg, escape};
+use super::page::{close, opening, picture};
+use super::prose::prose;
+use super::svg::{Frame, Svg};
 use super::table::{TABLE_END, row, table_head};
 use super::view::WIDTH;
 use crate::results::{BedSummary, Grain, Link};
@@ -47,7 +48,7 @@ impl BedPage<'_> {
             readings::write(&mut html, found);
         }
         self.stages(&mut html);
-        html += "</main></body></html>\n";
+        close(&mut html);
         html
     }
 
@@ -89,7 +90,7 @@ impl BedPage<'_> {
         }
         *html += TABLE_END;
         for note in &self.summary.notes {
-            let _ = writeln!(html, "<p class=\"caption\">{}</p>", escape(note));
+            let _ = writeln!(html, "<p class=\"caption\">{}</p>", prose(note));
         }
         *html += "</section>";
     }

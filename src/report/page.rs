@@ -1,7 +1,8 @@
-//! The report of a run: one HTML page with its pictures inside, that needs no script and nothing from elsewhere.
+//! The report of a run: one HTML page with its pictures inside, that needs nothing from elsewhere and is whole without its script.
 
 use super::headline::headline;
 use super::number::{plain, significant, whole};
+use super::prose::{computed, prose, unmarked};
 use super::reliance::reliance;
 use super::scene::force;
 use super::svg::{STYLE, escape};
@@ -23,8 +24,13 @@ pub fn page(run: &Run) -> String {
     trains(&mut html, run);
     blocks(&mut html, run);
     provenance(&mut html, &run.summary.provenance, &run.scenario);
-    html += "</main></body></html>\n";
+    close(&mut html);
     html
+}
+
+/// Ends a page, with the script that its pictures share.
+pub(super) fn close(html: &mut String) {
+    let _ = writeln!(html, "</main><script>\n{}</script></body></html>", include_str!("page.js"));
 }
 
 /// The head of a page: its style, title and what it is about.
@@ -34,13 +40,14 @@ pub(super) fn opening(title: &str, subtitle: &str) -> String {
             "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">",
             "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">",
             "<meta name=\"color-scheme\" content=\"light dark\">",
-            "<title>{title}</title><style>{page}{figures}</style></head><body><main>\n",
+            "<title>{name}</title><style>{page}{figures}</style></head><body><main>\n",
             "<header><h1>{title}</h1><p class=\"sub\">{subtitle}</p></header>\n"
         ),
-        title = escape(title),
+        name = escape(&unmarked(title)),
+        title = prose(title),
         page = include_str!("page.css"),
         figures = STYLE,
-        subtitle = escape(subtitle)
+        subtitle = prose(subtitle)
     )
 }
 
@@ -78,7 +85,7 @@ pub(super) fn subtitle(scenario: &Scenario) -> String {
 fn contents(html: &mut String, figures: &[Figure], run: &Run) {
     *html += "<nav id=\"contents\"><h2>Contents</h2><ol>";
     for figure in figures {
-        let _ = write!(html, "<li><a href=\"#{}\">{}</a></li>", escape(&figure.id), escape(&figure.title));
+        let _ = write!(html, "<li><a href=\"#{}\">{}</a></li>", escape(&figure.id), prose(&figure.title));
     }
     if !run.trains.is_empty() {
         *html += "<li><a href=\"#trains\">Trains</a></li>";
@@ -104,17 +111,12 @@ pub(super) fn expectations(html: &mut String, verdicts: &[Verdict]) {
          <tr><th class=\"text\">expected</th><th class=\"text\">computed</th><th class=\"text\">verdict</th></tr>"
     );
     for verdict in verdicts {
-        let values: Vec<String> = verdict.values.iter().map(|value| plain(*value, 4)).collect();
-        let computed = match &verdict.problem {
-            Some(problem) => problem.clone(),
-            None => format!("{} {}", values.join(" | "), if verdict.unit == "1" { "" } else { &verdict.unit }),
-        };
         let (class, word) = if verdict.met { ("good", "\u{2713} met") } else { ("bad", "\u{2717} missed") };
         let _ = write!(
             html,
             "<tr><td class=\"text\"><code>{}</code></td><td class=\"text\">{}</td><td class=\"text {class}\">{word}</td></tr>",
             escape(&verdict.text),
-            escape(&computed)
+            prose(&computed(verdict))
         );
     }
     *html += "</table></div></section>\n";
@@ -123,7 +125,7 @@ pub(super) fn expectations(html: &mut String, verdicts: &[Verdict]) {
 pub(super) fn picture(html: &mut String, figure: &Figure) {
     // The page states the pictures' style once.
     let svg = figure.svg.replacen(&format!("<style>{STYLE}</style>"), "", 1);
-    let (id, title, caption) = (escape(&figure.id), escape(&figure.title), escape(&figure.caption));
+    let (id, title, caption) = (escape(&figure.id), prose(&figure.title), prose(&figure.caption));
     let _ = writeln!(
         html,
         "<section id=\"{id}\"><h2>{title}</h2><p class=\"caption\">{caption}</p><div class=\"scroll\">{svg}</div></section>"
@@ -134,12 +136,12 @@ pub(super) fn picture(html: &mut String, figure: &Figure) {
 fn trains(html: &mut String, run: &Run) {
     let Some(last) = run.trains.iter().map(|row| row.axles).max() else { return };
     let heads = [
-        ("trains so far", ""),
+        ("Trains so far", ""),
         ("Static wheel load", "kN"),
         ("Wheel force, largest", "kN"),
-        ("over its static load", ""),
+        ("Over its static load", ""),
         ("Wheel force, least", "kN"),
-        ("of its static load missing", "%"),
+        ("Missing of its static load", "%"),
         ("Rail seat load", "kN"),
         ("Contact force", "kN"),
         ("Rail moment", "kN m"),
@@ -149,7 +151,7 @@ fn trains(html: &mut String, run: &Run) {
         html,
         "<section id=\"trains\"><h2>Trains</h2><p class=\"caption\">Extremes of a passage of each kind of train after {} \
          axles, each wheel against its own static load. Figures of one passage are of the first kind; histories of all are kept.</p>\
-         <div class=\"scroll\"><table><tr><th class=\"text\">train</th>{heads}</tr>",
+         <div class=\"scroll\"><table><tr><th class=\"text\">Train</th>{heads}</tr>",
         whole(last)
     );
     for row in run.trains.iter().filter(|row| row.axles == last) {
@@ -217,7 +219,7 @@ fn blocks(html: &mut String, run: &Run) {
         html,
         "<section class=\"long\" id=\"blocks\"><h2>Blocks</h2><p class=\"caption\">Extremes of the passage computed for \
          each block of axles. {}</p>{table}</section>",
-        escape(&super::blocks::said(run))
+        prose(&super::blocks::said(run))
     );
 }
 
@@ -234,13 +236,14 @@ pub(super) fn provenance(html: &mut String, made: &Provenance, scenario: &Scenar
     );
     for (rule, reason) in &scenario.allow {
         let _ =
-            writeln!(html, "<p class=\"note\">Rule <code>{}</code> is silenced: {}</p>", escape(rule), escape(reason));
+            writeln!(html, "<p class=\"note\">Rule <code>{}</code> is silenced: {}</p>", escape(rule), prose(reason));
     }
     if !made.plan.is_empty() {
-        let _ = writeln!(html, "<p class=\"note\">The plan</p><pre>{}</pre>", escape(&made.plan));
+        let _ = writeln!(html, "<p class=\"note\">The plan</p><pre>{}</pre>", prose(&made.plan));
     }
     if !made.source.is_empty() {
-        let _ = writeln!(html, "<details><summary>The source</summary><pre>{}</pre></details>", escape(&made.source));
+        // open, so that it is printed too
+        let _ = writeln!(html, "<p class=\"note\">The source</p><pre class=\"source\">{}</pre>", escape(&made.source));
     }
     *html += "</section>\n";
 }

@@ -5,7 +5,7 @@
 
 use super::number::{plain, tick_label, ticks, whole};
 use super::svg::{Anchor, Frame, Svg, text_width};
-use super::symbols::{draw_dimension, draw_spring, draw_stones};
+use super::symbols::{draw_dimension, draw_spring, draw_stones, draw_usp};
 use super::vehicle;
 use super::view::{MARGIN, View, WIDTH, scale, seat_depth};
 use crate::graph::SupportNode;
@@ -17,6 +17,8 @@ const CLOSE: f64 = 6.0;
 /// Depth of the drawn bed under the sleepers' base, m.
 const BED: f64 = 0.40;
 const SLAB: f64 = 0.25;
+/// Width of small letters over that of common ones.
+const SMALL: f64 = 0.85;
 
 /// Draws the scene as one picture, valid on its own.
 pub fn scene_svg(scenario: &Scenario) -> String {
@@ -81,7 +83,7 @@ fn draw_close(svg: &mut Svg, scenario: &Scenario, supports: &[SupportNode], plac
     let track = &scenario.track;
     let (start, end) = ((place - CLOSE).max(track.start()), (place + CLOSE).min(track.end()));
     let scale = (WIDTH - 2.0 * MARGIN) / (end - start);
-    let view = View { start, end, scale, rail: top + 78.0 };
+    let view = View { start, end, scale, rail: top + 92.0 };
     let name = track.transitions.get(index).map_or("", |t| t.name.as_str());
     let title = match (track.transitions.is_empty(), name) {
         (true, _) => "Around the load".to_owned(),
@@ -89,7 +91,7 @@ fn draw_close(svg: &mut Svg, scenario: &Scenario, supports: &[SupportNode], plac
         (_, name) => format!("Transition {name}, \u{b1}{} m", plain(CLOSE, 2)),
     };
     svg.text("strong", (6.0, top + 18.0), Anchor::Start, &title);
-    draw_key(svg, top + 18.0);
+    draw_key(svg, scenario, top + 18.0);
     let clip = Frame { x: MARGIN, y: top + 26.0, width: WIDTH - 2.0 * MARGIN, height: 400.0 };
     svg.clipped(&format!("scene-close-{index}"), clip, |svg| draw_track(svg, scenario, &view));
     let bottom = draw_loads(svg, scenario, &view);
@@ -103,11 +105,12 @@ fn draw_close(svg: &mut Svg, scenario: &Scenario, supports: &[SupportNode], plac
 }
 
 /// What the colours of a close-up mean.
-fn draw_key(svg: &mut Svg, y: f64) {
+fn draw_key(svg: &mut Svg, scenario: &Scenario, y: f64) {
     let mut x = WIDTH - MARGIN;
+    let under_sleepers = has_usps(scenario).then_some(("usp", "under sleeper pad"));
     let entries =
         [("slab", "slab"), ("stones", "ballast"), ("spring", "support"), ("sleeper", "sleeper"), ("pad", "rail pad")];
-    for (class, name) in entries {
+    for (class, name) in under_sleepers.into_iter().chain(entries) {
         x -= text_width(name) + 30.0;
         match class {
             "spring" => draw_spring(svg, (x + 7.0, y - 11.0), y + 2.0, 4.0),
@@ -115,6 +118,11 @@ fn draw_key(svg: &mut Svg, y: f64) {
         }
         svg.text("small muted", (x + 19.0, y), Anchor::Start, name);
     }
+}
+
+/// Whether pads lie under sleepers anywhere.
+pub(super) fn has_usps(scenario: &Scenario) -> bool {
+    scenario.track.seats.iter().any(|seat| seat.usp().is_some())
 }
 
 /// Width and height of a seat's sleeper.
@@ -175,6 +183,10 @@ fn draw_seat(svg: &mut Svg, view: &View, section: &Section, seat: &Seat, ground:
         Foot::Sleeper { .. } | Foot::Rigid => {
             svg.rect("sleeper", view.area(seat.x - width / 2.0, seat.x + width / 2.0, base, base + height));
             let under = base + height;
+            if let Some(usp) = seat.usp().filter(|_| close) {
+                let area = view.area(seat.x - width / 2.0, seat.x + width / 2.0, under, under + usp.thickness);
+                draw_usp(svg, area);
+            }
             if matches!(seat.foot, Foot::Rigid) {
                 let area = view.area(seat.x - width / 2.0, seat.x + width / 2.0, under, ground);
                 svg.rect("slab", area);
@@ -267,13 +279,19 @@ fn draw_spacings(svg: &mut Svg, scenario: &Scenario, supports: &[SupportNode], v
         let text = format!("{} m", plain(to.x - from.x, 3));
         svg.text("small halo", ((a + b) / 2.0, y - 6.0), Anchor::Middle, &text);
         let (left, right) = (view.x(section.start.max(view.start)), view.x(section.end.min(view.end)));
-        let text = carried(section, &seats, &supports);
-        svg.text("small muted halo", ((left + right) / 2.0, view.rail - 34.0), Anchor::Middle, &text);
+        // one line, or two where the section is short
+        let parts = carried(section, &seats, &supports);
+        let whole = parts.join(", ");
+        let lines = if SMALL * text_width(&whole) < right - left { vec![whole] } else { parts };
+        for (line, text) in lines.iter().rev().enumerate() {
+            let y = view.rail - 34.0 - 14.0 * line as f64;
+            svg.text("small muted halo", ((left + right) / 2.0, y), Anchor::Middle, text);
+        }
     }
 }
 
-/// `ballasted: pads 40 MN/m, support 60 MN/m per seat`
-fn carried(section: &Section, seats: &[&Seat], supports: &[&SupportNode]) -> String {
+/// `ballasted: pads 40 MN/m` and `support 60 MN/m per seat`
+fn carried(section: &Section, seats: &[&Seat], supports: &[&SupportNode]) -> Vec<String> {
     let range = |values: Vec<f64>| {
         let low = values.iter().copied().fold(f64::INFINITY, f64::min);
         let high = values.iter().copied().fold(0.0, f64::max);
@@ -287,11 +305,16 @@ fn carried(section: &Section, seats: &[&Seat], supports: &[&SupportNode]) -> Str
         parts.push(format!("pads {} MN/m", range(pads)));
     }
     if !supports.is_empty() {
-        parts.push(format!("support {} MN/m per seat", range(supports)));
+        let series = if seats.iter().any(|seat| seat.usp().is_some()) { " with its under sleeper pad" } else { "" };
+        parts.push(format!("support{series} {} MN/m per seat", range(supports)));
     } else if let Some(slab) = &section.slab {
         parts.push(format!("foundation {} MN/m per m", plain(*slab.foundation_stiffness / 1e6, 3)));
     }
-    if parts.is_empty() { section.name.clone() } else { format!("{}: {}", section.name, parts.join(", ")) }
+    match parts.first_mut() {
+        Some(first) => *first = format!("{}: {first}", section.name),
+        None => parts.push(section.name.clone()),
+    }
+    parts
 }
 
 /// Name, length and content of each stretch, and what is tamped, one below the other where they overlap.
@@ -308,7 +331,7 @@ fn draw_stretches(svg: &mut Svg, scenario: &Scenario, view: &View, y: f64) -> f6
         rows[row] = middle + half;
         let y = y + 24.0 * row as f64;
         draw_dimension(svg, a, b, y);
-        svg.text("small", (middle, y + 15.0), Anchor::Middle, &text);
+        svg.text("small halo", (middle, y + 15.0), Anchor::Middle, &text);
     }
     y + 24.0 * rows.len() as f64
 }

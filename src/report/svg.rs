@@ -64,6 +64,17 @@ impl Svg {
         self.close("path", title);
     }
 
+    /// Many small outlines of one class as one path.
+    pub fn outlines(&mut self, class: &str, outlines: &[[(f64, f64); 4]]) {
+        let _ = write!(self.body, r#"<path class="{class}" d=""#);
+        for [a, rest @ ..] in outlines {
+            let _ = write!(self.body, "M{} {}L", px(a.0), px(a.1));
+            let corners: Vec<String> = rest.iter().map(|(x, y)| format!("{} {}", px(*x), px(*y))).collect();
+            let _ = write!(self.body, "{}Z", corners.join(" "));
+        }
+        self.body += "\"/>";
+    }
+
     /// Ends a tag, with what it says when it is pointed at.
     fn close(&mut self, tag: &str, title: &str) {
         if title.is_empty() {
@@ -166,7 +177,7 @@ pub fn escape(text: &str) -> String {
 
 /// Width of a text of 13 px, roughly.
 pub fn text_width(text: &str) -> f64 {
-    7.0 * text.chars().count() as f64
+    7.4 * text.chars().count() as f64
 }
 
 fn px(value: f64) -> String {

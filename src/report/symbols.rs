@@ -21,23 +21,25 @@ pub(super) fn draw_stones(svg: &mut Svg, area: Frame, scale: f64) {
     let size = (0.11 * scale).clamp(3.0, 8.0);
     let mut y = area.y + 0.7 * size;
     let mut row = 0u32;
+    let mut stones = Vec::new();
     while y < area.y + area.height {
         let mut x = area.x + if row.is_multiple_of(2) { 0.5 } else { 1.1 } * size;
         let mut count = row;
         while x < area.x + area.width {
             let r = 0.34 * size * (0.75 + 0.25 * f64::from((count * 7 + row * 3) % 5) / 4.0);
-            svg.path(
-                "stone",
-                &[(x - r, y), (x - 0.3 * r, y - r), (x + r, y - 0.3 * r), (x + 0.4 * r, y + r)],
-                true,
-                "",
-            );
+            stones.push([(x - r, y), (x - 0.3 * r, y - r), (x + r, y - 0.3 * r), (x + 0.4 * r, y + r)]);
             x += 1.25 * size;
             count += 1;
         }
         y += size;
         row += 1;
     }
+    svg.outlines("stone", &stones);
+}
+
+/// A pad under a sleeper: to scale, but thick enough to be seen.
+pub(super) fn draw_usp(svg: &mut Svg, area: Frame) {
+    svg.titled_rect("usp", Frame { height: area.height.max(3.0), ..area }, "under sleeper pad");
 }
 
 /// A dimension line between two places, px.

@@ -1,16 +1,16 @@
 //! Thins a long series to what the pixels can show, with every peak kept.
 
 /// Distance from a straight line that nobody sees, px.
-const UNSEEN: f64 = 0.08;
+pub const UNSEEN: f64 = 0.08;
 /// Points that one straight piece may stand for, so that the search stays linear.
 const LONGEST: usize = 128;
 
-/// Leaves out points on a straight line between those that stay; x grows.
-pub fn straighten(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+/// Leaves out points that lie nearer than `off` to the straight line between those that stay, px; x grows.
+pub fn straighten(points: &[(f64, f64)], off: f64) -> Vec<(f64, f64)> {
     let mut kept: Vec<(f64, f64)> = points.first().copied().into_iter().collect();
     let mut from = 0;
     for next in 2..points.len() {
-        if next - from > LONGEST || !straight(&points[from..=next]) {
+        if next - from > LONGEST || !straight(&points[from..=next], off) {
             from = next - 1;
             kept.push(points[from]);
         }
@@ -20,10 +20,10 @@ pub fn straighten(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
 }
 
 /// Whether everything between the ends lies on the line between them.
-fn straight(points: &[(f64, f64)]) -> bool {
+fn straight(points: &[(f64, f64)], off: f64) -> bool {
     let (Some(a), Some(b)) = (points.first(), points.last()) else { return true };
     let slope = (b.1 - a.1) / (b.0 - a.0);
-    points.iter().all(|p| (a.1 + slope * (p.0 - a.0) - p.1).abs() <= UNSEEN)
+    points.iter().all(|p| (a.1 + slope * (p.0 - a.0) - p.1).abs() <= off)
 }
 
 /// Keeps the first, lowest, highest and last point of each column of `column` px; the order stays.
@@ -53,9 +53,9 @@ mod tests {
     #[test]
     fn straight_pieces_keep_their_ends() {
         let corner: Vec<(f64, f64)> = (0..=100).map(f64::from).map(|x| (x, (x - 50.0).abs())).collect();
-        assert_eq!(straighten(&corner), [(0.0, 50.0), (50.0, 0.0), (100.0, 50.0)]);
+        assert_eq!(straighten(&corner, UNSEEN), [(0.0, 50.0), (50.0, 0.0), (100.0, 50.0)]);
         let wave: Vec<(f64, f64)> = (0..400).map(f64::from).map(|k| (k / 4.0, 40.0 * (k / 40.0).sin())).collect();
-        let kept = straighten(&wave);
+        let kept = straighten(&wave, UNSEEN);
         assert!(kept.len() < 200 && kept[0] == wave[0] && kept[kept.len() - 1] == wave[399]);
         // what is left out lies on what stays
         for (x, y) in &wave {
@@ -63,9 +63,9 @@ mod tests {
             let (a, b) = (kept[after - 1], kept[after]);
             assert!((a.1 + (b.1 - a.1) * (x - a.0) / (b.0 - a.0) - y).abs() <= UNSEEN);
         }
-        assert_eq!(straighten(&[]), []);
-        assert_eq!(straighten(&wave[..1]), wave[..1]);
-        assert_eq!(straighten(&wave[..2]), wave[..2]);
+        assert_eq!(straighten(&[], UNSEEN), []);
+        assert_eq!(straighten(&wave[..1], UNSEEN), wave[..1]);
+        assert_eq!(straighten(&wave[..2], UNSEEN), wave[..2]);
     }
 
     #[test]

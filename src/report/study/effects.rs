@@ -1,6 +1,7 @@
 //! Main effects: the mean of what is measured over the points that share a value, for every value that varies.
 
 use super::plane::{Plane, cut, range, titled};
+use crate::report::chart::{Mark, Series};
 use crate::report::svg::{Anchor, Frame, Svg};
 use crate::scenario::Measured;
 use crate::study::Answer;
@@ -46,7 +47,7 @@ pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
             width,
             height: HEIGHT,
         };
-        panel(&mut svg, answer, *m, measured[*m], *axis, frame);
+        svg.group(r#"class="chart""#, |svg| panel(svg, answer, *m, measured[*m], *axis, frame));
     }
     let height = (panels.len() / each * rows_each) as f64 * (HEIGHT + GAP);
     let mut caption = "Dots: the mean over all points that share a value (or lie in one of six pieces of its range). \
@@ -84,33 +85,45 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
     let middle = plane.frame.x + plane.frame.width / 2.0;
     let title = cut(&titled(&own.path, &own.unit), 44);
     svg.text("", (middle, frame.y + frame.height - 8.0), Anchor::Middle, &title);
-    let mut means = Vec::new();
+    let means: Vec<(f64, f64)> = groups.iter().map(|group| (group.x, mean(group, &value))).collect();
+    let rows = || groups.iter().flat_map(|group| &group.rows).copied();
+    let points = || rows().filter_map(|row| Some((row, (numbers(row), value(row)?))));
+    let named = |row: usize| format!("point {}", answer.rows[row].number);
+    let series = vec![
+        Series::new("mean", "s0", Mark::Dots, means.clone()),
+        Series {
+            labels: points().map(|(row, _)| named(row)).collect(),
+            ..Series::new("point", "s0", Mark::Dots, points().map(|(_, at)| at).collect())
+        },
+    ];
+    plane.readings(svg, [(&own.path, &own.unit), (&what.text, &what.unit.0)], series);
     for group in &groups {
-        let values: Vec<f64> = group.rows.iter().filter_map(|row| value(*row)).collect();
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let (low, high) = values.iter().fold((mean, mean), |(low, high), v| (low.min(*v), high.max(*v)));
+        let values = || group.rows.iter().filter_map(|row| value(*row));
+        let (low, high) = values().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
         svg.line("line s0", plane.point((group.x, low)), plane.point((group.x, high)));
-        means.push((plane.point((group.x, mean)), mean, values.len()));
     }
-    for row in groups.iter().flat_map(|g| &g.rows) {
-        if let Some(y) = value(*row) {
-            let text = format!("point {}", answer.rows[*row].number);
-            svg.circle("faint", plane.point((numbers(*row), y)), 2.5, &text);
-            if scatter(*row) > 0.0 {
-                whisker(
-                    svg,
-                    plane.point((numbers(*row), y - scatter(*row))),
-                    plane.point((numbers(*row), y + scatter(*row))),
-                );
+    svg.group(r#"class="series" data-series="1""#, |svg| {
+        for (row, (x, y)) in points() {
+            svg.circle("faint", plane.point((x, y)), 2.5, &named(row));
+            if scatter(row) > 0.0 {
+                whisker(svg, plane.point((x, y - scatter(row))), plane.point((x, y + scatter(row))));
             }
         }
-    }
-    let places: Vec<(f64, f64)> = means.iter().map(|(at, ..)| *at).collect();
-    svg.path("line s0", &places, false, "");
-    for (at, mean, count) in means {
-        let text = format!("mean of {count}: {} {}", crate::report::number::significant(mean, 4), what.unit.0);
-        svg.circle("dot s0", at, 4.0, &text);
-    }
+    });
+    svg.group(r#"class="series" data-series="0""#, |svg| {
+        let places: Vec<(f64, f64)> = means.iter().map(|at| plane.point(*at)).collect();
+        svg.path("line s0", &places, false, "");
+        for (group, (place, (_, mean))) in groups.iter().zip(places.into_iter().zip(&means)) {
+            let (count, value) = (group.rows.len(), crate::report::number::significant(*mean, 4));
+            svg.circle("dot s0", place, 4.0, &format!("mean of {count}: {value} {}", what.unit.0));
+        }
+    });
+}
+
+/// The mean of what is measured over the points of a group.
+fn mean(group: &Group, value: &impl Fn(usize) -> Option<f64>) -> f64 {
+    let values: Vec<f64> = group.rows.iter().filter_map(|row| value(*row)).collect();
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// An upright line with its ends.

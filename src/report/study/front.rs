@@ -1,6 +1,7 @@
 //! The Pareto front of the first two objectives.
 
 use super::plane::{Plane, range, titled};
+use crate::report::chart::{Mark, Series};
 use crate::report::svg::{Anchor, Frame, Svg};
 use crate::scenario::{Goal, Objective};
 use crate::study::{Answer, Row};
@@ -29,26 +30,46 @@ pub(super) fn pareto(answer: &Answer) -> Option<(String, String)> {
     plane.level_scale(&mut svg);
     let below = (plane.frame.x + plane.frame.width / 2.0, SIZE.1 - 12.0);
     svg.text("strong", below, Anchor::Middle, &aimed(first));
-    let best = answer.best();
-    let front: Vec<(f64, f64)> = best.iter().filter_map(|i| at(&answer.rows[*i])).map(|p| plane.point(p)).collect();
-    svg.path("frontier", &front, false, "");
-    for (index, row) in answer.rows.iter().enumerate() {
-        let Some(place) = at(row) else { continue };
-        let text = format!("point {}: {}", row.number, answer.lines(row).join(", "));
-        let (x, y) = plane.point(place);
-        match (best.contains(&index), row.feasible()) {
-            (true, _) => {
-                svg.circle("dot s1", (x, y), 5.5, &text);
-                svg.text("small halo", (x + 9.0, y - 7.0), Anchor::Start, &row.number.to_string());
-            }
-            (false, true) => svg.circle("dot s0", (x, y), 3.5, &text),
-            (false, false) => svg.circle("hollow s0", (x, y), 3.5, &text),
-        }
-    }
+    svg.group(r#"class="chart""#, |svg| points(svg, answer, &plane, [first, second], at));
     let caption = "Every point by its first two objectives. Large dots with their number: no other point is better in \
                    every objective. Hollow dots miss a constraint."
         .to_owned();
     Some((svg.finish(SIZE.0, SIZE.1, "Pareto front"), caption))
+}
+
+/// Every point, and the line through the best.
+fn points(
+    svg: &mut Svg,
+    answer: &Answer,
+    plane: &Plane,
+    [first, second]: [&Objective; 2],
+    at: impl Fn(&Row) -> Option<(f64, f64)>,
+) {
+    let done = || answer.rows.iter().filter_map(|row| Some((row, at(row)?)));
+    let series = Series {
+        labels: done().map(|(row, _)| format!("point {}", row.number)).collect(),
+        ..Series::new("point", "s0", Mark::Dots, done().map(|(_, place)| place).collect())
+    };
+    let names = [first, second].map(|objective| (objective.of.text.as_str(), &*objective.of.unit.0));
+    plane.readings(svg, names, vec![series]);
+    let best = answer.best();
+    let front: Vec<(f64, f64)> = best.iter().filter_map(|i| at(&answer.rows[*i])).map(|p| plane.point(p)).collect();
+    svg.path("frontier", &front, false, "");
+    svg.group(r#"class="series" data-series="0""#, |svg| {
+        for (index, row) in answer.rows.iter().enumerate() {
+            let Some(place) = at(row) else { continue };
+            let text = format!("point {}: {}", row.number, answer.lines(row).join(", "));
+            let (x, y) = plane.point(place);
+            match (best.contains(&index), row.feasible()) {
+                (true, _) => {
+                    svg.circle("dot s1", (x, y), 5.5, &text);
+                    svg.text("small halo", (x + 9.0, y - 7.0), Anchor::Start, &row.number.to_string());
+                }
+                (false, true) => svg.circle("dot s0", (x, y), 3.5, &text),
+                (false, false) => svg.circle("hollow s0", (x, y), 3.5, &text),
+            }
+        }
+    });
 }
 
 /// `max(settlement) [mm], the smaller the better`

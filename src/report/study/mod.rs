@@ -5,7 +5,8 @@ mod front;
 mod plane;
 
 use super::number::plain;
-use super::page::opening;
+use super::page::{close, opening};
+use super::prose::prose;
 use super::scene::scene_svg;
 use super::svg::{STYLE, escape};
 use crate::scenario::{Goal, Sampling, Scenario, Study};
@@ -36,7 +37,7 @@ pub fn study_page(answer: &Answer, file: &str, design: Option<&Scenario>) -> Str
         picture(&mut html, "effects", "Main effects", &caption, &svg);
     }
     points(&mut html, answer);
-    html += "</main></body></html>\n";
+    close(&mut html);
     html
 }
 
@@ -120,7 +121,7 @@ fn pasted(study: &Study, row: &Row) -> String {
     let fixed = study.set.iter().map(|s| (s.path.as_str(), s.value.as_str()));
     let varied = study.axes.iter().zip(&row.levels).map(|(axis, level)| (axis.path.as_str(), level.text.as_str()));
     let line = |(path, value): (&str, &str)| match path.split_once('.') {
-        Some((name, field)) => format!("{field} = {value}  // in `{name}`"),
+        Some((name, field)) => format!("{field} = {value}  // in {name}"),
         None => format!("let {path} = {value}"),
     };
     fixed.chain(varied).map(line).collect::<Vec<_>>().join("\n")
@@ -174,7 +175,7 @@ fn table(html: &mut String, answer: &Answer, rows: &[usize], whole: bool) {
         }
         if whole {
             let (class, words) = status(answer, row, best.contains(index));
-            let _ = write!(html, "<td class=\"text {class}\">{}</td>", escape(&words));
+            let _ = write!(html, "<td class=\"text {class}\">{}</td>", prose(&words));
         }
         *html += "</tr>";
     }
@@ -202,7 +203,7 @@ fn status(answer: &Answer, row: &Row, best: bool) -> (&'static str, String) {
 fn picture(html: &mut String, id: &str, title: &str, caption: &str, svg: &str) {
     // The page states the pictures' style once.
     let svg = svg.replacen(&format!("<style>{STYLE}</style>"), "", 1);
-    let caption = escape(caption);
+    let caption = prose(caption);
     let _ = writeln!(
         html,
         "<section id=\"{id}\"><h2>{title}</h2><p class=\"caption\">{caption}</p><div class=\"scroll\">{svg}</div></section>"

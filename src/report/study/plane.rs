@@ -1,7 +1,9 @@
 //! A small diagram with two plain scales, for points of a study.
 
+use crate::report::chart::{Axis, Chart, Series};
 use crate::report::number::{nice_step, tick_label, ticks};
 use crate::report::svg::{Anchor, Frame, Svg};
+use crate::report::{plane, readings};
 
 /// Where data lie on the picture.
 pub(super) struct Plane {
@@ -26,6 +28,14 @@ impl Plane {
         let across = (x - self.x.0) / (self.x.1 - self.x.0);
         let up = (y - self.y.0) / (self.y.1 - self.y.0);
         (self.frame.x + across * self.frame.width, self.frame.y + (1.0 - up) * self.frame.height)
+    }
+
+    /// Writes what is shown as data, for the script of the page: the axes by name and unit, and the series.
+    pub fn readings(&self, svg: &mut Svg, [x, y]: [(&str, &str); 2], series: Vec<Series>) {
+        let axis = |(name, unit): (&str, &str)| Axis { unit: unit.to_owned().into(), ..Axis::new(name, ("", 1.0)) };
+        let chart = Chart { series, ..Chart::new(axis(x), axis(y)) };
+        let plane = plane::Plane { frame: self.frame, x: self.x, y: self.y, downwards: false, logarithmic: [false; 2] };
+        readings::write(svg, &chart, &plane);
     }
 
     /// Level lines with their values.
