@@ -89,11 +89,14 @@ function sizeOf(text) {
   return parseFloat(getComputedStyle(text).fontSize) * svg.getBoundingClientRect().width / svg.viewBox.baseVal.width;
 }
 
-// Marks of the axis of a chart that has fewer of them.
+// Marks of the axis of a chart that has fewer of them: level lines, and strokes below the plane.
 function fewestTicks(chart) {
-  const lines = [...chart.querySelectorAll("line.grid")];
-  const level = lines.filter(line => line.getAttribute("y1") === line.getAttribute("y2")).length;
-  return Math.min(level, lines.length - level);
+  const [, top, , height] = dataOf(chart).frame;
+  const at = (line, name) => Number(line.getAttribute(name));
+  const level = [...chart.querySelectorAll("line.grid")].filter(line => at(line, "y1") === at(line, "y2"));
+  const strokes = [...chart.querySelectorAll("line.axis")].filter(line =>
+    at(line, "x1") === at(line, "x2") && Math.abs(at(line, "y1") - top - height) < 0.2 && at(line, "y2") > at(line, "y1"));
+  return Math.min(level.length, strokes.length);
 }
 
 let lastReading = "";

@@ -25,12 +25,14 @@ pub(super) fn pareto(answer: &Answer) -> Option<(String, String)> {
         x: range(places.iter().map(|p| p.0)),
         y: range(places.iter().map(|p| p.1)),
     };
-    svg.text("strong", (6.0, 16.0), Anchor::Start, &aimed(second));
-    plane.upright_scale(&mut svg);
-    plane.level_scale(&mut svg);
-    let below = (plane.frame.x + plane.frame.width / 2.0, SIZE.1 - 12.0);
-    svg.text("strong", below, Anchor::Middle, &aimed(first));
-    svg.group(r#"class="chart""#, |svg| points(svg, answer, &plane, [first, second], at));
+    svg.group(r#"class="chart""#, |svg| {
+        svg.text("strong", (6.0, 16.0), Anchor::Start, &aimed(second));
+        plane.upright_scale(svg);
+        plane.level_scale(svg);
+        let below = (plane.frame.x + plane.frame.width / 2.0, SIZE.1 - 12.0);
+        svg.text("strong", below, Anchor::Middle, &aimed(first));
+        points(svg, answer, &plane, [first, second], at);
+    });
     let caption = "Every point by its first two objectives. Large dots with their number: no other point is better in \
                    every objective. Hollow dots miss a constraint."
         .to_owned();
