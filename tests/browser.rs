@@ -86,7 +86,12 @@ fn check(found: &Value, width: u32, page: &str) {
     }
 }
 
+/// A phone and a desk.
 const WIDTHS: [u32; 2] = [400, 1200];
+
+fn check_widths(chromium: &Path, page: &Path, name: &str) {
+    WIDTHS.iter().for_each(|width| check(&look(chromium, page, *width), *width, name));
+}
 
 fn written(directory: &Path, name: &str, text: &str) -> String {
     let path = directory.join(name);
@@ -175,7 +180,7 @@ fn the_page_of_a_study_can_be_read() {
     let out = directory.path().join("study");
     let study = trackbed(&["study", &scene, "--out", &out.display().to_string()]);
     assert!(study.status.success(), "{}", said(&study));
-    WIDTHS.map(|width| check(&look(&chromium, &out.join("study.html"), width), width, "the page of a study"));
+    check_widths(&chromium, &out.join("study.html"), "the page of a study");
 }
 
 /// A few grains under a sleeper, the cheapest that is a bed.
@@ -204,6 +209,6 @@ fn the_pages_of_a_rig_and_of_a_bed_can_be_read() {
     let pack = trackbed(&["pack", &scene, "--out", &path("bed"), "--cache", &path("cache")]);
     assert!(pack.status.success(), "{}", said(&pack));
     for (page, name) in [("out/report.html", "the page of a rig"), ("bed/bed.html", "the page of a bed")] {
-        WIDTHS.map(|width| check(&look(&chromium, &directory.path().join(page), width), width, name));
+        check_widths(&chromium, &directory.path().join(page), name);
     }
 }
