@@ -4,7 +4,7 @@ use super::scene::{PassArguments, SceneArguments, SeedArgument, failed, not_yet,
 use super::{Outcome, pack, progress, report, stored, terminal};
 use crate::compile::{Compiled, fingerprint};
 use crate::diag::{Code, Diagnostic, render};
-use crate::execute::{Both, Ending, Event, Executor, Listener};
+use crate::execute::{self, Both, Ending, Event, Executor, Listener};
 use crate::graph::{Graph, Schedule};
 use crate::lower::Parameter;
 use crate::results::{self, BedTestsView, BlockRow, NamedBytes, ResultsError, Run, RunRecorder, Scalar, Verdict};
@@ -116,7 +116,7 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
         (Ok(Ending::Finished), _) => {}
         (Ok(Ending::Stopped), Some(error)) => return refused(&error),
         (Ok(Ending::Stopped), None) => return Outcome::Failed,
-        (Err(error), _) => return stop(compiled, results::diagnose(&error, graph, &compiled.origins)),
+        (Err(error), _) => return stop(compiled, execute::diagnose(&error, graph, &compiled.origins)),
     }
     let computed = started.elapsed().as_secs_f64();
     let run = Run::gather(&recorder, scenario, graph, &compiled.sources, fingerprint(&compiled.sources));

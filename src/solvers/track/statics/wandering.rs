@@ -7,6 +7,7 @@
 use super::loads::{Inertia, Loads};
 use super::solve::solve_static;
 use super::standing::StandingTrain;
+use super::state::StaticState;
 use super::stiffness::factor;
 use crate::linalg::banded::BandedFactor;
 use crate::solvers::track::mesh::Track;
@@ -41,6 +42,20 @@ pub fn standing_deflections(
         Ok(track.deflection_at(&point, &unknowns) + force * point.local_compliance)
     };
     places.iter().map(deflection).collect()
+}
+
+/// Static stiffness at rail level (N/m) at each of `places` (m): `force` (N, down) over the deflection that it adds there to the track
+/// at rest without it. Fails as [`solve_static`] does.
+pub fn standing_stiffness(
+    track: &Track,
+    level: &TrackLevel,
+    unloaded: &StaticState,
+    force: f64,
+    places: &[f64],
+) -> Result<Vec<f64>, TrackError> {
+    let loaded = standing_deflections(track, level, force, places)?;
+    let added = |(x, loaded): (&f64, f64)| Ok(force / (loaded - unloaded.rail_deflection_at(track, *x)?));
+    places.iter().zip(loaded).map(added).collect()
 }
 
 /// The phases of the last equilibrium, and its factorised stiffness.
