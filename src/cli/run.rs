@@ -108,6 +108,9 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
         Ok(from) => from,
         Err(error) => return refused(&error),
     };
+    if let Some(checkpoint) = &from {
+        terminal::note(&format!("goes on after {}: what is left is told from here\n", checkpoint.clock));
+    }
     let executor = Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
     let mut shown = Shown::new(graph);
     let ended = executor.run(graph, &mut Both(&mut recorder, &mut shown), from);

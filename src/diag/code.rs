@@ -107,6 +107,7 @@ codes! {
     E0616 Error "expectation that the run cannot answer"
     E0617 Error "load on a sleeper that does not move"
     E0618 Error "trains without weight"
+    E0619 Error "states that a rig does not write"
     E0701 Error "study of a scene without trains"
     E0702 Error "axle count between two exchanges"
     E0703 Error "wheel force that has run away"
