@@ -103,7 +103,7 @@ fn outcome(text: &str) -> Result<(), Code> {
     let (scenario, graph) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
     let mut recorder = trackbed::results::RunRecorder::new(&scenario, &graph);
     trackbed::execute::execute(&graph, &mut recorder)
-        .map_err(|error| trackbed::results::diagnose(&error, &graph, &compiled.origins).code)?;
+        .map_err(|error| trackbed::execute::diagnose(&error, &graph, &compiled.origins).code)?;
     let (tables, histories) = (&recorder.tables, recorder.all_histories());
     let scalars = recorder.scalars();
     let view = tables.view(&histories, &scalars, &scenario.track, &graph.supports);

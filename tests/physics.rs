@@ -196,3 +196,50 @@ fn all_of_it_at_once() {
         "a sleeper hangs"
     );
 }
+
+/// A bench under a jack of 100 kN, its state of rest with gravity or without; what is recorded of its seats, and its scalars.
+fn jacked(gravity: &str, support: &str) -> trackbed::results::Run {
+    let text = format!(
+        "use std
+trackform seats {{
+  rail = rails.UIC60, pad = pads.medium, sleeper = sleepers.B70, spacing = 0.6 m, support = {support}
+}}
+track bench {{ sections = [seats: 41 sleepers], rail_ends = free }}
+load jack {{ on = rail, at = 21 sleepers, force = 100 kN per rail }}
+record {{ quantities = [rail_seat_load, contact_force, sleeper_displacement] }}
+solve {{ gravity = {gravity} m/s^2 }}
+"
+    );
+    trackbed::Scene::from_text(&text).run().unwrap_or_else(|stopped| panic!("{stopped:?}"))
+}
+
+#[test]
+fn displacements_under_test_loads_count_from_the_track_at_rest() {
+    let [with, without] = ["9.81", "0"].map(|gravity| jacked(gravity, "rigid"));
+    let of = |run: &trackbed::results::Run, name: &str| run.scalar(name).unwrap();
+    let deepest = of(&with, "max_rail_displacement") / of(&without, "max_rail_displacement");
+    assert!((deepest - 1.0).abs() < 1e-9, "gravity bends nothing more: {deepest}");
+    // the rail alone weighs on the pads
+    let level: Vec<f64> = with.histories.iter().filter(|h| h.quantity == "rail_level").map(|h| h.value).collect();
+    assert!(!level.is_empty() && level.iter().all(|deep| (1e-6..1e-4).contains(deep)), "{level:?}");
+}
+
+#[test]
+fn seat_loads_under_a_jack_carry_it_and_the_weight() {
+    let rail = 60.21 * 41.0 * 0.6 * 9.81;
+    for (support, sleepers) in [("rigid", 0.0), ("{ stiffness = 50 MN/m per seat }", 145.0 * 41.0 * 9.81)] {
+        let run = jacked("9.81", support);
+        let sum = |name: &str| -> f64 { run.histories.iter().filter(|h| h.quantity == name).map(|h| h.value).sum() };
+        let found = sum("rail_seat_load");
+        assert!((found / (100e3 + rail) - 1.0).abs() < 1e-3, "{support}: {found} N");
+        let middle = run.sleepers.iter().find(|row| row.sleeper == "+21").unwrap();
+        if sleepers > 0.0 {
+            let found = sum("contact_force");
+            assert!((found / (100e3 + rail + sleepers) - 1.0).abs() < 1e-3, "{found} N");
+            let weight = (rail + sleepers) / 41.0;
+            assert!((middle.gravity_contact_force_N / weight - 1.0).abs() < 0.01, "without the jack: {middle:?}");
+            let share = middle.max_contact_force_N - middle.gravity_contact_force_N;
+            assert!((share / 50e6 / middle.max_sleeper_displacement_m - 1.0).abs() < 1e-9, "{middle:?}");
+        }
+    }
+}

@@ -199,3 +199,33 @@ fn a_car_body_bounces_on_its_springs_in_series() {
     let said = format!("the car body of `wagon` bounces at {frequency:.2} Hz: {:.1} t over one rail", body / 1e3);
     assert!(with("0.2")[0].starts_with(&said), "{:?}, expected {said}", with("0.2"));
 }
+
+/// The figures of the rule are those of the table of stiffness that the run makes, far from the transition.
+#[test]
+fn a_jump_of_stiffness_is_that_of_the_runs_own_table() {
+    for pad in ["60 MN/m", "300 MN/m"] {
+        let text = format!(
+            "use std
+trackform open {{
+  rail = rails.UIC60, pad.stiffness = 60 MN/m, sleeper = sleepers.B70, spacing = 0.6 m, support.stiffness = 50 MN/m per seat
+}}
+trackform deck : open {{ sleeper = none, support = none, slab = slabs.half_width_1600, pad.stiffness = {pad} }}
+track line {{ sections = [open: 42 m, deck: 36 m] }}
+train ore {{ vehicles = vehicles.ore_wagon_20t, speed = 60 km/h }}
+traffic {{ trains = ore, total = 4 axles }}
+solve {{ elements_per_bay = 1, time_step = 2 ms }}
+"
+        );
+        let scene = trackbed::Scene::from_text(&text);
+        let run = scene.run().unwrap_or_else(|stopped| panic!("{stopped:?}"));
+        let over = |x: f64| {
+            let rows = run.rail.iter().filter(|row| row.axles == 0);
+            let nearest = rows.min_by(|a, b| (a.x_m - x).abs().total_cmp(&(b.x_m - x).abs())).unwrap();
+            (nearest.stiffness_N_per_m / 1e5).round() / 10.0
+        };
+        let said = format!("jumps from {} to {} MN/m", over(-20.7), over(18.3));
+        let found = scene.check().diagnostics;
+        let found = found.iter().find(|d| d.code == Code::L1001).map(|d| d.message.clone()).unwrap_or_default();
+        assert!(found.contains(&said), "pads of {pad}: {found}, expected {said}");
+    }
+}

@@ -53,11 +53,13 @@ pub(super) struct Patient {
     start: Instant,
     told: Instant,
     bar: Option<ProgressBar>,
+    /// What was done when it was first told of, and when: work that goes on was begun by another process.
+    begun: Option<(u64, Instant)>,
 }
 
 impl Patient {
     pub(super) fn new(message: &'static str) -> Patient {
-        Patient { message, start: Instant::now(), told: Instant::now(), bar: None }
+        Patient { message, start: Instant::now(), told: Instant::now(), bar: None, begun: None }
     }
 
     /// One that is seen at once: the first word of the work may be minutes away.
@@ -70,13 +72,18 @@ impl Patient {
     }
 
     pub(super) fn show(&mut self, done: u64, all: u64) {
+        self.begun.get_or_insert((done, Instant::now()));
         if self.bar.is_none() && self.start.elapsed() < Duration::from_secs(2) {
             return;
         }
         if !std::io::stderr().is_terminal() {
             return self.tell(done, all);
         }
+        let is_new = self.bar.is_none();
         set(self.shown(), done, all);
+        if is_new {
+            self.shown().reset_eta();
+        }
     }
 
     fn shown(&mut self) -> &ProgressBar {
@@ -88,17 +95,16 @@ impl Patient {
     }
 
     fn tell(&mut self, done: u64, all: u64) {
-        if self.told.elapsed() < LINE || done == 0 {
+        let Some((before, begun)) = self.begun.filter(|(before, _)| done > *before) else { return };
+        if self.told.elapsed() < LINE {
             return;
         }
         self.told = Instant::now();
-        let (took, share) = (self.start.elapsed().as_secs_f64() / 60.0, done as f64 / all.max(done) as f64);
-        let left = took * (1.0 - share) / share;
-        terminal::note(&format!(
-            "{}: {:.0} % after {took:.0} min, about {left:.0} min left\n",
-            self.message,
-            100.0 * share
-        ));
+        let minutes = |since: Instant| since.elapsed().as_secs_f64() / 60.0;
+        let (done, all, before) = (done as f64, all.max(done) as f64, before as f64);
+        let left = minutes(begun) * (all - done) / (done - before);
+        let (share, took) = (100.0 * done / all, minutes(self.start));
+        terminal::note(&format!("{}: {share:.0} % after {took:.0} min, about {left:.0} min left\n", self.message));
     }
 }
 

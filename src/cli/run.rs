@@ -4,7 +4,7 @@ use super::scene::{PassArguments, SceneArguments, SeedArgument, failed, not_yet,
 use super::{Outcome, pack, progress, report, stored, terminal};
 use crate::compile::{Compiled, fingerprint};
 use crate::diag::{Code, Diagnostic, render};
-use crate::execute::{Both, Ending, Event, Executor, Listener};
+use crate::execute::{self, Both, Ending, Event, Executor, Listener};
 use crate::graph::{Graph, Schedule};
 use crate::lower::Parameter;
 use crate::results::{self, BedTestsView, BlockRow, NamedBytes, ResultsError, Run, RunRecorder, Scalar, Verdict};
@@ -108,6 +108,9 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
         Ok(from) => from,
         Err(error) => return refused(&error),
     };
+    if let Some(checkpoint) = &from {
+        terminal::note(&format!("goes on after {}: what is left is told from here\n", checkpoint.clock));
+    }
     let executor = Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
     let mut shown = Shown::new(graph);
     let ended = executor.run(graph, &mut Both(&mut recorder, &mut shown), from);
@@ -116,7 +119,7 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
         (Ok(Ending::Finished), _) => {}
         (Ok(Ending::Stopped), Some(error)) => return refused(&error),
         (Ok(Ending::Stopped), None) => return Outcome::Failed,
-        (Err(error), _) => return stop(compiled, results::diagnose(&error, graph, &compiled.origins)),
+        (Err(error), _) => return stop(compiled, execute::diagnose(&error, graph, &compiled.origins)),
     }
     let computed = started.elapsed().as_secs_f64();
     let run = Run::gather(

@@ -1,10 +1,9 @@
 //! What the commands that study a scene share: the scene, its state after some axles, and their files.
-
 use super::scene::{SceneArguments, failed, not_yet, show};
 use super::{Outcome, terminal};
 use crate::compile::Compiled;
 use crate::diag::{Code, Diagnostic, render};
-use crate::execute::RunError;
+use crate::execute::{self, RunError};
 use crate::graph::Clock;
 use crate::nodes::NodeError;
 use crate::results;
@@ -50,7 +49,7 @@ impl<'a> Subject<'a> {
     pub fn settled(&self, after: Option<u64>, progress: &mut dyn FnMut(u64, u64)) -> Result<Settled, Outcome> {
         trials::settled(&self.planned.graph, after, progress).map_err(|why| match why {
             NotSettled::Run(error) => {
-                stop(self.compiled, results::diagnose(&error, &self.planned.graph, &self.planned.origins))
+                stop(self.compiled, execute::diagnose(&error, &self.planned.graph, &self.planned.origins))
             }
             NotSettled::Between { below, above } => {
                 let known: Vec<String> = [below, above].into_iter().flatten().map(|n| n.to_string()).collect();
@@ -66,7 +65,7 @@ impl<'a> Subject<'a> {
     /// A passage that the study needs has failed.
     pub fn failed(&self, cause: TrackError, axles: u64) -> Outcome {
         let error = RunError::node(Clock::Axles(axles), NodeError::Track(cause));
-        stop(self.compiled, results::diagnose(&error, &self.planned.graph, &self.planned.origins))
+        stop(self.compiled, execute::diagnose(&error, &self.planned.graph, &self.planned.origins))
     }
 }
 

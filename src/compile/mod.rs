@@ -4,6 +4,7 @@ mod unused;
 
 use crate::check::{self, Modules, Override};
 use crate::diag::{self, Code, Diagnostic, Severity, Sources};
+use crate::execute::{at_rest, diagnose};
 use crate::graph::Graph;
 use crate::lint::{self, lint};
 use crate::lower::{Lowered, Origins, Planner};
@@ -76,6 +77,10 @@ pub fn compile_with(
         graph = lowered.graph.filter(|_| checked.sound);
         origins = lowered.origins;
         diagnostics.extend(graph.iter().flat_map(|graph| lint(scenario, graph)));
+        // what the run would fail by before the first axle
+        let runs = graph.iter().filter(|graph| graph.runs && !diag::has_errors(&diagnostics));
+        let failure = runs.filter_map(|graph| Some(diagnose(&at_rest(graph).err()?, graph, &origins))).next();
+        diagnostics.extend(failure);
         if checked.sound {
             let of_plan = |graph| [check::readers(scenario), lowered.readers, lint::readers(graph)].concat();
             // a plan that this version cannot run is no measure of what a line is for

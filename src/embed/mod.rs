@@ -3,8 +3,8 @@
 use crate::check::{self, DataError, Folder, Modules, Override};
 use crate::compile::{Compiled, compile, fingerprint};
 use crate::diag::{Diagnostic, Sources, render};
-use crate::execute::{Both, Executor, Listener};
-use crate::results::{self, Run, RunRecorder};
+use crate::execute::{self, Both, Executor, Listener};
+use crate::results::{Run, RunRecorder};
 use crate::syntax;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -111,7 +111,7 @@ impl Scene {
         let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else { return Err(refused()) };
         let mut recorder = RunRecorder::new(scenario, graph);
         executor.run(graph, &mut Both(&mut recorder, listener), None).map_err(|error| {
-            let mistake = results::diagnose(&error, graph, &compiled.origins);
+            let mistake = execute::diagnose(&error, graph, &compiled.origins);
             Stopped::refused(vec![mistake], &compiled.sources)
         })?;
         Ok(Run::gather(

@@ -2,16 +2,38 @@
 
 use super::machine::{Ending, Machine, RunError};
 use super::{Event, Listener};
-use crate::graph::{Clock, PointLoad};
-use crate::nodes::{NodeError, Superstructure};
+use crate::graph::{Clock, Graph, Model, PointLoad, Schedule};
+use crate::nodes::{Builders, NodeError, Superstructure};
+use crate::store::Beds;
 
 pub(super) fn run(machine: &Machine<'_>, loads: &[PointLoad], listener: &mut dyn Listener) -> Result<Ending, RunError> {
     let at = |cause: NodeError| RunError::node(Clock::Axles(0), cause);
     let (track, ground) = machine.track_on_ground().map_err(at)?;
-    let state = track.equilibrium(&ground.settlement(), loads).map_err(at)?;
-    let told = listener.hear(&Event::Equilibrium(&state));
+    let settlement = ground.settlement();
+    let unloaded = track.equilibrium(&settlement, &[]).map_err(at)?;
+    let loaded = track.equilibrium(&settlement, loads).map_err(at)?;
+    let told = listener.hear(&Event::Equilibrium { unloaded: &unloaded, loaded: &loaded });
     if told.is_break() || listener.hear(&Event::Progress { done: 1, all: 1 }).is_break() {
         return Ok(Ending::Stopped);
     }
     Ok(Ending::Finished)
+}
+
+/// The state of rest with which the run of a graph begins: a check that computes it says what the run would fail by. Nothing is computed
+/// of a graph without a track, or on a ground of another program.
+pub fn at_rest(graph: &Graph) -> Result<(), RunError> {
+    let known = |model: &Model| matches!(model, Model::Track(_) | Model::Law(_) | Model::Springs(_));
+    if graph.track().is_none() || !graph.nodes.iter().all(|node| known(&node.model)) {
+        return Ok(());
+    }
+    let loads = if let Schedule::Static { loads } = &graph.schedule { loads.as_slice() } else { &[] };
+    let at = |cause: NodeError| RunError::node(Clock::Axles(0), cause);
+    let machine = Machine { graph, builders: &Builders::default(), beds: &Beds::default() };
+    let (track, ground) = machine.track_without_trains().map_err(at)?;
+    let settlement = ground.settlement();
+    track.equilibrium(&settlement, &[]).map_err(at)?;
+    if !loads.is_empty() {
+        track.equilibrium(&settlement, loads).map_err(at)?;
+    }
+    Ok(())
 }

@@ -11,8 +11,8 @@ use std::ops::ControlFlow;
 
 /// Something that has happened. Nothing is computed twice, so who listens must keep what is needed.
 pub enum Event<'a> {
-    /// The track at rest under test loads.
-    Equilibrium(&'a Unloaded),
+    /// The track at rest, without test loads and under them.
+    Equilibrium { unloaded: &'a Unloaded, loaded: &'a Unloaded },
     /// The track without a train, at an axle count that is recorded.
     Rest { axles: u64, state: &'a Unloaded },
     /// A passage at a recorded count; there is one of each kind of train, the leading one first.

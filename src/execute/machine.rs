@@ -1,7 +1,7 @@
 //! A graph with the means to build its nodes, how its run ends and why it fails.
 
 use crate::graph::quantity::SETTLEMENT;
-use crate::graph::{Clock, Fault, Graph, Model, Node, TrackNode};
+use crate::graph::{Blocks, Clock, Fault, Graph, Model, Node, TrackNode};
 use crate::nodes::{Builders, NodeError, Substructure, Superstructure, TrackSystem};
 use crate::store::Beds;
 use std::fmt;
@@ -75,11 +75,20 @@ impl<'a> Machine<'a> {
 
     /// The track and the ground that an edge joins to it, standing on each other.
     pub fn track_on_ground(&self) -> Result<(TrackSystem<'a>, Box<dyn Substructure + 'a>), NodeError> {
+        self.standing(self.graph.blocks())
+    }
+
+    /// The same without the time steps of trains, which take most of the time to make it.
+    pub(super) fn track_without_trains(&self) -> Result<(TrackSystem<'a>, Box<dyn Substructure + 'a>), NodeError> {
+        self.standing(None)
+    }
+
+    fn standing(&self, blocks: Option<&'a Blocks>) -> Result<(TrackSystem<'a>, Box<dyn Substructure + 'a>), NodeError> {
         let none = |kind: &str| NodeError::NoBuilder { node: kind.to_owned(), kind: kind.to_owned() };
         let (name, node) = self.track_node().ok_or_else(|| none("track"))?;
         let ground = self.ground_node(name).ok_or_else(|| none("ground"))?;
         let ground = self.builders.substructure(ground)?;
-        let mut track = TrackSystem::new(node, self.graph.blocks(), &self.graph.records);
+        let mut track = TrackSystem::new(node, blocks, &self.graph.records);
         track.stand_on(ground.responses())?;
         Ok((track, ground))
     }

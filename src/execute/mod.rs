@@ -8,14 +8,17 @@ mod equilibrium;
 mod event;
 mod exchange;
 mod executor;
+mod failure;
 mod machine;
 mod oscillation;
 mod pair;
 mod step;
 mod tests_of_beds;
 
+pub use equilibrium::at_rest;
 pub use event::{Between, Both, Checkpoint, Event, Listener, ScheduleState};
 pub use executor::{Custom, Executor};
+pub use failure::diagnose;
 pub use machine::{Ending, Machine, RunError};
 pub use step::BlockMeasures;
 

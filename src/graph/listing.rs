@@ -241,11 +241,12 @@ fn duration(seconds: f64) -> String {
 fn cost_lines(cost: &Cost) -> String {
     match cost.work {
         Work::Passages(work) => format!(
-            "\nestimate: {} unknowns, {} passages, {} steps, about {} s on one core, {} MB\n",
+            "\nestimate: {} unknowns, {} passages, {} steps, about {} s on one core, {} s on two, {} MB\n",
             work.unknowns,
             work.passages,
             work.steps,
             number((cost.seconds * 10.0).round() / 10.0),
+            number((cost.seconds_on_two_cores * 10.0).round() / 10.0),
             cost.bytes.div_ceil(1_000_000)
         ),
         Work::Tests(TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings }) => format!(

@@ -103,6 +103,67 @@ impl TrackNode {
         }
     }
 
+    /// A track of so many seats that is everywhere as at one seat: its rail, pad, foot and slab, with a clamp at both ends. `None`
+    /// where there is no such seat, or no rail over it.
+    pub fn everywhere_as_at(&self, index: usize, seats: usize) -> Option<TrackNode> {
+        let seat = self.seats.get(index)?;
+        let over = |start: f64, end: f64| start - 1e-6 <= seat.x && seat.x <= end + 1e-6;
+        let [start, end] = [0.0, seat.bay * seats as f64];
+        let rail = RailSection { start, end, ..*self.rail.get(seat.section)? };
+        let slab = self.slabs.iter().rfind(|slab| over(slab.start, slab.end) && seat.foot == TrackFoot::Slab);
+        let beside = self.auxiliary_rails.iter().filter(|rail| over(rail.start, rail.end));
+        let at = |n: usize| TrackSeat { x: (n as f64 + 0.5) * seat.bay, section: 0, ..seat.clone() };
+        Some(TrackNode {
+            rail: vec![rail],
+            sections: vec![TrackSection { start, end, ..self.sections.get(seat.section)?.clone() }],
+            seats: (0..seats).map(at).collect(),
+            slabs: slab.map(|slab| Slab { start, end, ..*slab }).into_iter().collect(),
+            auxiliary_rails: beside.map(|rail| AuxiliaryRail { start, end, ..*rail }).collect(),
+            rail_ends: RailEnds::Clamped,
+            irregularity: Irregularity::default(),
+            ..self.clone()
+        })
+    }
+
+    /// The part of the track from one of its seats to another, clamped at both ends; statics are those of the whole a few decay
+    /// lengths inside of it. `None` where it has no rail.
+    pub fn part(&self, first: usize, last: usize) -> Option<TrackNode> {
+        let (left, right) = (self.seats.get(first)?, self.seats.get(last)?);
+        let [start, end] = [left.x - left.bay / 2.0, right.x + right.bay / 2.0];
+        let within = |a: f64, b: f64| [a.max(start), b.min(end)];
+        let there = |a: f64, b: f64| b.min(end) - a.max(start) > 1e-6;
+        let rail = self.rail.iter().filter(|rail| there(rail.start, rail.end));
+        let rail = rail.map(|rail| {
+            let [start, end] = within(rail.start, rail.end);
+            RailSection { start, end, ..*rail }
+        });
+        let slabs = self.slabs.iter().filter(|slab| there(slab.start, slab.end));
+        let slabs = slabs.map(|slab| {
+            let [start, end] = within(slab.start, slab.end);
+            Slab { start, end, ..*slab }
+        });
+        let sections = self.sections.iter().filter(|section| there(section.start, section.end));
+        let sections = sections.map(|section| {
+            let [start, end] = within(section.start, section.end);
+            TrackSection { start, end, ..section.clone() }
+        });
+        let before = self.sections.iter().position(|section| there(section.start, section.end))?;
+        let seats = self.seats[first..=last].iter();
+        Some(TrackNode {
+            rail: rail.collect(),
+            sections: sections.collect(),
+            seats: seats
+                .map(|seat| TrackSeat { section: seat.section.saturating_sub(before), ..seat.clone() })
+                .collect(),
+            slabs: slabs.collect(),
+            auxiliary_rails: Vec::new(),
+            rail_ends: RailEnds::Clamped,
+            irregularity: Irregularity::default(),
+            elements_per_bay: 1,
+            ..self.clone()
+        })
+    }
+
     /// The settled track: supports where they lie, and the rail ends held at the level of the track there. A clamp that
     /// stayed at the level as built would grow a second transition at the end of the model.
     pub fn level(&self, settlement: &[f64], responses: &Responses) -> TrackLevel {

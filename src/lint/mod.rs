@@ -21,6 +21,7 @@ mod narrow_bed;
 mod over_budget;
 mod overdamped;
 mod passing_frequency;
+mod rail_stiffness;
 mod rail_stress;
 mod reads;
 mod small_volume;

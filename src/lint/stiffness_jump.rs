@@ -1,9 +1,9 @@
 //! L1001: the static stiffness at rail level jumps at a transition.
 //!
-//! Both sides as beams on Winkler foundations: K = 2 k / lambda. A ratio above 1.15 sets off the mechanism of Fig. 1 of
-//! the paper.
+//! Each side as if the track went on as at the seat of its section that is nearest, by the function that makes the table of stiffness of a
+//! run. A ratio above 1.15 sets off the mechanism of Fig. 1 of the paper.
 
-use super::winkler::Winkler;
+use super::rail_stiffness;
 use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
 use crate::scenario::{Scenario, Seat, Track};
@@ -13,15 +13,13 @@ const LARGEST_RATIO: f64 = 1.15;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let track = &scenario.track;
+    let load = rail_stiffness::load(graph);
+    let stiffness_beside = |section: usize, x: f64| rail_stiffness::as_at(graph, nearest(track, section, x)?, load);
     let mut found = Vec::new();
     for (i, transition) in track.transitions.iter().enumerate() {
-        let (Some(left), Some(right)) = (
-            Winkler::beside(track, &graph.supports, i, transition.x),
-            Winkler::beside(track, &graph.supports, i + 1, transition.x),
-        ) else {
+        let (Some(a), Some(b)) = (stiffness_beside(i, transition.x), stiffness_beside(i + 1, transition.x)) else {
             continue;
         };
-        let (a, b) = (left.rail_stiffness(), right.rail_stiffness());
         let ratio = a.max(b) / a.min(b);
         if ratio <= LARGEST_RATIO {
             continue;
@@ -53,11 +51,15 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     found
 }
 
-/// Distance, m, of the two seats that are compared: the nearest ones on either side.
+/// The seat of a section that is nearest to a chainage.
+fn nearest(track: &Track, section: usize, x: f64) -> Option<usize> {
+    let from = |index: &usize| (track.seats[*index].x - x).abs();
+    track.seats_of(section).min_by(|a, b| from(a).total_cmp(&from(b)))
+}
+
+/// Distance, m, of the two seats that are compared.
 fn apart(track: &Track, left: usize, x: f64) -> f64 {
-    let nearest = |section: usize| {
-        let seats = track.seats[track.seats_of(section)].iter();
-        seats.map(|s| (s.x - x).abs()).fold(f64::INFINITY, f64::min)
-    };
-    nearest(left) + nearest(left + 1)
+    let away =
+        |section: usize| nearest(track, section, x).map_or(f64::INFINITY, |seat| (track.seats[seat].x - x).abs());
+    away(left) + away(left + 1)
 }

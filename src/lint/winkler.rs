@@ -19,12 +19,8 @@ impl Winkler {
     /// A seat is pad and support in series; a slab adds its foundation over one bay. Where they vary, those of the
     /// section's left end. `None` without seats, or where rail, pads or supports are not known.
     pub fn of_section(track: &Track, supports: &[SupportNode], section: usize) -> Option<Winkler> {
-        Winkler::beside(track, supports, section, track.sections[section].start)
-    }
-
-    /// The track at the seat of a section that is nearest to a chainage.
-    pub fn beside(track: &Track, supports: &[SupportNode], section: usize, x: f64) -> Option<Winkler> {
-        let from = |index: &usize| (track.seats[*index].x - x).abs();
+        let start = track.sections[section].start;
+        let from = |index: &usize| (track.seats[*index].x - start).abs();
         Winkler::at_seat(track, supports, track.seats_of(section).min_by(|a, b| from(a).total_cmp(&from(b)))?)
     }
 

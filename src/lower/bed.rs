@@ -1,11 +1,13 @@
 //! The beds of grains that a scene has, as plans for the packer: one for each section with other layers.
 
+use super::clumps::Clumps;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::BedPlan;
-use crate::scenario::{BedEnds, Contact, Granular, Layer, Loading, Scenario, Section};
+use crate::scenario::{BedEnds, Contact, Granular, Layer, Loading, Scenario, Section, Shape};
 use crate::schema::Reads;
 use crate::solvers::granular::clump::Template;
-use crate::solvers::granular::packing::{GrainLayer as Filling, Packing, PackingError, Recipe, Rest};
+use crate::solvers::granular::grains::TemplatesError;
+use crate::solvers::granular::packing::{GRAIN, GrainLayer as Filling, Packing, PackingError, Recipe, Rest};
 use crate::solvers::granular::probe::{Outline, Plate, Stillness};
 use crate::solvers::granular::{DashpotMode, Surface};
 use crate::units::number;
@@ -62,12 +64,22 @@ pub enum BedUse {
     Rig,
 }
 
-/// A bed for each section that has grains under its sleepers; none twice.
+/// A bed for each section that has grains under its sleepers; none twice. Fails with what the packer would refuse.
 pub fn beds(scenario: &Scenario, use_of_it: BedUse) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
+    let packings = if use_of_it == BedUse::Rig { scenario.solve.grains.repeats } else { 1 };
+    beds_of(scenario, use_of_it, &mut Clumps::made(scenario.solve.seed, packings))
+}
+
+/// The same with spheres in the place of clumps, which take a tenth of a second to make: what clumps are too wide for is not told.
+pub(super) fn beds_of_spheres(scenario: &Scenario, use_of_it: BedUse) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
+    beds_of(scenario, use_of_it, &mut Clumps::spheres())
+}
+
+fn beds_of(scenario: &Scenario, use_of_it: BedUse, clumps: &mut Clumps) -> Result<Vec<BedPlan>, Vec<Diagnostic>> {
     let mut found: Vec<BedPlan> = Vec::new();
     let mut wrong = Vec::new();
     for section in 0..scenario.track.sections.len() {
-        match bed(scenario, section, use_of_it) {
+        match bed(scenario, section, use_of_it, clumps) {
             Ok(Some(plan)) if !found.iter().any(|other| other.packs_like(&plan)) => found.push(plan),
             Ok(_) => {}
             Err(diagnostic) => wrong.push(diagnostic),
@@ -76,7 +88,12 @@ pub fn beds(scenario: &Scenario, use_of_it: BedUse) -> Result<Vec<BedPlan>, Vec<
     if wrong.is_empty() { Ok(found) } else { Err(wrong) }
 }
 
-fn bed(scenario: &Scenario, number: usize, use_of_it: BedUse) -> Result<Option<BedPlan>, Diagnostic> {
+fn bed(
+    scenario: &Scenario,
+    number: usize,
+    use_of_it: BedUse,
+    clumps: &mut Clumps,
+) -> Result<Option<BedPlan>, Diagnostic> {
     let section = &scenario.track.sections[number];
     let middle = 0.5 * (section.start + section.end);
     let seed = scenario.solve.seed;
@@ -87,11 +104,12 @@ fn bed(scenario: &Scenario, number: usize, use_of_it: BedUse) -> Result<Option<B
     let (mut layers, mut shapes) = (Vec::new(), Vec::new());
     // the packer begins at the bottom
     for (layer, granular) in grains.iter().rev() {
-        layers.push(filling(layer, granular, middle)?);
-        shapes.push(granular.shape.clumps());
+        let shape = granular.shape.clumps();
+        let templates = clumps.widest(shape.as_ref()).map_err(|cause| not_made(layer, granular, &cause))?;
+        layers.push(filling(layer, granular, middle, templates)?);
+        shapes.push(shape);
     }
-    let largest = layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
-    let plan = plan(scenario, number, largest);
+    let plan = plan(scenario, number, Largest::of(&layers));
     let boxed = confinement(scenario).is_some();
     notes.push(if boxed {
         "Walls stand around the bed, which is a box.".to_owned()
@@ -130,7 +148,8 @@ fn bed(scenario: &Scenario, number: usize, use_of_it: BedUse) -> Result<Option<B
         rest: Rest::default(),
         seed,
     };
-    recipe.check().map_err(|error| refused(&error.to_string(), asked_by(&error, section)))?;
+    recipe.check().map_err(|error| unpackable(&error, scenario, section))?;
+    let recipe = recipe.with_spheres();
     if use_of_it == BedUse::Track && scenario.track.bed.ends == BedEnds::Walls && !boxed {
         notes.push("The cell is periodic along the track; held grains close the ends of the whole bed.".to_owned());
     }
@@ -145,7 +164,7 @@ fn bed(scenario: &Scenario, number: usize, use_of_it: BedUse) -> Result<Option<B
 fn plate(scenario: &Scenario, section: usize, recipe: &Recipe, notes: &mut Vec<String>) -> Plate {
     let track = &scenario.track;
     let [length, width] = recipe.plan;
-    let largest = recipe.layers.iter().map(|layer| layer.curve.ends()[1]).fold(0.0, f64::max);
+    let largest = Largest::of(&recipe.layers).diameter;
     let sleeper = track.seats[track.seats_of(section)].iter().find_map(|seat| seat.sleeper);
     let share = if scenario.solve.grains.both_rails { 1.0 } else { 0.5 };
     let rest = Stillness::default();
@@ -164,13 +183,30 @@ fn plate(scenario: &Scenario, section: usize, recipe: &Recipe, notes: &mut Vec<S
     }
 }
 
+/// The largest grain of a bed.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Largest {
+    /// Diameter of the ball of its volume, m.
+    pub diameter: f64,
+    /// How far it reaches, m: a clump is longer than its diameter.
+    pub width: f64,
+}
+
+impl Largest {
+    fn of(layers: &[Filling]) -> Largest {
+        let largest = |of: fn(&Filling) -> f64| layers.iter().map(of).fold(0.0, f64::max);
+        Largest { diameter: largest(|layer| layer.curve.ends()[1]), width: largest(Filling::widest) }
+    }
+}
+
 /// Length and width of a cell, m: of so many bays that no grain of the largest meets itself; of a box the whole section.
-pub(super) fn plan(scenario: &Scenario, number: usize, largest: f64) -> [f64; 2] {
+pub(super) fn plan(scenario: &Scenario, number: usize, largest: Largest) -> [f64; 2] {
     let section = &scenario.track.sections[number];
     let spacing = *section.spacing;
+    let least = (CELL * largest.diameter).max(largest.width / GRAIN);
     let length = match confinement(scenario) {
         Some(_) => section.end - section.start,
-        None => (CELL * largest / spacing).ceil().max(1.0) * spacing,
+        None => (least / spacing).ceil().max(1.0) * spacing,
     };
     [length, width(scenario, number)]
 }
@@ -191,7 +227,7 @@ pub(super) fn width(scenario: &Scenario, section: usize) -> f64 {
     if scenario.solve.grains.both_rails { 2.0 * half } else { half }
 }
 
-fn filling(layer: &Layer, granular: &Granular, x: f64) -> Result<Filling, Diagnostic> {
+fn filling(layer: &Layer, granular: &Granular, x: f64, templates: Vec<Template>) -> Result<Filling, Diagnostic> {
     let Contact::Linear { stiffness } = granular.contact else {
         let why = format!(
             "grains of `{}` meet after Hertz, and this version packs grains of a stated contact stiffness",
@@ -215,8 +251,7 @@ fn filling(layer: &Layer, granular: &Granular, x: f64) -> Result<Filling, Diagno
     Ok(Filling {
         name: layer.name.clone(),
         curve,
-        // a sphere stands where clumps will: they are made when the bed is packed
-        templates: Template::sphere(0.5).map(|sphere| vec![sphere]).unwrap_or_default(),
+        templates,
         density: *granular.density,
         surface,
         wall_friction: *granular.wall_friction,
@@ -236,22 +271,62 @@ fn mm(length: f64) -> String {
     number((length * 1e3).round())
 }
 
+const UNPACKABLE: &str = "this bed cannot be packed";
+
 fn refused(why: &str, at: Option<Span>) -> Diagnostic {
-    let diagnostic = Diagnostic::new(Code::E0610, format!("this bed cannot be packed: {why}"));
+    let diagnostic = Diagnostic::new(Code::E0610, format!("{UNPACKABLE}: {why}"));
     match at {
         Some(span) => diagnostic.label(span, "asked for here"),
         None => diagnostic,
     }
 }
 
-/// Where the scene asks for what cannot be packed: the grains of the layer in question, or the length of the section.
-fn asked_by(error: &PackingError, section: &Section) -> Option<Span> {
+/// Clumps that cannot be made of the surfaces of a layer.
+fn not_made(layer: &Layer, granular: &Granular, cause: &TemplatesError) -> Diagnostic {
+    let at = match &granular.shape {
+        Shape::Clumps { ratio, .. } => ratio.origin.span(),
+        Shape::Spheres => None,
+    };
+    refused(&format!("grains of `{}`: {cause}", layer.name), at.or(granular.density.origin.span()))
+}
+
+/// A recipe that the packer refuses, told where the scene asks for it.
+fn unpackable(error: &PackingError, scenario: &Scenario, section: &Section) -> Diagnostic {
     let layer = match error {
         PackingError::Number { layer, .. } => layer.as_deref(),
         PackingError::LargeGrain { layer, .. } | PackingError::ThinLayer { layer, .. } => Some(layer.as_str()),
         _ => None,
     };
     let of_layer = section.layers.iter().find(|other| Some(other.name.as_str()) == layer);
-    let grains = of_layer.and_then(|layer| Some(layer.granular()?.density.origin.span())).flatten();
-    grains.or(section.length_origin.span())
+    let granular = of_layer.and_then(Layer::granular);
+    let of_gravity = matches!(error, PackingError::Number { quantity: "gravity", .. });
+    let gravity = scenario.solve.gravity.origin.span().filter(|_| of_gravity);
+    let grains = granular.and_then(|granular| granular.density.origin.span());
+    let at = gravity.or(grains).or(section.length_origin.span());
+    let PackingError::LargeGrain { diameter, side, .. } = *error else { return refused(&error.to_string(), at) };
+    let told = Diagnostic::new(Code::E0610, format!("{UNPACKABLE}: {error}")).help(larger_cell(scenario, diameter));
+    let too_small = |span| (span, format!("too small: the cell is {} mm there", mm(side)));
+    match side_of(scenario, section, side).map(too_small).or(at.map(|span| (span, "these grains".to_owned()))) {
+        Some((span, text)) => told.label(span, text),
+        None => told,
+    }
+}
+
+/// Where the scene says a side (m) of the cell.
+fn side_of(scenario: &Scenario, section: &Section, side: f64) -> Option<Span> {
+    let length = section.end - section.start;
+    let along = confinement(scenario).is_some() && (length - side).abs() < 1e-9;
+    let width = scenario.track.bed.half_width.and_then(|half| half.origin.span());
+    if along { section.length_origin.span() } else { width }
+}
+
+/// What to write for a cell whose largest grain is so wide (m): its sides in hundreds of millimetres.
+fn larger_cell(scenario: &Scenario, width: f64) -> String {
+    let side = (width / GRAIN * 10.0 - 1e-9).ceil() / 10.0;
+    let rails = if scenario.solve.grains.both_rails { 1.0 } else { 2.0 };
+    let across = format!("`bed_width = {} m per track` or more", number(rails * side));
+    match confinement(scenario) {
+        Some(_) => format!("write a section of {} m or longer, and {across}; or cut the grading above", number(side)),
+        None => format!("write {across}; or cut the grading above"),
+    }
 }

@@ -1,42 +1,95 @@
 //! What a run of passages will take, before it runs: counts of unknowns and steps, times a measured cost.
 
 use super::outlook::Outlook;
-use crate::graph::{Blocks, Cost, PassagePlan, PassageWork, TrackFoot, TrackNode, Train, Work};
+use crate::graph::{Blocks, Cost, PassagePlan, PassageWork, Record, TrackFoot, TrackNode, Train, Work};
 
-/// Seconds a step and unknown of one passage on one core, as `cargo bench --bench track_passage` shows.
-const SECONDS: f64 = 2.5e-8;
-/// Seconds of a state of rest.
+/// Seconds of a time step on one core, and of each unknown in it: a straight line through passages of 400 and of 1300 unknowns
+/// (`cargo bench --bench track_passage`, `benches/estimates.py`).
+const STEP: f64 = 4e-6;
+const UNKNOWN: f64 = 2.2e-8;
+/// Seconds of a place of the profile of stiffness and of an unknown of the track there: an equilibrium at each.
+const PLACE: f64 = 3e-8;
+/// Places of the profile in a bay.
+const PER_BAY: f64 = 4.0;
+/// Seconds of a recorded value: kept, written and drawn.
+const VALUE: f64 = 1.5e-6;
+/// Seconds of a state of rest, and of tables and pages of any run.
 const AT_REST: f64 = 0.01;
+const WRITING: f64 = 0.06;
 /// Bytes an unknown: bands and the windows of the inverse.
 const BYTES: u64 = 6_000;
 
 /// The cost of a track at rest.
 pub(super) fn at_rest(node: &TrackNode) -> Cost {
     let unknowns = unknowns(node);
-    cost(AT_REST, PassageWork { unknowns, ..PassageWork::default() }, unknowns)
+    cost(AT_REST + WRITING, PassageWork { unknowns, ..PassageWork::default() }, unknowns)
 }
 
-/// The cost of the passages of all blocks.
+/// The cost of the passages of all blocks, of what is recorded and of the files.
 pub(super) fn of_blocks(node: &TrackNode, blocks: &Blocks, outlook: &Outlook) -> Cost {
     let unknowns = unknowns(node);
     let Outlook { blocks: count, axles, passages: of_kinds } = outlook;
     let passages = of_kinds.iter().sum();
     let mut work = PassageWork { unknowns, blocks: *count, block_axles: *axles, passages, steps: 0 };
-    let steps_of = |train: &Train, plan: &PassagePlan| {
-        let run = plan.right - plan.left - train.wheel_base();
-        (run / train.speed / plan.usual_step()).ceil() as u64
-    };
     let mut seconds = 0.0;
     for ((train, plan), passages) in blocks.kinds().zip(of_kinds) {
-        let (steps, unknowns) = (passages * steps_of(train, plan), unknowns + 10 * train.vehicles.len());
+        let steps = passages * steps(train, plan);
+        let unknowns = unknowns + 10 * train.vehicles.len();
         work.unknowns = work.unknowns.max(unknowns);
         work.steps += steps;
-        seconds += (steps * unknowns as u64) as f64 * SECONDS;
+        seconds += steps as f64 * (STEP + unknowns as f64 * UNKNOWN);
     }
-    cost(seconds, work, unknowns)
+    let profile = (node.seats.len() * unknowns) as f64 * PER_BAY * PLACE;
+    let apart = AT_REST + WRITING + blocks.recorded.len() as f64 * profile;
+    Cost {
+        seconds: seconds + apart,
+        seconds_on_two_cores: seconds * side_by_side(blocks) + apart,
+        bytes: unknowns as u64 * BYTES,
+        work: Work::Passages(work),
+    }
 }
 
-/// Passages run one after the other but for those of one exchange, so that a second core is not counted on.
+/// Time steps of a passage.
+fn steps(train: &Train, plan: &PassagePlan) -> u64 {
+    (way(train, plan) / train.speed / plan.usual_step()).ceil() as u64
+}
+
+/// How far a train runs in a passage, m.
+fn way(train: &Train, plan: &PassagePlan) -> f64 {
+    plan.right - plan.left - train.wheel_base()
+}
+
+/// Time of the passages of one exchange on two cores over their time on one: they do not need each other.
+fn side_by_side(blocks: &Blocks) -> f64 {
+    let runners = blocks.block(0, blocks.trains_left(0)).runners();
+    let time = |kind: usize| {
+        let (train, plan) = blocks.kind(kind);
+        steps(train, plan) as f64
+    };
+    let mut times: Vec<f64> = runners.iter().map(|runner| time(runner.kind)).collect();
+    times.sort_by(|a, b| b.total_cmp(a));
+    let all: f64 = times.iter().sum();
+    let mut cores = [0.0; 2];
+    for time in times {
+        let free = if cores[0] <= cores[1] { 0 } else { 1 };
+        cores[free] += time;
+    }
+    if all > 0.0 { cores[0].max(cores[1]) / all } else { 1.0 }
+}
+
+/// Adds what records cost: every value of a passage that is kept.
+pub(super) fn with_records(cost: &mut Cost, blocks: &Blocks, records: &[Record]) {
+    let of = |record: &Record, (train, plan): (&Train, &PassagePlan)| {
+        let near = record.near.map_or(1.0, |near| ((2.0 * near + train.wheel_base()) / way(train, plan)).min(1.0));
+        let samples = way(train, plan) / train.speed / (plan.time_step * plan.sample_every as f64);
+        (record.quantities.len() * record.seats.len() * record.after.len()) as f64 * near * samples
+    };
+    let values: f64 = records.iter().map(|record| blocks.kinds().map(|kind| of(record, kind)).sum::<f64>()).sum();
+    cost.seconds += values * VALUE;
+    cost.seconds_on_two_cores += values * VALUE;
+}
+
+/// Nothing of it runs side by side.
 fn cost(seconds: f64, work: PassageWork, unknowns: usize) -> Cost {
     Cost { seconds, seconds_on_two_cores: seconds, bytes: unknowns as u64 * BYTES, work: Work::Passages(work) }
 }

@@ -1,8 +1,11 @@
 //! From the scenario to the solver graph: passes that choose models, places, steps and blocks, and say why.
 
+mod answers;
 mod bed;
 mod blocks;
+mod clumps;
 mod cost;
+mod dry_run;
 mod foundation;
 mod origins;
 mod outlook;
@@ -13,6 +16,7 @@ mod supports;
 mod tier;
 mod track;
 
+pub use answers::{PLACE_TOLERANCE, absent, not_kept};
 pub use bed::{BedUse, beds};
 pub use origins::{Origins, Parameter};
 pub use pass::{Draft, Pass};
@@ -129,7 +133,10 @@ impl Planner {
             }
         }
         let readers = self.readers(scenario, draft.tier);
-        let (graph, diagnostics) = finished(draft);
+        let (graph, mut diagnostics) = finished(draft);
+        if let Some(graph) = graph.as_ref().filter(|graph| graph.runs) {
+            diagnostics.extend(answers::refusals(scenario, graph));
+        }
         Lowered { graph, origins, readers, diagnostics }
     }
 

@@ -1,17 +1,12 @@
 //! What a run will do block by block, before it runs. Prescribed blocks are known, but for those that overshoot; adaptive ones
-//! are chosen as the run will choose them, on one seat that stands for the worst.
+//! are chosen as the run will choose them, on the track beside its transitions under wheels that stand.
 
-use crate::graph::{Block, Blocks, Control, Runner, SupportNode, Train};
-use crate::solvers::settlement::{Law, Peak, SupportState};
+use super::dry_run::DryRun;
+use crate::graph::{Blocks, Runner, SupportNode, TrackNode};
+use crate::solvers::settlement::Law;
 
-/// Share of a static wheel load that the worst seat bears: lambda s / 2 of a beam on springs, and a little for what is dynamic.
-const SEAT_SHARE: f64 = 0.42;
-/// Share of its stiffness by which a seat loses force as it settles, since the track beside it settles less: that at which
-/// this dry run has about as many passages as the adaptive scenes of `scenarios/`, planned and run: `sleepers` 15 and 13, `usp`, `pads`
-/// and `wedge` 15 and 15, `bridge` 88 and 122.
-const UNEVEN: f64 = 0.12;
-/// Adaptive blocks that are followed one by one; what goes on longer goes on as before.
-const FOLLOWED: u64 = 1000;
+/// Adaptive blocks that are followed one by one; what goes on longer grows as the last one did.
+const FOLLOWED: u64 = 120;
 
 /// What a run consists of.
 #[derive(Default)]
@@ -24,14 +19,14 @@ pub(super) struct Outlook {
 }
 
 impl Outlook {
-    pub fn new(supports: &[SupportNode], gravity: f64, law: &Law, blocks: &Blocks) -> Outlook {
+    pub fn new(track: &TrackNode, supports: &[SupportNode], law: &Law, blocks: &Blocks) -> Outlook {
         let kinds = blocks.others.len() + 1;
         let mut outlook = Outlook { blocks: 0, axles: [u64::MAX, 0], passages: vec![0; kinds] };
-        let mut seat = blocks.adaptive().map(|accuracy| WorstSeat::new(supports, gravity, law, blocks, accuracy));
+        let mut dry = blocks.adaptive().map(|accuracy| DryRun::new(track, supports, law, blocks, accuracy));
         let mut before = 0;
         while before < blocks.total {
-            if seat.is_some() && outlook.blocks == FOLLOWED {
-                return outlook.going_on(blocks.total as f64 / before as f64);
+            if dry.is_some() && outlook.blocks == FOLLOWED {
+                return outlook.going_on(before, blocks.total);
             }
             let tamped = blocks.tamped_after(before).next().is_some();
             let expected = blocks.wanted(before).unwrap_or_else(|| blocks.trains_left(before));
@@ -39,12 +34,12 @@ impl Outlook {
             if tamped {
                 outlook.add(&blocks.block(before, expected).runners());
             }
-            let block = match &mut seat {
-                Some(seat) => {
+            let block = match &mut dry {
+                Some(dry) => {
                     if tamped {
-                        seat.state = law.fresh();
+                        dry.tamp(law);
                     }
-                    seat.next(before, |middle| outlook.add(middle))
+                    dry.next(before, |middle| outlook.add(middle))
                 }
                 None => blocks.block(before, expected),
             };
@@ -56,9 +51,11 @@ impl Outlook {
         outlook
     }
 
-    /// The same for so many times as many axles.
-    fn going_on(mut self, times: f64) -> Outlook {
-        let more = |count: &mut u64| *count = (*count as f64 * times) as u64;
+    /// The same for all axles: blocks grow with the axles so far as they did on average.
+    fn going_on(mut self, before: u64, total: u64) -> Outlook {
+        let begun = self.axles[0].max(1) as f64;
+        let times = (total as f64 / begun).ln() / (before as f64 / begun).ln().max(f64::MIN_POSITIVE);
+        let more = |count: &mut u64| *count = (*count as f64 * times.max(1.0)) as u64;
         more(&mut self.blocks);
         self.passages.iter_mut().for_each(more);
         self
@@ -67,97 +64,4 @@ impl Outlook {
     fn add(&mut self, runners: &[Runner]) {
         runners.iter().for_each(|runner| self.passages[runner.kind] += 1);
     }
-}
-
-/// The seat whose settlement chooses the blocks.
-struct WorstSeat<'a> {
-    blocks: &'a Blocks,
-    tolerance: f64,
-    cap: Option<f64>,
-    /// Stiffness of its support, N/m.
-    stiffness: f64,
-    /// For each kind of train: static contact forces, N, and how many vehicles of a train press so.
-    forces: Vec<Vec<(f64, u64)>>,
-    state: SupportState,
-    control: Control,
-}
-
-impl<'a> WorstSeat<'a> {
-    fn new(
-        supports: &[SupportNode],
-        gravity: f64,
-        law: &Law,
-        blocks: &'a Blocks,
-        (tolerance, cap): (f64, Option<f64>),
-    ) -> Self {
-        let stiffness = supports.iter().find_map(|support| Some(support.spring?.stiffness));
-        WorstSeat {
-            blocks,
-            tolerance,
-            cap,
-            stiffness: stiffness.unwrap_or(1.0),
-            // without sleepers nothing settles
-            forces: blocks.kinds().map(|(train, _)| stiffness.map_or(Vec::new(), |_| forces(train, gravity))).collect(),
-            state: law.fresh(),
-            control: Control::default(),
-        }
-    }
-
-    /// The next block, as the adaptive step of a run finds it; `middle` is told the passages of every attempt.
-    fn next(&mut self, before: u64, mut middle: impl FnMut(&[Runner])) -> Block {
-        let left = self.blocks.trains_left(before);
-        let mut most = left;
-        loop {
-            let trains = self.control.choose(most, left, |trains| self.settled(&self.blocks.block(before, trains)));
-            let block = self.blocks.block(before, trains);
-            let whole = self.after(&self.state, &block, 0.0);
-            let settled = whole.settlement() - self.state.settlement();
-            if trains > 1 {
-                middle(&block.runners());
-                let half = self.blocks.block(before, trains / 2);
-                let rest = self.blocks.block(before + half.axles, trains - trains / 2);
-                let lost = UNEVEN * self.stiffness * self.settled(&half);
-                let halves = self.after(&self.after(&self.state, &half, 0.0), &rest, lost);
-                let error = (halves.settlement() - whole.settlement()).abs();
-                self.control.learn(error, settled, self.tolerance, self.cap);
-                if trains > 2 && error > self.tolerance {
-                    most = (trains / 2).max(2);
-                    continue;
-                }
-            }
-            self.state = whole;
-            return block;
-        }
-    }
-
-    /// What a block settles, m.
-    fn settled(&self, block: &Block) -> f64 {
-        self.after(&self.state, block, 0.0).settlement() - self.state.settlement()
-    }
-
-    /// The seat after a block under forces that are smaller by `lost`, N.
-    fn after(&self, from: &SupportState, block: &Block, lost: f64) -> SupportState {
-        let mut state = from.clone();
-        for (runner, trains) in &block.runs {
-            for (force, vehicles) in &self.forces[runner.kind] {
-                let force = force - lost;
-                let peak = Peak { force, deflection: force / self.stiffness };
-                state.load(&[peak; 4], trains * vehicles);
-            }
-        }
-        state
-    }
-}
-
-/// Static contact forces under the vehicles of a train, N, those that are alike counted together.
-fn forces(train: &Train, gravity: f64) -> Vec<(f64, u64)> {
-    let mut forces: Vec<(f64, u64)> = Vec::new();
-    for (vehicle, _) in &train.vehicles {
-        let force = SEAT_SHARE * vehicle.mass() / 4.0 * gravity;
-        match forces.iter_mut().find(|(known, _)| *known == force) {
-            Some((_, vehicles)) => *vehicles += 1,
-            None => forces.push((force, 1)),
-        }
-    }
-    forces
 }

@@ -58,9 +58,22 @@ impl Pass for Passages {
         if !self.acts(draft.scenario) {
             return;
         }
+        if *draft.scenario.solve.gravity <= 0.0 {
+            draft.diagnostics.push(weightless(draft.scenario));
+            return;
+        }
         let plans: Vec<Option<PassagePlan>> =
             traffic.trains().map(|train| plan(draft, train, traffic.is_mixed())).collect();
         draft.passages = plans.into_iter().collect::<Option<_>>().unwrap_or_default();
+    }
+}
+
+fn weightless(scenario: &Scenario) -> Diagnostic {
+    let message = "trains without weight: wheels stay on the rail by gravity, and here it is 0";
+    let mistake = Diagnostic::new(Code::E0618, message).help("write `gravity = 9.81 m/s^2`, or leave it out");
+    match scenario.solve.gravity.origin.span() {
+        Some(span) => mistake.label(span, "no weight"),
+        None => mistake,
     }
 }
 

@@ -1,8 +1,8 @@
 //! Which histories a run keeps where the scene asks for none: those that the report's figures need, at sleepers beside each
 //! transition and in the far field, before the first and after the last axle.
 
-use super::{Draft, Pass};
-use crate::graph::{History, Record};
+use super::{Draft, Pass, cost};
+use crate::graph::{History, Record, Schedule};
 use crate::scenario::{self, Loading, Track};
 
 /// Seats counted from a transition (paper, 4.1): far field, the dip, its edges, the slab's edge and the slab.
@@ -30,6 +30,19 @@ impl Pass for Records {
     }
 
     fn run(&self, draft: &mut Draft<'_>) {
+        self.choose(draft);
+        if let (Some(Schedule::Blocks(blocks)), Some(known)) = (&draft.schedule, &mut draft.cost) {
+            cost::with_records(known, blocks, &draft.records);
+        }
+    }
+
+    fn without(&self) -> Option<fn(&mut Draft<'_>)> {
+        Some(only_asked_for)
+    }
+}
+
+impl Records {
+    fn choose(&self, draft: &mut Draft<'_>) {
         only_asked_for(draft);
         let Some(Loading::Traffic(traffic)) = &draft.scenario.loading else { return };
         let track = &draft.scenario.track;
@@ -42,10 +55,6 @@ impl Pass for Records {
         let after = vec![0, *traffic.total];
         draft.records = vec![Record { quantities: QUANTITIES.to_vec(), seats, after, near: Some(NEAR) }];
         draft.decide(self.name(), what, "the scene has no `record`, and its report shows them");
-    }
-
-    fn without(&self) -> Option<fn(&mut Draft<'_>)> {
-        Some(only_asked_for)
     }
 }
 

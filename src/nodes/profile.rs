@@ -6,7 +6,7 @@
 //! profile: near the ends of the model a wheel would feel what holds the rail, not the track.
 
 use super::RailPlace;
-use crate::solvers::track::{StaticState, Track, TrackError, TrackLevel, standing_deflections};
+use crate::solvers::track::{StaticState, Track, TrackError, TrackLevel, standing_stiffness};
 use std::ops::RangeInclusive;
 
 /// Places in each bay.
@@ -21,13 +21,13 @@ pub(super) fn profile(
     run: RangeInclusive<f64>,
 ) -> Result<Vec<RailPlace>, TrackError> {
     let places: Vec<f64> = places(track).filter(|x| run.contains(x)).collect();
-    let loaded = standing_deflections(track, level, load, &places)?;
-    let place = |(x, loaded): (f64, f64)| {
+    let stiffness = standing_stiffness(track, level, unloaded, load, &places)?;
+    let place = |(x, stiffness): (f64, f64)| {
         let rest = unloaded.rail_deflection_at(track, x)?;
         let moment = moment_at(track.nodes(), &unloaded.rail_moment, x);
-        Ok(RailPlace { x, level: rest, moment, stiffness: load / (loaded - rest) })
+        Ok(RailPlace { x, level: rest, moment, stiffness })
     };
-    places.into_iter().zip(loaded).map(place).collect()
+    places.into_iter().zip(stiffness).map(place).collect()
 }
 
 /// Every seat and three places in each bay.

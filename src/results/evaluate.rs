@@ -4,14 +4,12 @@
 //! time); velocities and accelerations come from histories, as do the wheels' and the rail's responses.
 
 use super::{BlockRow, HistoryRow, MeanCycleRow, RailRow, Scalar, SleeperRow, Verdict};
-use crate::graph::{Clock, Graph, Record, Schedule, SupportNode};
+use crate::graph::{Clock, SupportNode};
+use crate::lower::{PLACE_TOLERANCE, absent};
 use crate::scenario::response::{Expectation, Expression, Function, Measure, Place, Reduction, Response};
 use crate::scenario::{Scenario, Seat, Track};
 use crate::syntax::tree::{BinaryOp, Comparison};
 use std::collections::{BTreeMap, HashMap};
-
-/// Slack at the ends of an interval of chainage, m: places are sums of spacings.
-const PLACE_TOLERANCE: f64 = 1e-6;
 
 /// What an expression can be about.
 #[derive(Debug, Clone, Copy)]
@@ -252,68 +250,6 @@ fn peak(measure: &Measure, tables: Tables<'_>) -> Option<f64> {
     };
     let scalar = tables.scalars.get(&format!("{prefix}_{}", measure.response.name()));
     scalar.filter(|_| everywhere_at_last).map(|s| s.value)
-}
-
-/// What an expression asks for and a run of a graph will not have; `None` where it has all of it.
-pub fn not_kept(expression: &Expression, graph: &Graph) -> Option<String> {
-    match expression {
-        Expression::Number(_) => None,
-        Expression::Measure(measure) => (!is_kept(measure, graph)).then(|| absent(measure, graph.schedule.clock())),
-        Expression::Negate(inner) => not_kept(inner, graph),
-        Expression::Function(_, of) => of.iter().find_map(|e| not_kept(e, graph)),
-        Expression::Binary(left, _, right) => not_kept(left, graph).or_else(|| not_kept(right, graph)),
-    }
-}
-
-/// Whether tables, peaks or histories of a run of a graph hold a response.
-fn is_kept(measure: &Measure, graph: &Graph) -> bool {
-    if let Schedule::Actuators(_) = graph.schedule {
-        return is_kept_by_tests(measure, graph);
-    }
-    let response = measure.response;
-    match response.place() {
-        Place::Scene | Place::Wheel => true,
-        // only grains fill volumes
-        Place::Volume => false,
-        // passages say all of the rail, a static check all but what needs a wheel
-        Place::Rail => {
-            let by_loads = matches!(response, Response::RailDisplacement | Response::RailMoment);
-            by_loads || graph.blocks().is_some()
-        }
-        Place::Seat if response == Response::SubgradePressure => {
-            graph.supports.iter().any(|support| support.onto_subgrade.is_some())
-        }
-        Place::Seat if response == Response::ContactPressure || sleeper_column(response).is_some() => true,
-        Place::Seat => {
-            let named = |record: &Record| record.quantities.iter().any(|history| history.name() == response.name());
-            graph.records.iter().any(named)
-        }
-    }
-}
-
-/// Whether tests under actuators answer to a measure.
-fn is_kept_by_tests(measure: &Measure, graph: &Graph) -> bool {
-    let Some((bed, _)) = graph.bed_under_actuators() else { return false };
-    match measure.response {
-        Response::SleeperVelocity => true,
-        Response::ContactPressure => bed.plate.is_none(),
-        Response::BallastStress | Response::BallastVelocity | Response::CoordinationNumber | Response::Porosity => {
-            !bed.sensors.is_empty()
-        }
-        response => cycle_column(response).is_some(),
-    }
-}
-
-/// Says that nothing was recorded for a measure; `clock` makes a count one of axles or of cycles.
-fn absent(measure: &Measure, clock: fn(u64) -> Clock) -> String {
-    let mut text = format!("no value of `{}`", measure.response.name());
-    if let Some((from, to)) = measure.over {
-        text += &format!(" between {from} m and {to} m");
-    }
-    if let Some(after) = measure.after {
-        text += &format!(" after {}", clock(after));
-    }
-    text + " was recorded"
 }
 
 /// Chainage and value of everything that the measure covers.

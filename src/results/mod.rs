@@ -8,7 +8,6 @@ mod bed_readings;
 mod bed_tests;
 mod error;
 mod evaluate;
-mod failure;
 mod files;
 mod gather;
 mod grains;
@@ -22,6 +21,7 @@ mod steps;
 mod summarise;
 mod summary;
 mod tables;
+mod test_loads;
 mod vtk;
 
 #[cfg(test)]
@@ -34,8 +34,7 @@ pub use bed_tests::{
     read_tests, test_files,
 };
 pub use error::ResultsError;
-pub use evaluate::{SleeperTable, Tables, contact_pressures, evaluate, holds, known, not_kept, verdict, verdicts};
-pub use failure::diagnose;
+pub use evaluate::{SleeperTable, Tables, contact_pressures, evaluate, holds, known, verdict, verdicts};
 pub use files::{NamedBytes, files, read, read_summary, read_timings, timings_file, write, write_files};
 pub use grains::{Grain, Link, grains, links, places};
 pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};

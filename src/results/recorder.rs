@@ -4,10 +4,11 @@
 use super::{
     BedSummary, BedTest, BedTests, BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Scalar,
     SleeperRow, SleeperTable, Tables, TampingRow, TrainRow, bed_summary, histories, static_wheel_load, summarise,
+    test_loads,
 };
 use crate::execute::{Between, BlockMeasures, Checkpoint, Event, Listener};
-use crate::graph::{Block, Blocks, Graph, Runner, SupportNode, TrackNode};
-use crate::nodes::{self, PassageOutcome, RailPoint, SeatOutcome, Tested, Unloaded};
+use crate::graph::{Block, Blocks, Graph, Record, Runner, SupportNode, TrackNode};
+use crate::nodes::{self, PassageOutcome, SeatOutcome, Tested, Unloaded};
 use crate::scenario::response::Response;
 use crate::scenario::{Loading, Scenario, Track, Traffic};
 use crate::solvers::granular::Bed;
@@ -65,6 +66,7 @@ struct Saved {
 pub struct RunRecorder<'a> {
     scenario: &'a Scenario,
     track: Option<&'a TrackNode>,
+    records: &'a [Record],
     supports: &'a [SupportNode],
     /// Chainages between which every wheel of a train passes, m, for each kind of train.
     passed: Vec<Range<f64>>,
@@ -96,6 +98,7 @@ impl<'a> RunRecorder<'a> {
         RunRecorder {
             scenario,
             track: graph.track(),
+            records: &graph.records,
             supports: &graph.supports,
             passed: graph.blocks().map(Blocks::passed_by_kind).unwrap_or_default(),
             directory: None,
@@ -333,7 +336,7 @@ fn between(nodes: &[f64], x: f64, extremes: &[(f64, f64)], of: fn(&(f64, f64)) -
 impl Listener for RunRecorder<'_> {
     fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
         match event {
-            Event::Equilibrium(state) => self.equilibrium(state),
+            Event::Equilibrium { unloaded, loaded } => self.equilibrium(unloaded, loaded),
             Event::Rest { axles, state } => self.unloaded(*axles, state),
             Event::Passage { axles, runner, passage } => self.passage(*axles, *runner, passage),
             Event::Block { axles, block, passages, before, after } => {
@@ -463,11 +466,16 @@ impl RunRecorder<'_> {
         }
     }
 
-    fn equilibrium(&mut self, state: &Unloaded) {
+    /// The track under test loads: displacements count from the state without them, forces and moments are whole.
+    fn equilibrium(&mut self, unloaded: &Unloaded, loaded: &Unloaded) {
         let track = self.track();
-        self.keep_rail(0, Response::RailDisplacement, state.rail.iter().map(|p| (p.x, p.deflection)));
-        self.keep_rail(0, Response::RailMoment, state.rail.iter().map(|p| (p.x, p.moment)));
-        for (index, (seat, rest)) in track.seats.iter().zip(&state.seats).enumerate() {
+        let moved = loaded.rail.iter().zip(&unloaded.rail).map(|(p, rest)| (p.x, p.deflection - rest.deflection));
+        let moved: Vec<(f64, f64)> = moved.collect();
+        self.keep_rail(0, Response::RailDisplacement, moved.iter().copied());
+        self.keep_rail(0, Response::RailLevel, unloaded.rail.iter().map(|p| (p.x, p.deflection)));
+        self.keep_rail(0, Response::RailMoment, loaded.rail.iter().map(|p| (p.x, p.moment)));
+        let states = loaded.seats.iter().zip(&unloaded.seats);
+        for (index, (seat, (state, rest))) in track.seats.iter().zip(states).enumerate() {
             self.tables.sleepers.push(SleeperRow {
                 axles: 0,
                 sleeper: track.seat_name(seat),
@@ -475,16 +483,17 @@ impl RunRecorder<'_> {
                 settlement_m: rest.settlement,
                 void_m: rest.void,
                 gravity_contact_force_N: rest.contact_force,
-                max_contact_force_N: rest.contact_force,
-                max_rail_seat_load_N: rest.seat_load,
-                max_sleeper_displacement_m: rest.sleeper_level,
+                max_contact_force_N: state.contact_force,
+                max_rail_seat_load_N: state.seat_load,
+                max_sleeper_displacement_m: state.sleeper_level - rest.sleeper_level,
                 support_stiffness_N_per_m: self.support_stiffness(index),
                 contact_loss_s: 0.0,
                 trains_passing: 0,
             });
         }
-        let largest = |of: fn(&RailPoint) -> f64| state.rail.iter().map(of).reduce(f64::max);
-        self.tables.max_rail_moment = largest(|p| p.moment);
-        self.tables.max_rail_displacement = largest(|p| p.deflection);
+        self.histories.extend(test_loads::at_seats(track, self.records, unloaded, loaded));
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::max);
+        self.tables.max_rail_moment = largest(&mut loaded.rail.iter().map(|p| p.moment));
+        self.tables.max_rail_displacement = largest(&mut moved.iter().map(|(_, moved)| *moved));
     }
 }

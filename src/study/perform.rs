@@ -2,7 +2,7 @@
 
 use super::plan::{PlannedPoint, Scene};
 use crate::diag::Diagnostic;
-use crate::execute::Executor;
+use crate::execute::{self, Executor};
 use crate::results::{self, RunRecorder, Tables, TestTables, Verdict};
 use crate::scenario::Study;
 use serde::{Deserialize, Serialize};
@@ -69,7 +69,7 @@ fn run(
     let graph = compiled.runnable().ok_or_else(nothing)?;
     let mut recorder = RunRecorder::new(scenario, graph);
     let ended = executor.run(graph, &mut recorder, None);
-    ended.map_err(|error| failed(&results::diagnose(&error, graph, &compiled.origins)))?;
+    ended.map_err(|error| failed(&execute::diagnose(&error, graph, &compiled.origins)))?;
     let tables = &recorder.tables;
     if let Some(tests) = &tables.tests {
         return answered(own, TestTables::new(tests).view(&scenario.track));

@@ -6,9 +6,10 @@ use crate::check::{Modules, Override};
 use crate::compile::{Compiled, compile, fingerprint};
 use crate::diag::{Code, Diagnostic, FileId, Label, Severity, Sources, Span};
 use crate::graph::Graph;
+use crate::lower;
 use crate::results;
 use crate::scenario::response::Expectation;
-use crate::scenario::{Study, Values};
+use crate::scenario::{Study, Track, Values};
 use crate::store::sha256;
 use crate::syntax::tree::Comparison;
 use crate::units::number;
@@ -135,7 +136,10 @@ fn check(scene: Scene<'_>, base: &Compiled, study: &Study, levels: &[Level], ove
     let placed = |d: &Diagnostic| (d.clone(), places.place_of(d));
     let mut errors: Vec<_> = compiled.diagnostics.iter().filter(|d| d.is_error()).map(placed).collect();
     let run = compiled.runnable();
-    errors.extend(own.zip(run).and_then(|(own, run)| leaves_open(run, own)).map(|d| (d, None)));
+    let track = compiled.scenario.as_ref().map(|scenario| &scenario.track);
+    errors.extend(
+        own.zip(run).zip(track).and_then(|((own, run), track)| leaves_open(run, track, own)).map(|d| (d, None)),
+    );
     match (&compiled.scenario, run) {
         (Some(scenario), Some(run)) if errors.is_empty() => {
             // an edited line may leave what it stood for unused
@@ -163,10 +167,10 @@ fn content(study: &Study, compiled: &Compiled) -> String {
 }
 
 /// A study that asks for what no run keeps would learn so after the first one.
-fn leaves_open(graph: &Graph, study: &Study) -> Option<Diagnostic> {
+fn leaves_open(graph: &Graph, track: &Track, study: &Study) -> Option<Diagnostic> {
     let measured = study.measured();
     let compared = study.constraints.iter().flat_map(|c| &c.operands);
-    let why = measured.iter().map(|m| &m.expression).chain(compared).find_map(|e| results::not_kept(e, graph))?;
+    let why = measured.iter().map(|m| &m.expression).chain(compared).find_map(|e| lower::not_kept(e, graph, track))?;
     let help = "ask for what the tables hold (see section 6 of the guide), or `record` it at the seats of interest";
     Some(Diagnostic::new(Code::E0705, why).help(help))
 }

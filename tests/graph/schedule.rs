@@ -31,11 +31,12 @@ fn run(
         let clock = Clock::Time(done as f64);
         let failed = |cause: NodeError| RunError::node(clock, cause);
         let (track, ground) = machine.track_on_ground().map_err(failed)?;
-        let state = track.equilibrium(&ground.settlement(), &[jack_at(*x)]).map_err(failed)?;
+        let unloaded = track.equilibrium(&ground.settlement(), &[]).map_err(failed)?;
+        let loaded = track.equilibrium(&ground.settlement(), &[jack_at(*x)]).map_err(failed)?;
         let checkpoint = || Ok(Checkpoint { clock, state: ScheduleState::Custom(json!(done)) });
         let told = [
             listener.hear(&Event::Custom { clock, what: &json!({ "jack": x }) }),
-            listener.hear(&Event::Equilibrium(&state)),
+            listener.hear(&Event::Equilibrium { unloaded: &unloaded, loaded: &loaded }),
             listener.hear(&Event::Between(Between::new(true, &checkpoint))),
         ];
         if told.iter().any(ControlFlow::is_break) {
@@ -73,7 +74,7 @@ impl Jacked {
 impl Listener for Jacked {
     fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
         match event {
-            Event::Equilibrium(state) => self.states.push((*state).clone()),
+            Event::Equilibrium { loaded, .. } => self.states.push((*loaded).clone()),
             Event::Custom { clock, what } => self.told.push((*clock, what["jack"].as_f64().unwrap())),
             Event::Between(between) => {
                 self.kept = between.checkpoint().ok();

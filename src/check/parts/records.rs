@@ -46,9 +46,19 @@ pub fn kept(
         span: record.get("volume").and_then(|slot| slot.origin.span()),
     });
     let states = record.word("states") == Some("vtk");
+    if let Some(slot) = record.get("states").filter(|_| states && counted.is_none() && cycles.is_some()) {
+        states_of_a_rig(slot.origin.span().unwrap_or(slot.span), findings);
+    }
     let kept = Kept { quantities: along, seats, after, every, near: None, states };
     let kept = Some(kept).filter(|kept| states || !kept.quantities.is_empty());
     Some((kept, volumes))
+}
+
+/// States are those of rail and sleepers under trains; the bed of a rig is written by another command.
+fn states_of_a_rig(span: Span, findings: &mut Findings) {
+    let message = "states of a test rig over its cycles are not in this version";
+    let help = "leave `states` out: `cycles.csv`, `loops.csv` and `sensors.csv` have every recorded cycle, and `trackbed pack` writes the grains of the bed before its test";
+    findings.report(Diagnostic::new(Code::E0619, message).label(span, "no series of states").help(help));
 }
 
 /// The counts of a record: axles of traffic, or cycles of a load.

@@ -1,9 +1,10 @@
 //! The track at rest under test loads, on supports of known stiffness.
 
 use super::{ExpectedError, Proposal, Tier, edges};
+use crate::diag::{Code, Diagnostic};
 use crate::graph::{LoadedPart, Model, Node, PointLoad, Schedule, SpringsNode};
 use crate::lower::{Draft, cost, track};
-use crate::scenario::{Loading, Scenario, Seat, StaticLoad, Target};
+use crate::scenario::{Foot, Loading, Scenario, StaticLoad, Target, Track};
 use crate::schema::Reads;
 
 pub struct Equilibrium;
@@ -45,22 +46,41 @@ impl Tier for Equilibrium {
             why: "test loads act on a track at rest".into(),
             error: ExpectedError { share: None, evidence: "as good as the stiffness of its supports".into() },
             runs: true,
-            refusals: Vec::new(),
+            refusals: unmoved(draft.scenario, loads),
         })
     }
 }
 
 /// A load on sleepers acts on the nearest one.
 fn point_loads(scenario: &Scenario, loads: &[StaticLoad]) -> Vec<PointLoad> {
-    let seats = &scenario.track.seats;
-    let distance = |seat: &Seat, x: f64| (seat.x - x).abs();
-    let nearest = |x: f64| {
-        (0..seats.len()).min_by(|&a, &b| distance(&seats[a], x).total_cmp(&distance(&seats[b], x))).unwrap_or(0)
-    };
+    let nearest = |x: f64| nearest(&scenario.track, x).unwrap_or(0);
     // loads on the rail first: sums are taken in that order
     let part = |load: &StaticLoad| match load.on {
         Target::Rail => LoadedPart::Rail { x: load.x },
         Target::Sleepers | Target::Bed => LoadedPart::Sleeper { seat: nearest(load.x) },
     };
     loads.iter().map(|load| PointLoad { on: part(load), force: *load.force }).collect()
+}
+
+fn nearest(track: &Track, x: f64) -> Option<usize> {
+    let distance = |seat: &usize| (track.seats[*seat].x - x).abs();
+    (0..track.seats.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
+}
+
+/// Loads on sleepers that no spring carries: a fixed seat, or one on a slab.
+fn unmoved(scenario: &Scenario, loads: &[StaticLoad]) -> Vec<Diagnostic> {
+    let track = &scenario.track;
+    let refused = |load: &StaticLoad| {
+        let seat = &track.seats[nearest(track, load.x).filter(|_| load.on == Target::Sleepers)?];
+        let why = match seat.foot {
+            Foot::Sleeper { .. } => return None,
+            Foot::Rigid => "`support = rigid`: its sleeper does not move",
+            Foot::Slab => "a slab, without a sleeper",
+        };
+        let (name, load_name) = (track.seat_name(seat), &load.name);
+        let message = format!("`{load_name}` acts on sleeper {name}, which has {why}");
+        let help = "write `on = rail`, or give the trackform a `sleeper` and a `support` with a stiffness";
+        Some(Diagnostic::new(Code::E0617, message).label(load.span, "on this load").help(help))
+    };
+    loads.iter().filter_map(refused).collect()
 }

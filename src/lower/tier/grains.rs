@@ -4,7 +4,7 @@
 use super::{ExpectedError, Proposal, Tier, edges, waiting};
 use crate::diag::{Diagnostic, Severity};
 use crate::graph::{GrainsNode, Model, Node, PointLoad, Schedule, SoilLayer, SoilNode};
-use crate::lower::bed::{self, BedUse, beds};
+use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
 use crate::lower::tier::rig::cost::grains_under_track;
 use crate::lower::{Draft, track};
 use crate::scenario::{Loading, Material, Scenario};
@@ -81,7 +81,12 @@ fn propose(draft: &Draft<'_>, what: &str, length: f64) -> Result<Proposal, Strin
     if !scenario.track.has_rails() {
         return Err("there are no rails".into());
     }
-    let (beds, unpackable): (_, Vec<Diagnostic>) = match beds(scenario, BedUse::Track) {
+    // the clumps of a scene that only might ask for grains are not worth their time
+    let found = match scenario.solve.grains.tier.has_grains() {
+        true => beds(scenario, BedUse::Track),
+        false => beds_of_spheres(scenario, BedUse::Track),
+    };
+    let (beds, unpackable): (_, Vec<Diagnostic>) = match found {
         Ok(beds) if beds.is_empty() => return Err("no section has a layer of grains".into()),
         Ok(beds) => (beds, Vec::new()),
         // what cannot be packed stands against a run only, as E0604 does

@@ -49,7 +49,7 @@ impl Tier for SettlementLaws {
             law: named(&scenario.solve.law),
             followers: scenario.solve.other_laws.iter().map(named).collect(),
         };
-        let outlook = Outlook::new(&law.supports, node.gravity, &law.law.law, blocks);
+        let outlook = Outlook::new(&node, &law.supports, &law.law.law, blocks);
         let cost = cost::of_blocks(&node, blocks, &outlook);
         let nodes = vec![Node::new("track", Model::Track(Box::new(node))), Node::new("substructure", Model::Law(law))];
         let stated = "the scene gives the stiffness of its supports";

@@ -52,7 +52,9 @@ pub use multibody::{Multibody, Wheel, WheelContact};
 pub use passage::{Passage, Run};
 pub use scheme::{Integrator, Scheme};
 pub use sequence::{Order, Sequence, Share};
-pub use statics::{Balance, Loads, StaticState, solve_static, standing_deflections};
+pub use statics::{
+    Balance, Loads, StaticState, forces_under_wheels, solve_static, standing_deflections, standing_stiffness,
+};
 pub use support::{Seating, Spring, SupportPhase};
 pub use train::{Direction, Train};
 pub use vehicle::Vehicle;

@@ -1,9 +1,9 @@
 //! What a rig costs, without packing it: grains from gradings, steps from the lightest grain.
 
 use super::{cycles, loads, period, rest_time};
-use crate::graph::{Cost, TestWork, Work};
+use crate::graph::{BedNode, Cost, TestWork, Work};
 use crate::lower::Draft;
-use crate::lower::bed::{confinement, plan, width};
+use crate::lower::bed::{confinement, width};
 use crate::scenario::{Contact, Granular, Scenario, Section, Shape};
 use crate::solvers::granular::grains::Curve;
 use crate::solvers::granular::packing::lifts_that_fit;
@@ -62,17 +62,12 @@ fn filling(scenario: &Scenario, section: &Section, area: f64) -> Filling {
     filling
 }
 
-/// The largest grain of a section, m.
-fn largest(section: &Section) -> f64 {
-    let curves = section.layers.iter().filter_map(|layer| layer.granular()?.grading.curve().ok());
-    curves.map(|curve| curve.ends()[1]).fold(0.0, f64::max)
-}
-
-/// The estimate for a rig: good to a factor of two.
-pub(super) fn of_rig(scenario: &Scenario) -> Cost {
+/// The estimate for a rig: good to a factor of two. One that has no bed is refused, and costs nothing.
+pub(super) fn of_rig(scenario: &Scenario, bed: Option<&BedNode>) -> Cost {
+    let Some(bed) = bed else { return cost(0.0, TestWork::default()) };
     let section = &scenario.track.sections[0];
-    let [length, width] = plan(scenario, 0, largest(section));
-    let copies = ((section.end - section.start) / length - 1e-9).ceil().max(1.0);
+    let [length, width] = bed.bed.numbers().plan;
+    let copies = f64::from(bed.copies);
     let Filling { grains, pebbles, lifts, light, rest } = filling(scenario, section, length * width);
     let step = STEP * light;
     let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);

@@ -59,12 +59,14 @@ impl Tier for TestRig {
                 Vec::new()
             }
         };
+        let bed = nodes.iter().find_map(|node| if let Model::Bed(bed) = &node.model { Some(&**bed) } else { None });
+        let cost = cost::of_rig(scenario, bed);
         let tests = Tests { packings: scenario.solve.grains.repeats, kept: kept(scenario, cycles(&loads(scenario))) };
         Ok(Proposal {
             edges: edges(&nodes),
             nodes,
             schedule: Schedule::Actuators(tests),
-            cost: cost::of_rig(scenario),
+            cost,
             what: "a bed of grains under actuators".into(),
             why: "loads act on sleepers or a bed, and there are no rails".into(),
             error: ExpectedError { share: None, evidence: "scatter between packings; `repeats` shows it".into() },

@@ -1,10 +1,23 @@
 //! Recipes that no bed can be made of.
 
+use super::super::clump::Template;
 use super::error::PackingError;
 use super::recipe::{GrainLayer, Recipe};
 
 /// Greatest part of the shorter side of the plan that a grain may take: a third, or it would meet itself.
-const GRAIN: f64 = 1.0 / 3.0;
+pub const GRAIN: f64 = 1.0 / 3.0;
+
+/// Width of the widest of some templates of unit size: a clump is longer than its size.
+pub fn widest(templates: &[Template]) -> f64 {
+    templates.iter().map(|template| 2.0 * template.bounding_radius()).fold(0.0, f64::max)
+}
+
+impl GrainLayer {
+    /// How far its largest grain reaches, m.
+    pub fn widest(&self) -> f64 {
+        self.curve.ends()[1] * widest(&self.templates)
+    }
+}
 
 impl Recipe {
     /// Fails with the first thing that no bed can be made of, before any is tried.
@@ -50,9 +63,7 @@ fn check_layer(recipe: &Recipe, layer: &GrainLayer) -> Result<(), PackingError> 
             number(fault.quantity, fault.value, false, fault.expected)?;
         }
     }
-    // a clump is longer than its size
-    let widest = layer.templates.iter().map(|t| 2.0 * t.bounding_radius()).fold(0.0, f64::max);
-    let (diameter, shortest) = (layer.curve.ends()[1] * widest, recipe.plan[0].min(recipe.plan[1]));
+    let (diameter, shortest) = (layer.widest(), recipe.plan[0].min(recipe.plan[1]));
     if diameter > GRAIN * shortest {
         return Err(PackingError::LargeGrain { layer: layer.name.clone(), diameter, side: shortest });
     }

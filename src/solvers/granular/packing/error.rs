@@ -65,8 +65,7 @@ impl fmt::Display for PackingError {
             PackingError::Grading(error) => error.fmt(f),
             PackingError::LargeGrain { layer, diameter, side } => write!(
                 f,
-                "grains of `{layer}` are up to {:.0} mm wide, more than a third of the cell's {:.0} mm: take a longer cell, or cut \
-                 the grading above",
+                "grains of `{layer}` are up to {:.0} mm wide, more than a third of the cell's {:.0} mm: they would meet themselves",
                 1e3 * diameter,
                 1e3 * side
             ),

@@ -20,6 +20,7 @@ mod store;
 pub(super) mod tests;
 mod track;
 
+pub use check::{GRAIN, widest};
 pub use describe::{BedState, LayerState, Stage, StageKind};
 pub use error::PackingError;
 pub use pack::pack;

@@ -93,6 +93,13 @@ impl GrainLayer {
 }
 
 impl Recipe {
+    /// The same with a sphere in the place of the clumps of every layer.
+    pub fn with_spheres(self) -> Recipe {
+        let sphere: Vec<Template> = Template::sphere(0.5).into_iter().collect();
+        let layers = self.layers.into_iter().map(|layer| GrainLayer { templates: sphere.clone(), ..layer });
+        Recipe { layers: layers.collect(), ..self }
+    }
+
     /// Laws of the finished bed: surface `i` is layer `i`, the last one is walls, floor and plate, as stiff as the grains.
     pub fn laws(&self) -> ContactLaws {
         self.between(|layer| (layer.surface, layer.wall_friction))

@@ -10,7 +10,7 @@ mod wandering;
 pub use loads::Loads;
 pub use solve::solve_static;
 pub use state::{Balance, StaticState};
-pub use wandering::standing_deflections;
+pub use wandering::{forces_under_wheels, standing_deflections, standing_stiffness};
 
 pub(super) use loads::Inertia;
 pub(super) use solve::solve_with_inertia;

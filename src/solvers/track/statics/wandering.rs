@@ -7,6 +7,7 @@
 use super::loads::{Inertia, Loads};
 use super::solve::solve_static;
 use super::standing::StandingTrain;
+use super::state::StaticState;
 use super::stiffness::factor;
 use crate::linalg::banded::BandedFactor;
 use crate::solvers::track::mesh::Track;
@@ -41,6 +42,55 @@ pub fn standing_deflections(
         Ok(track.deflection_at(&point, &unknowns) + force * point.local_compliance)
     };
     places.iter().map(deflection).collect()
+}
+
+/// Static stiffness at rail level (N/m) at each of `places` (m): `force` (N, down) over the deflection that it adds there to the track
+/// at rest without it. Fails as [`solve_static`] does.
+pub fn standing_stiffness(
+    track: &Track,
+    level: &TrackLevel,
+    unloaded: &StaticState,
+    force: f64,
+    places: &[f64],
+) -> Result<Vec<f64>, TrackError> {
+    let loaded = standing_deflections(track, level, force, places)?;
+    let added = |(x, loaded): (&f64, f64)| Ok(force / (loaded - unloaded.rail_deflection_at(track, *x)?));
+    places.iter().zip(loaded).map(added).collect()
+}
+
+/// Force of the sleeper on its support (N) and the deflection that it makes there (m) at each of `seats`, under gravity and two wheels of
+/// `force` (N, down): one over the seat, the other `apart` (m) ahead where the rail goes on. 0 at seats without a sleeper. Fails as
+/// [`solve_static`] does.
+pub fn forces_under_wheels(
+    track: &Track,
+    level: &TrackLevel,
+    [force, apart]: [f64; 2],
+    seats: &[usize],
+) -> Result<Vec<[f64; 2]>, TrackError> {
+    track.check_level(level)?;
+    let mut search = Search { phases: vec![SupportPhase::Closed; track.sleepers.len()], factor: None };
+    let under = |seat: &usize| {
+        let Some(number) = track.sleepers.iter().position(|sleeper| sleeper.seat == *seat) else { return Ok([0.0; 2]) };
+        let x = track.model.seats[*seat].x;
+        let wheels: Vec<(f64, f64)> =
+            [x, x + apart].into_iter().filter(|x| *x <= track.model.ends[1]).map(|x| (x, force)).collect();
+        let mut forces = track.own_forces(level);
+        for (x, force) in &wheels {
+            track.add_force(&track.rail_point(*x)?, *force, &mut forces);
+        }
+        let unknowns = match search.near_last(track, level, &forces)? {
+            Some(unknowns) => unknowns,
+            None => {
+                let state = solve_static(track, level, &Loads { rail: &wheels, ..Loads::default() })?;
+                search = Search { phases: state.phases, factor: None };
+                state.unknowns
+            }
+        };
+        let sleeper = &track.sleepers[number];
+        let gap = unknowns[sleeper.unknown] - level.settlements[*seat];
+        Ok([sleeper.spring_force(search.phases[number], gap).max(0.0), gap.max(0.0)])
+    };
+    seats.iter().map(under).collect()
 }
 
 /// The phases of the last equilibrium, and its factorised stiffness.

@@ -1,7 +1,7 @@
 //! A run that stopped, said to a person: which block of the scene is responsible, and what to write there instead.
 
+use super::RunError;
 use crate::diag::{Code, Diagnostic, Span};
-use crate::execute::RunError;
 use crate::graph::{Clock, Graph, Schedule, TrackSection, Train, Update};
 use crate::lower::{Origins, Parameter};
 use crate::nodes::NodeError;

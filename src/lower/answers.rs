@@ -1,0 +1,184 @@
+//! What a run of a plan will be able to say: which responses it keeps, at which counts and places. Asked before it runs, of
+//! expectations and of studies.
+
+use crate::diag::{Code, Diagnostic};
+use crate::graph::{BedNode, Clock, Graph, Record, Schedule};
+use crate::scenario::response::{Expectation, Expression, Measure, Place, Response};
+use crate::scenario::{Scenario, Track};
+
+/// Slack at the ends of an interval of chainage, m: places are sums of spacings.
+pub const PLACE_TOLERANCE: f64 = 1e-6;
+
+/// What an expression asks for and a run of a graph will not have; `None` where it has all of it.
+pub fn not_kept(expression: &Expression, graph: &Graph, track: &Track) -> Option<String> {
+    let (measure, _) = missing(expression, graph, track)?;
+    Some(absent(measure, graph.schedule.clock()))
+}
+
+/// Says that nothing was recorded for a measure; `clock` makes a count one of axles or of cycles.
+pub fn absent(measure: &Measure, clock: fn(u64) -> Clock) -> String {
+    let mut text = format!("no value of `{}`", measure.response.name());
+    if let Some((from, to)) = measure.over {
+        text += &format!(" between {from} m and {to} m");
+    }
+    if let Some(after) = measure.after {
+        text += &format!(" after {}", clock(after));
+    }
+    text + " was recorded"
+}
+
+/// Expectations of a scene that a run of its plan cannot answer.
+pub(super) fn refusals(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
+    let refused = |expectation: &Expectation| {
+        let (measure, lack) = expectation.operands.iter().find_map(|e| missing(e, graph, &scenario.track))?;
+        let name = measure.response.name();
+        let message = match &lack {
+            Lack::Response(_) => format!("this run will have no `{name}`"),
+            Lack::Count(_) => {
+                let count = graph.schedule.clock()(measure.after.unwrap_or_default());
+                format!("`{name}` will not be recorded after {count}")
+            }
+            Lack::Place => format!("`{name}` will not be recorded anywhere on this span"),
+            Lack::Record => format!("`{name}` will not be recorded"),
+        };
+        let help = match lack {
+            Lack::Response(needs) => format!("it needs {needs}"),
+            Lack::Count(counts) => {
+                let counts: Vec<String> = counts.iter().map(u64::to_string).collect();
+                format!(
+                    "recorded are {}: take one of these, or add the count to the `after` of a `record`",
+                    counts.join(", ")
+                )
+            }
+            Lack::Place => "take a longer span, or one with recorded seats".to_owned(),
+            Lack::Record => format!("keep it: `record {{ quantities = [{name}], at = ... }}`"),
+        };
+        Some(Diagnostic::new(Code::E0616, message).label(expectation.span, "cannot be answered").help(help))
+    };
+    scenario.expectations.iter().filter_map(refused).collect()
+}
+
+/// Why a run has no value of a measure.
+enum Lack {
+    /// Its kind never has the response; what it would need for it.
+    Response(&'static str),
+    /// It is recorded at these counts only.
+    Count(Vec<u64>),
+    /// Nothing that has the response lies on the span.
+    Place,
+    /// No `record` asks for the response.
+    Record,
+}
+
+/// The first measure of an expression that a run will have no value of.
+fn missing<'a>(expression: &'a Expression, graph: &Graph, track: &Track) -> Option<(&'a Measure, Lack)> {
+    match expression {
+        Expression::Number(_) => None,
+        Expression::Measure(measure) => lack(measure, graph, track).map(|lack| (measure, lack)),
+        Expression::Negate(inner) => missing(inner, graph, track),
+        Expression::Function(_, of) => of.iter().find_map(|e| missing(e, graph, track)),
+        Expression::Binary(left, _, right) => missing(left, graph, track).or_else(|| missing(right, graph, track)),
+    }
+}
+
+fn lack(measure: &Measure, graph: &Graph, track: &Track) -> Option<Lack> {
+    match &graph.schedule {
+        Schedule::Actuators(tests) => {
+            let (bed, actuators) = graph.bed_under_actuators()?;
+            lack_of_tests(measure, bed, actuators.cycles, &tests.kept)
+        }
+        Schedule::Blocks(blocks) => lack_on_track(measure, graph, track, &blocks.recorded),
+        Schedule::Static { .. } => lack_on_track(measure, graph, track, &[0]),
+        // what another program runs, it knows
+        Schedule::Custom { .. } => None,
+    }
+}
+
+/// Of a track: tables at the recorded counts, and the histories that a `record` asks for.
+fn lack_on_track(measure: &Measure, graph: &Graph, track: &Track, counts: &[u64]) -> Option<Lack> {
+    let response = measure.response;
+    let trains = graph.blocks().is_some();
+    let ballasted = graph.supports.iter().any(|support| support.spring.is_some());
+    let needs = match response.place() {
+        Place::Volume => Some("grains: a test rig whose `record` has a `volume`"),
+        Place::Wheel if !trains => Some("trains: `traffic`"),
+        Place::Rail if !trains && response == Response::RailStiffness => Some("trains: `traffic`"),
+        Place::Scene => match response {
+            Response::SettlementStep if track.transitions.is_empty() => Some("a transition between two sections"),
+            Response::SettlementStep | Response::LevelChangeWheelbase | Response::LevelChange3m if !trains => {
+                Some("trains: `traffic`")
+            }
+            Response::FarFieldSettlement | Response::DifferentialSettlement | Response::VoidedSleepers
+                if !ballasted =>
+            {
+                Some("sleepers on supports that are not rigid")
+            }
+            _ => None,
+        },
+        Place::Seat if response == Response::SubgradePressure => {
+            let known = graph.supports.iter().any(|support| support.onto_subgrade.is_some());
+            (!known).then_some("`layers` under the sleepers")
+        }
+        _ => None,
+    };
+    if let Some(needs) = needs {
+        return Some(Lack::Response(needs));
+    }
+    if response.place() != Place::Seat {
+        return off_the_counts(measure, counts);
+    }
+    let inside = |seat: &usize| track.seats.get(*seat).is_some_and(|seat| covers(measure, seat.x));
+    if !has_a_column(response) {
+        let named = |record: &&Record| record.quantities.iter().any(|history| history.name() == response.name());
+        let records: Vec<&Record> = graph.records.iter().filter(named).collect();
+        if records.is_empty() {
+            return Some(Lack::Record);
+        }
+        let there: Vec<&Record> = records.into_iter().filter(|record| record.seats.iter().any(|s| inside(s))).collect();
+        let mut counts: Vec<u64> = there.iter().flat_map(|record| record.after.iter().copied()).collect();
+        counts.sort_unstable();
+        counts.dedup();
+        return if there.is_empty() { Some(Lack::Place) } else { off_the_counts(measure, &counts) };
+    }
+    let any_seat = (0..track.seats.len()).any(|seat| inside(&seat));
+    if any_seat { off_the_counts(measure, counts) } else { Some(Lack::Place) }
+}
+
+fn off_the_counts(measure: &Measure, counts: &[u64]) -> Option<Lack> {
+    measure.after.filter(|after| !counts.contains(after)).map(|_| Lack::Count(counts.to_vec()))
+}
+
+fn covers(measure: &Measure, x: f64) -> bool {
+    measure.over.is_none_or(|(a, b)| x >= a.min(b) - PLACE_TOLERANCE && x <= a.max(b) + PLACE_TOLERANCE)
+}
+
+/// Of a test rig: what its sleepers do in every cycle, and what volumes show in those that are kept.
+fn lack_of_tests(measure: &Measure, bed: &BedNode, cycles: u64, kept: &[u64]) -> Option<Lack> {
+    match measure.response {
+        Response::ContactPressure if bed.plate.is_some() => {
+            Some(Lack::Response("sleepers: a plate has no `contact_pressure`"))
+        }
+        Response::BallastStress | Response::BallastVelocity | Response::CoordinationNumber | Response::Porosity => {
+            if bed.sensors.is_empty() {
+                Some(Lack::Record)
+            } else {
+                off_the_counts(measure, kept)
+            }
+        }
+        Response::ContactForce
+        | Response::ContactPressure
+        | Response::Settlement
+        | Response::SleeperDisplacement
+        | Response::SleeperVelocity
+        | Response::SupportStiffness => {
+            let every = measure.after.is_none_or(|after| (1..=cycles).contains(&after));
+            if every { None } else { Some(Lack::Count(vec![1, cycles])) }
+        }
+        _ => Some(Lack::Response("rails and trains: this is a test rig")),
+    }
+}
+
+/// Whether `sleepers.csv` holds a value of every seat, at every recorded count; others are read off histories.
+fn has_a_column(response: Response) -> bool {
+    response.place() == Place::Seat && !matches!(response, Response::SleeperVelocity | Response::SleeperAcceleration)
+}

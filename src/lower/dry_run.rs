@@ -1,0 +1,196 @@
+//! The blocks of an adaptive run, chosen before it runs by the run's own control: the track beside each transition on its supports, under
+//! wheels that stand over one seat after the other. What is dynamic is left out, but for a share of the wheel's force.
+
+use crate::graph::{Block, Blocks, Control, Responses, Runner, SupportNode, TrackNode, Train};
+use crate::solvers::settlement::{Law, Peak, SupportState};
+use crate::solvers::track::{Track, forces_under_wheels};
+
+/// Seats that settle beside a transition and are followed, and seats beyond it that do not.
+const FOLLOWED: usize = 20;
+const BEYOND: usize = 8;
+/// Stretches that are followed: further ones are mostly like these.
+const STRETCHES: usize = 3;
+/// Force of a wheel that runs over its static force.
+const DYNAMIC: f64 = 1.05;
+
+/// A run of adaptive blocks.
+pub(super) struct DryRun<'a> {
+    blocks: &'a Blocks,
+    tolerance: f64,
+    cap: Option<f64>,
+    stretches: Vec<Stretch>,
+    states: States,
+    control: Control,
+}
+
+/// A part of the track that settles.
+struct Stretch {
+    node: TrackNode,
+    track: Track,
+    responses: Responses,
+    /// Settlement of its seats at the start, m.
+    initial: Vec<f64>,
+    /// Its seats that settle.
+    seats: Vec<usize>,
+    /// For each kind of train: force of its wheels and distance of the two of a bogie, N and m, and how many vehicles have such.
+    wheels: Vec<Vec<([f64; 2], u64)>>,
+}
+
+/// By stretch, then by seat that settles.
+type States = Vec<Vec<SupportState>>;
+/// By stretch, kind of train, kind of vehicle and seat that settles.
+type Peaks = Vec<Vec<Vec<Vec<Peak>>>>;
+
+impl<'a> DryRun<'a> {
+    pub fn new(
+        track: &TrackNode,
+        supports: &[SupportNode],
+        law: &Law,
+        blocks: &'a Blocks,
+        (tolerance, cap): (f64, Option<f64>),
+    ) -> Self {
+        let mut known: Vec<Vec<[f64; 4]>> = Vec::new();
+        let mut new = |range: &[usize; 2]| {
+            let likeness = likeness(track, supports, *range);
+            let mirrored: Vec<[f64; 4]> = likeness.iter().rev().copied().collect();
+            let is_new = !known.contains(&likeness) && !known.contains(&mirrored);
+            known.push(likeness);
+            is_new
+        };
+        let ranges = beside_transitions(track).into_iter().filter(|range| new(range)).take(STRETCHES);
+        let stretches: Vec<Stretch> = ranges.filter_map(|range| Stretch::new(track, supports, blocks, range)).collect();
+        let states = stretches.iter().map(|stretch| vec![law.fresh(); stretch.seats.len()]).collect();
+        DryRun { blocks, tolerance, cap, stretches, states, control: Control::default() }
+    }
+
+    /// Every seat begins its law afresh.
+    pub fn tamp(&mut self, law: &Law) {
+        self.states.iter_mut().flatten().for_each(|state| *state = law.fresh());
+    }
+
+    /// The next block, as the adaptive step of a run finds it; `middle` is told the passages of every attempt.
+    pub fn next(&mut self, before: u64, mut middle: impl FnMut(&[Runner])) -> Block {
+        let left = self.blocks.trains_left(before);
+        let mut most = left;
+        let here = self.peaks(&self.states);
+        loop {
+            let settled =
+                |trains| largest(&self.states, &self.after(&self.states, &self.blocks.block(before, trains), &here));
+            let trains = self.control.choose(most, left, settled);
+            let block = self.blocks.block(before, trains);
+            let whole = self.after(&self.states, &block, &here);
+            if trains == 1 {
+                self.states = whole;
+                return block;
+            }
+            middle(&block.runners());
+            let half = self.blocks.block(before, trains / 2);
+            let halfway = self.after(&self.states, &half, &here);
+            let there = self.peaks(&halfway);
+            let rest = self.blocks.block(before + half.axles, trains - trains / 2);
+            let error = largest(&whole, &self.after(&halfway, &rest, &there));
+            self.control.learn(error, largest(&self.states, &whole), self.tolerance, self.cap);
+            if trains > 2 && error > self.tolerance {
+                most = (trains / 2).max(2);
+                continue;
+            }
+            let one = self.blocks.block(before, 1);
+            let others = self.blocks.block(before + one.axles, trains - 1);
+            self.states = self.after(&self.after(&self.states, &one, &here), &others, &there);
+            return block;
+        }
+    }
+
+    fn peaks(&self, states: &States) -> Peaks {
+        self.stretches.iter().zip(states).map(|(stretch, states)| stretch.peaks(states)).collect()
+    }
+
+    /// The seats after a block under forces.
+    fn after(&self, from: &States, block: &Block, peaks: &Peaks) -> States {
+        let mut states = from.clone();
+        for ((stretch, states), peaks) in self.stretches.iter().zip(&mut states).zip(peaks) {
+            for (runner, trains) in &block.runs {
+                for ((_, vehicles), peaks) in stretch.wheels[runner.kind].iter().zip(&peaks[runner.kind]) {
+                    for (state, peak) in states.iter_mut().zip(peaks) {
+                        state.load(&[*peak; 4], trains * vehicles);
+                    }
+                }
+            }
+        }
+        states
+    }
+}
+
+impl Stretch {
+    fn new(track: &TrackNode, supports: &[SupportNode], blocks: &Blocks, [first, last]: [usize; 2]) -> Option<Stretch> {
+        let node = track.part(first, last)?;
+        let supports = supports.get(first..=last)?;
+        let responses = Responses { revision: 0, seats: supports.iter().map(|support| support.spring).collect() };
+        let seats = (0..supports.len()).filter(|seat| supports[*seat].spring.is_some()).collect();
+        let initial = supports.iter().map(|support| support.settlement).collect();
+        let wheels = blocks.kinds().map(|(train, _)| wheels(train, node.gravity)).collect();
+        Some(Stretch { track: Track::new(node.model(&responses)).ok()?, node, responses, initial, seats, wheels })
+    }
+
+    /// The largest force of a wheel on each support. A track that has no equilibrium bears nothing: the run will say so.
+    fn peaks(&self, states: &[SupportState]) -> Vec<Vec<Vec<Peak>>> {
+        let mut settlement = self.initial.clone();
+        for (seat, state) in self.seats.iter().zip(states) {
+            settlement[*seat] += state.settlement();
+        }
+        let level = self.node.level(&settlement, &self.responses);
+        let under = |(wheels, _): &([f64; 2], u64)| {
+            let forces = forces_under_wheels(&self.track, &level, *wheels, &self.seats);
+            let forces = forces.unwrap_or_else(|_| vec![[0.0; 2]; self.seats.len()]);
+            forces.into_iter().map(|[force, deflection]| Peak { force, deflection }).collect()
+        };
+        self.wheels.iter().map(|kind| kind.iter().map(under).collect()).collect()
+    }
+}
+
+/// The most that a seat has settled between two states, m.
+fn largest(from: &States, to: &States) -> f64 {
+    let pairs = from.iter().flatten().zip(to.iter().flatten());
+    pairs.map(|(a, b)| (a.settlement() - b.settlement()).abs()).fold(0.0, f64::max)
+}
+
+/// The first and the last seat of each stretch: on both sides of every boundary of sections beside which something settles; the middle of
+/// the track where there is none.
+fn beside_transitions(track: &TrackNode) -> Vec<[usize; 2]> {
+    let (seats, last) = (&track.seats, track.seats.len().saturating_sub(1));
+    let reach = |seat: usize| if seats[seat].is_ballasted() { FOLLOWED } else { BEYOND };
+    let boundary = |right: &usize| {
+        let left = right - 1;
+        seats[left].section != seats[*right].section && (seats[left].is_ballasted() || seats[*right].is_ballasted())
+    };
+    let around = |right: usize| {
+        let left = right - 1;
+        [(left + 1).saturating_sub(reach(left)), (right + reach(right) - 1).min(last)]
+    };
+    let found: Vec<[usize; 2]> = (1..seats.len()).filter(boundary).map(around).collect();
+    let ballasted: Vec<usize> = (0..seats.len()).filter(|seat| seats[*seat].is_ballasted()).collect();
+    match (found.is_empty(), ballasted.get(ballasted.len() / 2)) {
+        (true, Some(middle)) => vec![[middle.saturating_sub(FOLLOWED / 2), (middle + FOLLOWED / 2).min(last)]],
+        _ => found,
+    }
+}
+
+/// By what two stretches differ: bays, pads, supports and where they lie.
+fn likeness(track: &TrackNode, supports: &[SupportNode], [first, last]: [usize; 2]) -> Vec<[f64; 4]> {
+    let seats = track.seats[first..=last].iter().zip(&supports[first..=last]);
+    let of = |support: &SupportNode| support.spring.map_or(0.0, |spring| spring.stiffness);
+    seats.map(|(seat, support)| [seat.bay, seat.pad_stiffness, of(support), support.settlement]).collect()
+}
+
+/// Forces of the wheels of a train, N, with the distance of two in a bogie, m; vehicles that are alike are counted together.
+fn wheels(train: &Train, gravity: f64) -> Vec<([f64; 2], u64)> {
+    let mut wheels: Vec<([f64; 2], u64)> = Vec::new();
+    for (vehicle, _) in &train.vehicles {
+        let of = [DYNAMIC * vehicle.mass() / 4.0 * gravity, vehicle.wheelset_spacing];
+        match wheels.iter_mut().find(|(known, _)| *known == of) {
+            Some((_, vehicles)) => *vehicles += 1,
+            None => wheels.push((of, 1)),
+        }
+    }
+    wheels
+}
