@@ -60,7 +60,8 @@
   box.hidden = true;
   let shown = null; // the chart that is read
 
-  const nameOf = (chart, curve, k) => curve.labels?.[k] || curve.name || chart.data.series[curve.entry].name || chart.data.y.name;
+  const nameOf = (chart, curve, k) => curve.labels?.[k] || full(curve.name || chart.data.series[curve.entry].name) || chart.data.y.name;
+  const full = name => /^[\d\u2009]+$/.test(name) ? `after ${name} axles` : name; // small legends show the count alone
   const visible = (chart, index) => !chart.groups[index].classList.contains("off");
 
   // The sample of a curve nearest to a place: across where places are in order, else in the plane.
@@ -91,12 +92,13 @@
     const curves = chart.data.series.filter((_, index) => visible(chart, index));
     const samples = curves.map(curve => nearest(curve, u, v)).filter(Boolean);
     if (!samples.length) return hide();
-    const lines = samples.map(sample => sample.curve.line && sample.curve.ordered && between(sample.curve, u) || sample);
+    const along = u => samples.map(sample => sample.curve.line && sample.curve.ordered && between(sample.curve, u) || sample);
     const far = found => Math.hypot(found.x - u, found.y - v);
-    const closest = lines.reduce((a, b) => far(b) < far(a) ? b : a);
+    const closest = along(u).reduce((a, b) => far(b) < far(a) ? b : a);
     if (closest.across > NEAR || !closest.curve.ordered && far(closest) > NEAR) return hide();
     const at = closest.x;
-    const alike = closest.curve.ordered ? lines.filter(found => found.curve.ordered && Math.abs(found.x - at) <= 6) : [closest];
+    const beside = along(at).filter(found => found.curve.ordered && Math.abs(found.x - at) <= 6);
+    const alike = closest.curve.ordered ? beside : [closest];
     // a curve that goes on in a lighter one has one value where they meet
     const once = [...new Map(alike.map(found => [`${nameOf(chart, found.curve, found.k)} ${found.y}`, found])).values()];
     show(chart, at, once, closest);
@@ -201,7 +203,7 @@
       const name = chart.data.series[entry.dataset.series].name;
       const area = entry.getBBox();
       drawn("rect", { class: "hit", x: area.x - 3, y: area.y - 2, width: area.width + 6, height: area.height + 4 }, entry);
-      Object.entries({ role: "button", tabindex: 0, "aria-pressed": true, "aria-label": `line ${name}` })
+      Object.entries({ role: "button", tabindex: 0, "aria-pressed": true, "aria-label": `line ${full(name)}` })
         .forEach(([key, value]) => entry.setAttribute(key, value));
       const toggle = () => turn(chart.node.ownerSVGElement, name, entry.getAttribute("aria-pressed") !== "true");
       entry.addEventListener("click", toggle);
