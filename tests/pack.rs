@@ -74,8 +74,7 @@ fn a_bed_is_packed_once_and_is_the_same_on_any_number_of_threads() {
     for id in ["plate", "profile", "contacts"] {
         assert!(page.contains(&format!("<section id=\"{id}\">")), "{id}");
     }
-    let (shown, _) = page.split_once("<script>").unwrap();
-    assert!(!shown.contains("NaN"));
+    assert!(!page.contains("NaN"));
 }
 
 fn what_is_read_off_it_is_sound(bed: &Value) {

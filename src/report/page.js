@@ -35,7 +35,7 @@
     const { frame: [left, top, width, height], x, y, grids, series } = chart.data;
     const curve = series[index];
     const values = grids[curve.x];
-    const up = value => value === null ? NaN : chart.upwards.share(value);
+    const up = value => value === null ? undefined : chart.upwards.share(value);
     curve.px = values.map(value => left + chart.across.share(value) * width);
     curve.py = curve.y.map(value => top + (y.down ? up(value) : 1 - up(value)) * height);
     curve.ordered = curve.px.every((value, k) => k === 0 || value >= curve.px[k - 1]);
@@ -68,7 +68,7 @@
   function nearest(curve, u, v) {
     let best = null;
     for (let k = 0; k < curve.px.length; k++) {
-      if (Number.isNaN(curve.py[k])) continue;
+      if (!Number.isFinite(curve.py[k])) continue;
       const across = Math.abs(curve.px[k] - u);
       const away = Math.hypot(across, curve.py[k] - v);
       const order = curve.ordered ? across + 1e-3 * away : away;
@@ -81,7 +81,7 @@
   function between(curve, u) {
     for (let k = 1; k < curve.px.length; k++) {
       const [a, b] = [curve.px[k - 1], curve.px[k]];
-      if (u < a || u > b || b <= a || Number.isNaN(curve.py[k - 1]) || Number.isNaN(curve.py[k])) continue;
+      if (u < a || u > b || b <= a || !Number.isFinite(curve.py[k - 1]) || !Number.isFinite(curve.py[k])) continue;
       const share = (u - a) / (b - a);
       return { curve, x: u, y: curve.py[k - 1] + share * (curve.py[k] - curve.py[k - 1]), across: 0 };
     }
@@ -170,11 +170,11 @@
 
   // Arrows step through the samples of a curve and from curve to curve.
   function step(chart, event) {
-    const curves = chart.data.series.filter((curve, index) => visible(chart, index) && curve.py.some(y => !Number.isNaN(y)));
+    const curves = chart.data.series.filter((curve, index) => visible(chart, index) && curve.py.some(y => Number.isFinite(y)));
     if (!curves.length) return;
     let { curve, k } = chart.cursor && curves.includes(chart.cursor.curve) ? chart.cursor : { curve: curves[0], k: -1 };
     const known = k >= 0 ? curve.px[k] : null;
-    const places = curve.py.map((y, index) => Number.isNaN(y) ? -1 : index).filter(index => index >= 0);
+    const places = curve.py.map((y, index) => !Number.isFinite(y) ? -1 : index).filter(index => index >= 0);
     const now = places.indexOf(k);
     const other = by => curves[(curves.indexOf(curve) + by + curves.length) % curves.length];
     const moves = {
@@ -262,7 +262,7 @@
       place(chart, index);
       let pen = "M";
       const path = curve.px.map((x, k) => {
-        if (Number.isNaN(curve.py[k])) return pen = "M", "";
+        if (!Number.isFinite(curve.py[k])) return pen = "M", "";
         const move = `${pen}${x.toFixed(1)} ${curve.py[k].toFixed(1)}`;
         return pen = "L", move;
       });
