@@ -143,6 +143,7 @@ mod tests {
         let ids: Vec<&str> = figures.iter().map(|figure| figure.id.as_str()).collect();
         let expected = [
             "scene",
+            "cross_sections",
             "over_axles",
             "rail_stiffness",
             "settlement",
@@ -167,18 +168,19 @@ mod tests {
     fn every_figure_of_a_static_check_is_valid() {
         let figures = figures(&example::bench());
         let ids: Vec<&str> = figures.iter().map(|figure| figure.id.as_str()).collect();
-        assert_eq!(ids, ["scene", "rail_displacement", "rail_moment", "seat_shares"]);
+        assert_eq!(ids, ["scene", "cross_sections", "rail_displacement", "rail_moment", "seat_shares"]);
         figures.iter().for_each(check_svg);
     }
 
     #[test]
-    fn a_run_without_data_has_its_scene_only() {
+    fn a_run_without_data_has_its_drawings_only() {
         let mut run = example::transition();
         run.sleepers.clear();
         run.rail.clear();
         run.histories.clear();
         run.blocks.clear();
-        assert_eq!(figures(&run).len(), 1);
+        let ids: Vec<String> = figures(&run).into_iter().map(|figure| figure.id).collect();
+        assert_eq!(ids, ["scene", "cross_sections"]);
         let empty = page(&run);
         assert!(empty.contains("</html>"));
     }

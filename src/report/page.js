@@ -35,7 +35,7 @@
     const { frame: [left, top, width, height], x, y, grids, series } = chart.data;
     const curve = series[index];
     const values = grids[curve.x];
-    const up = value => value === null ? NaN : chart.upwards.share(value);
+    const up = value => value === null ? undefined : chart.upwards.share(value);
     curve.px = values.map(value => left + chart.across.share(value) * width);
     curve.py = curve.y.map(value => top + (y.down ? up(value) : 1 - up(value)) * height);
     curve.ordered = curve.px.every((value, k) => k === 0 || value >= curve.px[k - 1]);
@@ -60,14 +60,15 @@
   box.hidden = true;
   let shown = null; // the chart that is read
 
-  const nameOf = (chart, curve, k) => curve.labels?.[k] || curve.name || chart.data.series[curve.entry].name || chart.data.y.name;
+  const nameOf = (chart, curve, k) => curve.labels?.[k] || full(curve.name || chart.data.series[curve.entry].name) || chart.data.y.name;
+  const full = name => /^[\d\u2009]+$/.test(name) ? `after ${name} axles` : name; // small legends show the count alone
   const visible = (chart, index) => !chart.groups[index].classList.contains("off");
 
   // The sample of a curve nearest to a place: across where places are in order, else in the plane.
   function nearest(curve, u, v) {
     let best = null;
     for (let k = 0; k < curve.px.length; k++) {
-      if (Number.isNaN(curve.py[k])) continue;
+      if (!Number.isFinite(curve.py[k])) continue;
       const across = Math.abs(curve.px[k] - u);
       const away = Math.hypot(across, curve.py[k] - v);
       const order = curve.ordered ? across + 1e-3 * away : away;
@@ -80,7 +81,7 @@
   function between(curve, u) {
     for (let k = 1; k < curve.px.length; k++) {
       const [a, b] = [curve.px[k - 1], curve.px[k]];
-      if (u < a || u > b || b <= a || Number.isNaN(curve.py[k - 1]) || Number.isNaN(curve.py[k])) continue;
+      if (u < a || u > b || b <= a || !Number.isFinite(curve.py[k - 1]) || !Number.isFinite(curve.py[k])) continue;
       const share = (u - a) / (b - a);
       return { curve, x: u, y: curve.py[k - 1] + share * (curve.py[k] - curve.py[k - 1]), across: 0 };
     }
@@ -91,12 +92,13 @@
     const curves = chart.data.series.filter((_, index) => visible(chart, index));
     const samples = curves.map(curve => nearest(curve, u, v)).filter(Boolean);
     if (!samples.length) return hide();
-    const lines = samples.map(sample => sample.curve.line && sample.curve.ordered && between(sample.curve, u) || sample);
+    const along = u => samples.map(sample => sample.curve.line && sample.curve.ordered && between(sample.curve, u) || sample);
     const far = found => Math.hypot(found.x - u, found.y - v);
-    const closest = lines.reduce((a, b) => far(b) < far(a) ? b : a);
+    const closest = along(u).reduce((a, b) => far(b) < far(a) ? b : a);
     if (closest.across > NEAR || !closest.curve.ordered && far(closest) > NEAR) return hide();
     const at = closest.x;
-    const alike = closest.curve.ordered ? lines.filter(found => found.curve.ordered && Math.abs(found.x - at) <= 6) : [closest];
+    const beside = along(at).filter(found => found.curve.ordered && Math.abs(found.x - at) <= 6);
+    const alike = closest.curve.ordered ? beside : [closest];
     // a curve that goes on in a lighter one has one value where they meet
     const once = [...new Map(alike.map(found => [`${nameOf(chart, found.curve, found.k)} ${found.y}`, found])).values()];
     show(chart, at, once, closest);
@@ -168,11 +170,11 @@
 
   // Arrows step through the samples of a curve and from curve to curve.
   function step(chart, event) {
-    const curves = chart.data.series.filter((curve, index) => visible(chart, index) && curve.py.some(y => !Number.isNaN(y)));
+    const curves = chart.data.series.filter((curve, index) => visible(chart, index) && curve.py.some(y => Number.isFinite(y)));
     if (!curves.length) return;
     let { curve, k } = chart.cursor && curves.includes(chart.cursor.curve) ? chart.cursor : { curve: curves[0], k: -1 };
     const known = k >= 0 ? curve.px[k] : null;
-    const places = curve.py.map((y, index) => Number.isNaN(y) ? -1 : index).filter(index => index >= 0);
+    const places = curve.py.map((y, index) => !Number.isFinite(y) ? -1 : index).filter(index => index >= 0);
     const now = places.indexOf(k);
     const other = by => curves[(curves.indexOf(curve) + by + curves.length) % curves.length];
     const moves = {
@@ -201,7 +203,7 @@
       const name = chart.data.series[entry.dataset.series].name;
       const area = entry.getBBox();
       drawn("rect", { class: "hit", x: area.x - 3, y: area.y - 2, width: area.width + 6, height: area.height + 4 }, entry);
-      Object.entries({ role: "button", tabindex: 0, "aria-pressed": true, "aria-label": `line ${name}` })
+      Object.entries({ role: "button", tabindex: 0, "aria-pressed": true, "aria-label": `line ${full(name)}` })
         .forEach(([key, value]) => entry.setAttribute(key, value));
       const toggle = () => turn(chart.node.ownerSVGElement, name, entry.getAttribute("aria-pressed") !== "true");
       entry.addEventListener("click", toggle);
@@ -260,7 +262,7 @@
       place(chart, index);
       let pen = "M";
       const path = curve.px.map((x, k) => {
-        if (Number.isNaN(curve.py[k])) return pen = "M", "";
+        if (!Number.isFinite(curve.py[k])) return pen = "M", "";
         const move = `${pen}${x.toFixed(1)} ${curve.py[k].toFixed(1)}`;
         return pen = "L", move;
       });

@@ -9,9 +9,9 @@ use super::series::{has_dots, line_pixels};
 use super::svg::Svg;
 use std::fmt::Write;
 
-/// Steps into which an axis is cut by the last digit that is kept: fine across, where steep curves need it.
-const ACROSS: f64 = 10_000.0;
-const UPWARDS: f64 = 2_000.0;
+/// Steps into which an axis is cut by the last digit that is kept, fine across, where steep curves need it; and by the last that is told.
+const ACROSS: [f64; 2] = [10_000.0, 2_000.0];
+const UPWARDS: [f64; 2] = [2_000.0, 500.0];
 /// How much coarser than the drawing the data of a line are, px: columns that keep their peaks, and what a value between two samples
 /// may be off. A pointer is no finer, and the data stay a third of the drawing.
 const COLUMN: f64 = 2.0;
@@ -21,13 +21,14 @@ const DIGITS: i32 = 4;
 
 /// Writes the data of a chart into the group that is open.
 pub(super) fn write(svg: &mut Svg, chart: &Chart, plane: &Plane) {
-    let (across, upwards) = (Steps::of(&chart.x, plane.x, ACROSS), Steps::of(&chart.y, plane.y, UPWARDS));
+    let (across, upwards) = (Steps::of(&chart.x, plane.x, ACROSS[0]), Steps::of(&chart.y, plane.y, UPWARDS[0]));
     let frame = plane.frame;
     let mut json = format!("{{\"frame\":[{:.1},{:.1},{:.1},{:.1}]", frame.x, frame.y, frame.width, frame.height);
-    let _ = write!(json, ",\"x\":{},\"y\":{}", axis(&chart.x, plane.x), axis(&chart.y, plane.y));
+    let _ = write!(json, ",\"x\":{},\"y\":{}", axis(&chart.x, plane.x, ACROSS[1]), axis(&chart.y, plane.y, UPWARDS[1]));
     if !chart.seats.is_empty() {
-        let places = across.list(chart.seats.iter().map(|seat| seat.0));
-        let numbers: Vec<String> = chart.seats.iter().map(|seat| seat.1.to_string()).collect();
+        let seats = || chart.seats.iter().filter(|seat| (plane.x.0..=plane.x.1).contains(&seat.0));
+        let places = across.list(seats().map(|seat| seat.0));
+        let numbers: Vec<String> = seats().map(|seat| seat.1.to_string()).collect();
         let _ = write!(json, ",\"seats\":[{places},[{}]]", numbers.join(","));
     }
     let mut grids: Vec<String> = Vec::new();
@@ -39,24 +40,7 @@ pub(super) fn write(svg: &mut Svg, chart: &Chart, plane: &Plane) {
         if known == grids.len() {
             grids.push(grid);
         }
-        let values = upwards.list(points.iter().map(|point| point.1));
-        let line = matches!(series.mark, Mark::Line | Mark::Faint);
-        let mut curve = format!(
-            "{{\"entry\":{},\"name\":{},\"class\":{},\"line\":{line},\"x\":{known},\"y\":{values}",
-            chart.entry(index),
-            text(&series.name),
-            text(&format!("line {}{}", series.class, if series.pale { " pale" } else { "" })),
-        );
-        if !series.moving.is_empty() {
-            let moving: Vec<String> = series.moving.iter().map(|values| upwards.list(values.iter().copied())).collect();
-            let _ = write!(curve, ",\"moving\":[{}]", moving.join(","));
-        }
-        // what has numbered seats is named by them
-        if !series.labels.is_empty() && chart.seats.is_empty() {
-            let labels: Vec<String> = series.labels.iter().map(|label| text(label)).collect();
-            let _ = write!(curve, ",\"labels\":[{}]", labels.join(","));
-        }
-        curves.push(curve + "}");
+        curves.push(curve(chart, index, &points, known, &upwards));
     }
     let _ = write!(json, ",\"grids\":[{}],\"series\":[{}]", grids.join(","), curves.join(","));
     if !chart.steps.is_empty() {
@@ -64,6 +48,30 @@ pub(super) fn write(svg: &mut Svg, chart: &Chart, plane: &Plane) {
         let _ = write!(json, ",\"steps\":[{}]", steps.join(","));
     }
     svg.define(&format!("<metadata>{}}}</metadata>", json));
+}
+
+/// A curve over the grid of that number.
+fn curve(chart: &Chart, index: usize, points: &[(f64, f64)], grid: usize, upwards: &Steps) -> String {
+    let series = &chart.series[index];
+    let line = matches!(series.mark, Mark::Line | Mark::Faint);
+    let pale = if series.pale { " pale" } else { "" };
+    let mut json = format!(
+        "{{\"entry\":{},\"name\":{},\"class\":{},\"line\":{line},\"x\":{grid},\"y\":{}",
+        chart.entry(index),
+        text(&series.name),
+        text(&format!("line {}{pale}", series.class)),
+        upwards.list(points.iter().map(|point| point.1))
+    );
+    if !series.moving.is_empty() {
+        let moving: Vec<String> = series.moving.iter().map(|values| upwards.list(values.iter().copied())).collect();
+        let _ = write!(json, ",\"moving\":[{}]", moving.join(","));
+    }
+    // what has numbered seats is named by them
+    if !series.labels.is_empty() && chart.seats.is_empty() {
+        let labels: Vec<String> = series.labels.iter().map(|label| text(label)).collect();
+        let _ = write!(json, ",\"labels\":[{}]", labels.join(","));
+    }
+    json + "}"
 }
 
 /// The points of a curve whose values can be asked for, SI; what is none is a gap.
@@ -84,9 +92,9 @@ fn shown(series: &Series, plane: &Plane) -> Vec<(f64, f64)> {
 }
 
 /// `{"name":"Settlement","unit":"mm","range":[0,5],"down":true,"log":false,"digits":3}`: `digits` decimals are worth showing.
-fn axis(axis: &Axis, (low, high): (f64, f64)) -> String {
+fn axis(axis: &Axis, (low, high): (f64, f64), steps: f64) -> String {
     let (low, high) = (low / axis.size, high / axis.size);
-    let digits = if axis.whole { 0 } else { decimals((high - low) / UPWARDS) };
+    let digits = if axis.whole { 0 } else { decimals((high - low) / steps) };
     format!(
         "{{\"name\":{},\"unit\":{},\"range\":[{low},{high}],\"down\":{},\"log\":{},\"digits\":{digits}}}",
         text(&axis.label),
