@@ -104,42 +104,46 @@ impl Answer {
         pairs.filter_map(|(c, miss)| Some(format!("`{}` by {}", c.text, amount(&(*miss)?, &c.unit)))).collect()
     }
 
-    /// How the best designs stand against the scene as it is, in a sentence; `None` where there is nothing to compare.
+    /// How the best designs stand against the scene as it is; `None` where there is nothing to compare.
     pub fn against_as_it_is(&self) -> Option<String> {
-        let best = self.best();
         let as_it_is = self.as_it_is()?;
-        let before = self.costs(as_it_is)?;
-        let misses = if as_it_is.feasible() { "" } else { ", which misses a constraint" };
+        let best = self.best();
         let own = best.iter().any(|index| self.rows[*index].as_it_is);
-        let (first, objectives) = (self.rows.get(*best.first()?)?, self.study.objectives.len());
-        if objectives == 1 && own {
-            return Some("No design is better than the scene as it is, which is one of them.".to_string());
+        let sentence = match (self.study.objectives.len(), own) {
+            (1, true) => "No design is better than the scene as it is, which is one of them.".to_string(),
+            (1, false) => self.best_against(&self.rows[*best.first()?], as_it_is)?,
+            (_, true) => "One of them is the scene as it is.".to_string(),
+            (_, false) => self.front_against(&best, as_it_is)?,
+        };
+        match self.missed(as_it_is).as_slice() {
+            [] => Some(sentence),
+            missed => Some(format!("{sentence} The scene as it is misses {}.", missed.join(" and "))),
         }
-        if objectives == 1 {
-            let cost = self.costs(first)?;
-            if cost[0] >= before[0] {
-                return Some(format!("No design is better than the scene as it is{misses}."));
-            }
-            let objective = &self.study.objectives[0];
-            let index = self.study.measured().iter().position(|m| m.text == objective.of.text)?;
-            let difference = self.difference(first, index)?.words(&objective.of);
-            return Some(format!("`{}` is {difference}{misses}.", objective.of.text));
+    }
+
+    /// The best design by one objective.
+    fn best_against(&self, best: &Row, as_it_is: &Row) -> Option<String> {
+        if self.costs(best)?[0] >= self.costs(as_it_is)?[0] {
+            return Some("No design is better than the scene as it is.".to_string());
         }
-        let better = best.iter().filter_map(|index| self.costs(&self.rows[*index]));
-        let better = better.filter(|costs| beats(costs, &before)).count();
+        let what = &self.study.objectives[0].of;
+        let index = self.study.measured().iter().position(|m| m.text == what.text)?;
+        Some(format!("`{}` is {}.", what.text, self.difference(best, index)?.words(what)))
+    }
+
+    /// The designs of the front.
+    fn front_against(&self, best: &[usize], as_it_is: &Row) -> Option<String> {
+        let before = self.costs(as_it_is)?;
+        let costs = best.iter().filter_map(|index| self.costs(&self.rows[*index]));
         let of = best.len();
-        Some(match (own, better) {
-            (true, _) => "One of them is the scene as it is.".to_string(),
-            (false, 0) => {
-                format!(
-                    "None of them is better than the scene as it is{misses} in one objective and as good in the others."
-                )
-            }
-            (false, n) => {
-                let which = if n == 1 { "One".to_string() } else { n.to_string() };
-                let is = if n == 1 { "is" } else { "are" };
-                format!("{which} of the {of} {is} better than the scene as it is{misses}, and worse in no objective.")
-            }
+        let them = if of == 1 { "It" } else { "None of them" };
+        let is = if of == 1 { "is not" } else { "is" };
+        Some(match costs.filter(|costs| beats(costs, &before)).count() {
+            0 if of == 0 => return None,
+            0 => format!("{them} {is} better than the scene as it is without being worse in some objective."),
+            1 if of == 1 => "It is better than the scene as it is in some objective, and worse in none.".to_string(),
+            1 => format!("One of the {of} is better than the scene as it is in some objective, and worse in none."),
+            n => format!("{n} of the {of} are better than the scene as it is in some objective, and worse in none."),
         })
     }
 }
