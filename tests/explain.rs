@@ -8,11 +8,12 @@ use trackbed::study::{Scene, plan};
 use trackbed::{Compiled, compile};
 
 /// Codes that no text alone can show, and what shows them instead.
-const RUN_TIME: [(Code, &str); 14] = [
+const RUN_TIME: [(Code, &str); 15] = [
     (Code::E0610, "a bed of a scene: `tests/pack.rs`"),
     (Code::E0612, "a plan that a pass of another program breaks: `tests/graph/planner.rs`"),
     (Code::E0701, "a chart of a scene without trains: `tests/study.rs`"),
     (Code::E0702, "a chart after a count that is not known: `tests/study.rs`"),
+    (Code::E0711, "a study whose designs all miss: `tests/studies.rs`"),
     (Code::E0802, "a run into a directory that is taken: `tests/cli.rs`"),
     (Code::E0803, "a checkpoint of another scene: `a_checkpoint_of_another_scene_is_refused` below"),
     (Code::E0804, "a finished run that misses an expectation: `tests/cli.rs`"),

@@ -132,7 +132,7 @@ fn a_finished_study_is_resumed_to_its_own_answer_and_checked() {
     fails_with(&study.run(&[]), "E0802", "holds the results of a finished study `slab_pads`");
     let again = study.run(&["--resume"]);
     assert_eq!(again.status.code(), Some(0), "{}", said(&again));
-    assert!(said(&again).contains("finished before") && said(&again).contains("best design"), "{}", said(&again));
+    assert!(said(&again).contains("finished before") && said(&again).contains("best: point"), "{}", said(&again));
     fails_with(&study.run(&["--resume", "--set", "ore.speed=190 km/h"]), "E0809", "belongs to another scene");
     // a file that is gone or changed is named, whichever it is
     fs::remove_file(study.out().join("design.json")).unwrap();

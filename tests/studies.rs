@@ -7,7 +7,8 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 use trackbed::check::NoModules;
 use trackbed::diag::{Code, Diagnostic};
-use trackbed::study::{Plan, Scene, plan, values};
+use trackbed::store::Directory;
+use trackbed::study::{Plan, PlannedPoint, Scene, plan, values};
 use trackbed::{Compiled, compile};
 
 mod common {
@@ -62,8 +63,15 @@ fn planned(study: &str) -> (Plan, Compiled) {
     (plan(scene, &compiled, &compiled.studies[0]), compiled)
 }
 
+/// The points of the design, in its order; the scene as it is may be one of them.
+fn designed(plan: &Plan) -> Vec<&PlannedPoint> {
+    let mut points: Vec<&PlannedPoint> = plan.points.iter().filter(|p| p.number > 0).collect();
+    points.sort_by_key(|p| p.number);
+    points
+}
+
 fn designs(plan: &Plan) -> Vec<String> {
-    plan.points.iter().map(|p| values(&plan.study, &p.levels)).collect()
+    designed(plan).iter().map(|p| values(&plan.study, &p.levels)).collect()
 }
 
 #[test]
@@ -111,7 +119,7 @@ fn samples_lie_where_they_are_asked_for() {
         );
         let (plan, _) = planned(&study);
         assert!(plan.diagnostics.is_empty(), "{:#?}", plan.diagnostics);
-        let numbers = |axis: usize| plan.points.iter().map(|p| p.levels[axis].number.unwrap()).collect::<Vec<_>>();
+        let numbers = |axis: usize| designed(&plan).iter().map(|p| p.levels[axis].number.unwrap()).collect::<Vec<_>>();
         let below = numbers(0).iter().filter(|x| **x < 50.0).count();
         assert_eq!(below, 8, "half of the points lie below the median");
         let slow = numbers(1).iter().filter(|x| (110.0..145.0).contains(*x)).count();
@@ -202,9 +210,9 @@ fn a_condition_leaves_points_out() {
                  minimise = dip, subject_to = [first <= last, dip < 3 mm] }";
     let (plan, _) = planned(study);
     assert!(plan.diagnostics.is_empty(), "{:#?}", plan.diagnostics);
-    assert_eq!(plan.points.len() + plan.left_out, 16);
+    assert_eq!(plan.designs() + plan.left_out, 16);
     assert!((6..=10).contains(&plan.left_out), "{} left out", plan.left_out);
-    assert!(plan.points.iter().all(|p| p.levels[0].number <= p.levels[1].number));
+    assert!(designed(&plan).iter().all(|p| p.levels[0].number <= p.levels[1].number));
 }
 
 fn write(dir: &Path, text: &str) -> PathBuf {
@@ -215,6 +223,15 @@ fn write(dir: &Path, text: &str) -> PathBuf {
 
 fn rows(out: &Path) -> Vec<HashMap<String, String>> {
     csv::Reader::from_path(out.join("study.csv")).unwrap().deserialize().map(Result::unwrap).collect()
+}
+
+/// The row of a point.
+fn point<'a>(rows: &'a [HashMap<String, String>], number: &str) -> &'a HashMap<String, String> {
+    rows.iter().find(|row| row["point"] == number).unwrap()
+}
+
+fn found(out: &Path) -> serde_json::Value {
+    serde_json::from_slice(&fs::read(out.join("study.json")).unwrap()).unwrap()
 }
 
 const PADS: &str = "study slab_pads {
@@ -236,12 +253,17 @@ fn a_study_runs_and_names_its_best_designs() {
     for name in ["study.csv", "study.json", "study.html", "design.json"] {
         assert!(fs::read(one.join(name)).unwrap() == fs::read(two.join(name)).unwrap(), "{name}");
     }
-    assert!(text.contains("6 points") && text.contains("stiff.pad.stiffness = "), "{text}");
+    assert!(
+        text.contains("6 points, number 3 of them the scene as it is") && text.contains("stiff.pad.stiffness [MN/m]"),
+        "{text}"
+    );
     let rows = rows(&one);
     assert_eq!(rows.len(), 6);
+    assert_eq!((rows[0]["point"].as_str(), rows[0]["as_it_is"].as_str()), ("3", "yes"));
     let number = |row: &HashMap<String, String>, name: &str| row[name].parse::<f64>().unwrap();
     for row in &rows {
         assert_eq!((row["status"].as_str(), row["constraints_met"].as_str()), ("done", "yes"));
+        assert_eq!(row["max(rail_seat_load) < 200 kN per seat missed by [kN]"], "0");
         assert!(number(row, "dip [mm]") > 0.0 && number(row, "max(wheel_force) [kN]") > 90.0);
         let beaten = rows.iter().any(|other| {
             let less = |name: &str| number(other, name) < number(row, name);
@@ -249,7 +271,7 @@ fn a_study_runs_and_names_its_best_designs() {
         });
         assert!(!(beaten && row["best"] == "yes"), "{row:?}");
     }
-    let found: serde_json::Value = serde_json::from_slice(&fs::read(one.join("study.json")).unwrap()).unwrap();
+    let found = found(&one);
     let best = rows.iter().filter(|r| r["best"] == "yes").count();
     assert_eq!(found["best"].as_array().unwrap().len(), best);
     assert_eq!(found["provenance"]["file"], "small.track");
@@ -265,7 +287,175 @@ fn a_study_runs_and_names_its_best_designs() {
     let arguments = ["run", file.to_str().unwrap(), "--out", point.to_str().unwrap(), "--set", set[0], "--set", set[1]];
     assert_eq!(trackbed(&arguments).status.code(), Some(0));
     let summary: serde_json::Value = serde_json::from_slice(&fs::read(point.join("summary.json")).unwrap()).unwrap();
-    assert_eq!(summary["max_wheel_force"]["value"].as_f64().unwrap() / 1e3, number(&rows[1], "max(wheel_force) [kN]"));
+    assert_eq!(
+        summary["max_wheel_force"]["value"].as_f64().unwrap() / 1e3,
+        number(self::point(&rows, "2"), "max(wheel_force) [kN]")
+    );
+}
+
+/// What varies, and what the scene as it is has there.
+#[test]
+fn the_scene_as_it_is_stands_beside_the_points() {
+    let speeds = |list: &str| planned(&format!("study s {{ vary = [ore.speed: {list}], minimise = dip }}")).0;
+    let beside = speeds("[120, 150] km/h");
+    assert!(beside.diagnostics.is_empty(), "{:#?}", beside.diagnostics);
+    let first = &beside.points[0];
+    assert_eq!((first.number, first.as_it_is, beside.designs(), beside.points.len()), (0, true, 2, 3));
+    assert_eq!((first.levels[0].text.as_str(), first.levels[0].number), ("200 km/h", Some(200.0)));
+    assert!(first.overrides.is_empty() && first.seconds > 0.0);
+    let all: f64 = beside.points.iter().map(|p| p.seconds).sum();
+    assert!((beside.seconds() / all - 1.0).abs() < 1e-12, "it counts in the estimate");
+    // a point that is the same takes its place, however it is written
+    for same in ["[120, 200] km/h", "[120, 0.2e3] km/h"] {
+        let (plan, numbers) = (speeds(same), |plan: &Plan| plan.points.iter().map(|p| p.number).collect::<Vec<_>>());
+        assert_eq!(numbers(&plan), [2, 1], "{same}");
+        assert!(plan.points[0].as_it_is && !plan.points[1].as_it_is);
+    }
+    // what a study sets is set there too
+    let (set, _) =
+        planned("study s { vary = [ore.speed: [120] km/h], set = [ground: 40 MN/m per seat], minimise = dip }");
+    assert_eq!(set.points[0].overrides[0].path, "ground");
+    // what is measured elsewhere is another point, though the track is the same
+    let text = with(
+        "let reach = 8 m\nstudy s { vary = [reach: [6, 8] m], minimise = mean(settlement, over = -reach .. -1 m) }",
+    );
+    let compiled = compiled(&text);
+    let scene = Scene { name: "small.track", text: &text, modules: &NoModules, set: &[] };
+    let reach = plan(scene, &compiled, &compiled.studies[0]);
+    assert_eq!(reach.points.iter().map(|p| p.number).collect::<Vec<_>>(), [2, 1]);
+}
+
+/// What stands there where a study varies: words of libraries, nothing at all, arguments, pairs and lists.
+#[test]
+fn the_values_of_the_scene_as_it_is_are_told_as_written() {
+    for (vary, text, number) in [
+        ("ground: [20] MN/m per seat", "50 MN/m per seat", Some(50.0)),
+        ("ground: [40] MN/m per sleeper", "50 MN/m per seat", None),
+        ("open.pad: [pads.soft, none]", "pads.ahmadi_2026", None),
+        ("stiff.pad.stiffness: [20] MN/m", "40 MN/m", Some(40.0)),
+        ("stiff.usp: [none]", "none", None),
+        ("line.sections.open: [12.6] m", "12 m", Some(12.0)),
+        ("line.stretches: [[]]", "none", None),
+        ("line.rail_ends: [pinned]", "clamped", None),
+        ("open.auxiliary_rails: [none]", "none", None),
+    ] {
+        let (plan, _) = planned(&format!("study s {{ vary = [{vary}], minimise = dip }}"));
+        let level = &plan.study.axes[0].written.clone().unwrap();
+        assert_eq!((level.text.as_str(), level.number), (text, number), "{vary}");
+    }
+}
+
+/// Pads under sleepers, with and without: `none` is a value like any other, and here it is the scene as it is.
+#[test]
+fn pads_are_compared_with_none() {
+    let dir = tempfile::tempdir().unwrap();
+    let study = "study pads_or_not { vary = [open.usp: [none, usps.soft, usps.stiff]], minimise = max(settlement), \
+                 report = [max(void), max(rail_seat_load)] }";
+    let file = write(dir.path(), &with(study).replace("  usp = { bedding_modulus = ramp(first .. last) }\n", ""));
+    let out = dir.path().join("out");
+    let output = trackbed(&["study", file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+    let told = said(&output);
+    assert_eq!(output.status.code(), Some(0), "{told}");
+    let rows = rows(&out);
+    let first = &rows[0];
+    assert_eq!((first["point"].as_str(), first["as_it_is"].as_str(), first["open.usp"].as_str()), ("1", "yes", "none"));
+    assert!(first["max(settlement) difference [mm]"].is_empty(), "{first:?}");
+    let number = |row: &HashMap<String, String>, name: &str| row[name].parse::<f64>().unwrap();
+    for row in &rows[1..] {
+        let (value, before) = (number(row, "max(settlement) [mm]"), number(first, "max(settlement) [mm]"));
+        let difference = number(row, "max(settlement) difference [mm]");
+        assert!((value - before - difference).abs() < 1e-12, "{row:?}");
+        // the terminal says the same as a share
+        let share = 100.0 * difference / before;
+        let share = if share.abs() < 10.0 { format!("{share:+.1e}") } else { format!("{share:+.0}") };
+        let shown = told.contains(&format!("({:+} %)", share.parse::<f64>().unwrap()));
+        assert!(shown, "{share} % in\n{told}");
+    }
+    let lines: Vec<&str> = told.lines().collect();
+    let head = lines.iter().position(|line| line.trim_start().starts_with("point ")).unwrap();
+    assert!(lines[head + 1].trim_start().starts_with("as it is  none"), "{told}");
+    let page = fs::read_to_string(out.join("study.html")).unwrap();
+    assert!(page.contains("<b>as it is</b> <small>point 1</small></td><td>none</td>"), "{page}");
+    assert!(page.contains("Dashed: the scene as it is.") && page.contains(">none</text>"));
+    assert_eq!(found(&out)["as_it_is"]["point"], 1);
+}
+
+/// Where no design is feasible the misses are told, the nearest is named, and the exit code is 1.
+#[test]
+fn a_study_without_a_feasible_design_names_the_nearest() {
+    let dir = tempfile::tempdir().unwrap();
+    let study = |limit: &str| {
+        format!(
+            "study s {{ vary = [ground: [30, 40, 80] MN/m per seat], minimise = max(settlement), \
+             subject_to = [max(rail_displacement) < {limit}, max(rail_seat_load) < 200 kN per seat] }}"
+        )
+    };
+    let run = |name: &str, limit: &str| {
+        let file = write(dir.path(), &with(&study(limit)));
+        let out = dir.path().join(name);
+        let output = trackbed(&["study", file.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        (output.status.code(), said(&output), out)
+    };
+    let (code, told, out) = run("none", "0.2 mm");
+    assert_eq!(code, Some(1), "{told}");
+    for words in [
+        "E0711",
+        "no design of study `s` meets every constraint",
+        "missed by 3 of 3 designs, by",
+        "the nearest is point 3",
+    ] {
+        assert!(told.contains(words), "{words} in\n{told}");
+    }
+    let missed = "max(rail_displacement) < 0.2 mm missed by [mm]";
+    let rows = rows(&out);
+    assert!(rows.iter().all(|row| row["constraints_met"] == "no" && row["best"] == "no"));
+    let misses: Vec<f64> = ["1", "2", "3"].map(|number| point(&rows, number)[missed].parse().unwrap()).to_vec();
+    assert!(misses[0] > misses[1] && misses[1] > misses[2] && misses[2] > 0.0, "{misses:?}");
+    assert!(rows.iter().all(|row| row["max(rail_seat_load) < 200 kN per seat missed by [kN]"] == "0"));
+    let found = found(&out);
+    assert_eq!((found["nearest"]["point"].as_u64(), found["best"].as_array().unwrap().len()), (Some(3), 0));
+    let share = found["nearest"]["missed"][0]["share"].as_f64().unwrap();
+    assert!((share - misses[2] / 0.2).abs() < 1e-9, "{share}");
+    assert_eq!(found["constraints"][0]["missed_by"], 3);
+    let page = fs::read_to_string(out.join("study.html")).unwrap();
+    assert!(page.contains("No design meets every constraint") && page.contains("Point 3 comes nearest"), "{page}");
+    // one that some meet is told and is no error
+    let (code, told, _) = run("some", &format!("{} mm", 0.2 + 0.5 * (misses[1] + misses[2])));
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("is missed by 2 of 3 designs") && told.contains("best: point 3"), "{told}");
+}
+
+/// A study that an older version finished has neither the scene as it is nor by how much its constraints are missed.
+#[test]
+fn what_an_older_version_left_out_runs_when_its_study_is_resumed() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = PADS.replace("[20, 40, 80] MN/m", "[20, 80] MN/m");
+    let file = write(dir.path(), &with(&text));
+    let out = dir.path().join("out");
+    let run = |more: &[&str]| {
+        let output = trackbed(&[&["study", file.to_str().unwrap(), "--out", out.to_str().unwrap()][..], more].concat());
+        (output.status.code(), said(&output))
+    };
+    assert_eq!(run(&[]).0, Some(0));
+    let table = fs::read_to_string(out.join("study.csv")).unwrap();
+    let mut points: serde_json::Value = serde_json::from_slice(&fs::read(out.join("points.json")).unwrap()).unwrap();
+    let design: serde_json::Value = serde_json::from_slice(&fs::read(out.join("design.json")).unwrap()).unwrap();
+    let as_it_is = design["points"][0]["sha256"].as_str().unwrap();
+    let outcomes = points.as_object_mut().unwrap();
+    outcomes.remove(as_it_is).unwrap();
+    let old = outcomes.values_mut().next().unwrap()["done"].as_object_mut().unwrap();
+    old.remove("misses");
+    old.insert("met".into(), serde_json::json!([true]));
+    let bytes = serde_json::to_vec(&points).unwrap();
+    let mut directory = Directory::amend(&out).unwrap();
+    directory.stage("points.json", &bytes).unwrap();
+    directory.commit().unwrap();
+    let (code, told) = run(&["--resume"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("by a version that kept less: 2 of 5 points run"), "{told}");
+    assert_eq!(fs::read_to_string(out.join("study.csv")).unwrap(), table);
+    let (_, told) = run(&["--resume"]);
+    assert!(told.contains("nothing is run"), "{told}");
 }
 
 #[test]
@@ -342,9 +532,10 @@ fn a_point_that_fails_is_kept_and_stops_nothing() {
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));
     assert!(said(&output).contains("E0808") && said(&output).contains("point 2"), "{}", said(&output));
     let rows = rows(&out);
-    let status: Vec<&str> = rows.iter().map(|r| r["status"].as_str()).collect();
+    let status: Vec<&str> = ["1", "2", "3"].iter().map(|number| point(&rows, number)["status"].as_str()).collect();
     assert_eq!(status, ["done", "failed", "done"]);
-    assert!(rows[1]["reason"].contains("wheel") && rows[1]["max(wheel_force) [kN]"].is_empty(), "{:?}", rows[1]);
+    let failed = point(&rows, "2");
+    assert!(failed["reason"].contains("wheel") && failed["max(wheel_force) [kN]"].is_empty(), "{failed:?}");
     assert_eq!(rows.iter().filter(|r| r["best"] == "yes").count(), 1);
 }
 
@@ -373,9 +564,16 @@ fn a_study_is_chosen_by_its_name() {
 /// `check` looks at every point of the shipped studies.
 #[test]
 fn the_shipped_studies_are_without_a_mistake() {
-    for name in
-        ["study_speed", "study_pads", "study_support", "study_usp", "study_spacing", "study_wedge", "study_density"]
-    {
+    for name in [
+        "study_speed",
+        "study_pads",
+        "study_support",
+        "study_usp",
+        "study_spacing",
+        "study_wedge",
+        "study_mitigations",
+        "study_density",
+    ] {
         let file = format!("scenarios/{name}.track");
         let output = trackbed(&["check", &file]);
         assert_eq!((output.status.code(), said(&output)), (Some(0), format!("{file}: no errors\n")));

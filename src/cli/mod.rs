@@ -22,6 +22,7 @@ mod scene;
 mod stability;
 mod stored;
 mod study;
+mod study_summary;
 mod subject;
 mod terminal;
 

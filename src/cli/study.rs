@@ -1,7 +1,7 @@
 //! `trackbed study`: runs the points of a study, several at once, and says which design is best.
 
 use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
-use super::{Outcome, pack, progress, stored, terminal};
+use super::{Outcome, pack, progress, stored, study_summary, terminal};
 use crate::check::{Folder, Remembered};
 use crate::compile::Compiled;
 use crate::diag::nearest::nearest;
@@ -10,11 +10,11 @@ use crate::execute;
 use crate::report;
 use crate::scenario::Study;
 use crate::store::Mode;
-use crate::study::{self, Answer, Plan, PointResult, Repeat, Scene, StudyFolder, turns};
+use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Repeat, Scene, StudyFolder, turns};
 use crate::units::number;
 use clap::ValueEnum;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
@@ -133,14 +133,19 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
         }
     };
     let jobs = arguments.jobs.map_or_else(turns::cores, usize::from);
-    if folder.is_finished() {
-        terminal::note("this study has been finished before: nothing is run\n");
-    } else {
-        announce(&plan, jobs);
+    let known = known(&plan, &folder);
+    let missing = known.iter().filter(|result| result.is_none()).count();
+    match (folder.is_finished(), missing) {
+        (true, 0) => terminal::note("this study has been finished before: nothing is run\n"),
+        (true, n) => terminal::note(&format!(
+            "this study has been finished before by a version that kept less: {n} of {} points run\n",
+            plan.points.len()
+        )),
+        (false, _) => announce(&plan, jobs),
     }
     let started = Instant::now();
     let executor = execute::Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
-    let results = match perform(scene, &plan, &folder, &executor, jobs) {
+    let results = match perform(scene, &plan, known, &folder, &executor, jobs) {
         Ok(results) => results,
         Err(message) => {
             say(&[Diagnostic::new(Code::E0802, message).help("go on with `--resume`")], compiled);
@@ -150,19 +155,22 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
     let title = compiled.scenario.as_ref().map_or("", |s| s.title.as_str());
     let answer = Answer::new(title, &plan, results);
     let name = arguments.scene.file.file_name().unwrap_or_default().to_string_lossy();
-    let best = answer.best().first().map(|index| scene.compile(&plan.points[*index].overrides));
+    let shown = answer.best().first().copied().or(answer.nearest());
+    let best = shown.map(|index| scene.compile(&plan.points[index].overrides));
     let design = best.as_ref().and_then(|compiled| compiled.scenario.as_ref());
     let page = report::study_page(&answer, &name, design);
     let seconds = started.elapsed().as_secs_f64();
     let timings = BTreeMap::from([("total_s".to_string(), seconds), ("jobs".to_string(), jobs as f64)]);
-    if !folder.is_finished()
+    if (missing > 0 || !folder.is_finished())
         && let Err(error) = folder.finish(&plan, &answer, &page, compiled, &timings)
     {
         say(&[stored::diagnostic(&error)], compiled);
         return Outcome::Failed;
     }
-    summary(&answer, &arguments.out, seconds);
-    failures(&answer, compiled)
+    terminal::out(&study_summary::text(&answer, &arguments.out, seconds));
+    let against = study_summary::diagnostics(&answer);
+    say(&against, compiled);
+    if has_errors(&against) { Outcome::Failed } else { Outcome::Fine }
 }
 
 fn mode(arguments: &Arguments) -> Mode {
@@ -187,10 +195,15 @@ fn announce(plan: &Plan, jobs: usize) {
         n => format!(" ({n} of the design break a condition and are left out)"),
     };
     let repeats = if plan.study.repeats > 1 { format!(", {runs} runs") } else { String::new() };
+    let as_it_is = match plan.points.iter().find(|point| point.as_it_is).map(|point| point.number) {
+        Some(0) => " and the scene as it is".to_string(),
+        Some(number) => format!(", number {number} of them the scene as it is"),
+        None => String::new(),
+    };
     terminal::note(&format!(
-        "study `{}`: {} points{left_out}{repeats}, about {} of computing, {} at a time\n",
+        "study `{}`: {} points{left_out}{as_it_is}{repeats}, about {} of computing, {} at a time\n",
         plan.study.name,
-        plan.points.len(),
+        plan.designs(),
         duration(plan.seconds()),
         jobs
     ));
@@ -204,23 +217,26 @@ fn duration(seconds: f64) -> String {
     }
 }
 
+/// What has run before, one for each point.
+fn known(plan: &Plan, folder: &StudyFolder) -> Vec<Option<PointResult>> {
+    let one = |point: &PlannedPoint| {
+        let name = if point.number == 0 { "the scene as it is".to_string() } else { format!("point {}", point.number) };
+        let damaged = |error| terminal::error(&format!("{name} runs again: {error}"));
+        folder.known(point).map_err(damaged).ok().flatten()
+    };
+    plan.points.iter().map(one).collect()
+}
+
 /// Runs what has not run yet, repeat by repeat, and keeps each point as soon as it is there. The order of the answer is that of the
-/// design.
+/// plan.
 fn perform(
     scene: Scene<'_>,
     plan: &Plan,
+    known: Vec<Option<PointResult>>,
     folder: &StudyFolder,
     executor: &execute::Executor,
     jobs: usize,
 ) -> Result<Vec<PointResult>, String> {
-    let known: Vec<Option<PointResult>> = plan
-        .points
-        .iter()
-        .map(|point| {
-            let damaged = |error| terminal::error(&format!("point {} runs again: {error}", point.number));
-            folder.known(point).map_err(damaged).ok().flatten()
-        })
-        .collect();
     let missing = known.iter().enumerate().filter(|(_, result)| result.is_none());
     let tasks: Vec<(usize, u32)> =
         missing.flat_map(|(index, _)| (0..plan.study.repeats).map(move |repeat| (index, repeat))).collect();
@@ -274,67 +290,4 @@ impl Work<'_> {
             + self.runs.keys().map(|(index, _)| seconds(*index)).sum::<f64>();
         self.bar.show((1e3 * done / self.plan.seconds().max(1e-9)) as u64, 1000);
     }
-}
-
-/// The best design, or the Pareto front; the first points where nothing is better than anything else.
-fn summary(answer: &Answer, out: &Path, seconds: f64) {
-    let measured = answer.study.measured();
-    let mut text = format!("{}, study `{}`\n", answer.title, answer.study.name);
-    let objectives = answer.study.objectives.len();
-    let best = if objectives == 0 { (0..answer.rows.len()).collect() } else { answer.best() };
-    match (objectives, best.len()) {
-        (0, _) => {}
-        (_, 0) => text.push_str("  no design runs and meets every constraint\n"),
-        (1, _) => text.push_str("  best design\n"),
-        (_, n) => text.push_str(&format!("  {n} designs that no other beats\n")),
-    }
-    const MOST: usize = 8;
-    let shown = if objectives == 1 { 1 } else { MOST };
-    for index in best.iter().take(shown) {
-        let row = &answer.rows[*index];
-        text.push_str(&format!("  point {:<4} {}\n", row.number, answer.lines(row).join(", ")));
-        let (values, deviations) = (row.values().unwrap_or_default(), row.deviations().unwrap_or_default());
-        for (m, (value, deviation)) in measured.iter().zip(values.iter().zip(deviations)) {
-            let shown = |x: f64, digits: usize| number(rounded(x / m.unit.1, digits));
-            let scatter =
-                if answer.study.repeats > 1 { format!(", sd {}", shown(*deviation, 2)) } else { String::new() };
-            let line = format!("             {} {} {}", m.text, shown(*value, 4), m.unit.0);
-            text.push_str(&format!("{}{scatter}\n", line.trim_end()));
-        }
-    }
-    if objectives != 1 && best.len() > MOST {
-        text.push_str(&format!("  and {} more\n", best.len() - MOST));
-    }
-    text.push_str(&format!("{} ({} s)\n", out.join("study.html").display(), number((seconds * 10.0).round() / 10.0)));
-    terminal::out(&text);
-}
-
-/// To so many digits.
-fn rounded(x: f64, digits: usize) -> f64 {
-    format!("{x:.*e}", digits - 1).parse().unwrap_or(x)
-}
-
-/// Points that failed are named once a reason.
-fn failures(answer: &Answer, compiled: &Compiled) -> Outcome {
-    let mut reasons: Vec<(&str, Vec<usize>)> = Vec::new();
-    for row in answer.failures() {
-        let reason = row.failed().unwrap_or_default();
-        match reasons.iter_mut().find(|(known, _)| *known == reason) {
-            Some((_, points)) => points.push(row.number),
-            None => reasons.push((reason, vec![row.number])),
-        }
-    }
-    let diagnostics: Vec<Diagnostic> = reasons
-        .into_iter()
-        .map(|(reason, points)| {
-            let (first, count) = (points[0], points.len());
-            let which =
-                if count == 1 { format!("point {first}") } else { format!("{count} points, the first {first},") };
-            Diagnostic::new(Code::E0808, format!("{which} of study `{}` failed: {reason}", answer.study.name))
-                .label(answer.study.span, "the other points stand")
-                .help("its row in `study.csv` has the values; run it alone with `trackbed run` and `--set`")
-        })
-        .collect();
-    say(&diagnostics, compiled);
-    if diagnostics.is_empty() { Outcome::Fine } else { Outcome::Failed }
 }

@@ -117,6 +117,8 @@ codes! {
     E0707 Error "value varied twice"
     E0708 Error "study without a point"
     E0709 Error "study above its budget"
+    E0711 Error "study without a feasible design"
+    E0712 Warning "study without the scene as it is"
     E0801 Error "no equilibrium found"
     E0802 Error "output folder that cannot be used"
     E0803 Error "checkpoint of another scene"

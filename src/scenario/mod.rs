@@ -25,7 +25,7 @@ pub use law::{SettlementLaw, law_argument};
 pub use library::{Evidence, LibraryEntry};
 pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soil, Strength, Surface, Surfaces};
 pub use profile::{Cubic, Curve, Piece, Profile, Varying};
-pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spread, Study, Values};
+pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spread, Study, Values, Written};
 pub use track::{
     ApproachSlab, AuxiliaryRailSpan, AuxiliaryRails, Foot, Groundwork, Pad, Rail, RailEnds, Seat, Seating, Section,
     Side, Slab, SleeperBody, Stack, Stretch, Support, Track, Transition, Usp, point_stiffness, seat_stiffness,

@@ -33,6 +33,16 @@ pub struct Axis {
     /// What stands behind its numbers, such as `MN/m per seat`; empty for plain numbers and for values that are none.
     pub unit: String,
     pub values: Values,
+    /// What the scene itself says there; `None` where it could not be read.
+    pub written: Option<Written>,
+}
+
+/// What the scene as it is says where a study varies.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Written {
+    pub text: String,
+    /// In the unit of the axis; `None` where it is no number, or one of another basis.
+    pub number: Option<f64>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -18,8 +18,10 @@ const POINTS: &str = "points.json";
 #[derive(Debug)]
 pub struct StudyFolder {
     directory: Directory,
-    /// What a finished study found.
+    /// What a finished study found, without what an older version kept in another form.
     finished: Option<BTreeMap<String, PointOutcome>>,
+    /// Constraints of the study: an older version did not keep by how much each is missed.
+    constraints: usize,
 }
 
 impl StudyFolder {
@@ -29,29 +31,45 @@ impl StudyFolder {
         let directory = Directory::open(out, work, mode)?;
         let points = directory.finished().map(|finished| finished.read(POINTS)).transpose()?.flatten();
         let read = |bytes: Vec<u8>| {
-            serde_json::from_slice(&bytes).map_err(|cause| StoreError::damaged(&out.join(POINTS), cause))
+            let all: BTreeMap<String, Value> =
+                serde_json::from_slice(&bytes).map_err(|cause| StoreError::damaged(&out.join(POINTS), cause))?;
+            let outcome = |value: Value| serde_json::from_value(value).ok();
+            Ok(all.into_iter().filter_map(|(point, value)| Some((point, outcome(value)?))).collect())
         };
-        Ok(StudyFolder { directory, finished: points.map(read).transpose()? })
+        let constraints = plan.study.constraints.len();
+        Ok(StudyFolder { directory, finished: points.map(read).transpose()?, constraints })
     }
 
-    /// Whether the study has been finished here before.
+    /// Whether the study has been finished here before, by this version or by another one.
     pub fn is_finished(&self) -> bool {
         self.finished.is_some()
     }
 
-    /// The result of a point that has been kept; `None` where it has not run. Fails where its file is damaged.
+    /// The result of a point that has been kept; `None` where it has not run, or an older version kept less of it. Fails where its
+    /// file is damaged.
     pub fn known(&self, point: &PlannedPoint) -> Result<Option<PointResult>, StoreError> {
-        let result = |outcome: PointOutcome| PointResult { number: point.number, outcome };
-        if let Some(finished) = &self.finished {
-            return Ok(finished.get(&point.fingerprint).cloned().map(result));
-        }
-        let Some(bytes) = self.directory.kept(&point.fingerprint)? else { return Ok(None) };
-        let outcome = serde_json::from_slice(&bytes);
-        outcome.map(|outcome| Some(result(outcome))).map_err(|cause| StoreError::damaged(self.directory.path(), cause))
+        let outcome = match self.finished.as_ref().and_then(|finished| finished.get(&point.fingerprint)) {
+            Some(outcome) => Some(outcome.clone()),
+            None => self.piece(point)?,
+        };
+        let whole = outcome.filter(|outcome| match outcome {
+            PointOutcome::Done { misses, .. } => misses.len() == self.constraints,
+            PointOutcome::Failed { .. } => true,
+        });
+        Ok(whole.map(|outcome| PointResult { number: point.number, outcome }))
     }
 
-    /// Keeps the result of a point.
+    fn piece(&self, point: &PlannedPoint) -> Result<Option<PointOutcome>, StoreError> {
+        let Some(bytes) = self.directory.kept(&point.fingerprint)? else { return Ok(None) };
+        let outcome = serde_json::from_slice(&bytes);
+        outcome.map(Some).map_err(|cause| StoreError::damaged(self.directory.path(), cause))
+    }
+
+    /// Keeps the result of a point until the study is finished; one that was finished before holds its old results until then.
     pub fn keep(&self, point: &PlannedPoint, result: &PointResult) -> Result<(), StoreError> {
+        if self.is_finished() {
+            return Ok(());
+        }
         self.directory.keep(&point.fingerprint, &self.text("a point", &result.outcome)?).map(drop)
     }
 
@@ -94,7 +112,10 @@ impl StudyFolder {
 
 /// What names a study: its scene, its points, and the program that runs them.
 fn design(plan: &Plan, compiled: &Compiled) -> Value {
-    let point = |p: &PlannedPoint| json!({ "point": p.number, "values": values(&plan.study, &p.levels), "sha256": p.fingerprint });
+    let point = |p: &PlannedPoint| {
+        let values = values(&plan.study, &p.levels);
+        json!({ "point": p.number, "as_it_is": p.as_it_is, "values": values, "sha256": p.fingerprint })
+    };
     json!({
         "study": plan.study.name,
         "provenance": provenance(compiled),

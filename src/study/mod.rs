@@ -5,13 +5,22 @@
 //! [`StudyFolder`] is its directory.
 
 mod answer;
+mod as_it_is;
+mod compared;
 pub mod design;
+mod findings;
 mod folder;
+mod found;
+mod miss;
 mod perform;
 mod plan;
+mod point;
 pub mod turns;
 
 pub use answer::{Answer, Row};
+pub use compared::{Difference, MetAndMissed, amount};
 pub use folder::StudyFolder;
+pub use miss::Miss;
 pub use perform::{PointOutcome, PointResult, Repeat, perform};
-pub use plan::{Plan, PlannedPoint, Scene, plan, values};
+pub use plan::{Plan, plan};
+pub use point::{PlannedPoint, Scene, values};

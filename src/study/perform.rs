@@ -1,10 +1,12 @@
 //! Runs one point of a study, as often as it is repeated, and keeps what was asked for.
 
-use super::plan::{PlannedPoint, Scene};
+use super::miss::Miss;
+use super::point::{PlannedPoint, Scene};
 use crate::diag::Diagnostic;
 use crate::execute::{self, Executor};
-use crate::results::{self, RunRecorder, Tables, TestTables, Verdict};
+use crate::results::{self, RunRecorder, Tables, TestTables};
 use crate::scenario::Study;
+use crate::scenario::response::Expression;
 use serde::{Deserialize, Serialize};
 
 /// A point that has run.
@@ -22,8 +24,9 @@ pub enum PointOutcome {
         values: Vec<f64>,
         /// Standard deviations over the repeats, 0 for one of them.
         deviations: Vec<f64>,
-        /// Whether every run met each constraint.
-        met: Vec<bool>,
+        /// By how much each constraint is missed in the worst of the runs; `None` where all of them meet it.
+        #[serde(default)]
+        misses: Vec<Option<Miss>>,
     },
     Failed {
         code: Option<String>,
@@ -48,8 +51,8 @@ impl PointResult {
     }
 }
 
-/// What one run says: what is measured, and whether each constraint is met.
-type OneRun = (Vec<f64>, Vec<bool>);
+/// What one run says: what is measured, and by how much each constraint is missed.
+type OneRun = (Vec<f64>, Vec<Option<Miss>>);
 
 fn run(
     scene: Scene<'_>,
@@ -81,21 +84,17 @@ fn run(
 
 /// What a study asks of the tables of a run.
 fn answered(study: &Study, view: Tables<'_>) -> Result<OneRun, PointOutcome> {
-    let measure = |m: &crate::scenario::Measured| {
-        let value = results::evaluate(&m.expression, view).map_err(|why| fail(&format!("`{}`: {why}", m.text)))?;
-        if value.is_finite() { Ok(value) } else { Err(fail(&format!("`{}` is not a finite number", m.text))) }
+    let value = |text: &str, expression: &Expression| {
+        results::evaluate(expression, view).map_err(|why| fail(&format!("`{text}`: {why}")))
     };
-    let values: Vec<f64> = study.measured().into_iter().map(measure).collect::<Result<_, _>>()?;
-    let verdicts = study.constraints.iter().map(|c| results::verdict(c, view));
-    let met: Vec<bool> = verdicts.map(held).collect::<Result<_, _>>()?;
-    Ok((values, met))
-}
-
-fn held(verdict: Verdict) -> Result<bool, PointOutcome> {
-    match verdict.problem {
-        Some(why) => Err(fail(&format!("`{}`: {why}", verdict.text))),
-        None => Ok(verdict.met),
-    }
+    let measured = study.measured().into_iter().map(|m| value(&m.text, &m.expression));
+    let values: Vec<f64> = measured.collect::<Result<_, _>>()?;
+    let constraints = study.constraints.iter().map(|constraint| {
+        let operands = constraint.operands.iter().map(|operand| value(&constraint.text, operand));
+        Ok(Miss::against(constraint, &operands.collect::<Result<Vec<f64>, _>>()?))
+    });
+    let misses: Vec<Option<Miss>> = constraints.collect::<Result<_, PointOutcome>>()?;
+    Ok((values, misses))
 }
 
 fn failed(mistake: &Diagnostic) -> PointOutcome {
@@ -106,14 +105,14 @@ fn fail(reason: &str) -> PointOutcome {
     PointOutcome::Failed { code: None, reason: reason.to_string() }
 }
 
-/// Mean and standard deviation of every value, and what all runs met.
+/// Mean and standard deviation of every value, and the worst miss of every constraint.
 fn gathered(runs: &[OneRun]) -> PointOutcome {
     let n = runs.len() as f64;
     let count = runs.first().map_or(0, |(values, _)| values.len());
     let values: Vec<f64> = (0..count).map(|i| runs.iter().map(|(v, _)| v[i]).sum::<f64>() / n).collect();
     let squares = |i: usize| runs.iter().map(|(v, _)| (v[i] - values[i]).powi(2)).sum::<f64>();
     let deviations = (0..count).map(|i| (squares(i) / (n - 1.0).max(1.0)).sqrt()).collect();
-    let constraints = runs.first().map_or(0, |(_, met)| met.len());
-    let met = (0..constraints).map(|i| runs.iter().all(|(_, met)| met[i])).collect();
-    PointOutcome::Done { values, deviations, met }
+    let constraints = runs.first().map_or(0, |(_, misses)| misses.len());
+    let worst = |i: usize| runs.iter().filter_map(|(_, m)| m[i]).max_by(|a, b| a.share.total_cmp(&b.share));
+    PointOutcome::Done { values, deviations, misses: (0..constraints).map(worst).collect() }
 }

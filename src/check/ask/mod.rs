@@ -5,3 +5,4 @@ pub mod reader;
 mod reduction;
 pub mod study;
 mod vary;
+mod written;

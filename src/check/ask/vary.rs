@@ -42,7 +42,8 @@ impl Reader<'_, '_> {
             .map(|(path, entry)| {
                 let target = self.target(path, scope)?;
                 let (unit, values) = self.values(target, &entry.value, scope)?;
-                Some(Axis { path: path.text(), span: path.span, unit, values })
+                let written = self.written(path, &unit, scope);
+                Some(Axis { path: path.text(), span: path.span, unit, values, written })
             })
             .collect();
         axes.into_iter().collect()
@@ -532,7 +533,7 @@ fn wrapped(value: Value, per: Option<&Name>) -> Value {
 }
 
 /// Whether it is written as a number, so that reading it as one is no surprise.
-fn is_number(value: &Value) -> bool {
+pub(super) fn is_number(value: &Value) -> bool {
     match &value.kind {
         ValueKind::Number { .. } => true,
         ValueKind::Negate(inner) | ValueKind::Per(inner, _) => is_number(inner),
@@ -577,7 +578,7 @@ fn suffix_of(value: &Value, raw: Option<&Raw>) -> String {
 }
 
 /// Size in SI of the unit in front of `per`.
-fn unit_size(suffix: &str) -> Option<f64> {
+pub(super) fn unit_size(suffix: &str) -> Option<f64> {
     let unit = match suffix.split_once("per ") {
         Some((unit, _)) => unit.trim(),
         None => suffix,

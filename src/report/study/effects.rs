@@ -2,13 +2,14 @@
 
 use super::plane::{Plane, cut, range, titled};
 use crate::report::chart::{Mark, Series};
+use crate::report::number::significant;
 use crate::report::svg::{Anchor, Frame, Svg};
 use crate::scenario::Measured;
 use crate::study::Answer;
 
 const WIDTH: f64 = 960.0;
 const GAP: f64 = 14.0;
-const HEIGHT: f64 = 232.0;
+const HEIGHT: f64 = 246.0;
 /// Panels beside each other, at most.
 const ACROSS: usize = 3;
 /// Pieces into which a value without a list is cut.
@@ -27,15 +28,19 @@ struct Group {
 /// The picture with its caption; none where fewer than two points ran.
 pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
     let measured = answer.study.measured();
-    let done = answer.rows.iter().filter(|row| row.values().is_some()).count();
+    let done = answer.designs().filter(|(_, row)| row.values().is_some()).count();
     if done < 2 || measured.is_empty() {
         return None;
     }
-    let axes = answer.study.axes.len();
+    // a value that is the same in every point has no effect to show
+    let axes: Vec<usize> = (0..answer.study.axes.len()).filter(|axis| groups(answer, *axis).len() > 1).collect();
+    if axes.is_empty() {
+        return None;
+    }
     // what is measured of one value that varies lies side by side, else the values do
-    let panels: Vec<(usize, usize)> = (0..measured.len()).flat_map(|m| (0..axes).map(move |a| (m, a))).collect();
-    let beside = if axes == 1 { panels.len() } else { axes }.min(ACROSS);
-    let each = if axes == 1 { panels.len() } else { axes };
+    let panels: Vec<(usize, usize)> = (0..measured.len()).flat_map(|m| axes.iter().map(move |a| (m, *a))).collect();
+    let each = if axes.len() == 1 { panels.len() } else { axes.len() };
+    let beside = each.min(ACROSS);
     let rows_each = each.div_ceil(beside);
     let width = (WIDTH - GAP * (beside - 1) as f64) / beside as f64;
     let mut svg = Svg::default();
@@ -54,6 +59,9 @@ pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
                        Bars: from the smallest to the largest of them. Rings: the points. A level line says that the value \
                        hardly matters."
         .to_owned();
+    if answer.as_it_is().is_some_and(|row| row.values().is_some()) {
+        caption += " Dashed: the scene as it is.";
+    }
     if answer.study.repeats > 1 {
         caption +=
             " Whiskers: a standard deviation of the repeats up and down; what is smaller than they are may be chance.";
@@ -70,15 +78,24 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
     let numbers = place(answer, axis);
     svg.text("strong", (frame.x + 4.0, frame.y + 13.0), Anchor::Start, &cut(&titled(&what.text, &what.unit.0), 42));
     let xs = groups.iter().flat_map(|g| g.rows.iter().map(|row| numbers(*row)));
+    let worded = groups.iter().any(|g| !g.label.is_empty());
+    let as_it_is = answer.as_it_is().and_then(|row| Some(row.values()?[m] / what.unit.1));
     let plane = Plane {
-        frame: Frame { x: frame.x + 58.0, y: frame.y + 26.0, width: frame.width - 66.0, height: frame.height - 72.0 },
-        x: range(xs),
+        frame: Frame { x: frame.x + 58.0, y: frame.y + 26.0, width: frame.width - 66.0, height: frame.height - 86.0 },
+        x: if worded { (-0.5, groups.last().map_or(0.5, |g| g.x + 0.5)) } else { range(xs) },
         y: range((0..answer.rows.len()).filter_map(ends).flatten()),
     };
     plane.upright_scale(svg);
-    if groups.iter().any(|g| !g.label.is_empty()) {
-        let most = (NAME * 4 / groups.len().max(4)).max(3);
-        groups.iter().for_each(|g| plane.mark(svg, g.x, &cut(&g.label, most)));
+    if let Some(level) = as_it_is {
+        plane.as_it_is(svg, level, &format!("as it is: {} {}", significant(level, 4), what.unit.0));
+    }
+    if worded {
+        // names in two rows, so that neighbours leave each other room
+        let most = (NAME * 5 / groups.len().max(5)).max(3);
+        for (index, g) in groups.iter().enumerate() {
+            let row = if groups.len() > 3 { index % 2 } else { 0 };
+            plane.mark(svg, g.x, row, &cut(g.label.trim_matches(['[', ']']), most));
+        }
     } else {
         plane.level_scale(svg);
     }
@@ -112,9 +129,12 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
     });
     svg.group(r#"class="series" data-series="0""#, |svg| {
         let places: Vec<(f64, f64)> = means.iter().map(|at| plane.point(*at)).collect();
-        svg.path("line s0", &places, false, "");
+        // between words lies nothing
+        if !worded {
+            svg.path("line s0", &places, false, "");
+        }
         for (group, (place, (_, mean))) in groups.iter().zip(places.into_iter().zip(&means)) {
-            let (count, value) = (group.rows.len(), crate::report::number::significant(*mean, 4));
+            let (count, value) = (group.rows.len(), significant(*mean, 4));
             svg.circle("dot s0", place, 4.0, &format!("mean of {count}: {value} {}", what.unit.0));
         }
     });
@@ -137,7 +157,7 @@ fn whisker(svg: &mut Svg, low: (f64, f64), high: (f64, f64)) {
 
 /// Where a row stands on the level scale of an axis: its number, else the place of its value in the list.
 fn place(answer: &Answer, axis: usize) -> impl Fn(usize) -> f64 + '_ {
-    let numeric = answer.rows.iter().all(|row| row.levels[axis].number.is_some());
+    let numeric = answer.designs().all(|(_, row)| row.levels[axis].number.is_some());
     move |row: usize| {
         let level = &answer.rows[row].levels[axis];
         let listed = level.choice.unwrap_or(0) as f64;
@@ -147,9 +167,10 @@ fn place(answer: &Answer, axis: usize) -> impl Fn(usize) -> f64 + '_ {
 
 fn groups(answer: &Answer, axis: usize) -> Vec<Group> {
     let place = place(answer, axis);
-    let numeric = answer.rows.iter().all(|row| row.levels[axis].number.is_some());
-    let done: Vec<usize> = (0..answer.rows.len()).filter(|row| answer.rows[*row].values().is_some()).collect();
-    let listed = answer.rows.iter().all(|row| row.levels[axis].choice.is_some());
+    let numeric = answer.designs().all(|(_, row)| row.levels[axis].number.is_some());
+    // the scene as it is has its own line, unless it is a point of the design
+    let done: Vec<usize> = answer.designs().filter(|(_, row)| row.values().is_some()).map(|(index, _)| index).collect();
+    let listed = answer.designs().all(|(_, row)| row.levels[axis].choice.is_some());
     let mut groups: Vec<Group> = Vec::new();
     if listed {
         for row in done {

@@ -33,9 +33,11 @@ pub(super) fn pareto(answer: &Answer) -> Option<(String, String)> {
         svg.text("strong", below, Anchor::Middle, &aimed(first));
         points(svg, answer, &plane, [first, second], at);
     });
+    let ring = if answer.as_it_is().is_some() { " The ring is the scene as it is." } else { "" };
     let caption = "Every point by its first two objectives. Large dots with their number: no other point is better in \
                    every objective. Hollow dots miss a constraint."
-        .to_owned();
+        .to_owned()
+        + ring;
     Some((svg.finish(SIZE.0, SIZE.1, "Pareto front"), caption))
 }
 
@@ -49,7 +51,7 @@ fn points(
 ) {
     let done = || answer.rows.iter().filter_map(|row| Some((row, at(row)?)));
     let series = Series {
-        labels: done().map(|(row, _)| format!("point {}", row.number)).collect(),
+        labels: done().map(|(row, _)| row.name()).collect(),
         ..Series::new("point", "s0", Mark::Dots, done().map(|(_, place)| place).collect())
     };
     let names = [first, second].map(|objective| (objective.of.text.as_str(), &*objective.of.unit.0));
@@ -60,8 +62,15 @@ fn points(
     svg.group(r#"class="series" data-series="0""#, |svg| {
         for (index, row) in answer.rows.iter().enumerate() {
             let Some(place) = at(row) else { continue };
-            let text = format!("point {}: {}", row.number, answer.lines(row).join(", "));
             let (x, y) = plane.point(place);
+            if row.as_it_is {
+                svg.circle("ring", (x, y), 8.0, "the scene as it is");
+                svg.text("small halo", (x, y + 21.0), Anchor::Middle, "as it is");
+            }
+            if !row.designed() {
+                continue;
+            }
+            let text = format!("point {}: {}", row.number, answer.lines(row).join(", "));
             match (best.contains(&index), row.feasible()) {
                 (true, _) => {
                     svg.circle("dot s1", (x, y), 5.5, &text);

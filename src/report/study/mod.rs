@@ -1,28 +1,31 @@
-//! The page of a study: the best designs with the lines to paste, the Pareto front, main effects, and every point.
+//! The page of a study: the best designs beside the scene as it is, with the lines to paste; what misses its constraints; the Pareto
+//! front, main effects, and every point.
 
 mod effects;
 mod front;
 mod plane;
+mod table;
 
-use super::number::plain;
 use super::page::{close, opening};
 use super::prose::prose;
 use super::scene::scene_svg;
 use super::svg::{STYLE, escape};
 use crate::scenario::{Goal, Sampling, Scenario, Study};
-use crate::study::{Answer, PointOutcome, Row};
+use crate::study::{Answer, MetAndMissed, Miss, Row, amount};
 use std::fmt::Write;
+use table::table;
 
 /// Best designs that the page spells out.
 const MOST_SHOWN: usize = 12;
 
-/// Makes the whole page. `file` is the name of the scene's file, `design` the scene of the first of the best points.
+/// Makes the whole page. `file` is the name of the scene's file, `design` the scene of the first of the best points, else of the nearest.
 pub fn study_page(answer: &Answer, file: &str, design: Option<&Scenario>) -> String {
     let title = format!("{}: study {}", answer.title, answer.study.name);
     let mut html = opening(&title, &subtitle(answer));
     best(&mut html, answer, file);
-    if let (Some(design), Some(first)) = (design, answer.best().first()) {
-        let row = &answer.rows[*first];
+    constraints(&mut html, answer);
+    if let (Some(design), Some(first)) = (design, answer.best().first().copied().or(answer.nearest())) {
+        let row = &answer.rows[first];
         let caption = format!(
             "Point {}: {}. Places, spacings, sleepers and rail are to scale; the depth of the bed is a symbol.",
             row.number,
@@ -50,7 +53,12 @@ fn subtitle(answer: &Answer) -> String {
         Sampling::Sobol { .. } => "of a Sobol sequence",
     };
     let paths: Vec<&str> = study.axes.iter().map(|a| a.path.as_str()).collect();
-    let mut text = format!("{} points {how} over {}", answer.rows.len(), paths.join(", "));
+    let mut text = format!("{} points {how} over {}", answer.designs().count(), paths.join(", "));
+    text += match answer.as_it_is() {
+        Some(row) if row.designed() => ", one of them the scene as it is",
+        Some(_) => ", and the scene as it is",
+        None => "",
+    };
     if study.repeats > 1 {
         let _ = write!(text, ", each run {} times", study.repeats);
     }
@@ -81,9 +89,12 @@ fn goal(goal: Goal) -> &'static str {
     }
 }
 
-/// The best design and what it says of itself, or the designs of the front.
+/// The best design or the designs of the front, each against the scene as it is; where none meets every constraint, the nearest.
 fn best(html: &mut String, answer: &Answer, file: &str) {
     let best = answer.best();
+    if let Some(nearest) = answer.nearest() {
+        return nearest_design(html, answer, nearest, file);
+    }
     if answer.study.objectives.is_empty() {
         return;
     }
@@ -91,7 +102,7 @@ fn best(html: &mut String, answer: &Answer, file: &str) {
     let heading = if single { "Best design" } else { "Best designs" };
     let _ = write!(html, "<section id=\"best\"><h2>{heading}</h2>");
     let Some(first) = best.first() else {
-        *html += "<p class=\"caption\">No point runs to its end and meets every constraint.</p></section>\n";
+        *html += "<p class=\"caption\">No point runs to its end.</p></section>\n";
         return;
     };
     let caption = match (single, best.len()) {
@@ -100,12 +111,38 @@ fn best(html: &mut String, answer: &Answer, file: &str) {
         (false, 1) => "One point is better than all others in every objective.".to_owned(),
         (false, n) => format!("{n} points are such that no other is better in every objective."),
     };
-    let _ = write!(html, "<p class=\"caption\">{caption}</p>");
-    table(html, answer, &best[..best.len().min(MOST_SHOWN)], false);
+    let against = answer.against_as_it_is().map_or(String::new(), |sentence| format!(" {sentence}"));
+    let _ = write!(html, "<p class=\"caption\">{}</p>", prose(&format!("{caption}{against}")));
+    table(html, answer, &beside_as_it_is(answer, &best[..best.len().min(MOST_SHOWN)]), false);
     if best.len() > MOST_SHOWN {
         let _ = write!(html, "<p class=\"note\">and {} more in the table of all points.</p>", best.len() - MOST_SHOWN);
     }
-    let row = &answer.rows[*first];
+    written_out(html, answer, &answer.rows[*first], file);
+}
+
+/// No design is feasible: the one that misses least.
+fn nearest_design(html: &mut String, answer: &Answer, nearest: usize, file: &str) {
+    let row = &answer.rows[nearest];
+    let _ = write!(
+        html,
+        "<section id=\"best\"><h2>No design meets every constraint</h2><p class=\"caption\">{}</p>",
+        prose(&format!(
+            "Point {} comes nearest: its largest miss, as a share of the limit, is the smallest. It misses {}.",
+            row.number,
+            answer.missed(row).join(" and ")
+        ))
+    );
+    table(html, answer, &beside_as_it_is(answer, &[nearest]), true);
+    written_out(html, answer, row, file);
+}
+
+/// These rows with the scene as it is in front.
+fn beside_as_it_is(answer: &Answer, rows: &[usize]) -> Vec<usize> {
+    let first = answer.rows.iter().position(|row| row.as_it_is);
+    first.into_iter().chain(rows.iter().copied().filter(|row| Some(*row) != first)).collect()
+}
+
+fn written_out(html: &mut String, answer: &Answer, row: &Row, file: &str) {
     let _ = write!(
         html,
         "<p class=\"note\">Point {} as lines of the file, and as a run:</p><pre>{}\n\ntrackbed run {}{} --out best</pre></section>\n",
@@ -114,6 +151,38 @@ fn best(html: &mut String, answer: &Answer, file: &str) {
         escape(file),
         escape(&flags(answer, row))
     );
+}
+
+/// How the designs do against each constraint; nothing where there is none.
+fn constraints(html: &mut String, answer: &Answer) {
+    let all = answer.constraints();
+    if all.is_empty() {
+        return;
+    }
+    *html += "<section id=\"constraints\"><h2>Constraints</h2><p class=\"caption\">Designs that meet and miss each of them; \
+              a share is of the limit.</p><div class=\"scroll\"><table><tr><th class=\"text\">constraint</th><th>met by</th>\
+              <th>missed by</th><th>least miss</th><th>largest miss</th></tr>";
+    for MetAndMissed { text, unit, met, missed, least, largest } in &all {
+        let shown = |miss: &Option<Miss>| miss.map_or("\u{2013}".to_owned(), |miss| amount(&miss, unit));
+        let class = if *met == 0 && *missed > 0 { " bad" } else { "" };
+        let _ = write!(
+            html,
+            "<tr><td class=\"text{class}\"><code>{}</code></td><td>{met}</td><td>{missed}</td><td>{}</td><td>{}</td></tr>",
+            escape(text),
+            escape(&shown(least)),
+            escape(&shown(largest))
+        );
+    }
+    *html += "</table></div></section>\n";
+}
+
+/// Every point.
+fn points(html: &mut String, answer: &Answer) {
+    let rows: Vec<usize> = (0..answer.rows.len()).collect();
+    *html += "<section id=\"points\" class=\"long\"><h2>All points</h2><p class=\"caption\">The scene as it is first, then the points in the \
+              order of the design, each with its difference to it; the best are marked. The same is in <code>study.csv</code>.</p>";
+    table(html, answer, &rows, true);
+    *html += "</section>\n";
 }
 
 /// `trackform stiff: pad.stiffness = 60 MN/m`, a line a value, those fixed for the study too.
@@ -131,73 +200,6 @@ fn flags(answer: &Answer, row: &Row) -> String {
     let fixed = answer.study.set.iter().map(|s| s.line().replacen(" = ", "=", 1));
     let varied = answer.lines(row).into_iter().map(|line| line.replacen(" = ", "=", 1));
     fixed.chain(varied).map(|line| format!(" \\\n  --set '{line}'")).collect()
-}
-
-fn points(html: &mut String, answer: &Answer) {
-    let rows: Vec<usize> = (0..answer.rows.len()).collect();
-    *html += "<section id=\"points\" class=\"long\"><h2>All points</h2><p class=\"caption\">In the order of the design; the best are marked. \
-              The same is in <code>study.csv</code>.</p>";
-    table(html, answer, &rows, true);
-    *html += "</section>\n";
-}
-
-fn table(html: &mut String, answer: &Answer, rows: &[usize], whole: bool) {
-    let study = &answer.study;
-    let measured = study.measured();
-    *html += "<div class=\"scroll\"><table><tr><th>point</th>";
-    let head = |html: &mut String, name: &str, unit: &str| {
-        let unit = if unit.is_empty() { String::new() } else { format!("<small>{}</small>", escape(unit)) };
-        let _ = write!(html, "<th>{}{unit}</th>", breakable(name));
-    };
-    study.axes.iter().for_each(|axis| head(html, &axis.path, &axis.unit));
-    measured.iter().for_each(|m| head(html, &m.text, &m.unit.0));
-    if whole {
-        *html += "<th class=\"text\">status</th>";
-    }
-    *html += "</tr>";
-    let best = answer.best();
-    for index in rows {
-        let row = &answer.rows[*index];
-        let _ = write!(html, "<tr><td>{}</td>", row.number);
-        for level in &row.levels {
-            let _ = write!(html, "<td>{}</td>", escape(&level.number.map_or(level.text.clone(), |n| plain(n, 6))));
-        }
-        for (i, m) in measured.iter().enumerate() {
-            let cell = match &row.outcome {
-                PointOutcome::Done { values, deviations, .. } => {
-                    let spread = plain(deviations[i] / m.unit.1, 2);
-                    let spread = if study.repeats > 1 { format!(" \u{b1} {spread}") } else { String::new() };
-                    plain(values[i] / m.unit.1, 4) + &spread
-                }
-                PointOutcome::Failed { .. } => "\u{2013}".to_owned(),
-            };
-            let _ = write!(html, "<td>{cell}</td>");
-        }
-        if whole {
-            let (class, words) = status(answer, row, best.contains(index));
-            let _ = write!(html, "<td class=\"text {class}\">{}</td>", prose(&words));
-        }
-        *html += "</tr>";
-    }
-    *html += "</table></div>";
-}
-
-/// A name that a narrow column may break behind its joints.
-fn breakable(name: &str) -> String {
-    ['_', '.', '('].iter().fold(escape(name), |text, joint| text.replace(*joint, &format!("{joint}<wbr>")))
-}
-
-fn status(answer: &Answer, row: &Row, best: bool) -> (&'static str, String) {
-    match &row.outcome {
-        PointOutcome::Failed { reason, .. } => ("bad", format!("\u{2717} failed: {reason}")),
-        PointOutcome::Done { met, .. } if !row.feasible() => {
-            let broken = answer.study.constraints.iter().zip(met).filter(|(_, met)| !**met);
-            let broken: Vec<&str> = broken.map(|(c, _)| c.text.as_str()).collect();
-            ("", format!("misses {}", broken.join(", ")))
-        }
-        PointOutcome::Done { .. } if best => ("good", "\u{2713}\u{a0}best".to_owned()),
-        PointOutcome::Done { .. } => ("", String::new()),
-    }
 }
 
 fn picture(html: &mut String, id: &str, title: &str, caption: &str, svg: &str) {

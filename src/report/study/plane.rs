@@ -52,20 +52,28 @@ impl Plane {
         svg.line("axis", (left, top + height), (left + width, top + height));
     }
 
+    /// A dashed level line: the scene as it is.
+    pub fn as_it_is(&self, svg: &mut Svg, y: f64, title: &str) {
+        let Frame { x: left, width, .. } = self.frame;
+        let y = self.point((self.x.0, y)).1;
+        svg.path("mark", &[(left, y), (left + width, y)], false, title);
+        svg.text("small halo", (left + width - 4.0, y - 4.0), Anchor::End, "as it is");
+    }
+
     pub fn level_scale(&self, svg: &mut Svg) {
         let count = (self.frame.width / 45.0) as usize;
         let step = nice_step((self.x.1 - self.x.0) / count.max(1) as f64);
         for mark in ticks(self.x.0, self.x.1, count) {
-            self.mark(svg, mark, &tick_label(mark, step));
+            self.mark(svg, mark, 0, &tick_label(mark, step));
         }
     }
 
-    /// A mark of the level scale.
-    pub fn mark(&self, svg: &mut Svg, x: f64, label: &str) {
+    /// A mark of the level scale, its label in that row below it.
+    pub fn mark(&self, svg: &mut Svg, x: f64, row: usize, label: &str) {
         let x = self.point((x, self.y.0)).0;
         let bottom = self.frame.y + self.frame.height;
         svg.line("axis", (x, bottom), (x, bottom + 4.0));
-        svg.text("small muted", (x, bottom + 17.0), Anchor::Middle, label);
+        svg.text("small muted", (x, bottom + 17.0 + 13.0 * row as f64), Anchor::Middle, label);
     }
 }
 

@@ -82,7 +82,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn axis(values: Values) -> Axis {
-        Axis { path: "a".into(), span: Span::new(FileId(0), 0, 0), unit: "MN/m".into(), values }
+        Axis { path: "a".into(), span: Span::new(FileId(0), 0, 0), unit: "MN/m".into(), values, written: None }
     }
 
     fn choices(texts: &[&str]) -> Values {

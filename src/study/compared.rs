@@ -1,0 +1,160 @@
+//! The points of a study beside the scene as it is, and beside their constraints.
+
+use super::answer::{Answer, Row, beats};
+use super::miss::Miss;
+use crate::scenario::Measured;
+use crate::scenario::response::{Expectation, Expression, Reduction, Response};
+use crate::units::number;
+
+/// By how much a point differs from the scene as it is in what is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Difference {
+    /// SI.
+    pub of: f64,
+    /// A share of the value of the scene as it is; `None` where that says nothing: of zero, across a sign, of a place or a count.
+    pub share: Option<f64>,
+}
+
+/// How the designs do against one constraint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MetAndMissed {
+    pub text: String,
+    /// The unit in which it is told, and its size in SI.
+    pub unit: (String, f64),
+    /// Designs that meet it, and that miss it.
+    pub met: usize,
+    pub missed: usize,
+    /// The misses of the designs that come nearest and stay farthest, by their shares.
+    pub least: Option<Miss>,
+    pub largest: Option<Miss>,
+}
+
+impl Difference {
+    fn between(what: &Measured, value: f64, as_it_is: f64) -> Difference {
+        let place_or_count = matches!(&what.expression, Expression::Measure(m)
+            if m.reduction == Reduction::PlaceOfMax || m.response == Response::VoidedSleepers);
+        let of_a_kind = value * as_it_is > 0.0 || value == 0.0 && as_it_is != 0.0;
+        let share = (value - as_it_is) / as_it_is.abs();
+        Difference {
+            of: value - as_it_is,
+            share: (of_a_kind && !place_or_count && share.abs() < 10.0).then_some(share),
+        }
+    }
+
+    /// `-38 %`, `+0.4 mm` where a share says nothing, or `same`.
+    pub fn text(&self, what: &Measured) -> String {
+        if self.of == 0.0 {
+            return "same".to_string();
+        }
+        let Some(share) = self.share else {
+            let of = format!("{} {}", signed(self.of / what.unit.1), what.unit.0);
+            return of.trim_end().to_string();
+        };
+        format!("{} %", signed(share * 100.0))
+    }
+
+    /// `38 % less than as it is`
+    pub fn words(&self, what: &Measured) -> String {
+        let text = self.text(what);
+        match text.strip_prefix(['-', '+']) {
+            Some(amount) if self.of < 0.0 => format!("{amount} less than as it is"),
+            Some(amount) => format!("{amount} more than as it is"),
+            None => "the same as it is".to_string(),
+        }
+    }
+}
+
+/// A number with its sign: two digits below ten, whole numbers above.
+fn signed(x: f64) -> String {
+    let rounded = if x.abs() < 10.0 { format!("{x:.1e}").parse().unwrap_or(x) } else { x.round() };
+    if rounded > 0.0 { format!("+{}", number(rounded)) } else { number(rounded) }
+}
+
+impl Answer {
+    /// How far a row is from the scene as it is in the measured value of that index; `None` where one of both failed, and of the scene
+    /// as it is itself.
+    pub fn difference(&self, row: &Row, index: usize) -> Option<Difference> {
+        let as_it_is = self.as_it_is().filter(|_| !row.as_it_is)?;
+        let (value, before) = (row.values()?.get(index)?, as_it_is.values()?.get(index)?);
+        Some(Difference::between(self.study.measured().get(index)?, *value, *before))
+    }
+
+    /// Every constraint, with how the designs that ran do against it.
+    pub fn constraints(&self) -> Vec<MetAndMissed> {
+        let one = |(index, constraint): (usize, &Expectation)| {
+            let misses: Vec<Option<Miss>> =
+                self.designs().filter_map(|(_, row)| row.misses().get(index).copied()).collect();
+            let by_share = |a: &Miss, b: &Miss| a.share.total_cmp(&b.share);
+            let missed = || misses.iter().flatten().copied();
+            MetAndMissed {
+                text: constraint.text.clone(),
+                unit: constraint.unit.clone(),
+                met: misses.len() - missed().count(),
+                missed: missed().count(),
+                least: missed().min_by(by_share),
+                largest: missed().max_by(by_share),
+            }
+        };
+        self.study.constraints.iter().enumerate().map(one).collect()
+    }
+
+    /// What a row misses, each as `` `max(settlement) < 3 mm` by 0.4 mm (13 %) ``.
+    pub fn missed(&self, row: &Row) -> Vec<String> {
+        let pairs = self.study.constraints.iter().zip(row.misses());
+        pairs.filter_map(|(c, miss)| Some(format!("`{}` by {}", c.text, amount(&(*miss)?, &c.unit)))).collect()
+    }
+
+    /// How the best designs stand against the scene as it is; `None` where there is nothing to compare.
+    pub fn against_as_it_is(&self) -> Option<String> {
+        let as_it_is = self.as_it_is()?;
+        let best = self.best();
+        let own = best.iter().any(|index| self.rows[*index].as_it_is);
+        let sentence = match (self.study.objectives.len(), own) {
+            (1, true) => "No design is better than the scene as it is, which is one of them.".to_string(),
+            (1, false) => self.best_against(&self.rows[*best.first()?], as_it_is)?,
+            (_, true) => "One of them is the scene as it is.".to_string(),
+            (_, false) => self.front_against(&best, as_it_is)?,
+        };
+        match self.missed(as_it_is).as_slice() {
+            [] => Some(sentence),
+            missed => Some(format!("{sentence} The scene as it is misses {}.", missed.join(" and "))),
+        }
+    }
+
+    /// The best design by one objective.
+    fn best_against(&self, best: &Row, as_it_is: &Row) -> Option<String> {
+        if self.costs(best)?[0] >= self.costs(as_it_is)?[0] {
+            return Some("No design is better than the scene as it is.".to_string());
+        }
+        let what = &self.study.objectives[0].of;
+        let index = self.study.measured().iter().position(|m| m.text == what.text)?;
+        Some(format!("`{}` is {}.", what.text, self.difference(best, index)?.words(what)))
+    }
+
+    /// The designs of the front.
+    fn front_against(&self, best: &[usize], as_it_is: &Row) -> Option<String> {
+        let before = self.costs(as_it_is)?;
+        let costs = best.iter().filter_map(|index| self.costs(&self.rows[*index]));
+        let of = best.len();
+        let them = if of == 1 { "It" } else { "None of them" };
+        let is = if of == 1 { "is not" } else { "is" };
+        Some(match costs.filter(|costs| beats(costs, &before)).count() {
+            0 if of == 0 => return None,
+            0 => format!("{them} {is} better than the scene as it is without being worse in some objective."),
+            1 if of == 1 => "It is better than the scene as it is in some objective, and worse in none.".to_string(),
+            1 => format!("One of the {of} is better than the scene as it is in some objective, and worse in none."),
+            n => format!("{n} of the {of} are better than the scene as it is in some objective, and worse in none."),
+        })
+    }
+}
+
+/// `0.4 mm (13 %)`
+pub fn amount(miss: &Miss, unit: &(String, f64)) -> String {
+    let by = format!("{} {}", significant(miss.by / unit.1), unit.0);
+    format!("{} ({} %)", by.trim_end(), significant(miss.share * 100.0))
+}
+
+/// Three digits, and whole numbers above.
+fn significant(x: f64) -> String {
+    number(if x.abs() < 100.0 { format!("{x:.2e}").parse().unwrap_or(x) } else { x.round() })
+}
