@@ -96,6 +96,7 @@ impl Reader<'_, '_> {
             ValueKind::Call { word, arguments } if function(word).is_some() => {
                 self.function_of(word, arguments, value.span, scope)
             }
+            ValueKind::Call { word, arguments } if self.foreign_reduction(word, arguments) => None,
             ValueKind::Binary(left, op, right) if *op != BinaryOp::Power => {
                 let (a, b) = (self.expression(left, scope), self.expression(right, scope));
                 self.combine(a?, *op, b?, left.span, right.span)

@@ -5,6 +5,7 @@ use super::expression::one_line;
 use super::reader::Reader;
 use crate::check::evaluate::number::Raw;
 use crate::check::evaluate::records::object_kind;
+use crate::check::evaluate::measure::swapped;
 use crate::check::evaluate::written::{looks_like, with_unit};
 use crate::check::text::scope::{ItemId, ScopeId};
 use crate::diag::nearest::nearest;
@@ -12,7 +13,7 @@ use crate::diag::{Code, Diagnostic, Span, or_list};
 use crate::scenario::{Axis, Choice, Setting, Spread, Values};
 use crate::schema::{self, Form, Kind};
 use crate::syntax::tree::{Argument, Entry, Item, Name, Path, UnitText, Value, ValueKind};
-use crate::units::{number, parse_unit};
+use crate::units::{Dimension, number, parse_unit};
 
 const DISTRIBUTIONS: [&str; 4] = ["steps", "uniform", "normal", "log_normal"];
 /// Levels that `steps` may make.
@@ -162,7 +163,7 @@ impl Reader<'_, '_> {
                 self.eval.field_of(kind, name);
                 return None;
             }
-            let near = nearest(&name.text, kind.fields.iter().map(|f| f.name)).map(|n| format!("did you mean `{n}`?"));
+            let near = kind.meant(&name.text).map(|n| format!("did you mean `{n}`?"));
             self.eval.findings.report(
                 Diagnostic::new(Code::E0704, format!("a {} has no `{}` to vary", kind.name, name.text))
                     .label(name.span, "unknown field")
@@ -220,13 +221,17 @@ impl Reader<'_, '_> {
             && own.dimension != raw.dimension
         {
             let code = if raw.dimension.is_none() { Code::E0301 } else { Code::E0302 };
+            let unit = unit_text(&binding.value).filter(|_| code == Code::E0301);
+            let text = self.eval.files.sources.text(value.span);
+            let help = unit.map(|unit| format!("write `{text} {}`, if that is the unit you meant", unit.text));
             self.eval.findings.report(
                 Diagnostic::new(
                     code,
                     format!("expected {}, found {}", own.dimension.describe(), raw.dimension.describe()),
                 )
                 .label(value.span, "of another dimension")
-                .label(binding.value.span, "than what it replaces"),
+                .label(binding.value.span, "than what it replaces")
+                .maybe_help(help),
             );
         }
     }
@@ -276,6 +281,7 @@ impl Reader<'_, '_> {
         let mut choices = Vec::with_capacity(entries.len());
         let (mut sound, mut common) = (true, None);
         let mut wrong_unit = false;
+        let before = self.eval.findings.diagnostics.len();
         for entry in entries {
             let bare = unit_of_all(&entry.value);
             if wrong_unit && bare {
@@ -306,6 +312,9 @@ impl Reader<'_, '_> {
             choices.push((text + &behind, number, entry.value.span));
             common.get_or_insert(unit);
         }
+        if wrong_unit {
+            self.eval.one_missing_unit(before, entries);
+        }
         // numbers are told in one unit, where they have one
         let common = common?;
         let same = choices.iter().all(|(_, number, _)| number.as_ref().is_some_and(|(_, unit)| *unit == common));
@@ -327,6 +336,7 @@ impl Reader<'_, '_> {
     ) -> Option<(String, [f64; 2])> {
         let unit = unit_text(to);
         let from = with_unit(from, unit.as_ref());
+        self.with_units(target, &from, to, per, scope)?;
         let held = [&from, to].map(|end| self.may_stand(target, &wrapped(end.clone(), per), scope));
         let (a, b) = self.eval.ends(&from, to, scope)?;
         held[0].and(held[1])?;
@@ -336,14 +346,38 @@ impl Reader<'_, '_> {
         }
         if a.value >= b.value {
             let whole = from.span.to(to.span);
+            let text = self.eval.files.sources.text(whole).to_owned();
             self.eval.findings.report(
-                Diagnostic::new(Code::E0505, "a range must ascend").label(whole, "its first end is not the smaller"),
+                Diagnostic::new(Code::E0505, "a range must ascend")
+                    .label(whole, "its first end is not the smaller")
+                    .maybe_help(swapped(&text)),
             );
             return None;
         }
         let suffix = suffix_of(&wrapped(to.clone(), per), Some(&b));
         let size = unit_size(&suffix)?;
         Some((suffix, [a.value / size, b.value / size]))
+    }
+
+    /// Refuses ends that both lack their unit, once.
+    fn with_units(
+        &mut self,
+        target: Varied,
+        from: &Value,
+        to: &Value,
+        per: Option<&Name>,
+        scope: ScopeId,
+    ) -> Option<()> {
+        let Varied::Field(form) = target else { return Some(()) };
+        let Some(measure) = form.measure().filter(|m| !Dimension::of_unit(m.unit).is_none()) else { return Some(()) };
+        if !(unit_of_all(from) && unit_of_all(to)) {
+            return Some(());
+        }
+        let ends = [self.eval.raw(from, scope)?.value, self.eval.raw(to, scope)?.value];
+        let expected = format!("expected {}", Form::Number(*measure).describe());
+        let per = per.map(|name| name.text.as_str());
+        self.eval.missing_unit(&[measure], &ends, per, from.span.to(to.span), &expected);
+        None
     }
 
     fn unlike(&mut self, a: &Raw, b: &Raw) {

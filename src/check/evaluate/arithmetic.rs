@@ -2,12 +2,13 @@
 
 use super::evaluator::Evaluator;
 use super::number::Raw;
+use super::unit_mistakes::unit_mistake;
 use super::value::Val;
 use super::written::looks_like;
 use crate::check::text::scope::ScopeId;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Argument, BinaryOp, Name, Path, UnitText, Value, ValueKind};
-use crate::units::{Dimension, UnitError, parse_unit};
+use crate::units::{Dimension, parse_unit};
 
 impl Evaluator<'_> {
     /// Evaluates arithmetic; `None` where a diagnostic has been given.
@@ -74,7 +75,9 @@ impl Evaluator<'_> {
         match parse_unit(&unit.text) {
             Ok(u) => Some(Raw { value: value * u.factor, dimension: u.dimension, basis: None, span, bare: false }),
             Err(error) => {
-                self.findings.report(unit_mistake(unit, &error));
+                let help = self.of_trains(unit);
+                let whole = self.files.sources.text(span).to_owned();
+                self.findings.report(unit_mistake(unit, &error, &whole).maybe_help(help));
                 None
             }
         }
@@ -242,40 +245,5 @@ impl Evaluator<'_> {
             _ => (numbers.fold(f64::NEG_INFINITY, f64::max), first.dimension),
         };
         self.finite(Raw { value, dimension, basis, span, bare: values.iter().all(|v| v.bare) }, span)
-    }
-}
-
-fn unit_mistake(unit: &UnitText, error: &UnitError) -> Diagnostic {
-    match error {
-        UnitError::Unknown { symbol, instead } => {
-            let of_what = crate::schema::basis_name(symbol).then(|| {
-                let rest = unit.text.replacen(symbol.as_str(), "", 1);
-                let rest = rest.trim_end_matches(['/', '*', ' ']);
-                format!("write `{}per {symbol}`", if rest.is_empty() { String::new() } else { format!("{rest} ") })
-            });
-            let help = of_what.or_else(|| {
-                instead.as_ref().map(|ours| {
-                    let whole = unit.text.replacen(symbol.as_str(), ours, 1);
-                    if ours.contains('(') { format!("write {ours}") } else { format!("did you mean `{whole}`?") }
-                })
-            });
-            let such = "units are such as `mm`, `kN`, `MN/m`, `kN s/m`, `kg/m^3`, `km/h`, `axles`";
-            Diagnostic::new(Code::E0303, format!("unknown unit `{symbol}`"))
-                .label(unit.span, "not a unit")
-                .help(help.unwrap_or_else(|| such.to_owned()))
-        }
-        UnitError::Exponent => {
-            Diagnostic::new(Code::E0103, format!("the exponents of `{}` go beyond -9 .. 9", unit.text))
-                .label(unit.span, "too large")
-        }
-        UnitError::Form => {
-            let help = match unit.text.contains('°') {
-                true => "degrees are written `deg`: `35 deg`",
-                false => "units are such as `mm`, `kN`, `MN/m`, `kN s/m`, `kg/m^3`, `km/h`, `axles`",
-            };
-            Diagnostic::new(Code::E0303, format!("`{}` is not a unit", unit.text))
-                .label(unit.span, "not a unit")
-                .help(help)
-        }
     }
 }

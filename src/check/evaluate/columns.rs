@@ -45,7 +45,7 @@ impl Evaluator<'_> {
         let raw = Raw { value: column.unit.factor, dimension, basis: per.clone(), span: whole, bare: false };
         if dimension != Dimension::of_unit(measure.unit) {
             let expected = format!("expected {}", Form::Number(*measure).describe());
-            self.wrong_dimension(&Raw { span: column.span, ..raw }, measure, &expected);
+            self.wrong_dimension(&Raw { span: column.span, ..raw }, &[measure], &expected);
             return None;
         }
         self.basis(measure, &raw)?;

@@ -313,7 +313,7 @@ impl Evaluator<'_> {
                     let chosen = measures.iter().find(|m| Dimension::of_unit(m.unit) == raw.dimension).unwrap_or(first);
                     if measures.len() > 1 && Dimension::of_unit(chosen.unit) != raw.dimension {
                         let units: Vec<String> = measures.iter().map(|m| format!("`{}`", m.unit)).collect();
-                        self.wrong_dimension(&raw, first, &format!("expected {}", or_list(&units)));
+                        self.wrong_dimension(&raw, &measures, &format!("expected {}", or_list(&units)));
                         return None;
                     }
                     return self.hold(chosen, raw).map(Val::Number);
@@ -418,29 +418,58 @@ impl Evaluator<'_> {
         Some(Val::Pairs(pairs))
     }
 
-    /// Numbers of a list that all lack the same unit lack it once: behind the list.
-    fn one_missing_unit(&mut self, before: usize, entries: &[Entry]) {
+    /// Numbers of a list that all lack the same unit lack it once: behind the list, or behind each of its keys.
+    pub fn one_missing_unit(&mut self, before: usize, entries: &[Entry]) {
         let found = &self.findings.diagnostics[before.min(self.findings.diagnostics.len())..];
         let (Some(first), Some(last)) = (entries.first(), entries.last()) else { return };
-        if found.len() < 2 || found.len() != entries.len() || found.iter().any(|d| d.code != Code::E0301) {
+        let percent = |d: &Diagnostic| d.code == Code::E0405 && d.help.as_deref().is_some_and(|h| h.ends_with(" %`"));
+        let code = match found {
+            [one, ..] if found.iter().all(|d| d.code == Code::E0301) => one.code,
+            [one, ..] if found.iter().all(percent) => one.code,
+            _ => return,
+        };
+        let (one, other) = (&found[0], &found[found.len() - 1]);
+        let of_keys = first.key.as_ref().is_some_and(|key| key.span.covers(one.labels[0].span));
+        let several = found.len() == entries.len() || code == Code::E0405;
+        if found.len() < 2 && entries.len() > 1 && !all_bare(entries) || entries.len() < 2 || !several && found.len() > 1 {
             return;
         }
         let start = first.key.as_ref().map_or(first.value.span, |key| key.span);
         let whole = start.to(last.value.span);
         // `write `-20 sleepers` or `-20 m`` says which units there are
-        let help = found[0].help.as_deref().unwrap_or_default();
-        let wrote = self.files.sources.text(first.value.span);
-        let units = help.split('`').skip(1).step_by(2).filter_map(|code| code.strip_prefix(wrote));
-        let list = self.files.sources.text(whole);
-        let write: Vec<String> = units.map(|unit| format!("`[{list}]{unit}`")).collect();
-        let message = found[0].message.replace("a number without a unit", "numbers without a unit");
+        let help = other.help.as_deref().unwrap_or_default();
+        let wrote = self.files.sources.text(other.labels[0].span);
+        let units: Vec<&str> =
+            help.split('`').skip(1).step_by(2).filter_map(|code| code.strip_prefix(wrote)).collect();
+        let text = |value: &Value| self.files.sources.text(value.span);
+        let with = |unit: &&str| match of_keys {
+            true => {
+                let pair = |e: &Entry| format!("{}{unit}: {}", e.key.as_ref().map_or("", text), text(&e.value));
+                format!("`[{}]`", entries.iter().map(pair).collect::<Vec<_>>().join(", "))
+            }
+            false => format!("`[{}]{unit}`", self.files.sources.text(whole)),
+        };
+        let write: Vec<String> = units.iter().map(with).collect();
+        if write.is_empty() {
+            return;
+        }
+        let message = match code {
+            Code::E0301 => one.message.replace("a number without a unit", "numbers without a unit"),
+            _ => "expected shares in `%`, found numbers without it".to_owned(),
+        };
         self.findings.diagnostics.truncate(before);
         self.findings.report(
-            Diagnostic::new(Code::E0301, message)
+            Diagnostic::new(code, message)
                 .label(whole, "their unit is missing")
                 .help(format!("write {}", or_list(&write))),
         );
     }
+}
+
+/// Whether the values of a list are all numbers without a unit.
+fn all_bare(entries: &[Entry]) -> bool {
+    let bare = |value: &Value| matches!(value.kind, ValueKind::Number { unit: None, .. });
+    entries.iter().all(|entry| entry.key.is_none() && bare(&entry.value))
 }
 
 /// `cyclic(5 .. 60 kN, 5 Hz) per sleeper`: `per` after a word is of those of its arguments that are of something.

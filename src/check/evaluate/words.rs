@@ -6,7 +6,7 @@ use crate::check::text::scope::ScopeId;
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, or_list};
 use crate::scenario::response::Response;
-use crate::schema::Word;
+use crate::schema::{Names, Word, called};
 use crate::syntax::tree::{Argument, Name, ValueKind};
 use std::collections::BTreeMap;
 
@@ -15,7 +15,8 @@ impl Evaluator<'_> {
     pub fn response(&mut self, name: &Name) -> Option<Response> {
         let found = Response::of_name(&name.text);
         if found.is_none() {
-            let near = nearest(&name.text, Response::ALL.iter().map(|r| r.name()));
+            let names = || Response::ALL.iter().map(|r| r.name());
+            let near = called(Names::Responses, &name.text, names()).or_else(|| nearest(&name.text, names()));
             let help = near.map_or_else(
                 || {
                     format!(
@@ -40,7 +41,9 @@ impl Evaluator<'_> {
             return Some(Val::Text(name.text.clone()));
         }
         let rules: Vec<&str> = Code::ALL.iter().filter_map(|c| c.rule()).collect();
-        let help = nearest(&name.text, rules.iter().copied())
+        let by_code = Code::ALL.iter().find(|c| c.to_string() == name.text).and_then(|c| c.rule());
+        let help = by_code
+            .or_else(|| nearest(&name.text, rules.iter().copied()))
             .map_or_else(|| format!("the rules are {}", rules.join(", ")), |n| format!("did you mean `{n}`?"));
         self.findings.report(
             Diagnostic::new(Code::E0408, format!("no rule is called `{}`", name.text))
@@ -53,7 +56,9 @@ impl Evaluator<'_> {
     /// Refuses a word that a form does not know.
     pub(super) fn unknown_word(&mut self, name: &Name, words: &[&'static Word]) {
         let known: Vec<&str> = words.iter().filter(|w| !w.planned).map(|w| w.name).collect();
-        let help = nearest(&name.text, known.iter().copied()).map(|n| format!("did you mean `{n}`?"));
+        let near = called(Names::Words, &name.text, known.iter().copied());
+        let near = near.or_else(|| nearest(&name.text, known.iter().copied()));
+        let help = near.map(|n| format!("did you mean `{n}`?"));
         let quoted: Vec<String> = known.iter().map(|w| format!("`{w}`")).collect();
         self.findings.report(
             Diagnostic::new(Code::E0408, format!("expected {}, found `{}`", or_list(&quoted), name.text))
@@ -82,8 +87,13 @@ impl Evaluator<'_> {
             let Some(field) = field else {
                 let names: Vec<String> = word.arguments.iter().map(|a| format!("`{}`", a.name)).collect();
                 let place = argument.name.as_ref().map_or(argument.value.span, |n| n.span);
-                let help =
-                    if names.is_empty() { "it takes none".into() } else { format!("it takes {}", or_list(&names)) };
+                let known = word.arguments.iter().map(|a| a.name).chain((word.name == "random").then_some("sd"));
+                let near = argument.name.as_ref().and_then(|n| called(Names::Fields, &n.text, known));
+                let help = match near {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None if names.is_empty() => "it takes none".into(),
+                    None => format!("it takes {}", or_list(&names)),
+                };
                 self.findings.report(
                     Diagnostic::new(Code::E0402, format!("`{}` has no such argument", word.name))
                         .label(place, "unknown argument")
@@ -92,7 +102,9 @@ impl Evaluator<'_> {
                 unknown = true;
                 continue;
             };
+            let around = self.asked.take();
             let slot = self.fit(&field.form, &argument.value, scope);
+            self.asked = around;
             if slots.insert(field.name, slot).is_some() {
                 self.findings.report(
                     Diagnostic::new(Code::E0404, format!("`{}` of `{}` is given twice", field.name, word.name))
