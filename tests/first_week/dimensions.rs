@@ -16,15 +16,15 @@ pub const SLIPS: &[Slip] = &[
     (S, "stiffness = 50 MN/m per seat,", "stiffness = 0.1 N/mm^3 per seat,", E0302, "base area", ""),
     (S, "stiffness = 50 MN/m per seat,", "stiffness = 100 MN/m^3 per seat,", E0302, "base area", ""),
     (S, "support = { stiffness = 50 MN/m per seat, damping = 50 kN s/m per seat }", "support = 50 MN/m per seat", E0406, "`{ stiffness = 50 MN/m per seat }`", "50 MN/m per seat"),
-    (S, "support = { stiffness = 50 MN/m per seat, damping = 50 kN s/m per seat }", "support = stiff", E0406, "`rigid`", ""),
+    (S, "support = { stiffness = 50 MN/m per seat, damping = 50 kN s/m per seat }", "support = fixed", E0201, "`rigid`", ""),
     (S, "usp     = usps.stiff { damping_time = 0.1 ms }", "usp     = 0.3 N/mm^3", E0406, "`{ bedding_modulus = 0.3 N/mm^3 }`", "0.3 N/mm^3"),
     (S, "pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = pad_stiffness", E0406, "`{ stiffness = pad_stiffness }`", "pad_stiffness"),
     (S, "sleepers.concrete { mass = 150 kg per seat, length = 2.4 m }", "300 kg", E0406, "`{ mass = 300 kg }`", ""),
     // dashpots
     (S, "damping = 5 kN s/m }", "damping = 10 % }", E0302, "`kN s/m`", ""),
-    (S, "damping = 5 kN s/m }", "damping = 0.1 }", E0301, "`damping_time`", ""),
+    (S, "damping = 5 kN s/m }", "damping = 0.1 }", E0301, "damping_time", ""),
     (S, "damping = 5 kN s/m }", "damping = 0.125 ms }", E0302, "`damping_time = 0.125 ms`", "damping = 0.125 ms"),
-    (S, "damping = 5 kN s/m }", "damping = 5 kN/m }", E0302, "`kN s/m`", ""),
+    (S, "damping = 5 kN s/m }", "damping = 5 kN/m }", E0302, "`5 kN s/m`", "5 kN/m"),
     (S, "damping_time = 0.1 ms", "damping_time = 10 %", E0302, "damping / stiffness", ""),
     (S, "damping = 50 kN s/m per seat }", "damping = 50 kN s/m/m per seat }", E0302, "`50 kN s/m per seat`", ""),
     // weights and masses
@@ -33,7 +33,7 @@ pub const SLIPS: &[Slip] = &[
     (S, "mass = 150 kg per seat", "mass = 1.5 kN per seat", E0302, "`152.9 kg per seat`", "1.5 kN per seat"),
     (J, "mass = 60 kg/m", "mass = 0.6 kN/m", E0302, "`61.16 kg/m`", ""),
     (J, "mass = 60 kg/m", "mass = 60 kg", E0302, "`60 kg/m`", "60 kg"),
-    (J, "mass = 60 kg/m", "mass = 7850 kg/m^3", E0302, "`density`", ""),
+    (J, "mass = 60 kg/m", "mass = 7850 kg/m^3", E0302, "`density = 7850 kg/m^3`", ""),
     (X, "cyclic(5 .. 60 kN, 20 Hz)", "cyclic(0.5 .. 6 t, 20 Hz)", E0302, "kN`", ""),
     (J, "force = 100 kN per rail", "force = 10 t per rail", E0302, "`98.1 kN per rail`", ""),
     (S, "< 80 kN per seat", "< 8 t per seat", E0305, "`78.48 kN per seat`", "8 t per seat"),
@@ -47,8 +47,8 @@ pub const SLIPS: &[Slip] = &[
     (S, "let pad_stiffness = 40 MN/m", "let pad_stiffness = 40 MN m", E0302, "`40 MN/m`", "40 MN m"),
     (S, "let pad_stiffness = 40 MN/m", "let pad_stiffness = 40 MN per m", E0302, "`40 MN/m`", "40 MN per m"),
     // a value of another field of the same thing
-    (S, "bending_stiffness = 6.4 MN m^2", "bending_stiffness = 3055 cm^4", E0302, "`second_moment`", ""),
-    (S, "bending_stiffness = 6.4 MN m^2", "bending_stiffness = 210 GPa", E0302, "`youngs_modulus`", ""),
+    (S, "bending_stiffness = 6.4 MN m^2", "bending_stiffness = 3055 cm^4", E0302, "`second_moment = 3055 cm^4`", ""),
+    (S, "bending_stiffness = 6.4 MN m^2", "bending_stiffness = 210 GPa", E0302, "`youngs_modulus = 210 GPa`", ""),
     (S, "car_body  = { radius_of_gyration = 3.91 m }", "car_body  = { pitch_inertia = 3.91 m }", E0302, "`radius_of_gyration = 3.91 m`", "pitch_inertia = 3.91 m"),
     (S, "bending_stiffness = 6.4 MN m^2", "bending_stiffness = 6.4 MN/m^2", E0302, "`6.4 MN m^2`", "6.4 MN/m^2"),
     // frequencies, periods, angles, slopes, numbers per length

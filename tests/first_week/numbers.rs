@@ -91,7 +91,7 @@ pub const SLIPS: &[Slip] = &[
     (S, "total  = 500 axles", "total  = 10 MGT/year", E0303, "`10 MGT`", ""),
     (S, "total  = 500 axles", "total  = 500 axles/day", E0303, "`500 axles`", "500 axles/day"),
     (S, "total  = 500 axles", "total  = 500 axle loads", E0303, "`500 axles`", "500 axle loads"),
-    (S, "total  = 500 axles", "total  = 500 load cycles", E0303, "`axles`", ""),
+    (S, "total  = 500 axles", "total  = 500 load cycles", E0303, "`500 axles`", ""),
     (S, "total  = 500 axles", "total  = 2 million axles", E0303, "`2e6 axles`", ""),
     (X, "total = 50 cycles", "total = 50 axles", E0302, "`50 cycles`", "50 axles"),
     (X, "after      = [1, 10, 50] cycles", "after      = [1, 10, 50] axles", E0302, "`cycles`", ""),

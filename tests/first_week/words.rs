@@ -6,7 +6,7 @@ use trackbed::diag::Code::*;
 #[rustfmt::skip]
 pub const SLIPS: &[Slip] = &[
     // kinds
-    (S, "granular stone : ballasts.granite_31_63 {", "ballast stone : ballasts.granite_31_63 {", E0401, "`granular`", "ballast stone"),
+    (S, "granular stone : ballasts.granite_31_63 {", "ballast stone : ballasts.granite_31_63 {", E0401, "`granular`", "ballast"),
     (S, "soil fill {", "subgrade fill {", E0401, "`soil`", ""),
     (S, "soil fill {", "material fill {", E0401, "`soil`", ""),
     (S, "vehicle wagon {", "wagon wagon {", E0401, "`vehicle`", ""),
@@ -92,7 +92,7 @@ pub const SLIPS: &[Slip] = &[
     (S, "  title = \"Embankment to slab\"", "  name  = \"Embankment to slab\"", E0402, "`title`", "name"),
     (S, "  allow = [stiffness_jump", "  ignore = [stiffness_jump", E0402, "`allow`", "ignore"),
     // words of a field
-    (S, "direction = forward", "direction = reverse", E0408, "`backward`", "reverse"),
+    (S, "direction = forward", "direction = reverse", E0408, "`backward`", ""),
     (S, "direction = forward", "direction = both_ways", E0408, "`both`", "both_ways"),
     (S, "rail_ends   = clamped", "rail_ends   = fixed", E0408, "`clamped`", "fixed"),
     (S, "rail_ends   = clamped", "rail_ends   = hinged", E0408, "`pinned`", "hinged"),

@@ -117,6 +117,14 @@ impl Evaluator<'_> {
     }
 
     fn binary(&mut self, left: &Value, op: BinaryOp, right: &Value, span: Span, scope: ScopeId) -> Option<Raw> {
+        if let Some(unit) = dashed_unit(self.files.sources.text(span)).filter(|_| op == BinaryOp::Subtract) {
+            self.findings.report(
+                Diagnostic::new(Code::E0305, "`-` in a unit takes one value from another")
+                    .label(span, "")
+                    .help(format!("the factors of a unit are parted by a blank: write `{unit}`")),
+            );
+            return None;
+        }
         let (a, b) = (self.raw(left, scope), self.raw(right, scope));
         let (a, b) = (a?, b?);
         let basis = |a: &Raw, b: &Raw| match (&a.basis, &b.basis) {
@@ -159,7 +167,7 @@ impl Evaluator<'_> {
                     self.findings.report(
                         Diagnostic::new(Code::E0305, "an exponent is a plain number from -9 to 9")
                             .label(right.span, b.dimension.describe())
-                            .help("powers of ten stand in the number: `40e6 N/m`"),
+                            .help(power_of_ten(self.files.sources.text(span))),
                     );
                     return None;
                 };
@@ -246,4 +254,25 @@ impl Evaluator<'_> {
         };
         self.finite(Raw { value, dimension, basis, span, bare: values.iter().all(|v| v.bare) }, span)
     }
+}
+
+/// `10^-4 s` as it should stand, or how powers of ten are written.
+fn power_of_ten(text: &str) -> String {
+    let written = text.strip_prefix("10^").and_then(|power| {
+        let end = power.find(' ')?;
+        power[..end].parse::<i32>().ok()?;
+        Some(format!("write `1e{}`", power))
+    });
+    written.unwrap_or_else(|| "powers of ten stand in the number: `40e6 N/m`".to_owned())
+}
+
+/// `5 kN-s/m` with a blank in the place of the dash, where that is a number with its unit.
+fn dashed_unit(text: &str) -> Option<String> {
+    let letter = |c: Option<char>| c.is_some_and(char::is_alphabetic);
+    let dash = text.match_indices('-').map(|(at, _)| at).find(|at| {
+        letter(text[..*at].chars().next_back()) && letter(text[at + 1..].chars().next())
+    })?;
+    let written = format!("{} {}", &text[..dash], &text[dash + 1..]);
+    let (number, unit) = written.split_once(' ')?;
+    (number.parse::<f64>().is_ok() && parse_unit(unit).is_ok()).then_some(written)
 }

@@ -1,6 +1,7 @@
 //! Holds a value against the form of its field.
 
 use super::evaluator::Evaluator;
+use super::objects;
 use super::value::{Slot, Val};
 use super::written::{is_profile, looks_like, with_unit};
 use crate::check::text::scope::{MAIN_FILE, ScopeId};
@@ -115,11 +116,30 @@ impl Evaluator<'_> {
             self.unknown_word(&path.names[0], &words);
             return Some(error);
         }
+        // a text or a place without its quotes or its number
+        let place = |form: &Form| matches!(form, Form::Place | Form::Span);
+        let by_name = matches!(form, Form::Text) || place(form) || matches!(form, Form::List(item) if place(item));
+        if by_name && bare && !self.scopes[scope].names.contains_key(&path.names[0].text) {
+            if !self.unread_word(&path.names[0]) {
+                self.wrong_form(form, "a name", path.span);
+            }
+            return Some(error);
+        }
         let names: Vec<&str> = words.iter().filter(|w| !w.planned).map(|w| w.name).collect();
         let Some(target) = self.resolve(path, scope, &names) else { return Some(error) };
         if target.is_let {
             let tree = self.scopes[target.id.scope].tree.clone();
             let Item::Let(binding) = &tree.items[target.id.item] else { return Some(error) };
+            let written = self.files.sources.text(binding.value.span).to_owned();
+            if let (true, Some(object)) = (!form_has_numbers(form), objects::of_number(form, &written, &path.text())) {
+                self.used.insert(target.id);
+                self.findings.report(
+                    Diagnostic::new(Code::E0406, format!("expected {}, found a number", form.describe()))
+                        .label(path.span, "a number")
+                        .help(object),
+                );
+                return Some(error);
+            }
             let slot = self.within(target.id, path.span, |c| Some(c.fit(form, &binding.value, target.id.scope)));
             return Some(slot.unwrap_or(error));
         }
@@ -182,6 +202,10 @@ impl Evaluator<'_> {
             (Form::Number(measure), _) => self.number_or_profile(measure, value, scope),
             (Form::Integer { min, max }, _) => self.integer(*min, *max, value, scope).map(Val::Number),
             (Form::Interval(measure), _) => self.interval(measure, value, scope),
+            (Form::Place, ValueKind::Range(..)) => {
+                self.wrong_form(form, "a range", value.span);
+                None
+            }
             (Form::Place, _) => self.place(value, scope).map(Val::Number),
             (Form::Span, ValueKind::Range(from, to)) => self.span(from, to, scope),
             (Form::Object(kind), ValueKind::Object { base, fields }) => {
@@ -232,19 +256,28 @@ impl Evaluator<'_> {
     /// What to write where something of another form stands.
     fn instead(&self, form: &Form, found: &str, span: Span) -> Option<String> {
         let text = self.files.sources.text(span);
-        if let Some(inner) =
-            text.strip_prefix('"').and_then(|t| t.strip_suffix('"')).filter(|t| !t.is_empty() && !t.contains('"'))
-        {
+        if let Some(help) = self.entry_or_file(form, text) {
+            return Some(help);
+        }
+        let quotes = |mark: char| text.strip_prefix(mark).and_then(|t| t.strip_suffix(mark));
+        let unquoted = quotes('"').or_else(|| quotes('\'')).filter(|_| found == "text");
+        if let Some(inner) = unquoted.filter(|t| !t.is_empty() && !t.contains('"')) {
             return Some(format!("write `{inner}`, without quotes"));
         }
         if matches!(form, Form::Text) && !text.contains(['\n', '"', '\\']) {
             return Some(format!("write `\"{text}\"`"));
+        }
+        if let Form::Interval(_) = form {
+            return span_of(text).map(|range| format!("write `{range}`"));
         }
         if let Form::Span = form {
             let written = span_of(text).map(|span| format!("write `{span}`"));
             return Some(
                 written.unwrap_or_else(|| "from one end to the other: `-20 .. -1 sleepers`, `-6 .. 0 m`".into()),
             );
+        }
+        if let Some(help) = self.by_habit(form, found, text) {
+            return Some(help);
         }
         if found == "a range" && matches!(form, Form::Number(m) if m.varies == Varies::Yes) {
             return Some(format!("write `ramp({text})`, if it goes from one to the other along the track"));
@@ -253,6 +286,50 @@ impl Evaluator<'_> {
         let entries = if own.is_empty() { self.entries(form) } else { own };
         let such = or_list(&entries.into_iter().take(3).collect::<Vec<_>>());
         (!such.is_empty()).then(|| format!("name one, such as {such}, or write `{{ field = value }}`"))
+    }
+
+    /// A name in quotes that is an entry of the library, or a file where a profile may stand.
+    fn entry_or_file(&self, form: &Form, text: &str) -> Option<String> {
+        let inner = text.strip_prefix('"')?.strip_suffix('"')?;
+        if matches!(form, Form::Number(m) if m.varies == Varies::Yes) && inner.ends_with(".csv") {
+            return Some(format!("write `file({text})`"));
+        }
+        let entry = self.entry_called(inner).filter(|entry| self.entries(form).contains(&format!("`{entry}`")))?;
+        Some(format!("write `{entry}`"))
+    }
+
+    /// What is meant by a value of another form, in the manner of other languages.
+    fn by_habit(&self, form: &Form, found: &str, text: &str) -> Option<String> {
+        let field = self.asked.map(|(_, field)| field);
+        let has = |name: &str| self.asked.is_some_and(|(kind, _)| kind.field(name).is_some());
+        if found == "a number" {
+            if let Some((module, entry)) = text.split_once('/').filter(|(m, _)| self.scopes[self.standard].modules.contains_key(*m)) {
+                let entry = entry.split([' ', '{']).next().unwrap_or(entry);
+                return Some(format!("write `{module}.{entry}`"));
+            }
+            if let Some(help) = objects::of_number(form, text, text).or_else(|| objects::counted(form, text)) {
+                return Some(help);
+            }
+            if let Form::Span = form
+                && has("at")
+            {
+                return Some(format!("one place is given with `at`: write `at = {text}`"));
+            }
+            let points = |w: &&schema::Word| matches!(w.arguments, [schema::Field { form: Form::Integer { .. }, .. }]);
+            let words: Vec<String> =
+                form.words().into_iter().filter(points).map(|w| format!("`{}({text})`", w.name)).collect();
+            return (!words.is_empty()).then(|| format!("write {}", or_list(&words)));
+        }
+        if found == "a range" && matches!(form, Form::Place) && field == Some("at") && has("over") {
+            return Some(format!("a span is given with `over`: write `over = {text}`"));
+        }
+        if matches!(form, Form::Place) && found == "a name" {
+            return Some("a place is a number: `-20 sleepers`, `[-20, -5] sleepers`; `over = -20 .. -1 sleepers` takes all of a span".to_owned());
+        }
+        if found == "a list" && matches!(form, Form::Number(_)) {
+            return Some("a field has one value; a study tries several: `vary = [path: [value, value]]`".to_owned());
+        }
+        None
     }
 
     fn shape_of(&mut self, value: &Value, scope: ScopeId, depth: u32) -> Shape {
@@ -335,6 +412,14 @@ impl Evaluator<'_> {
         }
         let bare = if let ValueKind::Per(inner, _) = &value.kind { inner } else { value };
         if let ValueKind::Call { word, .. } = &bare.kind {
+            if let Some(object) = objects::of_word(form, &word.text, self.files.sources.text(value.span)) {
+                self.findings.report(
+                    Diagnostic::new(Code::E0406, format!("expected {}, found a word with arguments", form.describe()))
+                        .label(value.span, "a word")
+                        .help(object),
+                );
+                return None;
+            }
             self.unknown_word(word, &form.words());
         } else {
             self.wrong_form(form, looks_like(&value.kind), value.span);
@@ -386,12 +471,24 @@ impl Evaluator<'_> {
                 (alone.as_slice(), None)
             }
         };
+        if let Some(swapped) = self.swapped(key, entries) {
+            self.findings.report(
+                Diagnostic::new(Code::E0406, format!("expected {}", form.describe()))
+                    .label(value.span, "keys and values have changed places")
+                    .help(format!("write `{swapped}`")),
+            );
+            return None;
+        }
         let mut pairs = Vec::with_capacity(entries.len());
         let before = self.findings.diagnostics.len();
         let mut lone = false;
         for entry in entries {
             let pair = match (&entry.key, implied) {
                 (Some(k), _) => (self.fit(key, k, scope), self.fit(content, &with_unit(&entry.value, unit), scope)),
+                (None, Some(_)) if entry.value.kind == ValueKind::Error => {
+                    let nothing = Slot { value: Val::Error, span: entry.value.span, origin: Origin::Derived };
+                    (nothing.clone(), nothing)
+                }
                 (None, Some(text)) => (self.fit(key, &entry.value, scope), self.default_value(content, text)),
                 (None, None) => {
                     // what could not be read behind it may have been the other half
@@ -403,7 +500,7 @@ impl Evaluator<'_> {
                         self.findings.report(
                             Diagnostic::new(Code::E0406, format!("expected {}", form.describe()))
                                 .label(entry.value.span, "a pair is needed here")
-                                .help("write `[key: value]`"),
+                                .help(self.as_pairs(key, content, entries)),
                         );
                     }
                     // one such list is one mistake
@@ -416,6 +513,35 @@ impl Evaluator<'_> {
         }
         self.one_missing_unit(before, entries);
         Some(Val::Pairs(pairs))
+    }
+
+    /// A list whose keys are numbers and whose values are names, the other way round.
+    fn swapped(&self, key: &Form, entries: &[Entry]) -> Option<String> {
+        let number = |value: &Value| matches!(value.kind, ValueKind::Number { .. });
+        let name = |value: &Value| matches!(value.kind, ValueKind::Path(_));
+        let turned = |e: &Entry| e.key.as_ref().is_some_and(number) && name(&e.value);
+        if form_has_numbers(key) || entries.is_empty() || !entries.iter().all(turned) {
+            return None;
+        }
+        let text = |value: &Value| self.files.sources.text(value.span);
+        let pair = |e: &Entry| Some(format!("{}: {}", text(&e.value), text(e.key.as_ref()?)));
+        Some(format!("[{}]", entries.iter().map(pair).collect::<Option<Vec<_>>>()?.join(", ")))
+    }
+
+    /// How the entries of a list that stand alone become pairs.
+    fn as_pairs(&self, key: &Form, content: &Form, entries: &[Entry]) -> String {
+        let text = |e: &Entry| self.files.sources.text(e.value.span);
+        let names = entries.iter().all(|e| e.key.is_none() && matches!(e.value.kind, ValueKind::Path(_)));
+        match entries {
+            [only] if matches!(key, Form::Name) && content.word(text(only)).is_some() => {
+                format!("it has a name: write `[edge: {}]`", text(only))
+            }
+            [_, _, ..] if names => {
+                let pairs: Vec<String> = entries.iter().map(|e| format!("{}: ...", text(e))).collect();
+                format!("each has its value: write `[{}]`", pairs.join(", "))
+            }
+            _ => "write `[key: value]`".to_owned(),
+        }
     }
 
     /// Numbers of a list that all lack the same unit lack it once: behind the list, or behind each of its keys.

@@ -13,13 +13,20 @@ use crate::syntax::tree::{Value, ValueKind};
 use crate::units::{Dimension, Quantity, number, parse_unit};
 
 /// What engineers call the parts of which a value is.
-const ALSO_CALLED: [(&str, &str); 6] = [
+const ALSO_CALLED: [(&str, &str); 13] = [
     ("axle", "wheelset"),
     ("half_sleeper", "seat"),
     ("rail_seat", "seat"),
     ("wagon", "vehicle"),
     ("car", "vehicle"),
     ("grain", "particle"),
+    ("tie", "sleeper"),
+    ("crosstie", "sleeper"),
+    ("schwelle", "sleeper"),
+    ("side", "seat"),
+    ("axlebox", "wheel"),
+    ("truck", "bogie"),
+    ("line", "track"),
 ];
 
 impl Evaluator<'_> {
@@ -148,7 +155,7 @@ impl Evaluator<'_> {
             return self.missing_unit(measures, &[raw.value], raw.basis_name(), raw.span, expected);
         }
         let text = self.files.sources.text(raw.span);
-        let other = self.asked.and_then(|(kind, field)| offers::other_way(kind, field, raw.dimension));
+        let other = self.asked.and_then(|(kind, field)| offers::other_way(kind, field, raw));
         let help = match other {
             Some(field) => Some(format!("write `{field} = {text}`, if that is what it is")),
             None => measures.iter().find_map(|measure| offers::of_other_dimension(measure, raw, text)),
@@ -199,7 +206,8 @@ impl Evaluator<'_> {
         if !raw.dimension.is_none() {
             self.findings.report(
                 Diagnostic::new(Code::E0302, format!("expected a whole number, found {}", raw.dimension.describe()))
-                    .label(raw.span, "has a unit"),
+                    .label(raw.span, "has a unit")
+                    .help("write a whole number without a unit"),
             );
             return None;
         }

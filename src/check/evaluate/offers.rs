@@ -192,6 +192,9 @@ fn special(measure: &Measure, raw: &Raw, per: &str) -> Option<String> {
     if expected.is_none() && measure.unit == "%" && found == Dimension::LENGTH {
         return Some("a share is given in `%`: the length divided by the whole".to_owned());
     }
+    if expected == Dimension::TIME && [Dimension::AXLES, Dimension::CYCLES].contains(&found) {
+        return Some("an interval of samples is a time; counts of traffic stand in a list: `after = [100, 200] axles`".to_owned());
+    }
     if expected == Dimension::AXLES && found == Dimension::TIME {
         return Some("traffic is counted in `axles` or as the mass carried, `MGT`, not by the time".to_owned());
     }
@@ -234,18 +237,27 @@ fn literal(text: &str) -> Option<(&str, &str)> {
     (!digits.is_empty() && parse_unit(unit).is_ok()).then_some((digits, unit))
 }
 
-/// The field that a value of this dimension belongs to, where it says the same thing as `field` in another way.
-pub fn other_way(kind: &Kind, field: &str, dimension: Dimension) -> Option<&'static str> {
+/// The field that a value belongs to, where it says the same thing as `field` in another way.
+pub fn other_way(kind: &Kind, field: &str, raw: &Raw) -> Option<&'static str> {
     let ways = kind.alternatives.iter().filter(|a| a.ways.iter().any(|way| way.contains(&field)));
     let mut others = ways.flat_map(|a| a.ways.iter()).flat_map(|way| way.iter()).filter(|other| **other != field);
-    others.find(|other| {
-        let measure = kind.field(other).and_then(|f| f.form.measure());
-        measure.is_some_and(|m| Dimension::of_unit(m.unit) == dimension)
-    }).copied()
+    let takes = |m: &Measure| Dimension::of_unit(m.unit) == raw.dimension && m.takes(raw.value, raw.basis_name());
+    others.find(|other| kind.field(other).and_then(|f| f.form.measure()).is_some_and(takes)).copied()
 }
 
 /// A number with four significant digits.
 fn four_digits(value: f64) -> String {
     let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
     number(rounded)
+}
+
+/// What to write in a comparison in the place of an operand that is not of the other's dimension, in a usual unit.
+pub fn in_comparison(expected: Dimension, raw: &Raw, text: &str, unit: &str) -> Option<String> {
+    let per = raw.basis_name().map_or(String::new(), |name| format!(" per {name}"));
+    if raw.bare && raw.dimension.is_none() {
+        return Some(format!("write `{text} {unit}{per}`, if that is the unit you meant"));
+    }
+    let (factor, power, why) = conversion(expected, raw.dimension)?;
+    let size = parse_unit(unit).ok()?.factor;
+    Some(format!("write `{} {unit}{per}`: {why}", four_digits(factor * raw.value.powi(power) / size)))
 }

@@ -26,7 +26,7 @@ impl Evaluator<'_> {
                 return None;
             }
             if let ValueKind::Range(..) | ValueKind::Text(_) | ValueKind::List { .. } = value.kind {
-                if !self.misspelt_inside(value.span) {
+                if matches!(value.kind, ValueKind::Text(_)) || !self.misspelt_inside(value.span) {
                     self.wrong_form(&Form::Number(*measure), looks_like(&value.kind), value.span);
                 }
                 return None;

@@ -74,6 +74,9 @@ fn by_custom(unit: &UnitText, symbol: &str, whole: &str) -> Option<String> {
         let (power, unit) = rest.split_once(' ').unwrap_or((rest, ""));
         return Some(format!("powers of ten stand in the number: `{digits}e{power} {unit}`"));
     }
+    if text.contains(&format!("({symbol}")) {
+        return Some(format!("a remark stands behind `//`: `// {symbol}`"));
+    }
     let lower = symbol.to_lowercase();
     if MILLION.contains(&lower.as_str()) {
         let rest = text.replacen(symbol, "", 1).trim_start_matches(['.', ' ']).to_owned();

@@ -6,7 +6,7 @@ use crate::check::text::scope::ScopeId;
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, or_list};
 use crate::scenario::response::Response;
-use crate::schema::{Names, Word, called};
+use crate::schema::{Form, Names, Word, called};
 use crate::syntax::tree::{Argument, Name, ValueKind};
 use std::collections::BTreeMap;
 
@@ -73,6 +73,18 @@ impl Evaluator<'_> {
             self.findings.report(
                 Diagnostic::new(Code::E0411, format!("this version does not know `{}` yet", word.name))
                     .label(name.span, "planned"),
+            );
+            return None;
+        }
+        if let (Some(Form::Interval(_)), [first, second, ..]) = (word.arguments.first().map(|a| &a.form), arguments)
+            && [first, second].iter().all(|a| a.name.is_none() && matches!(a.value.kind, ValueKind::Number { .. }))
+        {
+            let [from, to] = [first, second].map(|a| self.files.sources.text(a.value.span));
+            let help = format!("from one to the other: write `{from} .. {to}`");
+            self.findings.report(
+                Diagnostic::new(Code::E0406, format!("`{}` begins with a range, found two numbers", word.name))
+                    .label(first.value.span.to(second.value.span), "two numbers")
+                    .help(help),
             );
             return None;
         }

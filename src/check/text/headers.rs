@@ -4,7 +4,7 @@
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic};
 use crate::schema::{self, Kind, Names, Role, called};
-use crate::syntax::tree::{Declaration, Item, Tree};
+use crate::syntax::tree::{Declaration, Item, Tree, ValueKind};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -27,11 +27,16 @@ pub fn mended(tree: &mut Arc<Tree>) -> Vec<Diagnostic> {
             }
         }
     }
+    let of_kinds: Vec<(usize, Declaration)> =
+        tree.items.iter().enumerate().filter_map(|(i, item)| Some((i, kind_as_let(item)?))).collect();
     let mut found = Vec::new();
     for (i, item) in tree.items.iter().enumerate() {
         let Item::Declaration(d) = item else { continue };
         let mended = other_kind(d, &kinds).or_else(|| name_behind_colon(d, &kinds)).or_else(|| foreign_kind(d));
         found.extend(mended.map(|mended| (i, mended)));
+    }
+    for (i, declaration) in of_kinds {
+        Arc::make_mut(tree).items[i] = Item::Declaration(declaration);
     }
     let mut mistakes = Vec::new();
     for (i, (mended, mistake)) in found {
@@ -98,4 +103,13 @@ fn foreign_kind(d: &Declaration) -> Option<(Declaration, Diagnostic)> {
     // without a name it is called by its kind
     mended.kind.text = kind.name.to_string();
     Some((mended, mistake))
+}
+
+/// `traffic = { ... }`, which has been told, is the declaration of that kind.
+fn kind_as_let(item: &Item) -> Option<Declaration> {
+    let Item::Let(binding) = item else { return None };
+    let ValueKind::Object { base: None, fields } = &binding.value.kind else { return None };
+    schema::kind(&binding.name.text).filter(|k| k.role != Role::Nested)?;
+    let (kind, fields, docs, span) = (binding.name.clone(), fields.clone(), binding.docs.clone(), binding.span);
+    Some(Declaration { kind, name: None, base: None, fields, docs, span })
 }
