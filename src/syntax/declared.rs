@@ -45,7 +45,7 @@ fn header(draft: &mut Draft, tokens: &mut [Token], i: usize) {
             tokens[i + 1].kind = W;
             (vec![(1, format!(" {inner}"))], format!("{kind} {inner}"))
         }
-        ([W, Kind::Sign, W], [_, "." | "=", name]) => (vec![(1, String::new())], format!("{kind} {name}")),
+        ([W, Kind::Sign, W], [_, ".", name]) => (vec![(1, String::new())], format!("{kind} {name}")),
         ([W, W, Kind::Sign], [_, name, ","]) => (vec![(2, String::new())], format!("{kind} {name}")),
         ([W, W, Kind::Open('('), W, Kind::Close(')')], [_, name, _, base, _]) => {
             tokens[i + 2].kind = Kind::Sign;
@@ -56,7 +56,7 @@ fn header(draft: &mut Draft, tokens: &mut [Token], i: usize) {
             (vec![(2, ":".to_owned())], format!("{kind} {name} : {}", base.concat()))
         }
         ([W, W, Kind::Sign, W], [_, name, "<", base]) => (vec![(2, ":".to_owned())], format!("{kind} {name} : {base}")),
-        ([W, W, Kind::Sign, Kind::Number] | [W, W, Kind::Sign, W], [_, name, "-", rest]) => {
+        ([W, W, Kind::Sign, Kind::Number], [_, name, "-", rest]) => {
             draft.bytes[tokens[i + 2].start] = b'_';
             (Vec::new(), format!("{kind} {name}_{rest}"))
         }

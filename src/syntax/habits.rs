@@ -16,6 +16,13 @@ impl Builder<'_> {
         if let Some(help) = unit_or_remark(word, before, rest, after) {
             return Some(help);
         }
+        let compares = part.contains(['<', '>']) && !part.contains('=');
+        if exact == Rule::exact_field && (compares || part.starts_with('[')) {
+            return Some(match part.starts_with('[') {
+                true => "a list is given to a field: write `that = [...]`".to_owned(),
+                false => format!("a comparison is given to `that`: write `that = [{part}]`"),
+            });
+        }
         let fixed = match word {
             "and" | "&&" | "&" | "or" if !part.contains(['<', '>', '=']) => {
                 "several values stand in brackets: `[a, b]`"
@@ -65,12 +72,6 @@ impl Builder<'_> {
             let module = part.split_whitespace().nth(1).unwrap_or_default();
             return Some(format!("write `use {module}`"));
         }
-        if exact == Rule::exact_field && part.contains(['<', '>']) && !part.contains('=') || part.starts_with('[') && exact == Rule::exact_field {
-            return Some(match part.starts_with('[') {
-                true => "a list is given to a field: write `that = [...]`".to_owned(),
-                false => format!("a comparison is given to `that`: write `that = [{part}]`"),
-            });
-        }
         let plain = |text: &str| {
             text.split_whitespace().count() >= 2 && text.chars().all(|c| c.is_alphabetic() || "',- ".contains(c))
         };
@@ -89,13 +90,13 @@ impl Builder<'_> {
         }
         match word {
             "=" if value && named && before.contains('.') => {
-                Some(format!("pairs stand in brackets: write `[{before}: {}]`", rest[1..].trim()))
+                Some(format!("pairs stand in brackets: write `[{before}: {}]`", rest.trim_start_matches('=').trim()))
             }
             "=" if value && named => Some(match self.path_before(start) {
                 Some(path) => format!("write `{path}.{before} {rest}`, or `{path} = {{ {before} {rest} }}`"),
                 None => format!("write `{before} {rest}` alone"),
             }),
-            ":" if exact == Rule::exact_entry && before.starts_with(digit) && rest[1..].starts_with(digit) => {
+            ":" if exact == Rule::exact_entry && before.starts_with(digit) && after.starts_with(digit) => {
                 let mut parts = part.split(':');
                 let (from, step, to) = (parts.next()?, parts.next()?, parts.next()?);
                 Some(format!("from one value to another in steps: `steps({from} .. {to}, by = {step})`, each with its unit"))
@@ -186,16 +187,16 @@ fn unit_or_remark(word: &str, before: &str, rest: &str, after: &str) -> Option<S
     let number = before.starts_with(|c: char| c.is_ascii_digit() || c == '-');
     let rest = rest.trim_end();
     match word {
-        "\\" if number && after.starts_with(char::is_alphabetic) => Some(format!("write `{before}/{}`", &rest[1..])),
+        "\\" if number && after.starts_with(char::is_alphabetic) => Some(format!("write `{before}/{}`", rest.trim_start_matches('\\'))),
         "." if number && before.ends_with(char::is_alphabetic) && after.starts_with(char::is_alphabetic) => {
-            Some(format!("the factors of a unit are parted by a blank: write `{before} {}`", &rest[1..]))
+            Some(format!("the factors of a unit are parted by a blank: write `{before} {}`", rest.trim_start_matches('.')))
         }
         "(" if number && after.starts_with("per ") => {
-            Some(format!("write `{before} {}`", rest[1..].trim_end_matches(')')))
+            Some(format!("write `{before} {}`", rest.trim_start_matches('(').trim_end_matches(')')))
         }
         "1" if before.ends_with(digit) && rest == "1/s" => Some(format!("write `{before} Hz`")),
-        "<=" | ">=" | "<" | ">" if before.is_empty() && rest[word.len()..].trim_start().starts_with(digit) => {
-            Some(format!("a field has one value: write `{}`", rest[word.len()..].trim()))
+        "<=" | ">=" | "<" | ">" if before.is_empty() && after.trim_start().starts_with(digit) => {
+            Some(format!("a field has one value: write `{}`", rest.trim_start_matches(['<', '>', '=', ' '])))
         }
         _ => None,
     }

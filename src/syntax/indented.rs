@@ -110,7 +110,7 @@ fn block(draft: &mut Draft, tokens: &mut [Token], i: usize, end: usize, quiet: b
             draft.insertions.push((tokens[last].end, '{'));
         }
     }
-    tokens[last].kind = Kind::Comment;
+    tokens[last].kind = Kind::Sign;
     for (line, sign) in inner.iter().zip(&signs) {
         let opens = last_token(tokens, *line) == Some(*sign);
         if indent(text, &tokens[*line]) == level && !opens {

@@ -23,7 +23,6 @@ pub const SLIPS: &[Slip] = &[
     (S, "train ore {\n  vehicles  = wagon\n  speed     = 70 km/h\n  direction = forward\n}", "train ore { vehicles = wagon; speed = 70 km/h; direction = forward; }", E0105, "`vehicles = wagon`", ""),
     (S, "train ore {\n  vehicles  = wagon\n  speed     = 70 km/h\n  direction = forward\n}", "train ore { vehicles = wagon speed = 70 km/h }", E0101, "`, speed`", ""),
     (S, "train ore {\n", "train ore, {\n", E0105, "`train ore {`", ""),
-    (S, "train ore {\n", "train = ore {\n", E0105, "`train ore {`", "train = ore {"),
     (S, "train ore {\n", "train.ore {\n", E0105, "`train ore {`", "train.ore {"),
     (S, "train ore {\n", "train \"ore\" {\n", E0105, "`train ore {`", "train \"ore\" {"),
     (S, "train ore {\n", "train ore as freight {\n", E0101, "`kind name : base", ""),

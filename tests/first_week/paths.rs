@@ -59,7 +59,7 @@ pub const SLIPS: &[Slip] = &[
     (S, "use std", "from std import rails", E0101, "`use std`", "from std import rails"),
     (S, "use std", "#include <std>", E0105, "`use std`", "#include <std>"),
     (S, "use std", "use Std", E0204, "`use std`", "use Std"),
-    (U, "use transition as base", "use transition.track as base", E0204, "`use transition as base`", "use transition.track as base"),
+    (U, "use transition as base", "use transition.track as base", E0204, "`use transition`", "use transition.track"),
     (U, "use transition as base", "use ./transition as base", E0101, "`use transition as base`", "use ./transition as base"),
     (U, "use transition as base", "use \"transition.track\" as base", E0101, "`use transition as base`", "use \"transition.track\" as base"),
     (U, "use transition as base", "use C:\\tracks\\transition.track as base", E0101, "`use transition as base`", "use C:\\tracks\\transition.track as base"),
@@ -74,7 +74,7 @@ pub const SLIPS: &[Slip] = &[
     (S, "ramp(0 .. 2 mm, over = -6 .. 0 m)", "\"level.csv\"", E0406, "`file(\"level.csv\")`", ""),
     (S, "title = \"Embankment to slab\"", "title = \"C:\\Users\\me\\slab\"", E0101, "`\"C:\\\\Users\\\\me\\\\slab\"`", "\"C:\\Users\\me\\slab\""),
     // names of one's own
-    (S, "let bay = 0.6 m", "let bay = 0.6 m, let 2k = 80 MN/m", E0101, "`let k2`", ""),
+    (S, "let bay = 0.6 m", "let 1bay = 0.6 m", E0101, "`let bay1`", ""),
     (S, "trackform stiff : open {", "trackform 2stiff : open {", E0101, "`trackform stiff2`", ""),
     (S, "record bed {", "record bed-2 {", E0105, "`record bed_2 {`", "record bed-2 {"),
     (S, "record bed {", "record bed 2 {", E0105, "`record bed_2 {`", "record bed 2 {"),

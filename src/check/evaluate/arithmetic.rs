@@ -167,7 +167,7 @@ impl Evaluator<'_> {
                     self.findings.report(
                         Diagnostic::new(Code::E0305, "an exponent is a plain number from -9 to 9")
                             .label(right.span, b.dimension.describe())
-                            .help(power_of_ten(self.files.sources.text(span))),
+                            .help(self.power_of_ten(span)),
                     );
                     return None;
                 };
@@ -195,6 +195,16 @@ impl Evaluator<'_> {
             ([true, false], _) => Some(format!("give `{a}` its unit too")),
             ([false, true], _) => Some(format!("give `{b}` its unit too")),
             _ => None,
+        }
+    }
+
+    /// `10^-4 s` as it should stand, or how powers of ten are written.
+    fn power_of_ten(&self, span: Span) -> String {
+        let before = self.files.sources.get(span.file).text[..span.start as usize].trim_end();
+        let power = self.files.sources.text(span).strip_prefix("10^").filter(|_| !before.ends_with('*'));
+        match power.filter(|p| p.split(' ').next().is_some_and(|n| n.parse::<i32>().is_ok())) {
+            Some(power) => format!("write `1e{power}`"),
+            None => "powers of ten stand in the number: `40e6 N/m`".to_owned(),
         }
     }
 
@@ -254,16 +264,6 @@ impl Evaluator<'_> {
         };
         self.finite(Raw { value, dimension, basis, span, bare: values.iter().all(|v| v.bare) }, span)
     }
-}
-
-/// `10^-4 s` as it should stand, or how powers of ten are written.
-fn power_of_ten(text: &str) -> String {
-    let written = text.strip_prefix("10^").and_then(|power| {
-        let end = power.find(' ')?;
-        power[..end].parse::<i32>().ok()?;
-        Some(format!("write `1e{}`", power))
-    });
-    written.unwrap_or_else(|| "powers of ten stand in the number: `40e6 N/m`".to_owned())
 }
 
 /// `5 kN-s/m` with a blank in the place of the dash, where that is a number with its unit.

@@ -267,6 +267,9 @@ impl Evaluator<'_> {
         if matches!(form, Form::Text) && !text.contains(['\n', '"', '\\']) {
             return Some(format!("write `\"{text}\"`"));
         }
+        if let Some(help) = self.by_habit(form, found, text) {
+            return Some(help);
+        }
         if let Form::Interval(_) = form {
             return span_of(text).map(|range| format!("write `{range}`"));
         }
@@ -275,9 +278,6 @@ impl Evaluator<'_> {
             return Some(
                 written.unwrap_or_else(|| "from one end to the other: `-20 .. -1 sleepers`, `-6 .. 0 m`".into()),
             );
-        }
-        if let Some(help) = self.by_habit(form, found, text) {
-            return Some(help);
         }
         if found == "a range" && matches!(form, Form::Number(m) if m.varies == Varies::Yes) {
             return Some(format!("write `ramp({text})`, if it goes from one to the other along the track"));
@@ -300,6 +300,7 @@ impl Evaluator<'_> {
 
     /// What is meant by a value of another form, in the manner of other languages.
     fn by_habit(&self, form: &Form, found: &str, text: &str) -> Option<String> {
+        let form = if let Form::List(item) = form { item } else { form };
         let field = self.asked.map(|(_, field)| field);
         let has = |name: &str| self.asked.is_some_and(|(kind, _)| kind.field(name).is_some());
         if found == "a number" {
@@ -312,6 +313,7 @@ impl Evaluator<'_> {
             }
             if let Form::Span = form
                 && has("at")
+                && text.split(' ').count() <= 2
             {
                 return Some(format!("one place is given with `at`: write `at = {text}`"));
             }

@@ -2,6 +2,7 @@
 
 use super::evaluator::Evaluator;
 use super::value::{Slot, Val};
+use super::written::bare;
 use crate::check::text::scope::ScopeId;
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, or_list};
@@ -77,9 +78,9 @@ impl Evaluator<'_> {
             return None;
         }
         if let (Some(Form::Interval(_)), [first, second, ..]) = (word.arguments.first().map(|a| &a.form), arguments)
-            && [first, second].iter().all(|a| a.name.is_none() && matches!(a.value.kind, ValueKind::Number { .. }))
+            && [first, second].iter().all(|a| a.name.is_none() && matches!(bare(&a.value).0.kind, ValueKind::Number { .. }))
         {
-            let [from, to] = [first, second].map(|a| self.files.sources.text(a.value.span));
+            let [from, to] = [first, second].map(|a| self.files.sources.text(bare(&a.value).0.span));
             let help = format!("from one to the other: write `{from} .. {to}`");
             self.findings.report(
                 Diagnostic::new(Code::E0406, format!("`{}` begins with a range, found two numbers", word.name))

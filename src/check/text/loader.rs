@@ -208,7 +208,7 @@ impl<'a> Loader<'a> {
         };
         // nobody else calls a file so: what stands in the library is not missed a second time
         let of_library = library::MODULES.iter().any(|(module, _)| *module == names[0]);
-        if scope.is_none() && (is_library(names[0]) || of_library) {
+        if scope.is_none() && names[0] != "std" && (is_library(names[0]) || of_library) {
             brought.broken.extend(library::MODULES.iter().map(|(module, _)| module.to_string()));
         }
         let place = used.alias.as_ref().map_or(used.path.span, |n| n.span);
