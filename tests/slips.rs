@@ -33,17 +33,17 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("speed     = 70 km/h", "speed     = \"70 km/h\"", Code::E0406, "write `70 km/h`, without quotes"),
     ("speed     = 70 km/h", "speed     = 60 to 70 km/h", Code::E0105, "write `60 .. 70 km/h`"),
     ("speed     = 70 km/h", "speed     = 60 .. 70 km/h", Code::E0406, "write `ramp(60 .. 70 km/h)`, if it goes from one to the other along the track"),
-    ("speed     = 70 km/h", "speed     = 70 m/s^2", Code::E0302, "expected  length x time^-1   [a speed]\nfound     length x time^-2   [an acceleration]"),
+    ("speed     = 70 km/h", "speed     = 70 m/s^2", Code::E0302, "write `70 m/s`, if that is what you meant"),
     ("spacing = bay", "spacing = 60 cm per sleeper", Code::E0304, "write `60 cm`"),
     ("spacing = bay", "spacing = 0,6 m", Code::E0105, "write `0.6 m`"),
     ("spacing = bay", "spacing = 24 in", Code::E0303, "write mm (1 in = 25.4 mm)"),
     ("spacing = bay", "spacing = 600 mm;", Code::E0105, "write `spacing = 600 mm`"),
     ("spacing = bay", "sleeper_spacing = bay", Code::E0402, "did you mean `spacing`?"),
     ("damping = 5 kN s/m }", "damping = 5 kNs/m }", Code::E0303, "did you mean `kN s/m`?"),
-    ("damping = 5 kN s/m }", "damping = 5 kN.s/m }", Code::E0101, "the factors of a unit are parted by a blank: `kN s/m`"),
+    ("damping = 5 kN s/m }", "damping = 5 kN.s/m }", Code::E0101, "the factors of a unit are parted by a blank: write `5 kN s/m`"),
     ("damping = 5 kN s/m }", "damping = 5 kN s / m }", Code::E0201, "is `m` a unit? it stands without blanks around `/` and `*`: `km/h`, `kN s/m`"),
-    ("damping = 5 kN s/m }", "damping = 5 kN m/s }", Code::E0302, "expected  mass x time^-1   [a damping]\nfound     mass x time^-3 x length^2   [a power]"),
-    ("damping = 5 kN s/m }", "damping = 5 % }", Code::E0302, "expected  mass x time^-1   [a damping]\nfound     no dimension"),
+    ("damping = 5 kN s/m }", "damping = 5 kN m/s }", Code::E0302, "write `5 kN s/m`, if that is what you meant"),
+    ("damping = 5 kN s/m }", "damping = 5 % }", Code::E0302, "a dashpot is given in `kN s/m`, not as a damping ratio: `damping = 5 kN s/m`, or as a time, damping / stiffness: `damping_time = 0.125 ms`"),
     ("damping = 5 kN s/m }", "dampening = 5 kN s/m }", Code::E0402, "did you mean `damping`?"),
     ("damping = 5 kN s/m }", "damping = 5 kN s/m", Code::E0104, "add `}`, most likely at the end of line 15"),
     ("pad     = { stiffness = pad_stiffness,", "pad     { stiffness = pad_stiffness,", Code::E0105, "write `pad = { stiffness = pad_stiffness, damping = 5 kN s/m }`"),
@@ -51,11 +51,11 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("pad     = { stiffness = pad_stiffness,", "pad     = { stiffness: pad_stiffness,", Code::E0105, "write `stiffness = pad_stiffness`"),
     ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = medium", Code::E0201, "did you mean `pads.medium` of the standard library?"),
     ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = usps.medium", Code::E0406, "name one, such as `pads.ahmadi_2026`, `pads.soft` or `pads.medium`, or write `{ field = value }`"),
-    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = 40 MN/m", Code::E0406, "name one, such as `pads.ahmadi_2026`, `pads.soft` or `pads.medium`, or write `{ field = value }`"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = 40 MN/m", Code::E0406, "write `{ stiffness = 40 MN/m }`"),
     ("let pad_stiffness = 40 MN/m", "let pad_stiffness = 40 mN/m", Code::E0405, "`40 MN/m` would be in range: is the prefix of the unit right?"),
     ("let pad_stiffness = 40 MN/m", "let pad_stiffness = 40 Mpa", Code::E0303, "did you mean `MPa`?"),
     ("let pad_stiffness = 40 MN/m", "let pad_stiffness = 40 N/mm", Code::E0405, "`40 MN/m` would be in range: is the prefix of the unit right?"),
-    ("let pad_stiffness = 40 MN/m", "let pad_stiffness = 40 MN/m²", Code::E0302, "expected  mass x time^-2   [a stiffness]\nfound     mass x time^-2 x length^-1   [a pressure or modulus]"),
+    ("let pad_stiffness = 40 MN/m", "let pad_stiffness = 40 MN/m²", Code::E0302, "write `40 MN/m`, if that is what you meant"),
     ("let pad_stiffness = 40 MN/m", "let pad_stiffness = 40 MNm^-1", Code::E0303, "did you mean `MN m^-1`?"),
     ("let pad_stiffness = 40 MN/m", "let pad_stiffness = 40*10^6 N/m", Code::E0305, "powers of ten stand in the number: `40e6 N/m`"),
     ("let pad_stiffness = 40 MN/m", "const pad_stiffness = 40 MN/m", Code::E0105, "write `let pad_stiffness = 40 MN/m` to name a value"),
@@ -72,7 +72,7 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("stiffness = 50 MN/m per seat,", "stiffness = 50 MN/m per track,", Code::E0304, "write `50 MN/m per seat`, if that is what it is"),
     ("mass = 150 kg per seat", "mass = 0.15 t per wheel", Code::E0304, "write `0.15 t per sleeper`, if that is what it is"),
     ("sections    = [open: 42 m, stiff: 24 m]", "sections    = (open: 42 m, stiff: 24 m)", Code::E0101, "lists stand in `[ ]`"),
-    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [open: 42, stiff: 24]", Code::E0301, "write `[open: 42, stiff: 24] m`"),
+    ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [open: 42, stiff: 24]", Code::E0301, "write `[open: 42, stiff: 24] m` or `[open: 42, stiff: 24] sleepers`"),
     ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [open: 42 m; stiff: 24 m]", Code::E0105, "write `[open: 42 m, stiff: 24 m]`"),
     ("sections    = [open: 42 m, stiff: 24 m]", "sections    = [open: -42 m, stiff: 24 m]", Code::E0405, "write `42 m`, without the sign"),
     ("sections    = [open: 42 m, stiff: 24 m]", "section     = [open: 42 m, stiff: 24 m]", Code::E0402, "did you mean `sections`?"),
@@ -93,7 +93,7 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("law              = mild", "law              = varandas", Code::E0201, "did you mean `laws.varandas_2014` of the standard library?"),
     ("law              = mild", "law              = \"mild\"", Code::E0406, "write `mild`, without quotes"),
     ("law mild : laws.varandas_2014 {", "law mild = laws.varandas_2014 {", Code::E0105, "write `law mild : laws.varandas_2014 {`"),
-    ("law mild : laws.varandas_2014 {", "law mild extends laws.varandas_2014 {", Code::E0101, "a declaration is `kind name : base { field = value }`"),
+    ("law mild : laws.varandas_2014 {", "law mild extends laws.varandas_2014 {", Code::E0105, "write `law mild : laws.varandas_2014 {`"),
     ("form.gamma = 8 mm", "form.gama = 8 mm", Code::E0402, "give the whole of it: `form = ...`"),
     ("at         = [-20, -5, -1, +1] sleepers", "at         = [-20, -5, -1, +1]", Code::E0301, "write `[-20, -5, -1, +1] sleepers` or `[-20, -5, -1, +1] m`"),
     ("over       = -20 .. -1 sleepers", "over       = -20 - -1 sleepers", Code::E0406, "write `-20 .. -1 sleepers`"),
@@ -104,8 +104,8 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("ramp(0 .. 2 mm, over", "Ramp(0 .. 2 mm, over", Code::E0408, "did you mean `ramp`?"),
     ("poisson_ratio = 0.3", "poissons_ratio = 0.3", Code::E0402, "did you mean `poisson_ratio`?"),
     ("poisson_ratio = 0.3", "nu = 0.3", Code::E0402, "did you mean `poisson_ratio`?"),
-    ("youngs_modulus = 90 MPa", "youngs_modulus = 90 MN/m", Code::E0302, "expected  mass x length^-1 x time^-2   [a pressure or modulus]\nfound     mass             x time^-2   [a stiffness]"),
-    ("[stone: 350 mm", "[stone: 350", Code::E0301, "write `350 m`, if that is the unit you meant"),
+    ("youngs_modulus = 90 MPa", "youngs_modulus = 90 MN/m", Code::E0302, "write `90 MN/m^2`, if that is what you meant"),
+    ("[stone: 350 mm", "[stone: 350", Code::E0301, "write `350 mm`, if that is the unit you meant"),
     ("trackform stiff : open {", "trackform stiff = open {", Code::E0105, "write `trackform stiff : open {`"),
     ("track line {", "track line = {", Code::E0105, "write `track line {`, without `=`"),
     ("use std", "import std", Code::E0101, "write `use std`"),
@@ -157,7 +157,7 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN/m; damping = 5 kN s/m }", Code::E0105, "write `stiffness = 40 MN/m`"),
     ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN/m damping = 5 kN s/m }", Code::E0101, "write `, damping`"),
     ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN / m }", Code::E0201, "is `m` a unit? it stands without blanks around `/` and `*`: `km/h`, `kN s/m`"),
-    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN per m }", Code::E0302, "expected  mass x time^-2   [a stiffness]\nfound     mass x time^-2 x length   [a force]"),
+    ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN per m }", Code::E0302, "write `40 MN/m`, if that is what you meant"),
     ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN m-1 }", Code::E0305, "a negative power is written `40 MN m^-1`"),
     ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 MN·m⁻¹ }", Code::E0101, "a negative power is written `m^-1`"),
     ("pad     = { stiffness = pad_stiffness, damping = 5 kN s/m }", "pad     = { stiffness = 40 meganewton/m }", Code::E0303, "did you mean `MN/m`?"),
@@ -191,7 +191,7 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("trackform open {", "trackform open :", Code::E0105, "write `trackform open {`"),
     ("trackform open {", "trackform open [", Code::E0105, "write `trackform open {`"),
     ("trackform open {", "trackform open = {", Code::E0105, "write `trackform open {`, without `=`"),
-    ("trackform open {", "trackform \"open\" {", Code::E0101, "a declaration is `kind name : base { field = value }`"),
+    ("trackform open {", "trackform \"open\" {", Code::E0105, "write `trackform open {`"),
     ("trackform open {", "trackform: open {", Code::E0201, "write `trackform open {`, without the colon"),
     ("trackform open {", "trackform open: {", Code::E0101, "name what is extended, or remove the `:`"),
     ("trackform open {", "open = trackform {", Code::E0105, "write `trackform open {`"),
@@ -200,9 +200,9 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("trackform open {", "trackforms open {", Code::E0401, "did you mean `trackform`?"),
     ("trackform open {", "trackform open-line {", Code::E0101, "a declaration is `kind name : base { field = value }`"),
     ("trackform stiff : open {", "track stiff : open {", Code::E0205, "write `trackform stiff : open`"),
-    ("trackform stiff : open {", "trackform stiff < open {", Code::E0101, "a declaration is `kind name : base { field = value }`"),
-    ("trackform stiff : open {", "trackform stiff(open) {", Code::E0101, "a declaration is `kind name : base { field = value }`"),
-    ("trackform stiff : open {", "trackform stiff from open {", Code::E0101, "a declaration is `kind name : base { field = value }`"),
+    ("trackform stiff : open {", "trackform stiff < open {", Code::E0105, "write `trackform stiff : open {`"),
+    ("trackform stiff : open {", "trackform stiff(open) {", Code::E0105, "write `trackform stiff : open {`"),
+    ("trackform stiff : open {", "trackform stiff from open {", Code::E0105, "write `trackform stiff : open {`"),
     ("trackform stiff : open {", "trackform stiff : trackform open {", Code::E0105, "write `trackform stiff : open {`"),
     ("trackform stiff : open {", "trackform stiff : opne {", Code::E0201, "did you mean `open`?"),
     ("trackform stiff : open {", "trackform stiff :: open {", Code::E0105, "write `trackform stiff : open {`"),
@@ -211,8 +211,8 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("track line {", "track line", Code::E0105, "write `track line {`"),
     ("track line {", "track line(", Code::E0105, "write `track line {`"),
     ("use std", "use std;", Code::E0105, "write `use std`"),
-    ("use std", "use \"std\"", Code::E0101, "write `use module` or `use module as name`"),
-    ("use std", "use <std>", Code::E0101, "write `use module` or `use module as name`"),
+    ("use std", "use \"std\"", Code::E0101, "write `use std`"),
+    ("use std", "use <std>", Code::E0101, "write `use std`"),
     ("use std", "use std::pads", Code::E0101, "names are joined by dots: `pads.medium`"),
     ("use std", "using std", Code::E0101, "write `use std`"),
     ("use std", "include std", Code::E0101, "write `use std`"),
@@ -264,13 +264,13 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("over       = -20 .. -1 sleepers", "over       = -20 through -1 sleepers", Code::E0406, "from one end to the other: `-20 .. -1 sleepers`, `-6 .. 0 m`"),
     ("over       = -20 .. -1 sleepers", "over       = -20 until -1 sleepers", Code::E0406, "from one end to the other: `-20 .. -1 sleepers`, `-6 .. 0 m`"),
     ("over       = -20 .. -1 sleepers", "over       = -20 and -1 sleepers", Code::E0406, "from one end to the other: `-20 .. -1 sleepers`, `-6 .. 0 m`"),
-    ("over       = -20 .. -1 sleepers", "over       = -1 .. -20 sleepers", Code::E0505, "write the smaller end first: `-20 sleepers .. -1`"),
+    ("over       = -20 .. -1 sleepers", "over       = -1 .. -20 sleepers", Code::E0505, "write the smaller end first: `-20 .. -1 sleepers`"),
     ("speed     = 70 km/h", "speed     = 70 kph", Code::E0303, "did you mean `km/h`?"),
     ("speed     = 70 km/h", "speed     = 70 Km/h", Code::E0303, "did you mean `km/h`?"),
     ("speed     = 70 km/h", "speed     = 70 km/h.", Code::E0101, "nothing ends with a point: take it away"),
     ("speed     = 70 km/h", "speed     = 70 km/h;", Code::E0105, "write `speed     = 70 km/h`"),
     ("speed     = 70 km/h", "speed     = 70 kmph", Code::E0303, "did you mean `km/h`?"),
-    ("speed     = 70 km/h", "speed     = 70 km per h", Code::E0302, "expected  length x time^-1   [a speed]\nfound     length   [a length]"),
+    ("speed     = 70 km/h", "speed     = 70 km per h", Code::E0302, "write `70 km/h`, if that is what you meant"),
     ("speed     = 70 km/h", "speed     = 70 km/hour", Code::E0303, "did you mean `km/h`?"),
     ("speed     = 70 km/h", "speed     = 19.4 m/sec", Code::E0303, "did you mean `m/s`?"),
     ("speed     = 70 km/h", "speed     = 19.4 m s-1", Code::E0305, "a negative power is written `19.4 m s^-1`"),
@@ -305,7 +305,7 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("friction = 0.7", "friction = 0.7 [-]", Code::E0101, "a unit stands without brackets: `40 MN/m`"),
     ("friction = 0.7", "friction = tan(35 deg)", Code::E0408, "functions of numbers are `sqrt`, `abs`, `min` and `max`"),
     ("friction = 0.7", "friction = tan 35", Code::E0101, "arguments stand in parentheses, `tan(...)`, fields in braces, `{ name = value }`"),
-    ("friction = 0.7", "friction = 35 deg", Code::E0302, "expected  no dimension\nfound     angle   [an angle]"),
+    ("friction = 0.7", "friction = 35 deg", Code::E0302, "write `0.7002`: a coefficient of friction is the tangent of its angle"),
     ("friction = 0.7", "friction = 35°", Code::E0303, "degrees are written `deg`: `35 deg`"),
     ("friction = 0.7", "friction = μ", Code::E0101, "names are made of ASCII letters, digits and `_`"),
     ("grading  = { passing = [22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 %], cut_below = 25 mm }", "grading  = { passing = { 22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 % }, cut_below = 25 mm }", Code::E0101, "write `[22.4 mm: 0 %, 40 mm: 60 %, 63 mm: 100 %]`"),
@@ -315,9 +315,9 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("density        = 2000 kg/m^3", "density        = 2000 kg/m**3", Code::E0101, "powers are written `m^3`"),
     ("density        = 2000 kg/m^3", "density        = 2000 kg/cbm", Code::E0303, "did you mean `kg/m^3`?"),
     ("density        = 2000 kg/m^3", "density        = 2000 kg m-3", Code::E0305, "a negative power is written `2000 kg m^-3`"),
-    ("density        = 2000 kg/m^3", "density        = 2000 kg.m^-3", Code::E0101, "the factors of a unit are parted by a blank: `kN s/m`"),
+    ("density        = 2000 kg/m^3", "density        = 2000 kg.m^-3", Code::E0101, "the factors of a unit are parted by a blank: write `2000 kg m^-3`"),
     ("density        = 2000 kg/m^3", "density        = 2.0 g/cm3", Code::E0303, "did you mean `g/cm^3`?"),
-    ("density        = 2000 kg/m^3", "density        = 20 kN/m^3", Code::E0302, "expected  mass x length^-3   [a density]\nfound     mass x length^-2 x time^-2   [a bedding modulus]"),
+    ("density        = 2000 kg/m^3", "density        = 20 kN/m^3", Code::E0302, "write `2039 kg/m^3`: a weight divided by 9.81 m/s^2 is a mass"),
     ("density        = 2000 kg/m^3", "density        = 2.000,0 kg/m^3", Code::E0105, "write `2000.0 kg/m^3`"),
     ("density        = 2000 kg/m^3", "density        = 2,000.0 kg/m^3", Code::E0105, "write `2000.0 kg/m^3`"),
     ("density        = 2000 kg/m^3", "density        = 2000 kg/m³ # dry", Code::E0105, "write `// dry`"),
@@ -332,7 +332,7 @@ const SLIPS: &[(&str, &str, Code, &str)] = &[
     ("youngs_modulus = 90 MPa,", "Youngs_Modulus = 90 MPa,", Code::E0402, "did you mean `youngs_modulus`?"),
     ("youngs_modulus = 90 MPa,", "youngsModulus = 90 MPa,", Code::E0402, "did you mean `youngs_modulus`?"),
     ("youngs_modulus = 90 MPa,", "youngs-modulus = 90 MPa,", Code::E0101, "a name has no dashes: write `youngs_modulus = 90 MPa`"),
-    ("youngs_modulus = 90 MPa,", "youngs_modulus = 90e6,", Code::E0301, "write `90e6 MPa`, if that is the unit you meant"),
+    ("youngs_modulus = 90 MPa,", "youngs_modulus = 90e6,", Code::E0301, "write `90e6 Pa`, if that is the unit you meant"),
     ("youngs_modulus = 90 MPa,", "youngs_modulus = 90 bar,", Code::E0303, "write kPa (1 bar = 100 kPa)"),
     ("youngs_modulus = 90 MPa,", "youngs_modulus = 13 ksi,", Code::E0303, "write MPa (1 ksi = 6.895 MPa)"),
     ("total  = 500 axles", "total  = 500 Achsen", Code::E0303, "did you mean `axles`?"),
@@ -379,17 +379,24 @@ fn told(compiled: &Compiled) -> String {
 #[test]
 fn a_slip_is_said_once_with_its_way_out() {
     assert!(SLIPS.len() >= 100, "{}", SLIPS.len());
+    let mut wrong = Vec::new();
     for (right, typed, code, way_out) in SLIPS {
         assert_eq!(SCENE.matches(right).count(), 1, "`{right}` stands once");
         let compiled = compile("scene.track", &SCENE.replace(right, typed), &NoModules, &[]);
-        let [found] = compiled.diagnostics.as_slice() else {
-            panic!("`{typed}`: {} diagnostics\n{}", compiled.diagnostics.len(), told(&compiled));
-        };
-        assert_eq!((found.code, found.help.as_deref()), (*code, Some(*way_out)), "`{typed}`:\n{}", told(&compiled));
-        let place = found.labels[0].span;
         let line = SCENE[..SCENE.find(right).unwrap()].matches('\n').count() + 1;
-        assert_eq!(compiled.sources.position(place.file, place.start).line, line, "`{typed}`:\n{}", told(&compiled));
+        let sound = match compiled.diagnostics.as_slice() {
+            [found] => {
+                let place = found.labels[0].span;
+                (found.code, found.help.as_deref()) == (*code, Some(*way_out))
+                    && compiled.sources.position(place.file, place.start).line == line
+            }
+            _ => false,
+        };
+        if !sound {
+            wrong.push(format!("`{typed}`: expected {code:?} in line {line} with {way_out:?}\n{}", told(&compiled)));
+        }
     }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //!
 //! Checking, defaults and `trackbed docs` all read this table; a field is added in one place, `kinds.rs`.
 
+mod called;
 mod docs;
 mod fields;
 mod kinds;
@@ -11,6 +12,7 @@ mod reads;
 mod results;
 mod traffic;
 
+pub use called::{Names, called};
 pub use docs::{index, page, section};
 pub use kinds::{COMMON, KINDS, RANDOM};
 pub use reads::{Reader, Reads};
@@ -155,32 +157,6 @@ pub struct Alternative {
 /// Kinds of the language that this version does not read yet.
 pub const PLANNED_KINDS: &[&str] = &[];
 
-/// What engineers call fields in formulas, in other programs and in speech.
-const ALSO_CALLED: [(&str, &str); 22] = [
-    ("velocity", "speed"),
-    ("v", "speed"),
-    ("E", "youngs_modulus"),
-    ("modulus", "youngs_modulus"),
-    ("nu", "poisson_ratio"),
-    ("EI", "bending_stiffness"),
-    ("I", "second_moment"),
-    ("A", "area"),
-    ("k", "stiffness"),
-    ("c", "damping"),
-    ("m", "mass"),
-    ("weight", "mass"),
-    ("rho", "density"),
-    ("mu", "friction"),
-    ("dt", "time_step"),
-    ("width", "base_width"),
-    ("sleeper_spacing", "spacing"),
-    ("distance", "spacing"),
-    ("wheelbase", "spacing"),
-    ("inertia", "pitch_inertia"),
-    ("gradation", "grading"),
-    ("axles", "total"),
-];
-
 /// The kind of that name, nested ones included.
 pub fn kind(name: &str) -> Option<&'static Kind> {
     KINDS.iter().find(|k| k.name == name)
@@ -191,6 +167,12 @@ pub fn basis_name(name: &str) -> bool {
     let fields = KINDS.iter().flat_map(|k| k.fields);
     let mut bases = fields.filter_map(|f| f.form.measure()?.basis);
     bases.any(|basis| basis.names.iter().any(|(known, _)| *known == name))
+}
+
+/// The kind that a name which is none most likely stands for.
+pub fn meant_kind(name: &str) -> Option<&'static Kind> {
+    let stands = || KINDS.iter().filter(|k| k.role != Role::Nested).map(|k| k.name);
+    kind(called(Names::Kinds, name, stands()).or_else(|| crate::diag::nearest::nearest(name, stands()))?)
 }
 
 /// The word of that name, in whichever field it stands.
@@ -224,9 +206,14 @@ impl Kind {
 
     /// The field that a name which it does not have most likely stands for.
     pub fn meant(&self, name: &str) -> Option<&'static str> {
-        let called = ALSO_CALLED.iter().find(|(theirs, _)| *theirs == name).map(|(_, ours)| *ours);
-        let known = called.filter(|ours| self.field_names().any(|field| field == *ours));
+        let known = called(Names::Fields, name, self.field_names());
         known.or_else(|| crate::diag::nearest::nearest(name, self.field_names()))
+    }
+
+    /// The field, and the word in it, that have an argument of that name.
+    pub fn argument(&self, name: &str) -> Option<(&'static Field, &'static Word)> {
+        let takes = |word: &&Word| word.arguments.iter().any(|a| a.name == name);
+        self.fields.iter().find_map(|field| Some((field, field.form.words().into_iter().find(takes)?)))
     }
 
     /// Whether the language has such a field, and this version does not read it.

@@ -86,6 +86,8 @@ impl<'p> Builder<'p> {
                 && let ([name], [kind]) = (path.names.as_slice(), kind.names.as_slice())
             {
                 ("`=` in the header of a declaration", format!("write `{} {} {{`", kind.text, name.text))
+            } else if let (ValueKind::Object { base: None, .. }, [name]) = (&value.kind, path.names.as_slice()) {
+                ("`=` in the header of a declaration", format!("write `{} {{`, without `=`", name.text))
             } else if path.names.len() == 1 {
                 ("a value outside of a declaration needs `let`", format!("write `let {text}`"))
             } else {

@@ -121,6 +121,7 @@ impl<'p> Builder<'p> {
                     return Some(format!("write `{items}` for several, `{name}` for one: a name has no blanks"));
                 }
                 let value = rest.starts_with(|c: char| c.is_alphanumeric());
+                let rest = rest.strip_prefix("x ").unwrap_or(rest);
                 (!key.is_empty() && value && !rest.starts_with("per ")).then(|| format!("write `{key}: {rest}`"))
             }
             Rule::exact_field if matches!(first_word(part), "let" | "use") => {

@@ -33,8 +33,12 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
             Kind::ForeignComment => {
                 draft.overwrite(token, "");
                 let words = text.trim_start_matches(['#', '-', '%', '!', '\'']);
+                let included = words.trim().strip_prefix("include").map(|name| name.trim().trim_matches(['<', '>', '"']));
                 let sign = if text.starts_with("--") { "--" } else { &text[..1] };
-                let help = format!("write `// {}`", words.trim());
+                let help = match included {
+                    Some(name) => format!("write `use {name}`"),
+                    None => format!("write `// {}`", words.trim()),
+                };
                 report(draft, token, format!("`{sign}` does not begin a comment"), help);
             }
             Kind::BlockComment => block_comment(draft, token),
@@ -44,7 +48,7 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
                 draft.poisoned.insert(token.start);
                 let mistake = Diagnostic::new(Code::E0106, "text without its closing quote")
                     .label(draft.span(token.start, token.end), "opened here, and still open at the end of the line")
-                    .help(format!("write `{}\"`", text.trim_end()));
+                    .help(format!("write `{}\"`", text.trim_end().trim_end_matches(['\'', '’', '”', '`'])));
                 draft.report(mistake);
             }
             Kind::Sign => match text {
@@ -91,6 +95,7 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
                     let help = format!("write `{}`", rewritten(draft.original, tokens, i, &joint));
                     report(draft, token, format!("`{text}` is not a sign of this language"), help);
                 }
+                _ if wide(draft, token, &mut told) => {}
                 _ => look_alike(draft, tokens, i),
             },
             _ => {}
@@ -190,6 +195,39 @@ fn odd_text(draft: &mut Draft, token: &Token) {
     }
     let right = format!("\"{}\"", inner.replace('\\', "\\\\").replace('"', "\\\""));
     report(draft, token, "text stands in double quotes", format!("write `{right}`"));
+}
+
+/// Signs of a keyboard for Chinese or Japanese, with the blank that we put behind them.
+const WIDE: [(&str, &str); 12] = [
+    ("＝", "= "),
+    ("：", ": "),
+    ("，", ", "),
+    ("、", ", "),
+    ("；", ", "),
+    ("（", "("),
+    ("）", ")"),
+    ("【", "["),
+    ("】", "]"),
+    ("％", "%"),
+    ("＜", "< "),
+    ("＞", "> "),
+];
+
+/// A wide sign is told once a line, with the line as it should stand.
+fn wide(draft: &mut Draft, token: &Token, known: &mut Vec<&str>) -> bool {
+    let text = token.text(draft.original);
+    let Some((_, right)) = WIDE.iter().find(|(wide, _)| *wide == text) else { return false };
+    draft.overwrite(token, right.trim_end());
+    if !known.contains(&"wide") {
+        known.push("wide");
+        let start = draft.original[..token.start].rfind('\n').map_or(0, |n| n + 1);
+        let line = draft.original[start..].lines().next().unwrap_or_default();
+        let mended = WIDE.iter().fold(line.to_owned(), |line, (wide, right)| line.replace(wide, right));
+        let mended = mended.split_whitespace().collect::<Vec<_>>().join(" ");
+        let help = format!("write `{mended}`");
+        report(draft, token, format!("`{text}` looks like `{}` but is another character", right.trim_end()), help);
+    }
+    true
 }
 
 fn look_alike(draft: &mut Draft, tokens: &[Token], i: usize) {

@@ -13,6 +13,16 @@ impl Builder<'_> {
         let (before, after) = (text[start..found.start.max(start)].trim(), &text[found.end..]);
         let rest = part.get(found.start.saturating_sub(start)..).unwrap_or_default();
         let digit = |c: char| c.is_ascii_digit();
+        if let Some(help) = unit_or_remark(word, before, rest, after) {
+            return Some(help);
+        }
+        let compares = part.contains(['<', '>']) && !part.contains('=');
+        if exact == Rule::exact_field && (compares || part.starts_with('[')) {
+            return Some(match part.starts_with('[') {
+                true => "a list is given to a field: write `that = [...]`".to_owned(),
+                false => format!("a comparison is given to `that`: write `that = [{part}]`"),
+            });
+        }
         let fixed = match word {
             "and" | "&&" | "&" | "or" if !part.contains(['<', '>', '=']) => {
                 "several values stand in brackets: `[a, b]`"
@@ -34,6 +44,12 @@ impl Builder<'_> {
             "[" if before.ends_with(digit) => "a unit stands without brackets: `40 MN/m`",
             "[" => "a list is a value of its own: arguments stand in `( )`, the names of a module behind a dot",
             "." if before.ends_with(digit) && after.starts_with(digit) => "a number has one point",
+            "\\" | ".." if after.trim_start_matches(['.', ' ', '\t']).starts_with('\n') => {
+                "a line goes on in the next one behind a comma or an operator: take it away"
+            }
+            "/" if before.ends_with('+') => {
+                "a value has no tolerance: `random(mean, sd = ...)` scatters along the track, a study varies"
+            }
             "." if !after.starts_with(char::is_alphanumeric) => "nothing ends with a point: take it away",
             "{" if exact == Rule::exact_field && found.start == start => "one pair of braces is enough",
             _ => "",
@@ -42,6 +58,27 @@ impl Builder<'_> {
             return Some(fixed.to_owned());
         }
         let value = exact == Rule::exact_value || exact == Rule::exact_argument;
+        if let Some(help) = library_name(word, before, found).filter(|_| value) {
+            return Some(help);
+        }
+        let equals = after.trim_start().starts_with('=') && !after.trim_start().starts_with("==");
+        if value && found.kind == Kind::Word && !before.is_empty() && equals {
+            return Some(format!("write `, {word}`"));
+        }
+        if exact == Rule::exact_item && part.starts_with("expect ") && part.contains(['<', '>']) {
+            return Some(format!("write `expect {{ that = [{}] }}`", part["expect".len()..].trim()));
+        }
+        if exact == Rule::exact_item && part.starts_with("from ") && part.contains(" import ") {
+            let module = part.split_whitespace().nth(1).unwrap_or_default();
+            return Some(format!("write `use {module}`"));
+        }
+        let plain = |text: &str| {
+            text.split_whitespace().count() >= 2 && text.chars().all(|c| c.is_alphabetic() || "',- ".contains(c))
+        };
+        let behind_key = part.split_once(':').map_or("", |(_, text)| text.trim());
+        if exact == Rule::exact_entry && plain(behind_key) && behind_key.split_whitespace().count() > 2 {
+            return Some(format!("a text stands in quotes: write `\"{behind_key}\"`"));
+        }
         let name = !before.is_empty() && before.chars().all(|c| c.is_ascii_alphanumeric() || "_.".contains(c));
         let named = name && before.starts_with(|c: char| c.is_ascii_alphabetic());
         if exact == Rule::exact_entry && part.contains(['<', '>']) && named {
@@ -52,10 +89,18 @@ impl Builder<'_> {
             });
         }
         match word {
+            "=" if value && named && before.contains('.') => {
+                Some(format!("pairs stand in brackets: write `[{before}: {}]`", rest.trim_start_matches('=').trim()))
+            }
             "=" if value && named => Some(match self.path_before(start) {
                 Some(path) => format!("write `{path}.{before} {rest}`, or `{path} = {{ {before} {rest} }}`"),
                 None => format!("write `{before} {rest}` alone"),
             }),
+            ":" if exact == Rule::exact_entry && before.starts_with(digit) && after.starts_with(digit) => {
+                let mut parts = part.split(':');
+                let (from, step, to) = (parts.next()?, parts.next()?, parts.next()?);
+                Some(format!("from one value to another in steps: `steps({from} .. {to}, by = {step})`, each with its unit"))
+            }
             ":" if exact == Rule::exact_entry && before.contains(':') => Some("pairs are parted by commas".to_owned()),
             ":" if value && !before.is_empty() => {
                 let line = self.items_of_line(start);
@@ -63,6 +108,11 @@ impl Builder<'_> {
                     true => "a span is written `-20 .. -1 sleepers`, several values stand in brackets".to_owned(),
                     false => format!("pairs stand in brackets: write `[{line}]`"),
                 })
+            }
+            "'" if before.ends_with(digit) && !after.starts_with(digit) => {
+                let feet: f64 = before.rsplit([' ', '=']).next()?.parse().ok()?;
+                let metres = crate::units::number(0.3048 * feet);
+                Some(format!("a length in feet? {feet} ft are {metres} m (1 ft = 0.3048 m)"))
             }
             "'" if before.ends_with(digit) => Some(format!("digits are grouped by `_`: `{before}_{}`", &rest[1..])),
             "·" | "x" if before.ends_with(digit) => Some("powers of ten stand in the number: `4e7 N/m`".to_owned()),
@@ -129,4 +179,59 @@ fn habit_of_field(part: &str) -> Option<String> {
     let words = if sign == '\'' { name.replace('\'', "") } else { name.to_owned() };
     let joined = words.split([' ', '-']).collect::<Vec<_>>().join("_");
     letters.then(|| format!("a name has no {what}: write `{joined} = {}`", value.trim()))
+}
+
+/// Units in another spelling, and remarks, where they show at one sign.
+fn unit_or_remark(word: &str, before: &str, rest: &str, after: &str) -> Option<String> {
+    let digit = |c: char| c.is_ascii_digit();
+    let number = before.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+    let rest = rest.trim_end();
+    match word {
+        "\\" if number && after.starts_with(char::is_alphabetic) => Some(format!("write `{before}/{}`", rest.trim_start_matches('\\'))),
+        "." if number && before.ends_with(char::is_alphabetic) && after.starts_with(char::is_alphabetic) => {
+            Some(format!("the factors of a unit are parted by a blank: write `{before} {}`", rest.trim_start_matches('.')))
+        }
+        "(" if number && after.starts_with("per ") => {
+            Some(format!("write `{before} {}`", rest.trim_start_matches('(').trim_end_matches(')')))
+        }
+        "1" if before.ends_with(digit) && rest == "1/s" => Some(format!("write `{before} Hz`")),
+        "<=" | ">=" | "<" | ">" if before.is_empty() && after.trim_start().starts_with(digit) => {
+            Some(format!("a field has one value: write `{}`", rest.trim_start_matches(['<', '>', '=', ' '])))
+        }
+        _ => None,
+    }
+}
+
+/// Profiles by their names in EN 13674, which begin with a digit, and in the library.
+const RAILS: [(&str, &str); 8] = [
+    ("60E1", "UIC60"),
+    ("60E2", "UIC60"),
+    ("UIC60E1", "UIC60"),
+    ("54E1", "UIC54"),
+    ("54E2", "UIC54"),
+    ("54E3", "UIC54"),
+    ("49E1", "S49"),
+    ("60N", "CHN60"),
+];
+
+/// The name in the library for one that begins with a digit, or that has a blank or a dash.
+fn library_name(word: &str, before: &str, found: Token) -> Option<String> {
+    let ours = |name: &str| RAILS.iter().find(|(theirs, _)| *theirs == name).map(|(_, ours)| *ours);
+    if found.kind == Kind::Number && before.ends_with('.') && before.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        return Some(match ours(word) {
+            Some(ours) => format!("a name begins with a letter: write `{before}{ours}`"),
+            None => "a name begins with a letter: `trackbed docs` lists the entries of the library".to_owned(),
+        });
+    }
+    if let Some(ours) = ours(before).filter(|_| word == "{") {
+        return Some(format!("a name begins with a letter: write `rails.{ours}`"));
+    }
+    let path = |text: &str| text.contains('.') && text.chars().all(|c| c.is_ascii_alphanumeric() || "._".contains(c));
+    let letters = before.starts_with(|c: char| c.is_ascii_alphabetic());
+    if found.kind == Kind::Number && letters && path(before) && before.ends_with(char::is_alphabetic) {
+        return Some(format!("a name has no blanks: write `{before}{word}`"));
+    }
+    let joined = before.replace('-', "");
+    let dashed = before.contains('-') && !before.contains(" -") && letters && path(&joined);
+    (word == "{" && dashed).then(|| format!("a name has no dashes: write `{joined}`"))
 }

@@ -1,13 +1,14 @@
 //! From text to a tree, and from text to tidy text.
 //!
-//! [`parse`] reads a file whole and reports all its mistakes at once: `token` cuts it, `header`, `foreign` and `balance` repair
-//! it so that `grammar/track.pest` can read it to the end, `build` makes the tree, and `explain` finds words for what
+//! [`parse`] reads a file whole and reports all its mistakes at once: `token` cuts it; `uses`, `quotes`, `declared`, `indented`,
+//! `header`, `foreign` and `balance` repair it so that `grammar/track.pest` can read it to the end, `build` makes the tree, and `explain` finds words for what
 //! could not be read. [`format()`] lays the tokens out anew.
 
 mod balance;
 mod brackets;
 mod build;
 mod builder;
+mod declared;
 mod decode;
 mod draft;
 mod explain;
@@ -16,11 +17,14 @@ mod format;
 mod grammar;
 mod habits;
 mod header;
+mod indented;
 mod layout;
 mod parse;
 mod prepare;
+mod quotes;
 mod token;
 pub mod tree;
+mod uses;
 mod value;
 
 pub use decode::decode;

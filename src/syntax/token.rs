@@ -104,7 +104,7 @@ pub(super) fn next(text: &str, from: usize) -> Option<Token> {
             || (Kind::Text { closed: false }, rest[..line_length(rest)].trim_end().len()),
             |length| (Kind::Text { closed: true }, length),
         ),
-        '\'' | '“' | '”' | '„' | '‘' | '’' => {
+        '\'' | '“' | '”' | '„' | '‘' | '’' | '‚' | '`' | '«' | '»' | '「' | '『' => {
             odd_text(rest, c).map_or((Kind::Sign, c.len_utf8()), |n| (Kind::OddText, n))
         }
         '#' => (Kind::ForeignComment, line_length(rest)),
@@ -147,7 +147,12 @@ const COMMENT_REACH: usize = 2000;
 fn odd_text(rest: &str, open: char) -> Option<usize> {
     let closing: &[char] = match open {
         '\'' => &['\''],
-        '‘' | '’' => &['’', '‘'],
+        '‘' | '’' | '‚' => &['’', '‘'],
+        '`' => &['`', '´', '\''],
+        '«' => &['»'],
+        '»' => &['«'],
+        '「' => &['」'],
+        '『' => &['』'],
         _ => &['”', '“'],
     };
     let close = rest.chars().skip(1).take(TEXT_REACH).find(|c| closing.contains(c))?;
@@ -170,6 +175,13 @@ fn unclosed_length(text: &str, line: &[Token]) -> usize {
             }
             _ => {}
         }
+    }
+    // what closes or parts follows a quote whose opening one is lost
+    if text[1..].trim_start().is_empty() || text[1..].starts_with([')', ']', '}', ',']) {
+        return 1;
+    }
+    if let (Some('('), Some(close)) = (open.last(), text.find(')')) {
+        return text[..close].trim_end().len();
     }
     let mut kept = text;
     // The outermost bracket is the last on the line.

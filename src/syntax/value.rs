@@ -256,7 +256,16 @@ impl<'p> Builder<'p> {
                     let c = other.map_or(String::new(), |(_, c)| c.to_string());
                     let at = self.span(start + 1 + i, start + 2 + i + c.len());
                     let mistake = Diagnostic::new(Code::E0101, format!("`\\{c}` in a text"));
-                    self.report(mistake.label(at, "only `\\\"` and `\\\\` are known").help(format!("write `\\\\{c}`")));
+                    let whole = raw.trim_matches('"');
+                    let help = match (whole.contains(":\\"), whole.ends_with(".csv") || whole.ends_with(".stl")) {
+                        (true, true) => "a file lies below the main file's folder: copy it there and name it from there, \
+                                         with `/` between folders"
+                            .to_owned(),
+                        (false, true) => format!("write `{}`", whole.replace('\\', "/")),
+                        _ if whole.contains("\\\\") => format!("write `\\\\{c}`"),
+                        _ => format!("write `\"{}\"`", whole.replace('\\', "\\\\")),
+                    };
+                    self.report(mistake.label(at, "only `\\\"` and `\\\\` are known").help(help));
                     return ValueKind::Error;
                 }
             }

@@ -5,11 +5,14 @@
 
 mod compare;
 mod dimension;
+mod foreign;
 mod parse;
+mod usual;
 
 pub use compare::compare;
 pub use dimension::Dimension;
 pub use parse::{Unit, UnitError, parse_unit};
+pub use usual::usual_units;
 
 /// A number in SI units with its dimension.
 #[derive(Debug, Clone, Copy, PartialEq)]

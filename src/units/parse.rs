@@ -3,6 +3,7 @@
 //! Factors are joined by a blank, `*` or `·`; `/` divides by the next factor only.
 
 use super::Dimension;
+use super::foreign::ours;
 
 /// A unit: its size in SI and its dimension.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,79 +56,6 @@ const PLAIN: [(&str, f64, Dimension); 16] = [
     ("sleepers", 1.0, Dimension::SLEEPERS),
     ("sleeper", 1.0, Dimension::SLEEPERS),
     ("cycles", 1.0, Dimension::CYCLES),
-];
-
-/// Spellings that people use elsewhere, and ours.
-const FOREIGN: &[(&str, &str)] = &[
-    ("tonne", "t"),
-    ("tonnes", "t"),
-    ("ton", "t"),
-    ("tons", "t"),
-    ("hr", "h"),
-    ("hrs", "h"),
-    ("hour", "h"),
-    ("hours", "h"),
-    ("sec", "s"),
-    ("secs", "s"),
-    ("second", "s"),
-    ("seconds", "s"),
-    ("minutes", "min"),
-    ("millisecond", "ms"),
-    ("milliseconds", "ms"),
-    ("millimetres", "mm"),
-    ("millimeters", "mm"),
-    ("kilonewtons", "kN"),
-    ("mt", "MGT"),
-    ("mgt", "MGT"),
-    ("trains", "axles"),
-    ("day", "d"),
-    ("days", "d"),
-    ("meter", "m"),
-    ("meters", "m"),
-    ("metre", "m"),
-    ("metres", "m"),
-    ("kph", "km/h"),
-    ("kmh", "km/h"),
-    ("kgs", "kg"),
-    ("degrees", "deg"),
-    ("percent", "%"),
-    ("pct", "%"),
-    ("in", "mm (1 in = 25.4 mm)"),
-    ("inch", "mm (1 in = 25.4 mm)"),
-    ("ft", "m (1 ft = 0.3048 m)"),
-    ("lb", "kg (1 lb = 0.4536 kg)"),
-    ("mph", "km/h (1 mph = 1.609 km/h)"),
-    ("kip", "kN (1 kip = 4.448 kN)"),
-    ("ksi", "MPa (1 ksi = 6.895 MPa)"),
-    ("psi", "kPa (1 psi = 6.895 kPa)"),
-    ("bar", "kPa (1 bar = 100 kPa)"),
-    ("kgf", "N (1 kgf = 9.81 N)"),
-    ("kmph", "km/h"),
-    ("cbm", "m^3"),
-    ("qm", "m^2"),
-    ("newton", "N"),
-    ("newtons", "N"),
-    ("kilonewton", "kN"),
-    ("meganewton", "MN"),
-    ("meganewtons", "MN"),
-    ("kilometre", "km"),
-    ("kilometres", "km"),
-    ("kilometers", "km"),
-    ("centimetres", "cm"),
-    ("millimetre", "mm"),
-    ("kilograms", "kg"),
-    ("kilogram", "kg"),
-    ("pascal", "Pa"),
-    ("megapascal", "MPa"),
-    ("gt", "MGT"),
-    ("axels", "axles"),
-    ("axel", "axles"),
-    ("achsen", "axles"),
-    ("wheelsets", "axles"),
-    ("schwellen", "sleepers"),
-    ("ties", "sleepers"),
-    ("loadings", "cycles"),
-    ("million", "e6 in the number, as in `1e6 axles` (for a million)"),
 ];
 
 /// Reads a unit. The empty text is the unit of a plain number.
@@ -254,10 +182,10 @@ fn known(name: &str) -> Option<Unit> {
 
 /// What an unknown symbol probably means: a foreign spelling, two units run together, other letters' case.
 fn suggest(name: &str) -> Option<String> {
-    let lower = name.to_lowercase();
-    if let Some((_, ours)) = FOREIGN.iter().find(|(theirs, _)| *theirs == lower) {
-        return Some((*ours).to_string());
+    if let Some(ours) = ours(name) {
+        return Some(ours.to_string());
     }
+    let lower = name.to_lowercase();
     let splits = name.char_indices().skip(1).map(|(i, _)| name.split_at(i));
     for (left, right) in splits {
         if known(left).is_some_and(|u| !u.dimension.is_none()) && known(right).is_some_and(|u| !u.dimension.is_none()) {

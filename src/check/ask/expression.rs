@@ -2,6 +2,7 @@
 
 use super::reader::Reader;
 use crate::check::evaluate::number::{Number, Raw};
+use crate::check::evaluate::offers;
 use crate::check::evaluate::written::looks_like;
 use crate::check::parts::traffic::{axle_count, whole};
 use crate::check::text::scope::ScopeId;
@@ -44,10 +45,12 @@ impl Reader<'_, '_> {
         let typed: Vec<Typed> = typed.into_iter().collect::<Option<_>>()?;
         let first = typed[0].1;
         if let Some(i) = typed.iter().position(|(_, d)| *d != first) {
+            let help = self.comparable(operands, &typed, scope);
             self.eval.findings.report(
                 Diagnostic::new(Code::E0305, "a comparison needs values of the same dimension")
                     .label(operands[i].span, typed[i].1.describe())
-                    .label(operands[0].span, first.describe()),
+                    .label(operands[0].span, first.describe())
+                    .maybe_help(help),
             );
             return None;
         }
@@ -60,6 +63,16 @@ impl Reader<'_, '_> {
             operators: operators.clone(),
             unit: (unit, size),
         })
+    }
+
+    /// What to write in the place of a plain value, so that it compares with the response beside it.
+    fn comparable(&mut self, operands: &[Value], typed: &[Typed], scope: ScopeId) -> Option<String> {
+        let (response, dimension) = typed.iter().find(|(e, _)| !matches!(e, Expression::Number(_)))?;
+        let unit = shown_unit(*dimension, response);
+        let other = operands.iter().zip(typed).find(|(_, (_, d))| d != dimension)?.0;
+        let bare = if let ValueKind::Per(inner, _) = &other.kind { inner } else { other };
+        let raw = self.eval.raw(other, scope)?;
+        offers::in_comparison(*dimension, &raw, self.eval.files.sources.text(bare.span), &unit)
     }
 
     /// An expression of responses.
@@ -96,6 +109,7 @@ impl Reader<'_, '_> {
             ValueKind::Call { word, arguments } if function(word).is_some() => {
                 self.function_of(word, arguments, value.span, scope)
             }
+            ValueKind::Call { word, arguments } if self.foreign_reduction(word, arguments) => None,
             ValueKind::Binary(left, op, right) if *op != BinaryOp::Power => {
                 let (a, b) = (self.expression(left, scope), self.expression(right, scope));
                 self.combine(a?, *op, b?, left.span, right.span)

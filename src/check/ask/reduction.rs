@@ -9,7 +9,7 @@ use crate::check::text::scope::ScopeId;
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::response::{Expression, Measure, Place, Reduction, Response};
-use crate::schema::{self, Varies};
+use crate::schema::{self, Names, Varies, called};
 use crate::syntax::tree::{Argument, Item, Name, ValueKind};
 use crate::units::Dimension;
 
@@ -44,6 +44,29 @@ impl Reader<'_, '_> {
             }
             _ => false,
         }
+    }
+
+    /// Refuses a reduction by the name that it has elsewhere.
+    pub(super) fn foreign_reduction(&mut self, word: &Name, arguments: &[Argument]) -> bool {
+        let response = match arguments.first().map(|a| &a.value.kind) {
+            Some(ValueKind::Path(path)) => path.text(),
+            _ => return false,
+        };
+        let share = word.text.strip_prefix(['p', 'P']).and_then(|digits| digits.parse::<u32>().ok());
+        let share = if word.text == "median" { Some(50) } else { share.filter(|share| *share <= 100) };
+        let help = match share {
+            Some(share) => format!("write `percentile({response}, {share} %)`"),
+            None => match called(Names::Reductions, &word.text, REDUCTIONS.into_iter()) {
+                Some(ours) => format!("did you mean `{ours}`?"),
+                None => return false,
+            },
+        };
+        self.eval.findings.report(
+            Diagnostic::new(Code::E0408, format!("a response is not reduced by `{}`", word.text))
+                .label(word.span, "unknown word")
+                .help(help),
+        );
+        true
     }
 
     /// `max(contact_force, over = -20 .. -1 sleepers, after = 100 axles)`
@@ -93,7 +116,9 @@ impl Reader<'_, '_> {
                 ("after", _) => measure.after = Some(self.count(&argument.value, scope)?),
                 _ => {
                     let place = argument.name.as_ref().map_or(argument.value.span, |n| n.span);
-                    let near = nearest(name, ["over", "from", "after"]).map(|n| format!("did you mean `{n}`?"));
+                    let known = ["over", "from", "after"];
+                    let near = called(Names::Fields, name, known.into_iter()).or_else(|| nearest(name, known));
+                    let near = near.map(|n| format!("did you mean `{n}`?"));
                     self.eval.findings.report(
                         Diagnostic::new(Code::E0402, format!("`{}` has no such argument", word.text))
                             .label(place, "unknown argument")
@@ -146,7 +171,9 @@ impl Reader<'_, '_> {
         }
         if !(0.0..=1.0).contains(&raw.value) {
             let text = format!("expected 0 .. 100 %, found {} %", crate::units::number(100.0 * raw.value));
-            self.eval.findings.report(Diagnostic::new(Code::E0405, text).label(raw.span, "out of range"));
+            let written = (0.0..=100.0).contains(&raw.value).then(|| format!("write `{} %`", crate::units::number(raw.value)));
+            let mistake = Diagnostic::new(Code::E0405, text).label(raw.span, "out of range");
+            self.eval.findings.report(mistake.maybe_help(written));
             return None;
         }
         Some(Reduction::Percentile(raw.value))

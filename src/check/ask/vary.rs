@@ -5,14 +5,15 @@ use super::expression::one_line;
 use super::reader::Reader;
 use crate::check::evaluate::number::Raw;
 use crate::check::evaluate::records::object_kind;
+use crate::check::evaluate::measure::swapped;
 use crate::check::evaluate::written::{looks_like, with_unit};
 use crate::check::text::scope::{ItemId, ScopeId};
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, Span, or_list};
 use crate::scenario::{Axis, Choice, Setting, Spread, Values};
-use crate::schema::{self, Form, Kind};
-use crate::syntax::tree::{Argument, Entry, Item, Name, Path, UnitText, Value, ValueKind};
-use crate::units::{number, parse_unit};
+use crate::schema::{self, Form, Kind, Names, called};
+use crate::syntax::tree::{Argument, Declaration, Entry, Item, Name, Path, UnitText, Value, ValueKind};
+use crate::units::{Dimension, number, parse_unit};
 
 const DISTRIBUTIONS: [&str; 4] = ["steps", "uniform", "normal", "log_normal"];
 /// Levels that `steps` may make.
@@ -76,16 +77,22 @@ impl Reader<'_, '_> {
             return None;
         };
         let mut pairs = Vec::with_capacity(entries.len());
-        for entry in entries {
+        let mut told = false;
+        for (i, entry) in entries.iter().enumerate() {
             match entry.key.as_ref().map(|key| (&key.kind, key.span)) {
                 Some((ValueKind::Path(path), _)) => pairs.push((path, entry)),
+                // values that stand alone behind a pair belong to it
+                None if told => {}
                 found => {
                     let place = found.map_or(entry.value.span, |(_, span)| span);
+                    let mended = found.and_then(|(_, span)| self.as_path(span));
+                    let help = mended.or_else(|| self.values_alone(entries, i)).unwrap_or_else(|| help.clone());
                     self.eval.findings.report(
                         Diagnostic::new(Code::E0406, format!("expected `path: {what}`"))
                             .label(place, "no path")
-                            .help(&help),
+                            .help(help),
                     );
+                    told = true;
                 }
             }
         }
@@ -95,6 +102,28 @@ impl Reader<'_, '_> {
             );
         }
         (!pairs.is_empty() && pairs.len() == entries.len()).then_some(pairs)
+    }
+
+    /// A path in quotes, or with `/` between its names.
+    fn as_path(&self, span: Span) -> Option<String> {
+        let text = self.eval.files.sources.text(span).trim_matches('"').replace('/', ".");
+        let plain = text.chars().all(|c| c.is_ascii_alphanumeric() || "_.".contains(c));
+        plain.then(|| format!("names are joined by dots: write `{text}`"))
+    }
+
+    /// The brackets that values behind a pair lack: `bay: 0.55, 0.6 m`.
+    fn values_alone(&self, entries: &[Entry], at: usize) -> Option<String> {
+        let last = entries[at..].iter().take_while(|e| e.key.is_none()).last()?;
+        let first = entries.get(at.checked_sub(1)?)?;
+        let text = self.eval.files.sources.text(first.value.span.to(last.value.span));
+        let (numbers, unit) = match text.rsplit_once(',') {
+            Some((_, last)) => last.trim().split_once(' ').map_or((text, ""), |(_, unit)| {
+                (text.trim_end_matches(unit).trim_end(), unit)
+            }),
+            None => (text, ""),
+        };
+        let path = self.eval.files.sources.text(first.key.as_ref()?.span);
+        Some(format!("several values stand in brackets: write `{}`", format!("{path}: [{numbers}] {unit}").trim_end()))
     }
 
     /// What a path of this file names.
@@ -124,7 +153,8 @@ impl Reader<'_, '_> {
         }
         let [_, fields @ ..] = path.names.as_slice() else { return None };
         if fields.is_empty() {
-            let example = kind.fields.first().map(|f| format!("such as `{}.{}`", first.text, f.name));
+            let number = kind.fields.iter().find(|f| f.form.measure().is_some());
+            let example = number.or(kind.fields.first()).map(|f| format!("such as `{}.{}`", first.text, f.name));
             self.eval.findings.report(
                 Diagnostic::new(Code::E0704, format!("`{}` is a whole {}", first.text, kind.name))
                     .label(path.span, "name a field of it")
@@ -142,17 +172,65 @@ impl Reader<'_, '_> {
             return;
         }
         let (message, help) = if self.eval.scopes[scope].modules.contains_key(&first.text) {
-            let own = path.names.get(1).map_or("name", |n| n.text.as_str());
             let message = format!("a study varies what its own file declares, and `{}` is a module", first.text);
-            (message, Some(format!("declare `kind {own} : {}.{own}` here and vary `{own}`", first.text)))
+            (message, self.declared_here(path, scope))
         } else {
             let near = nearest(&first.text, self.eval.scopes[scope].names.keys().map(String::as_str));
             let message = format!("this file declares nothing called `{}` to vary", first.text);
-            (message, near.map(|n| format!("did you mean `{n}`?")))
+            let full = self.full_path(path, scope).map(|path| format!("write `{path}`"));
+            (message, full.or_else(|| near.map(|n| format!("did you mean `{n}`?"))))
         };
         self.eval
             .findings
             .report(Diagnostic::new(Code::E0704, message).label(first.span, "unknown here").maybe_help(help));
+    }
+
+    /// How a thing of another file becomes one of this file, that a study may vary.
+    fn declared_here(&self, path: &Path, scope: ScopeId) -> Option<String> {
+        let [module, own, rest @ ..] = path.names.as_slice() else { return None };
+        let other = self.eval.scopes[scope].modules.get(&module.text)?;
+        let item = self.eval.scopes[*other].names.get(&own.text)?;
+        let Item::Declaration(declared) = &self.eval.scopes[*other].tree.items[*item] else { return None };
+        let kind = &declared.kind.text;
+        let behind: String = rest.iter().map(|name| format!(".{}", name.text)).collect();
+        let declare = format!("declare `{kind} {0} : {1}.{0}` here, let the scene use it, and vary `{0}{behind}`", own.text, module.text);
+        // a field of this file that may hold such a thing
+        let holds = |d: &Declaration| {
+            let field = schema::kind(&d.kind.text)?.field(kind)?;
+            object_kind(&field.form).filter(|k| k.name == kind.as_str())?;
+            Some(format!("{}.{}{behind}", d.name.as_ref()?.text, field.name))
+        };
+        let held = self.declarations(scope).find_map(holds);
+        Some(match held {
+            Some(held) => format!("{declare}; or vary `{held}`"),
+            None => declare,
+        })
+    }
+
+    /// The path of this file that one means which begins with a kind, or with a field.
+    fn full_path(&self, path: &Path, scope: ScopeId) -> Option<String> {
+        let text = |names: &[Name]| names.iter().map(|n| n.text.as_str()).collect::<Vec<_>>().join(".");
+        let [first, rest @ ..] = path.names.as_slice() else { return None };
+        if let Some(second) = rest.first().filter(|_| schema::kind(&first.text).is_some())
+            && self.eval.scopes[scope].names.contains_key(&second.text)
+        {
+            return Some(text(rest));
+        }
+        let named = |d: &Declaration| Some((schema::kind(&d.kind.text)?, d.name.as_ref()?.text.clone()));
+        if !rest.is_empty()
+            && let Some((_, name)) = self.declarations(scope).filter_map(named).find(|(kind, _)| kind.name == first.text)
+        {
+            return Some(format!("{name}.{}", text(rest)));
+        }
+        let has = |(kind, _): &(&'static Kind, String)| kind.fields.iter().any(|f| f.name == first.text);
+        self.declarations(scope).filter_map(named).find(has).map(|(_, name)| format!("{name}.{}", path.text()))
+    }
+
+    fn declarations(&self, scope: ScopeId) -> impl Iterator<Item = &Declaration> {
+        self.eval.scopes[scope].tree.items.iter().filter_map(|item| match item {
+            Item::Declaration(d) => Some(d),
+            _ => None,
+        })
     }
 
     /// Follows fields into a kind, at last into an argument of a word or a pair by its key.
@@ -163,7 +241,7 @@ impl Reader<'_, '_> {
                 self.eval.field_of(kind, name);
                 return None;
             }
-            let near = nearest(&name.text, kind.fields.iter().map(|f| f.name)).map(|n| format!("did you mean `{n}`?"));
+            let near = kind.meant(&name.text).map(|n| format!("did you mean `{n}`?"));
             self.eval.findings.report(
                 Diagnostic::new(Code::E0704, format!("a {} has no `{}` to vary", kind.name, name.text))
                     .label(name.span, "unknown field")
@@ -221,13 +299,17 @@ impl Reader<'_, '_> {
             && own.dimension != raw.dimension
         {
             let code = if raw.dimension.is_none() { Code::E0301 } else { Code::E0302 };
+            let unit = unit_text(&binding.value).filter(|_| code == Code::E0301);
+            let text = self.eval.files.sources.text(value.span);
+            let help = unit.map(|unit| format!("write `{text} {}`, if that is the unit you meant", unit.text));
             self.eval.findings.report(
                 Diagnostic::new(
                     code,
                     format!("expected {}, found {}", own.dimension.describe(), raw.dimension.describe()),
                 )
                 .label(value.span, "of another dimension")
-                .label(binding.value.span, "than what it replaces"),
+                .label(binding.value.span, "than what it replaces")
+                .maybe_help(help),
             );
         }
     }
@@ -250,9 +332,22 @@ impl Reader<'_, '_> {
                 self.distribution(target, word, arguments, per.as_ref(), scope)
             }
             other => {
+                if *other == ValueKind::Error {
+                    return None;
+                }
                 let near = match other {
-                    ValueKind::Call { word, .. } => nearest(&word.text, DISTRIBUTIONS),
+                    ValueKind::Call { word, .. } => {
+                        let called = called(Names::Words, &word.text, DISTRIBUTIONS.into_iter());
+                        called.or_else(|| nearest(&word.text, DISTRIBUTIONS))
+                    }
                     _ => None,
+                };
+                let text = self.eval.files.sources.text(inner.span);
+                let help = match near {
+                    Some("steps") => "write something like `steps(20 .. 80 MN/m, count = 4)`".to_owned(),
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None if is_number(inner) => format!("one value is a list of one: write `[{text}]`"),
+                    None => "write `[value, value]`".to_owned(),
                 };
                 let words: Vec<String> = DISTRIBUTIONS.iter().map(|w| format!("`{w}`")).collect();
                 let expected =
@@ -260,7 +355,7 @@ impl Reader<'_, '_> {
                 self.eval.findings.report(
                     Diagnostic::new(Code::E0406, expected)
                         .label(inner.span, "not several values")
-                        .help(near.map_or("write `[value, value]`".into(), |n| format!("did you mean `{n}`?"))),
+                        .help(help),
                 );
                 None
             }
@@ -277,12 +372,17 @@ impl Reader<'_, '_> {
         let mut choices = Vec::with_capacity(entries.len());
         let (mut sound, mut common) = (true, None);
         let mut wrong_unit = false;
+        let before = self.eval.findings.diagnostics.len();
         for entry in entries {
             let bare = unit_of_all(&entry.value);
             if wrong_unit && bare {
                 continue;
             }
             let value = wrapped(with_unit(&entry.value, suffix.unit.as_ref()), suffix.per.as_ref());
+            if let (Some(_), ValueKind::Error) = (&entry.key, &entry.value.kind) {
+                sound = false;
+                continue;
+            }
             if let Some(key) = &entry.key {
                 self.eval
                     .findings
@@ -307,6 +407,9 @@ impl Reader<'_, '_> {
             choices.push((text + &behind, number, entry.value.span));
             common.get_or_insert(unit);
         }
+        if wrong_unit {
+            self.eval.one_missing_unit(before, entries);
+        }
         // numbers are told in one unit, where they have one
         let common = common?;
         let same = choices.iter().all(|(_, number, _)| number.as_ref().is_some_and(|(_, unit)| *unit == common));
@@ -328,6 +431,7 @@ impl Reader<'_, '_> {
     ) -> Option<(String, [f64; 2])> {
         let unit = unit_text(to);
         let from = with_unit(from, unit.as_ref());
+        self.with_units(target, &from, to, per, scope)?;
         let held = [&from, to].map(|end| self.may_stand(target, &wrapped(end.clone(), per), scope));
         let (a, b) = self.eval.ends(&from, to, scope)?;
         held[0].and(held[1])?;
@@ -337,14 +441,38 @@ impl Reader<'_, '_> {
         }
         if a.value >= b.value {
             let whole = from.span.to(to.span);
+            let text = self.eval.files.sources.text(whole).to_owned();
             self.eval.findings.report(
-                Diagnostic::new(Code::E0505, "a range must ascend").label(whole, "its first end is not the smaller"),
+                Diagnostic::new(Code::E0505, "a range must ascend")
+                    .label(whole, "its first end is not the smaller")
+                    .maybe_help(swapped(&text)),
             );
             return None;
         }
         let suffix = suffix_of(&wrapped(to.clone(), per), Some(&b));
         let size = unit_size(&suffix)?;
         Some((suffix, [a.value / size, b.value / size]))
+    }
+
+    /// Refuses ends that both lack their unit, once.
+    fn with_units(
+        &mut self,
+        target: Varied,
+        from: &Value,
+        to: &Value,
+        per: Option<&Name>,
+        scope: ScopeId,
+    ) -> Option<()> {
+        let Varied::Field(form) = target else { return Some(()) };
+        let Some(measure) = form.measure().filter(|m| !Dimension::of_unit(m.unit).is_none()) else { return Some(()) };
+        if !(unit_of_all(from) && unit_of_all(to)) {
+            return Some(());
+        }
+        let ends = [self.eval.raw(from, scope)?.value, self.eval.raw(to, scope)?.value];
+        let expected = format!("expected {}", Form::Number(*measure).describe());
+        let per = per.map(|name| name.text.as_str());
+        self.eval.missing_unit(&[measure], &ends, per, from.span.to(to.span), &expected);
+        None
     }
 
     fn unlike(&mut self, a: &Raw, b: &Raw) {

@@ -2,12 +2,13 @@
 
 use super::evaluator::Evaluator;
 use super::number::Raw;
+use super::unit_mistakes::unit_mistake;
 use super::value::Val;
 use super::written::looks_like;
 use crate::check::text::scope::ScopeId;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Argument, BinaryOp, Name, Path, UnitText, Value, ValueKind};
-use crate::units::{Dimension, UnitError, parse_unit};
+use crate::units::{Dimension, parse_unit};
 
 impl Evaluator<'_> {
     /// Evaluates arithmetic; `None` where a diagnostic has been given.
@@ -74,7 +75,9 @@ impl Evaluator<'_> {
         match parse_unit(&unit.text) {
             Ok(u) => Some(Raw { value: value * u.factor, dimension: u.dimension, basis: None, span, bare: false }),
             Err(error) => {
-                self.findings.report(unit_mistake(unit, &error));
+                let help = self.of_trains(unit);
+                let whole = self.files.sources.text(span).to_owned();
+                self.findings.report(unit_mistake(unit, &error, &whole).maybe_help(help));
                 None
             }
         }
@@ -114,6 +117,14 @@ impl Evaluator<'_> {
     }
 
     fn binary(&mut self, left: &Value, op: BinaryOp, right: &Value, span: Span, scope: ScopeId) -> Option<Raw> {
+        if let Some(unit) = dashed_unit(self.files.sources.text(span)).filter(|_| op == BinaryOp::Subtract) {
+            self.findings.report(
+                Diagnostic::new(Code::E0305, "`-` in a unit takes one value from another")
+                    .label(span, "")
+                    .help(format!("the factors of a unit are parted by a blank: write `{unit}`")),
+            );
+            return None;
+        }
         let (a, b) = (self.raw(left, scope), self.raw(right, scope));
         let (a, b) = (a?, b?);
         let basis = |a: &Raw, b: &Raw| match (&a.basis, &b.basis) {
@@ -156,7 +167,7 @@ impl Evaluator<'_> {
                     self.findings.report(
                         Diagnostic::new(Code::E0305, "an exponent is a plain number from -9 to 9")
                             .label(right.span, b.dimension.describe())
-                            .help("powers of ten stand in the number: `40e6 N/m`"),
+                            .help(self.power_of_ten(span)),
                     );
                     return None;
                 };
@@ -184,6 +195,16 @@ impl Evaluator<'_> {
             ([true, false], _) => Some(format!("give `{a}` its unit too")),
             ([false, true], _) => Some(format!("give `{b}` its unit too")),
             _ => None,
+        }
+    }
+
+    /// `10^-4 s` as it should stand, or how powers of ten are written.
+    fn power_of_ten(&self, span: Span) -> String {
+        let before = self.files.sources.get(span.file).text[..span.start as usize].trim_end();
+        let power = self.files.sources.text(span).strip_prefix("10^").filter(|_| !before.ends_with('*'));
+        match power.filter(|p| p.split(' ').next().is_some_and(|n| n.parse::<i32>().is_ok())) {
+            Some(power) => format!("write `1e{power}`"),
+            None => "powers of ten stand in the number: `40e6 N/m`".to_owned(),
         }
     }
 
@@ -245,37 +266,13 @@ impl Evaluator<'_> {
     }
 }
 
-fn unit_mistake(unit: &UnitText, error: &UnitError) -> Diagnostic {
-    match error {
-        UnitError::Unknown { symbol, instead } => {
-            let of_what = crate::schema::basis_name(symbol).then(|| {
-                let rest = unit.text.replacen(symbol.as_str(), "", 1);
-                let rest = rest.trim_end_matches(['/', '*', ' ']);
-                format!("write `{}per {symbol}`", if rest.is_empty() { String::new() } else { format!("{rest} ") })
-            });
-            let help = of_what.or_else(|| {
-                instead.as_ref().map(|ours| {
-                    let whole = unit.text.replacen(symbol.as_str(), ours, 1);
-                    if ours.contains('(') { format!("write {ours}") } else { format!("did you mean `{whole}`?") }
-                })
-            });
-            let such = "units are such as `mm`, `kN`, `MN/m`, `kN s/m`, `kg/m^3`, `km/h`, `axles`";
-            Diagnostic::new(Code::E0303, format!("unknown unit `{symbol}`"))
-                .label(unit.span, "not a unit")
-                .help(help.unwrap_or_else(|| such.to_owned()))
-        }
-        UnitError::Exponent => {
-            Diagnostic::new(Code::E0103, format!("the exponents of `{}` go beyond -9 .. 9", unit.text))
-                .label(unit.span, "too large")
-        }
-        UnitError::Form => {
-            let help = match unit.text.contains('°') {
-                true => "degrees are written `deg`: `35 deg`",
-                false => "units are such as `mm`, `kN`, `MN/m`, `kN s/m`, `kg/m^3`, `km/h`, `axles`",
-            };
-            Diagnostic::new(Code::E0303, format!("`{}` is not a unit", unit.text))
-                .label(unit.span, "not a unit")
-                .help(help)
-        }
-    }
+/// `5 kN-s/m` with a blank in the place of the dash, where that is a number with its unit.
+fn dashed_unit(text: &str) -> Option<String> {
+    let letter = |c: Option<char>| c.is_some_and(char::is_alphabetic);
+    let dash = text.match_indices('-').map(|(at, _)| at).find(|at| {
+        letter(text[..*at].chars().next_back()) && letter(text[at + 1..].chars().next())
+    })?;
+    let written = format!("{} {}", &text[..dash], &text[dash + 1..]);
+    let (number, unit) = written.split_once(' ')?;
+    (number.parse::<f64>().is_ok() && parse_unit(unit).is_ok()).then_some(written)
 }

@@ -23,10 +23,19 @@ impl Evaluator<'_> {
     ) -> Option<ShapeKind> {
         self.arguments_of(word, arguments, &["column"])?;
         let Some((ValueKind::Text(name), span)) = arguments.first().map(|a| (&a.value.kind, a.value.span)) else {
+            let first = arguments.first().map(|a| &a.value);
+            // what could not be read has been told
+            if first.is_some_and(|value| value.kind == ValueKind::Error) {
+                return None;
+            }
+            let help = match first.map(|value| &value.kind) {
+                Some(ValueKind::Path(path)) => format!("a file stands in quotes: write `\"{}\"`", path.text()),
+                _ => "write something like `file(\"level.csv\")`".to_owned(),
+            };
             self.findings.report(
                 Diagnostic::new(Code::E0403, "`file` needs the name of a data file")
                     .label(word.span, "which file?")
-                    .help("write something like `file(\"level.csv\")`"),
+                    .help(help),
             );
             return None;
         };
@@ -45,7 +54,7 @@ impl Evaluator<'_> {
         let raw = Raw { value: column.unit.factor, dimension, basis: per.clone(), span: whole, bare: false };
         if dimension != Dimension::of_unit(measure.unit) {
             let expected = format!("expected {}", Form::Number(*measure).describe());
-            self.wrong_dimension(&Raw { span: column.span, ..raw }, measure, &expected);
+            self.wrong_dimension(&Raw { span: column.span, ..raw }, &[measure], &expected);
             return None;
         }
         self.basis(measure, &raw)?;

@@ -8,6 +8,7 @@ use crate::check::text::loader::Loaded;
 use crate::check::text::scope::{ItemId, Scope, ScopeId};
 use crate::diag::{Code, Diagnostic, Span, and_list};
 use crate::scenario::Origin;
+use crate::schema::Kind;
 use crate::syntax::tree::{Item, Name, Value};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::rc::Rc;
@@ -41,6 +42,8 @@ pub struct Evaluator<'m> {
     pub(super) library_uses: BTreeMap<ItemId, Option<Span>>,
     /// Files that name modules of the standard library without bringing it in.
     pub(super) without_library: BTreeSet<ScopeId>,
+    /// The field whose value is being read.
+    pub(super) asked: Option<(&'static Kind, &'static str)>,
     /// Values of another form: what was said of foreign signs in them is not worth following.
     pub(super) superseded: Vec<Span>,
 }
@@ -72,6 +75,7 @@ impl<'m> Evaluator<'m> {
             used: BTreeSet::new(),
             library_uses: BTreeMap::new(),
             without_library: BTreeSet::new(),
+            asked: None,
             superseded: Vec::new(),
         }
     }

@@ -1,6 +1,7 @@
 //! Holds a value against the form of its field.
 
 use super::evaluator::Evaluator;
+use super::objects;
 use super::value::{Slot, Val};
 use super::written::{is_profile, looks_like, with_unit};
 use crate::check::text::scope::{MAIN_FILE, ScopeId};
@@ -115,11 +116,30 @@ impl Evaluator<'_> {
             self.unknown_word(&path.names[0], &words);
             return Some(error);
         }
+        // a text or a place without its quotes or its number
+        let place = |form: &Form| matches!(form, Form::Place | Form::Span);
+        let by_name = matches!(form, Form::Text) || place(form) || matches!(form, Form::List(item) if place(item));
+        if by_name && bare && !self.scopes[scope].names.contains_key(&path.names[0].text) {
+            if !self.unread_word(&path.names[0]) {
+                self.wrong_form(form, "a name", path.span);
+            }
+            return Some(error);
+        }
         let names: Vec<&str> = words.iter().filter(|w| !w.planned).map(|w| w.name).collect();
         let Some(target) = self.resolve(path, scope, &names) else { return Some(error) };
         if target.is_let {
             let tree = self.scopes[target.id.scope].tree.clone();
             let Item::Let(binding) = &tree.items[target.id.item] else { return Some(error) };
+            let written = self.files.sources.text(binding.value.span).to_owned();
+            if let (true, Some(object)) = (!form_has_numbers(form), objects::of_number(form, &written, &path.text())) {
+                self.used.insert(target.id);
+                self.findings.report(
+                    Diagnostic::new(Code::E0406, format!("expected {}, found a number", form.describe()))
+                        .label(path.span, "a number")
+                        .help(object),
+                );
+                return Some(error);
+            }
             let slot = self.within(target.id, path.span, |c| Some(c.fit(form, &binding.value, target.id.scope)));
             return Some(slot.unwrap_or(error));
         }
@@ -182,6 +202,10 @@ impl Evaluator<'_> {
             (Form::Number(measure), _) => self.number_or_profile(measure, value, scope),
             (Form::Integer { min, max }, _) => self.integer(*min, *max, value, scope).map(Val::Number),
             (Form::Interval(measure), _) => self.interval(measure, value, scope),
+            (Form::Place, ValueKind::Range(..)) => {
+                self.wrong_form(form, "a range", value.span);
+                None
+            }
             (Form::Place, _) => self.place(value, scope).map(Val::Number),
             (Form::Span, ValueKind::Range(from, to)) => self.span(from, to, scope),
             (Form::Object(kind), ValueKind::Object { base, fields }) => {
@@ -232,13 +256,22 @@ impl Evaluator<'_> {
     /// What to write where something of another form stands.
     fn instead(&self, form: &Form, found: &str, span: Span) -> Option<String> {
         let text = self.files.sources.text(span);
-        if let Some(inner) =
-            text.strip_prefix('"').and_then(|t| t.strip_suffix('"')).filter(|t| !t.is_empty() && !t.contains('"'))
-        {
+        if let Some(help) = self.entry_or_file(form, text) {
+            return Some(help);
+        }
+        let quotes = |mark: char| text.strip_prefix(mark).and_then(|t| t.strip_suffix(mark));
+        let unquoted = quotes('"').or_else(|| quotes('\'')).filter(|_| found == "text");
+        if let Some(inner) = unquoted.filter(|t| !t.is_empty() && !t.contains('"')) {
             return Some(format!("write `{inner}`, without quotes"));
         }
         if matches!(form, Form::Text) && !text.contains(['\n', '"', '\\']) {
             return Some(format!("write `\"{text}\"`"));
+        }
+        if let Some(help) = self.by_habit(form, found, text) {
+            return Some(help);
+        }
+        if let Form::Interval(_) = form {
+            return span_of(text).map(|range| format!("write `{range}`"));
         }
         if let Form::Span = form {
             let written = span_of(text).map(|span| format!("write `{span}`"));
@@ -253,6 +286,52 @@ impl Evaluator<'_> {
         let entries = if own.is_empty() { self.entries(form) } else { own };
         let such = or_list(&entries.into_iter().take(3).collect::<Vec<_>>());
         (!such.is_empty()).then(|| format!("name one, such as {such}, or write `{{ field = value }}`"))
+    }
+
+    /// A name in quotes that is an entry of the library, or a file where a profile may stand.
+    fn entry_or_file(&self, form: &Form, text: &str) -> Option<String> {
+        let inner = text.strip_prefix('"')?.strip_suffix('"')?;
+        if matches!(form, Form::Number(m) if m.varies == Varies::Yes) && inner.ends_with(".csv") {
+            return Some(format!("write `file({text})`"));
+        }
+        let entry = self.entry_called(inner).filter(|entry| self.entries(form).contains(&format!("`{entry}`")))?;
+        Some(format!("write `{entry}`"))
+    }
+
+    /// What is meant by a value of another form, in the manner of other languages.
+    fn by_habit(&self, form: &Form, found: &str, text: &str) -> Option<String> {
+        let form = if let Form::List(item) = form { item } else { form };
+        let field = self.asked.map(|(_, field)| field);
+        let has = |name: &str| self.asked.is_some_and(|(kind, _)| kind.field(name).is_some());
+        if found == "a number" {
+            if let Some((module, entry)) = text.split_once('/').filter(|(m, _)| self.scopes[self.standard].modules.contains_key(*m)) {
+                let entry = entry.split([' ', '{']).next().unwrap_or(entry);
+                return Some(format!("write `{module}.{entry}`"));
+            }
+            if let Some(help) = objects::of_number(form, text, text).or_else(|| objects::counted(form, text)) {
+                return Some(help);
+            }
+            if let Form::Span = form
+                && has("at")
+                && text.split(' ').count() <= 2
+            {
+                return Some(format!("one place is given with `at`: write `at = {text}`"));
+            }
+            let points = |w: &&schema::Word| matches!(w.arguments, [schema::Field { form: Form::Integer { .. }, .. }]);
+            let words: Vec<String> =
+                form.words().into_iter().filter(points).map(|w| format!("`{}({text})`", w.name)).collect();
+            return (!words.is_empty()).then(|| format!("write {}", or_list(&words)));
+        }
+        if found == "a range" && matches!(form, Form::Place) && field == Some("at") && has("over") {
+            return Some(format!("a span is given with `over`: write `over = {text}`"));
+        }
+        if matches!(form, Form::Place) && found == "a name" {
+            return Some("a place is a number: `-20 sleepers`, `[-20, -5] sleepers`; `over = -20 .. -1 sleepers` takes all of a span".to_owned());
+        }
+        if found == "a list" && matches!(form, Form::Number(_)) {
+            return Some("a field has one value; a study tries several: `vary = [path: [value, value]]`".to_owned());
+        }
+        None
     }
 
     fn shape_of(&mut self, value: &Value, scope: ScopeId, depth: u32) -> Shape {
@@ -313,7 +392,7 @@ impl Evaluator<'_> {
                     let chosen = measures.iter().find(|m| Dimension::of_unit(m.unit) == raw.dimension).unwrap_or(first);
                     if measures.len() > 1 && Dimension::of_unit(chosen.unit) != raw.dimension {
                         let units: Vec<String> = measures.iter().map(|m| format!("`{}`", m.unit)).collect();
-                        self.wrong_dimension(&raw, first, &format!("expected {}", or_list(&units)));
+                        self.wrong_dimension(&raw, &measures, &format!("expected {}", or_list(&units)));
                         return None;
                     }
                     return self.hold(chosen, raw).map(Val::Number);
@@ -335,6 +414,14 @@ impl Evaluator<'_> {
         }
         let bare = if let ValueKind::Per(inner, _) = &value.kind { inner } else { value };
         if let ValueKind::Call { word, .. } = &bare.kind {
+            if let Some(object) = objects::of_word(form, &word.text, self.files.sources.text(value.span)) {
+                self.findings.report(
+                    Diagnostic::new(Code::E0406, format!("expected {}, found a word with arguments", form.describe()))
+                        .label(value.span, "a word")
+                        .help(object),
+                );
+                return None;
+            }
             self.unknown_word(word, &form.words());
         } else {
             self.wrong_form(form, looks_like(&value.kind), value.span);
@@ -386,12 +473,24 @@ impl Evaluator<'_> {
                 (alone.as_slice(), None)
             }
         };
+        if let Some(swapped) = self.swapped(key, entries) {
+            self.findings.report(
+                Diagnostic::new(Code::E0406, format!("expected {}", form.describe()))
+                    .label(value.span, "keys and values have changed places")
+                    .help(format!("write `{swapped}`")),
+            );
+            return None;
+        }
         let mut pairs = Vec::with_capacity(entries.len());
         let before = self.findings.diagnostics.len();
         let mut lone = false;
         for entry in entries {
             let pair = match (&entry.key, implied) {
                 (Some(k), _) => (self.fit(key, k, scope), self.fit(content, &with_unit(&entry.value, unit), scope)),
+                (None, Some(_)) if entry.value.kind == ValueKind::Error => {
+                    let nothing = Slot { value: Val::Error, span: entry.value.span, origin: Origin::Derived };
+                    (nothing.clone(), nothing)
+                }
                 (None, Some(text)) => (self.fit(key, &entry.value, scope), self.default_value(content, text)),
                 (None, None) => {
                     // what could not be read behind it may have been the other half
@@ -403,7 +502,7 @@ impl Evaluator<'_> {
                         self.findings.report(
                             Diagnostic::new(Code::E0406, format!("expected {}", form.describe()))
                                 .label(entry.value.span, "a pair is needed here")
-                                .help("write `[key: value]`"),
+                                .help(self.as_pairs(key, content, entries)),
                         );
                     }
                     // one such list is one mistake
@@ -418,29 +517,87 @@ impl Evaluator<'_> {
         Some(Val::Pairs(pairs))
     }
 
-    /// Numbers of a list that all lack the same unit lack it once: behind the list.
-    fn one_missing_unit(&mut self, before: usize, entries: &[Entry]) {
+    /// A list whose keys are numbers and whose values are names, the other way round.
+    fn swapped(&self, key: &Form, entries: &[Entry]) -> Option<String> {
+        let number = |value: &Value| matches!(value.kind, ValueKind::Number { .. });
+        let name = |value: &Value| matches!(value.kind, ValueKind::Path(_));
+        let turned = |e: &Entry| e.key.as_ref().is_some_and(number) && name(&e.value);
+        if form_has_numbers(key) || entries.is_empty() || !entries.iter().all(turned) {
+            return None;
+        }
+        let text = |value: &Value| self.files.sources.text(value.span);
+        let pair = |e: &Entry| Some(format!("{}: {}", text(&e.value), text(e.key.as_ref()?)));
+        Some(format!("[{}]", entries.iter().map(pair).collect::<Option<Vec<_>>>()?.join(", ")))
+    }
+
+    /// How the entries of a list that stand alone become pairs.
+    fn as_pairs(&self, key: &Form, content: &Form, entries: &[Entry]) -> String {
+        let text = |e: &Entry| self.files.sources.text(e.value.span);
+        let names = entries.iter().all(|e| e.key.is_none() && matches!(e.value.kind, ValueKind::Path(_)));
+        match entries {
+            [only] if matches!(key, Form::Name) && content.word(text(only)).is_some() => {
+                format!("it has a name: write `[edge: {}]`", text(only))
+            }
+            [_, _, ..] if names => {
+                let pairs: Vec<String> = entries.iter().map(|e| format!("{}: ...", text(e))).collect();
+                format!("each has its value: write `[{}]`", pairs.join(", "))
+            }
+            _ => "write `[key: value]`".to_owned(),
+        }
+    }
+
+    /// Numbers of a list that all lack the same unit lack it once: behind the list, or behind each of its keys.
+    pub fn one_missing_unit(&mut self, before: usize, entries: &[Entry]) {
         let found = &self.findings.diagnostics[before.min(self.findings.diagnostics.len())..];
         let (Some(first), Some(last)) = (entries.first(), entries.last()) else { return };
-        if found.len() < 2 || found.len() != entries.len() || found.iter().any(|d| d.code != Code::E0301) {
+        let percent = |d: &Diagnostic| d.code == Code::E0405 && d.help.as_deref().is_some_and(|h| h.ends_with(" %`"));
+        let code = match found {
+            [one, ..] if found.iter().all(|d| d.code == Code::E0301) => one.code,
+            [one, ..] if found.iter().all(percent) => one.code,
+            _ => return,
+        };
+        let (one, other) = (&found[0], &found[found.len() - 1]);
+        let of_keys = first.key.as_ref().is_some_and(|key| key.span.covers(one.labels[0].span));
+        let several = found.len() == entries.len() || code == Code::E0405;
+        if found.len() < 2 && entries.len() > 1 && !all_bare(entries) || entries.len() < 2 || !several && found.len() > 1 {
             return;
         }
         let start = first.key.as_ref().map_or(first.value.span, |key| key.span);
         let whole = start.to(last.value.span);
         // `write `-20 sleepers` or `-20 m`` says which units there are
-        let help = found[0].help.as_deref().unwrap_or_default();
-        let wrote = self.files.sources.text(first.value.span);
-        let units = help.split('`').skip(1).step_by(2).filter_map(|code| code.strip_prefix(wrote));
-        let list = self.files.sources.text(whole);
-        let write: Vec<String> = units.map(|unit| format!("`[{list}]{unit}`")).collect();
-        let message = found[0].message.replace("a number without a unit", "numbers without a unit");
+        let help = other.help.as_deref().unwrap_or_default();
+        let wrote = self.files.sources.text(other.labels[0].span);
+        let units: Vec<&str> =
+            help.split('`').skip(1).step_by(2).filter_map(|code| code.strip_prefix(wrote)).collect();
+        let text = |value: &Value| self.files.sources.text(value.span);
+        let with = |unit: &&str| match of_keys {
+            true => {
+                let pair = |e: &Entry| format!("{}{unit}: {}", e.key.as_ref().map_or("", text), text(&e.value));
+                format!("`[{}]`", entries.iter().map(pair).collect::<Vec<_>>().join(", "))
+            }
+            false => format!("`[{}]{unit}`", self.files.sources.text(whole)),
+        };
+        let write: Vec<String> = units.iter().map(with).collect();
+        if write.is_empty() {
+            return;
+        }
+        let message = match code {
+            Code::E0301 => one.message.replace("a number without a unit", "numbers without a unit"),
+            _ => "expected shares in `%`, found numbers without it".to_owned(),
+        };
         self.findings.diagnostics.truncate(before);
         self.findings.report(
-            Diagnostic::new(Code::E0301, message)
+            Diagnostic::new(code, message)
                 .label(whole, "their unit is missing")
                 .help(format!("write {}", or_list(&write))),
         );
     }
+}
+
+/// Whether the values of a list are all numbers without a unit.
+fn all_bare(entries: &[Entry]) -> bool {
+    let bare = |value: &Value| matches!(value.kind, ValueKind::Number { unit: None, .. });
+    entries.iter().all(|entry| entry.key.is_none() && bare(&entry.value))
 }
 
 /// `cyclic(5 .. 60 kN, 5 Hz) per sleeper`: `per` after a word is of those of its arguments that are of something.

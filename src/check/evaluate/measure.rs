@@ -2,6 +2,7 @@
 
 use super::evaluator::Evaluator;
 use super::number::{Number, Raw};
+use super::offers;
 use super::value::Val;
 use super::written::looks_like;
 use crate::check::text::scope::ScopeId;
@@ -12,13 +13,20 @@ use crate::syntax::tree::{Value, ValueKind};
 use crate::units::{Dimension, Quantity, number, parse_unit};
 
 /// What engineers call the parts of which a value is.
-const ALSO_CALLED: [(&str, &str); 6] = [
+const ALSO_CALLED: [(&str, &str); 13] = [
     ("axle", "wheelset"),
     ("half_sleeper", "seat"),
     ("rail_seat", "seat"),
     ("wagon", "vehicle"),
     ("car", "vehicle"),
     ("grain", "particle"),
+    ("tie", "sleeper"),
+    ("crosstie", "sleeper"),
+    ("schwelle", "sleeper"),
+    ("side", "seat"),
+    ("axlebox", "wheel"),
+    ("truck", "bogie"),
+    ("line", "track"),
 ];
 
 impl Evaluator<'_> {
@@ -32,7 +40,7 @@ impl Evaluator<'_> {
     pub fn hold(&mut self, measure: &'static Measure, raw: Raw) -> Option<Number> {
         let expected = Dimension::of_unit(measure.unit);
         if raw.dimension != expected {
-            self.wrong_dimension(&raw, measure, &format!("expected {}", Form::Number(*measure).describe()));
+            self.wrong_dimension(&raw, &[measure], &format!("expected {}", Form::Number(*measure).describe()));
             return None;
         }
         let (basis, factor) = self.basis(measure, &raw)?;
@@ -68,12 +76,23 @@ impl Evaluator<'_> {
         if raw.bare && measure.unit == "%" && fits(raw.value) {
             return Some(format!("write `{} %`", number(raw.value)));
         }
+        if self.asked.is_some_and(|(kind, field)| (kind.name, field) == ("wheelset", "radius")) && fits(shown / 2.0) {
+            let half = Quantity::new(raw.value / 2.0, raw.dimension).show(&self.unit_written(raw, measure));
+            return Some(format!("write `{half}`: a radius is half of the diameter"));
+        }
         if shown < 0.0 && fits(-shown) {
             return Some(format!("write `{} {}{per}`, without the sign", number(-shown), measure.unit));
         }
         let thousands = [1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9].into_iter().map(|step| shown * step).find(|x| fits(*x))?;
         let there = format!("{} {}{per}", number(thousands), measure.unit);
         (!measure.unit.is_empty()).then(|| format!("`{there}` would be in range: is the prefix of the unit right?"))
+    }
+
+    /// The unit in which a number is written, else that of its field.
+    fn unit_written(&self, raw: &Raw, measure: &Measure) -> String {
+        let text = self.files.sources.text(raw.span);
+        let unit = text.trim_start_matches(|c: char| c.is_ascii_digit() || "+-._".contains(c)).trim();
+        if Dimension::of_unit(unit) == raw.dimension { unit.to_owned() } else { measure.unit.to_owned() }
     }
 
     /// Refuses `per` of a value that is of one thing only.
@@ -130,22 +149,53 @@ impl Evaluator<'_> {
         }
     }
 
-    /// Refuses a value of another dimension, or without its unit.
-    pub(super) fn wrong_dimension(&mut self, raw: &Raw, measure: &Measure, expected: &str) {
-        let dimension = Dimension::of_unit(measure.unit);
-        let text = self.files.sources.text(raw.span).to_string();
+    /// Refuses a value of another dimension, or without its unit, where one of these measures was expected.
+    pub(super) fn wrong_dimension(&mut self, raw: &Raw, measures: &[&'static Measure], expected: &str) {
         if raw.bare && raw.dimension.is_none() {
-            self.findings.report(
-                Diagnostic::new(Code::E0301, format!("{expected}, found a number without a unit"))
-                    .label(raw.span, "its unit is missing")
-                    .help(format!("write `{text} {}`, if that is the unit you meant", measure.unit)),
-            );
-            return;
+            return self.missing_unit(measures, &[raw.value], raw.basis_name(), raw.span, expected);
         }
+        let text = self.files.sources.text(raw.span);
+        let other = self.asked.and_then(|(kind, field)| offers::other_way(kind, field, raw));
+        let help = match other {
+            Some(field) => Some(format!("write `{field} = {text}`, if that is what it is")),
+            None => measures.iter().find_map(|measure| offers::of_other_dimension(measure, raw, text)),
+        };
+        self.other_dimension(measures[0], raw, expected, help);
+    }
+
+    /// Refuses both ends of a range for what both of them are.
+    pub(super) fn wrong_ends(&mut self, a: &Raw, b: &Raw, measure: &'static Measure, span: Span) {
+        let expected = format!("expected {}", Form::Number(*measure).describe());
+        if a.bare && b.bare && b.dimension.is_none() {
+            return self.missing_unit(&[measure], &[a.value, b.value], b.basis_name(), span, &expected);
+        }
+        let help = offers::ends_of_other_dimension(measure, a, b);
+        self.other_dimension(measure, &Raw { span, ..b.clone() }, &expected, help);
+    }
+
+    fn other_dimension(&mut self, measure: &Measure, raw: &Raw, expected: &str, help: Option<String>) {
+        let dimension = Dimension::of_unit(measure.unit);
         self.findings.report(
             Diagnostic::new(Code::E0302, format!("{expected}, found {}", raw.dimension.describe()))
                 .label(raw.span, Quantity::new(raw.value, raw.dimension).show(&raw.dimension.usual_unit()))
-                .help(crate::units::compare(dimension, raw.dimension)),
+                .help(help.unwrap_or_else(|| crate::units::compare(dimension, raw.dimension))),
+        );
+    }
+
+    /// Refuses numbers without a unit that stand in a span.
+    pub fn missing_unit(
+        &mut self,
+        measures: &[&'static Measure],
+        values: &[f64],
+        basis: Option<&str>,
+        span: Span,
+        expected: &str,
+    ) {
+        let help = offers::with_unit(self.files.sources.text(span), values, measures, basis);
+        self.findings.report(
+            Diagnostic::new(Code::E0301, format!("{expected}, found a number without a unit"))
+                .label(span, "its unit is missing")
+                .help(help),
         );
     }
 
@@ -156,7 +206,8 @@ impl Evaluator<'_> {
         if !raw.dimension.is_none() {
             self.findings.report(
                 Diagnostic::new(Code::E0302, format!("expected a whole number, found {}", raw.dimension.describe()))
-                    .label(raw.span, "has a unit"),
+                    .label(raw.span, "has a unit")
+                    .help("write a whole number without a unit"),
             );
             return None;
         }
@@ -197,18 +248,22 @@ impl Evaluator<'_> {
             return None;
         };
         let (a, b) = self.ends(from, to, scope)?;
-        let a = self.hold(measure, Raw { basis: basis.clone().or(a.basis.clone()), ..a });
-        let b = self.hold(measure, Raw { basis: basis.or(b.basis.clone()), ..b });
-        self.ascending(a?, b?, value.span)
+        let a = Raw { basis: basis.clone().or(a.basis.clone()), ..a };
+        let b = Raw { basis: basis.or(b.basis.clone()), ..b };
+        if a.dimension == b.dimension && b.dimension != Dimension::of_unit(measure.unit) {
+            self.wrong_ends(&a, &b, measure, range.span);
+            return None;
+        }
+        self.basis(measure, &Raw { span: range.span, ..a.clone() })?;
+        let (a, b) = (self.hold(measure, a), self.hold(measure, b));
+        self.ascending(a?, b?, range.span)
     }
 
     fn ascending(&mut self, a: Number, b: Number, span: Span) -> Option<Val> {
         if a.of_rail() <= b.of_rail() {
             return Some(Val::Range(a, b));
         }
-        let text = self.files.sources.text(span).to_string();
-        let swapped =
-            text.split_once("..").map(|(x, y)| format!("write the smaller end first: `{} .. {}`", y.trim(), x.trim()));
+        let swapped = swapped(self.files.sources.text(span));
         self.findings.report(
             Diagnostic::new(Code::E0505, "a span must ascend")
                 .label(span, "its first end is the greater one")
@@ -264,6 +319,18 @@ impl Evaluator<'_> {
         }
         self.ascending(a, b, whole)
     }
+}
+
+/// A range the other way round: a unit that stands once, behind its second end, stays there.
+pub fn swapped(text: &str) -> Option<String> {
+    let (from, to) = text.split_once("..")?;
+    let (from, to) = (from.trim(), to.trim());
+    let bare = |end: &str| end.chars().all(|c| c.is_ascii_digit() || "+-._".contains(c));
+    let written = match to.split_once(' ').filter(|(end, _)| bare(from) && bare(end)) {
+        Some((end, unit)) => format!("{end} .. {from} {unit}"),
+        None => format!("{to} .. {from}"),
+    };
+    Some(format!("write the smaller end first: `{written}`"))
 }
 
 fn unsigned(value: &Value) -> &ValueKind {

@@ -5,6 +5,7 @@ use super::value::{Slot, Val};
 use crate::check::text::scope::{ItemId, ScopeId};
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, Span};
+use crate::schema::{Names, called};
 use crate::syntax::tree::{Item, Name, Path};
 
 /// What a path names, and how many of its names are left to follow inside.
@@ -55,7 +56,7 @@ impl Evaluator<'_> {
             );
             return None;
         }
-        self.unknown_name(first, scope, words);
+        self.unknown_name(path, scope, words);
         None
     }
 
@@ -75,15 +76,23 @@ impl Evaluator<'_> {
         Some(Resolved { id: ItemId { scope, item }, is_let, taken })
     }
 
-    fn unknown_name(&mut self, name: &Name, scope: ScopeId, words: &[&str]) {
+    fn unknown_name(&mut self, path: &Path, scope: ScopeId, words: &[&str]) {
+        let (name, behind) = (&path.names[0], &path.text()[path.names[0].text.len()..]);
         if self.unread_word(name) {
             return;
         }
         let here = &self.scopes[scope];
         let candidates = here.names.keys().chain(here.modules.keys()).map(String::as_str).chain(words.iter().copied());
-        let near = nearest(&name.text, candidates).map(|n| format!("did you mean `{n}`?"));
+        let known = called(Names::Words, &name.text, words.iter().copied());
+        let modules = here.modules.clone();
+        let near = known.or_else(|| nearest(&name.text, candidates)).map(|near| match modules.contains_key(near) {
+            true => format!("did you mean `{near}{behind}`?"),
+            false => format!("did you mean `{near}`?"),
+        });
         let library = crate::check::text::library::MODULES.iter().any(|(m, _)| *m == name.text);
-        let help = if library && !here.modules.contains_key(&name.text) {
+        let help = if name.text == "std" && path.names.len() > 1 {
+            Some(format!("write `{}`: `use std` brings its modules in by their own names", behind.trim_start_matches('.')))
+        } else if library && !here.modules.contains_key(&name.text) {
             // one line is missing, however many modules it would have brought in
             if !self.without_library.insert(scope) || self.wanted_library(name.span) {
                 return;
@@ -120,7 +129,7 @@ impl Evaluator<'_> {
     }
 
     /// The entry of the standard library with that name, else one with a name near to it, with its module.
-    fn entry_called(&self, name: &str) -> Option<String> {
+    pub(super) fn entry_called(&self, name: &str) -> Option<String> {
         let modules = &self.scopes[self.standard].modules;
         let entries = modules.iter().flat_map(|(module, scope)| {
             let names = self.scopes[*scope].names.keys();

@@ -9,7 +9,7 @@ use super::written::{PROFILES, Per, bare, is_profile, looks_like, with_unit};
 use crate::check::text::scope::{ItemId, ScopeId};
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, Span};
-use crate::schema::{Form, Measure, Varies};
+use crate::schema::{Form, Measure, Names, Varies, called};
 use crate::syntax::tree::{Argument, Entry, Item, Name, UnitText, Value, ValueKind};
 use crate::units::Dimension;
 
@@ -26,7 +26,7 @@ impl Evaluator<'_> {
                 return None;
             }
             if let ValueKind::Range(..) | ValueKind::Text(_) | ValueKind::List { .. } = value.kind {
-                if !self.misspelt_inside(value.span) {
+                if matches!(value.kind, ValueKind::Text(_)) || !self.misspelt_inside(value.span) {
                     self.wrong_form(&Form::Number(*measure), looks_like(&value.kind), value.span);
                 }
                 return None;
@@ -57,7 +57,8 @@ impl Evaluator<'_> {
         if matches!(word.text.as_str(), "sqrt" | "abs" | "min" | "max") {
             return false;
         }
-        let Some(near) = nearest(&word.text, PROFILES) else { return false };
+        let near = called(Names::Words, &word.text, PROFILES.into_iter()).or_else(|| nearest(&word.text, PROFILES));
+        let Some(near) = near else { return false };
         self.findings.report(
             Diagnostic::new(Code::E0408, format!("expected a number or a profile, found the word `{}`", word.text))
                 .label(word.span, "unknown word")
@@ -161,8 +162,7 @@ impl Evaluator<'_> {
         let b = Raw { basis: b.basis.clone().or(per), ..b };
         // both ends are of the same wrong dimension, or lack the same `per`
         if a.dimension == b.dimension && b.dimension != Dimension::of_unit(measure.unit) {
-            let expected = format!("expected {}", Form::Number(*measure).describe());
-            self.wrong_dimension(&Raw { span: range.span, ..b }, measure, &expected);
+            self.wrong_ends(&a, &b, measure, range.span);
             return None;
         }
         self.basis(measure, &Raw { span: range.span, ..a.clone() })?;
@@ -218,6 +218,7 @@ impl Evaluator<'_> {
         per: Per,
         scope: ScopeId,
     ) -> Option<ShapeKind> {
+        let before = self.findings.diagnostics.len();
         let by_spans = entries.iter().any(|e| matches!(e.key.as_ref().map(|k| &k.kind), Some(ValueKind::Range(..))));
         let (mut points, mut spans) = (Vec::new(), Vec::new());
         let mut sound = true;
@@ -253,6 +254,7 @@ impl Evaluator<'_> {
             }
         }
         if !sound {
+            self.one_missing_unit(before, entries);
             return None;
         }
         Some(if by_spans { ShapeKind::Spans(spans) } else { ShapeKind::Points(points) })

@@ -103,7 +103,7 @@ impl Evaluator<'_> {
         let raw = self.raw(value, scope)?;
         let raw = Raw { basis: raw.basis.clone().or(per).or(mean.basis.map(|b| (b.to_string(), raw.span))), ..raw };
         if raw.dimension != Dimension::of_unit(measure.unit) {
-            self.wrong_dimension(&raw, measure, "expected a standard deviation of the same dimension as the mean");
+            self.wrong_dimension(&raw, &[measure], "expected a standard deviation of the same dimension as the mean");
             return None;
         }
         let (_, factor) = self.basis(measure, &raw)?;

@@ -3,7 +3,6 @@
 use super::evaluator::Evaluator;
 use super::value::{Change, Record, Slot, Val};
 use crate::check::text::scope::{ItemId, ScopeId};
-use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::Origin;
 use crate::schema::{self, Form, Kind, PLANNED_KINDS};
@@ -59,14 +58,14 @@ impl Evaluator<'_> {
             return None;
         }
         // what is misspelt is read on as what was probably meant
-        let near = nearest(&name.text, schema::KINDS.iter().filter(stands).map(|k| k.name));
-        let help = near.map_or("`trackbed docs` lists the kinds".to_string(), |k| format!("did you mean `{k}`?"));
+        let near = schema::meant_kind(&name.text);
+        let help = near.map_or("`trackbed docs` lists the kinds".to_string(), |k| format!("did you mean `{}`?", k.name));
         self.findings.report(
             Diagnostic::new(Code::E0401, format!("unknown kind `{}`", name.text))
                 .label(name.span, "not a kind")
                 .help(help),
         );
-        schema::kind(near?)
+        near
     }
 
     /// What `: base` or an object's path names, of the same kind.
@@ -215,7 +214,9 @@ impl Evaluator<'_> {
         };
         let [_, rest @ ..] = path else { return };
         if rest.is_empty() {
+            let around = self.asked.replace((record.kind, known.name));
             let slot = self.fit(&known.form, &field.value, scope);
+            self.asked = around;
             record.fields.insert(known.name, slot);
             return;
         }
@@ -294,8 +295,16 @@ impl Evaluator<'_> {
             );
             return None;
         }
-        let near = kind.meant(&name.text).map(|n| format!("did you mean `{n}`?"));
-        let help = near.unwrap_or_else(|| format!("`trackbed docs {}` lists its fields", kind.name));
+        let argument = || {
+            let (field, word) = kind.argument(&name.text)?;
+            // a law has one form: its base says which
+            Some(match kind.name {
+                "law" => format!("it is an argument of its form: write `{}.{}`", field.name, name.text),
+                _ => format!("it is an argument of `{}`: `{} = {0}({} = ...)`", word.name, field.name, name.text),
+            })
+        };
+        let near = || kind.meant(&name.text).map(|n| format!("did you mean `{n}`?"));
+        let help = argument().or_else(near).unwrap_or_else(|| format!("`trackbed docs {}` lists its fields", kind.name));
         self.findings.report(
             Diagnostic::new(Code::E0402, format!("`{}` has no field `{}`", kind.name, name.text))
                 .label(name.span, "unknown field")

@@ -2,11 +2,12 @@
 
 use super::evaluator::Evaluator;
 use super::value::{Slot, Val};
+use super::written::bare;
 use crate::check::text::scope::ScopeId;
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, or_list};
 use crate::scenario::response::Response;
-use crate::schema::Word;
+use crate::schema::{Form, Names, Word, called};
 use crate::syntax::tree::{Argument, Name, ValueKind};
 use std::collections::BTreeMap;
 
@@ -15,7 +16,8 @@ impl Evaluator<'_> {
     pub fn response(&mut self, name: &Name) -> Option<Response> {
         let found = Response::of_name(&name.text);
         if found.is_none() {
-            let near = nearest(&name.text, Response::ALL.iter().map(|r| r.name()));
+            let names = || Response::ALL.iter().map(|r| r.name());
+            let near = called(Names::Responses, &name.text, names()).or_else(|| nearest(&name.text, names()));
             let help = near.map_or_else(
                 || {
                     format!(
@@ -40,7 +42,9 @@ impl Evaluator<'_> {
             return Some(Val::Text(name.text.clone()));
         }
         let rules: Vec<&str> = Code::ALL.iter().filter_map(|c| c.rule()).collect();
-        let help = nearest(&name.text, rules.iter().copied())
+        let by_code = Code::ALL.iter().find(|c| c.to_string() == name.text).and_then(|c| c.rule());
+        let help = by_code
+            .or_else(|| nearest(&name.text, rules.iter().copied()))
             .map_or_else(|| format!("the rules are {}", rules.join(", ")), |n| format!("did you mean `{n}`?"));
         self.findings.report(
             Diagnostic::new(Code::E0408, format!("no rule is called `{}`", name.text))
@@ -53,7 +57,9 @@ impl Evaluator<'_> {
     /// Refuses a word that a form does not know.
     pub(super) fn unknown_word(&mut self, name: &Name, words: &[&'static Word]) {
         let known: Vec<&str> = words.iter().filter(|w| !w.planned).map(|w| w.name).collect();
-        let help = nearest(&name.text, known.iter().copied()).map(|n| format!("did you mean `{n}`?"));
+        let near = called(Names::Words, &name.text, known.iter().copied());
+        let near = near.or_else(|| nearest(&name.text, known.iter().copied()));
+        let help = near.map(|n| format!("did you mean `{n}`?"));
         let quoted: Vec<String> = known.iter().map(|w| format!("`{w}`")).collect();
         self.findings.report(
             Diagnostic::new(Code::E0408, format!("expected {}, found `{}`", or_list(&quoted), name.text))
@@ -71,6 +77,18 @@ impl Evaluator<'_> {
             );
             return None;
         }
+        if let (Some(Form::Interval(_)), [first, second, ..]) = (word.arguments.first().map(|a| &a.form), arguments)
+            && [first, second].iter().all(|a| a.name.is_none() && matches!(bare(&a.value).0.kind, ValueKind::Number { .. }))
+        {
+            let [from, to] = [first, second].map(|a| self.files.sources.text(bare(&a.value).0.span));
+            let help = format!("from one to the other: write `{from} .. {to}`");
+            self.findings.report(
+                Diagnostic::new(Code::E0406, format!("`{}` begins with a range, found two numbers", word.name))
+                    .label(first.value.span.to(second.value.span), "two numbers")
+                    .help(help),
+            );
+            return None;
+        }
         let mut slots = BTreeMap::new();
         // what could not be read may have run on into the next argument
         let mut unknown = arguments.iter().any(|argument| argument.value.kind == ValueKind::Error);
@@ -82,8 +100,13 @@ impl Evaluator<'_> {
             let Some(field) = field else {
                 let names: Vec<String> = word.arguments.iter().map(|a| format!("`{}`", a.name)).collect();
                 let place = argument.name.as_ref().map_or(argument.value.span, |n| n.span);
-                let help =
-                    if names.is_empty() { "it takes none".into() } else { format!("it takes {}", or_list(&names)) };
+                let known = word.arguments.iter().map(|a| a.name).chain((word.name == "random").then_some("sd"));
+                let near = argument.name.as_ref().and_then(|n| called(Names::Fields, &n.text, known));
+                let help = match near {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None if names.is_empty() => "it takes none".into(),
+                    None => format!("it takes {}", or_list(&names)),
+                };
                 self.findings.report(
                     Diagnostic::new(Code::E0402, format!("`{}` has no such argument", word.name))
                         .label(place, "unknown argument")
@@ -92,7 +115,9 @@ impl Evaluator<'_> {
                 unknown = true;
                 continue;
             };
+            let around = self.asked.take();
             let slot = self.fit(&field.form, &argument.value, scope);
+            self.asked = around;
             if slots.insert(field.name, slot).is_some() {
                 self.findings.report(
                     Diagnostic::new(Code::E0404, format!("`{}` of `{}` is given twice", field.name, word.name))

@@ -33,7 +33,10 @@ impl Asked {
         let tier = tier(solve);
         let by_layers = tier == Tier::Auto && forms(track).any(stands_on_grains);
         let layers_do = tier.has_grains() || by_layers;
-        let on = |load: &Record, words: &[&str]| load.word("on").is_some_and(|word| words.contains(&word));
+        // what could not be understood may be any of them
+        let on = |load: &Record, words: &[&str]| {
+            load.unknown("on") || load.word("on").is_some_and(|word| words.contains(&word))
+        };
         let under_load = !loads.is_empty() && loads.iter().all(|load| on(load, &["sleepers", "bed"]));
         let all_on_bed = !loads.is_empty() && loads.iter().all(|load| on(load, &["bed"]));
         let rig = !traffic && under_load && (layers_do || all_on_bed);

@@ -145,6 +145,16 @@ fn is_a_curve(sieves: &[Sieve], whole: Span, cuts: [Option<Option<Given>>; 2], f
         );
         return None;
     };
+    if sieves.windows(2).all(|pair| pair[1].size < pair[0].size) {
+        let sieve = |s: &Sieve| format!("{} mm: {} %", number(s.size * 1e3), percent(s.share));
+        let ascending: Vec<String> = sieves.iter().rev().map(sieve).collect();
+        findings.report(
+            Diagnostic::new(Code::E0414, "the sizes of a grading ascend")
+                .label(whole, "from coarse to fine")
+                .help(format!("write `[{}]`", ascending.join(", "))),
+        );
+        return None;
+    }
     let mut sound = true;
     for pair in sieves.windows(2) {
         let mistake = if pair[1].size <= pair[0].size {

@@ -79,6 +79,12 @@ fn counts(
         not_counted(Dimension::CYCLES, "axles of its trains", first.span, findings);
         return None;
     }
+    let of_trains = |slot: &Slot| matches!(slot.value, Val::Number(n) if n.dimension != Dimension::CYCLES);
+    if let Some(first) = slots.iter().find(|slot| counted.is_none() && cycles.is_some() && of_trains(slot)) {
+        let Val::Number(n) = first.value else { return None };
+        not_counted(n.dimension, "cycles of its load", first.span, findings);
+        return None;
+    }
     let counts: Vec<Option<u64>> = match (counted, cycles) {
         (Some(_), _) => slots.iter().map(|slot| between_trains(slot, counted, findings)).collect(),
         (None, Some(cycles)) => slots.iter().map(|slot| recorded_cycles(slot, cycles, findings)).collect(),

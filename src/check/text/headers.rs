@@ -3,8 +3,8 @@
 
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic};
-use crate::schema::{self, Kind, Role};
-use crate::syntax::tree::{Declaration, Item, Tree};
+use crate::schema::{self, Kind, Names, Role, called};
+use crate::syntax::tree::{Declaration, Item, Tree, ValueKind};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -15,7 +15,8 @@ pub fn mended(tree: &mut Arc<Tree>) -> Vec<Diagnostic> {
         match item {
             Item::Declaration(d) => {
                 let name = d.name.as_ref().unwrap_or(&d.kind);
-                kinds.insert(&name.text, schema::kind(&d.kind.text));
+                let kind = schema::kind(&d.kind.text).or_else(|| called_kind(d));
+                kinds.insert(&name.text, kind);
             }
             Item::Let(binding) => {
                 kinds.insert(&binding.name.text, None);
@@ -26,10 +27,16 @@ pub fn mended(tree: &mut Arc<Tree>) -> Vec<Diagnostic> {
             }
         }
     }
+    let of_kinds: Vec<(usize, Declaration)> =
+        tree.items.iter().enumerate().filter_map(|(i, item)| Some((i, kind_as_let(item)?))).collect();
     let mut found = Vec::new();
     for (i, item) in tree.items.iter().enumerate() {
         let Item::Declaration(d) = item else { continue };
-        found.extend(other_kind(d, &kinds).or_else(|| name_behind_colon(d, &kinds)).map(|mended| (i, mended)));
+        let mended = other_kind(d, &kinds).or_else(|| name_behind_colon(d, &kinds)).or_else(|| foreign_kind(d));
+        found.extend(mended.map(|mended| (i, mended)));
+    }
+    for (i, declaration) in of_kinds {
+        Arc::make_mut(tree).items[i] = Item::Declaration(declaration);
     }
     let mut mistakes = Vec::new();
     for (i, (mended, mistake)) in found {
@@ -75,4 +82,34 @@ fn name_behind_colon(
     let mut mended = d.clone();
     mended.name = mended.base.take().and_then(|path| path.names.into_iter().next());
     Some((mended, mistake))
+}
+
+/// The kind that a declaration names by what it is called elsewhere.
+fn called_kind(d: &Declaration) -> Option<&'static Kind> {
+    let stands = schema::KINDS.iter().filter(|k| k.role != Role::Nested).map(|k| k.name);
+    if schema::kind(&d.kind.text).is_some() || d.fields.is_empty() && d.base.is_none() {
+        return None;
+    }
+    schema::kind(called(Names::Kinds, &d.kind.text, stands)?)
+}
+
+/// `ballast stone { ... }` is read on as a granular.
+fn foreign_kind(d: &Declaration) -> Option<(Declaration, Diagnostic)> {
+    let kind = called_kind(d)?;
+    let mistake = Diagnostic::new(Code::E0401, format!("unknown kind `{}`", d.kind.text))
+        .label(d.kind.span, "not a kind")
+        .help(format!("did you mean `{}`?", kind.name));
+    let mut mended = d.clone();
+    // without a name it is called by its kind
+    mended.kind.text = kind.name.to_string();
+    Some((mended, mistake))
+}
+
+/// `traffic = { ... }`, which has been told, is the declaration of that kind.
+fn kind_as_let(item: &Item) -> Option<Declaration> {
+    let Item::Let(binding) = item else { return None };
+    let ValueKind::Object { base: None, fields } = &binding.value.kind else { return None };
+    schema::kind(&binding.name.text).filter(|k| k.role != Role::Nested)?;
+    let (kind, fields, docs, span) = (binding.name.clone(), fields.clone(), binding.docs.clone(), binding.span);
+    Some(Declaration { kind, name: None, base: None, fields, docs, span })
 }

@@ -37,9 +37,14 @@ fn is_name(part: &str) -> bool {
     !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_')
 }
 
+/// Whether a name is another one for the standard library.
+fn is_library(name: &str) -> bool {
+    ["std", "stdlib", "standard"].contains(&name.to_lowercase().as_str())
+}
+
 /// What was meant by a module that has no file: the standard library, or one of its modules.
 fn missing_file(name: &str) -> Option<String> {
-    if ["stdlib", "standard"].contains(&name) {
+    if is_library(name) {
         return Some("the standard library is called `std`: write `use std`".into());
     }
     let module = library::MODULES.iter().any(|(module, _)| *module == name);
@@ -182,6 +187,10 @@ impl<'a> Loader<'a> {
                         format!("the standard library brings its modules, it cannot be called `{}`", alias.text),
                         Some("write `use std`, and `rails.UIC60` for what is in its module `rails`".to_string()),
                     ),
+                    _ if names.len() == 3 => (
+                        format!("`{}` is no module: a module is used whole", names.join(".")),
+                        Some(format!("write `use std`, and `{}` where it is wanted", names[1..].join("."))),
+                    ),
                     _ => (
                         format!("the standard library has no module `{}`", names[1..].join(".")),
                         near.map(|n| format!("did you mean `use std.{n}`?")),
@@ -189,7 +198,7 @@ impl<'a> Loader<'a> {
                 };
                 self.diagnostics
                     .push(Diagnostic::new(Code::E0204, message).label(used.path.span, "not found").maybe_help(help));
-                if names.len() == 1 {
+                if names.len() != 2 {
                     brought.broken.extend(library::MODULES.iter().map(|(module, _)| module.to_string()));
                 }
             }
@@ -198,7 +207,8 @@ impl<'a> Loader<'a> {
             self.file(&names, used.path.span)
         };
         // nobody else calls a file so: what stands in the library is not missed a second time
-        if scope.is_none() && ["stdlib", "standard"].contains(&names[0]) {
+        let of_library = library::MODULES.iter().any(|(module, _)| *module == names[0]);
+        if scope.is_none() && names[0] != "std" && (is_library(names[0]) || of_library) {
             brought.broken.extend(library::MODULES.iter().map(|(module, _)| module.to_string()));
         }
         let place = used.alias.as_ref().map_or(used.path.span, |n| n.span);
@@ -253,7 +263,10 @@ impl<'a> Loader<'a> {
             self.diagnostics.push(
                 Diagnostic::new(Code::E0204, format!("there is no file `{relative}` below the main file's folder"))
                     .label(span, "not found")
-                    .maybe_help(missing_file(names[0])),
+                    .maybe_help(match names {
+                        [path @ .., "track"] => Some(format!("write `use {}`, without the ending", path.join("."))),
+                        _ => missing_file(names[0]),
+                    }),
             );
             return None;
         };

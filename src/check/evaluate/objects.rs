@@ -1,0 +1,44 @@
+//! Objects to write where a number or a word stands: `{ stiffness = 40 MN/m }` for `40 MN/m`, `[wagon: 10]` for `10 wagon`.
+
+use crate::schema::{self, Field, Form, Kind, Need};
+use crate::units::{Dimension, parse_unit};
+
+/// The object whose one needed field takes a number, where it is written as one; `value` is what the field shall have.
+pub fn of_number(form: &Form, number: &str, value: &str) -> Option<String> {
+    let bare = number.split(" per ").next().unwrap_or(number);
+    let (_, unit) = bare.split_once(' ')?;
+    let dimension = parse_unit(unit.trim()).ok()?.dimension;
+    let takes = |field: &&Field| field.form.measure().is_some_and(|m| Dimension::of_unit(m.unit) == dimension);
+    let mut kinds = objects(form).into_iter().filter_map(|kind| {
+        let mut needed = kind.fields.iter().filter(|f| f.need == Need::Required);
+        let only = needed.next().filter(|_| needed.next().is_none()).filter(takes)?;
+        let open = kind.alternatives.iter().all(|a| a.default.is_some());
+        open.then_some(only.name)
+    });
+    let field = kinds.next()?;
+    Some(format!("write `{{ {field} = {value} }}`"))
+}
+
+/// The object that has a field with that word.
+pub fn of_word(form: &Form, word: &str, text: &str) -> Option<String> {
+    let mut fields = objects(form).into_iter().flat_map(|kind| kind.fields);
+    let field = fields.find(|field| field.form.word(word).is_some())?;
+    Some(format!("write `{{ {} = {text} }}`", field.name))
+}
+
+/// `10 wagon` and `10 * wagon` where objects are counted.
+pub fn counted(form: &Form, text: &str) -> Option<String> {
+    let Form::Object("vehicle") = form else { return None };
+    let parts: Vec<&str> = text.split([' ', '*']).filter(|part| !part.is_empty()).collect();
+    let [first, second] = parts.as_slice() else { return None };
+    let (count, name) = if first.parse::<u32>().is_ok() { (first, second) } else { (second, first) };
+    count.parse::<u32>().ok().map(|count| format!("write `[{name}: {count}]`"))
+}
+
+fn objects(form: &Form) -> Vec<&'static Kind> {
+    match form {
+        Form::Object(kind) => schema::kind(kind).into_iter().collect(),
+        Form::OneOf(forms) => forms.iter().flat_map(objects).collect(),
+        _ => Vec::new(),
+    }
+}
