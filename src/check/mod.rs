@@ -74,6 +74,24 @@ fn with_evaluator<T>(
     evaluated(Evaluator::new(load(name, text, overrides, Part::Whole, modules)), &ask)
 }
 
+/// A name that is not known is told once, with every place that asks for it; so is a stretch that its place does not bear, at the
+/// first of its transitions. Takes them in order.
+fn one_cause_once(diagnostics: &mut Vec<Diagnostic>) {
+    for mistake in std::mem::take(diagnostics) {
+        let place = |d: &Diagnostic| d.labels.first().map(|label| label.span);
+        let same = |d: &&mut Diagnostic| match mistake.code {
+            Code::E0201 => d.code == mistake.code && d.message == mistake.message && d.help == mistake.help,
+            Code::E0418 | Code::E0426 => d.code == mistake.code && place(d) == place(&mistake),
+            _ => false,
+        };
+        match diagnostics.iter_mut().find(same) {
+            Some(first) if mistake.code == Code::E0201 => first.labels.extend(mistake.labels),
+            Some(_) => {}
+            None => diagnostics.push(mistake),
+        }
+    }
+}
+
 fn evaluated<T>(mut eval: Evaluator<'_>, ask: &impl Fn(&mut Evaluator<'_>) -> T) -> (Checked, T) {
     let (scenario, studies) = scene::scene(&mut eval);
     let stated = stated::stated(&eval);
@@ -83,6 +101,7 @@ fn evaluated<T>(mut eval: Evaluator<'_>, ask: &impl Fn(&mut Evaluator<'_>) -> T)
     eval.drop_superseded();
     let mut diagnostics = eval.findings.diagnostics;
     diag::sort(&mut diagnostics);
+    one_cause_once(&mut diagnostics);
     let sound = !diagnostics.iter().any(|d| d.is_error() || d.code == Code::E0410);
     (Checked { sources: eval.files.sources, diagnostics, scenario, studies, stated, sound }, answer)
 }

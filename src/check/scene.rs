@@ -4,7 +4,7 @@ use super::ask::reader::{Counting, questions};
 use super::ask::study::studies;
 use super::evaluate::evaluator::Evaluator;
 use super::evaluate::value::{Record, Val};
-use super::parts::asked::Asked;
+use super::parts::asked::{Asked, forms, has_layers};
 use super::parts::layout::layout;
 use super::parts::loads::{cycles, loads};
 use super::parts::rails::shear_stiffnesses;
@@ -53,10 +53,22 @@ pub fn scene(eval: &mut Evaluator<'_>) -> (Option<Scenario>, Vec<Study>) {
     eval.idle_lets();
     eval.findings.say_missing();
     // what is misspelt or unread may be what would have used it
-    if track_record.is_some() && !diag::has_errors(&eval.findings.diagnostics) {
-        eval.unused(&roots);
+    if let Some(track) = track_record.filter(|_| !diag::has_errors(&eval.findings.diagnostics)) {
+        let waiting = waiting(&track, eval);
+        eval.unused(&roots, &waiting);
     }
     found
+}
+
+/// Kinds of which objects stand unused because something else is missing: trains where nothing acts, materials where no trackform has
+/// layers and a rig asks for them.
+fn waiting(track: &Record, eval: &Evaluator<'_>) -> Vec<&'static str> {
+    let (runs, loaded) = (eval.declares("traffic"), eval.declares("load"));
+    match (runs, loaded) {
+        (false, false) => vec!["train"],
+        (false, true) if !forms(track).any(has_layers) => vec!["granular", "soil"],
+        _ => Vec::new(),
+    }
 }
 
 fn with_track(track_record: &Record, eval: &mut Evaluator<'_>) -> (Option<Scenario>, Vec<Study>) {

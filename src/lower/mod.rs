@@ -121,7 +121,7 @@ impl Planner {
         let origins = Origins::new(scenario);
         let mut draft = Draft::new(scenario, &origins);
         if scenario.loading.is_none() {
-            draft.diagnostics.push(nothing_acts());
+            draft.diagnostics.push(nothing_acts(scenario));
         }
         for pass in self.passes() {
             match pass.without().filter(|_| self.without.iter().any(|name| name == pass.name())) {
@@ -186,9 +186,12 @@ pub fn lower(scenario: &Scenario) -> Lowered {
 /// The plan of a draft, where nothing stands against it and its nodes fit together.
 fn finished(draft: Draft<'_>) -> (Option<Graph>, Vec<Diagnostic>) {
     let wrong = draft.is_wrong();
+    // what no load acts on and no train runs on waits for these first
+    let idle = draft.scenario.loading.is_none() && !draft.scenario.track.has_rails();
     let Draft { supports, nodes, edges, schedule, records, cost, decisions, runs, mut diagnostics, refusals, .. } =
         draft;
     diagnostics.extend(refusals);
+    diagnostics.retain(|diagnostic| !idle || diagnostic.code != Code::E0604);
     let (Some(schedule), Some(cost)) = (schedule.filter(|_| !wrong), cost) else { return (None, diagnostics) };
     let graph = Graph { nodes, edges, schedule, records, supports, decisions, cost, runs };
     let faults = faults(&graph);
@@ -196,8 +199,14 @@ fn finished(draft: Draft<'_>) -> (Option<Graph>, Vec<Diagnostic>) {
     (faults.is_empty().then_some(graph), diagnostics)
 }
 
-fn nothing_acts() -> Diagnostic {
+fn nothing_acts(scenario: &Scenario) -> Diagnostic {
+    let help = match scenario.track.has_rails() {
+        true => "add `traffic { trains = ..., total = 500 axles }` to run the scene",
+        false => {
+            "add a `load` with `on = sleepers` or `on = bed` to run the scene as a rig, or give it rails and `traffic`"
+        }
+    };
     Diagnostic::new(Code::E0601, "nothing acts on the track: there is neither `traffic` nor `load`")
         .severity(Severity::Warning)
-        .help("add `traffic { trains = ..., total = 500 axles }` to run the scene")
+        .help(help)
 }

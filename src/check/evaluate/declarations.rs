@@ -126,12 +126,14 @@ impl Evaluator<'_> {
         self.library_uses.iter().filter_map(entry).collect()
     }
 
-    /// Warns of declarations of the main file that nothing asks for.
-    pub fn unused(&mut self, roots: &[ItemId]) {
+    /// Warns of declarations of the main file that nothing asks for. Those of kinds that wait for something else, which is told
+    /// itself, are left alone.
+    pub fn unused(&mut self, roots: &[ItemId], waiting: &[&str]) {
         let tree = self.scopes[self.main].tree.clone();
         for (item, thing) in tree.items.iter().enumerate() {
             let id = ItemId { scope: self.main, item };
             let (name, span) = match thing {
+                Item::Declaration(d) if waiting.contains(&d.kind.text.as_str()) => continue,
                 Item::Declaration(d) => match &d.name {
                     Some(name) => (name.text.clone(), name.span),
                     None => (d.kind.text.clone(), d.kind.span),

@@ -8,7 +8,7 @@ use crate::scenario::Tier;
 pub struct Asked {
     /// Grains give the stiffness of the supports: layers without a modulus do instead of a `support`.
     pub layers_do: bool,
-    /// Only test loads on sleepers, or on the bed itself, act: a rail is not needed.
+    /// Only test loads on sleepers, or on the bed itself, act, or what acts is not said yet: a rail is not needed.
     pub rig: bool,
     /// A plate lies on the bed: sleepers are not needed either.
     pub plate: bool,
@@ -39,8 +39,16 @@ impl Asked {
         };
         let under_load = !loads.is_empty() && loads.iter().all(|load| on(load, &["sleepers", "bed"]));
         let all_on_bed = !loads.is_empty() && loads.iter().all(|load| on(load, &["bed"]));
-        let rig = !traffic && under_load && (layers_do || all_on_bed);
-        let plate = rig && all_on_bed;
+        // what is not said yet is asked for itself, and not by way of rails and pads that a rig does without
+        let unsaid = match loads {
+            [] => tier.has_grains(),
+            loads => loads.iter().any(|load| load.word("on").is_none()),
+        };
+        let bare = forms(track).all(|form| form.record("rail").is_none() && form.record("pad").is_none());
+        let rig = !traffic && (unsaid || under_load && (layers_do || all_on_bed || bare));
+        let plate = rig && (unsaid || all_on_bed);
+        // a rig for sleepers has grains unless another tier is asked for
+        let layers_do = layers_do || rig && tier == Tier::Auto;
         Asked { layers_do, rig, plate, traffic }
     }
 }
@@ -54,7 +62,8 @@ pub fn forms(track: &Record) -> impl Iterator<Item = &Record> {
     pairs.iter().filter_map(|(form, _)| if let Val::Record(form) = &form.value { Some(&**form) } else { None })
 }
 
-fn has_layers(form: &Record) -> bool {
+/// Whether a trackform has layers.
+pub fn has_layers(form: &Record) -> bool {
     matches!(form.get("layers").map(|slot| &slot.value), Some(Val::Pairs(pairs)) if !pairs.is_empty())
 }
 

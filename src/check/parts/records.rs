@@ -85,13 +85,26 @@ fn counts(
         not_counted(n.dimension, "cycles of its load", first.span, findings);
         return None;
     }
+    let before = findings.diagnostics.len();
     let counts: Vec<Option<u64>> = match (counted, cycles) {
         (Some(_), _) => slots.iter().map(|slot| between_trains(slot, counted, findings)).collect(),
         (None, Some(cycles)) => slots.iter().map(|slot| recorded_cycles(slot, cycles, findings)).collect(),
         // what counts is not understood, or nothing does
         (None, None) => Vec::new(),
     };
+    beyond_one_end(&mut findings.diagnostics, before);
     counts.into_iter().collect()
+}
+
+/// Counts of a list that all lie beyond the end of the run are one mistake.
+fn beyond_one_end(diagnostics: &mut Vec<Diagnostic>, before: usize) {
+    for mistake in diagnostics.split_off(before.min(diagnostics.len())) {
+        let same = |d: &&mut Diagnostic| d.code == Code::E0602 && d.help.is_none() && d.message == mistake.message;
+        match diagnostics[before..].iter_mut().find(same) {
+            Some(first) => first.labels.extend(mistake.labels),
+            None => diagnostics.push(mistake),
+        }
+    }
 }
 
 fn recorded_cycles(slot: &Slot, cycles: u64, findings: &mut Findings) -> Option<u64> {

@@ -95,9 +95,13 @@ pub fn trackform(
     let pad = upper(form, "pad", "between rail and seat", |record, _| damped(record), asked, findings);
     let spacing = given(form, "spacing");
     let auxiliary_rails = auxiliary_rails(form, findings);
-    let settlement = along(form, "settlement");
     let sleeper = form.record("sleeper").cloned();
     let (foot, slab) = under_the_pads(form, sleeper.as_ref(), asked, findings);
+    // where nothing can settle a settlement has been refused: it need not cover the section as well
+    let settlement = match &foot {
+        Some(Base::Slab | Base::Rigid) => Some(Along::Fixed(Given::derived(0.0))),
+        _ => along(form, "settlement"),
+    };
     let sleeper = sleeper.filter(|_| slab.is_none());
     let layers = strata(form, of_stretch, files, findings);
     let layers_span = form.get("layers").map_or(form.span, |slot| slot.span);
@@ -134,6 +138,12 @@ fn under_the_pads(
     if asked.plate && form.get("sleeper").is_none() && !form.unknown("sleeper") {
         return (Some(Base::Rigid), None);
     }
+    let by_layers = stands_on_layers(form);
+    let lacks = |field: &str| form.record(field).is_none() && !form.unknown(field);
+    if !by_layers && lacks("sleeper") && lacks("support") {
+        part(form, "sleeper", "on a `support` or on layers, or a `slab`, under the pads", findings);
+        return (None, None);
+    }
     let sleeper = part(form, "sleeper", "or a slab, under the pads", findings);
     let mass = sleeper.as_ref().and_then(|s| given(s, "mass"));
     let usp = match form.record("usp").cloned() {
@@ -143,7 +153,6 @@ fn under_the_pads(
     if let Some(sleeper) = &sleeper {
         bears(sleeper, findings);
     }
-    let by_layers = stands_on_layers(form);
     let record = if by_layers { None } else { part(form, "support", "or layers, under the sleepers", findings) };
     let seating = if by_layers { Some(None) } else { record.as_ref().and_then(|r| seating(r)) };
     let support = record.and_then(|s| damped(&s));
@@ -167,7 +176,7 @@ fn without_support(form: &Record, field: &str, stands: &str, findings: &mut Find
                 Diagnostic::new(Code::E0407, message)
                     .label(slot.span, format!("`{name}`"))
                     .label(base, "instead of a support that gives")
-                    .help(format!("write `{name} = {nothing}`")),
+                    .help(format!("write `{name} = {nothing}` in trackform `{}`", form.name)),
             );
         }
     }

@@ -1,4 +1,4 @@
-//! Test loads that the chosen plan cannot bear: a plate without a bed, and sides that give way where no plate is.
+//! Test loads that the chosen plan cannot bear: a plate, or sleepers without rails, without a bed, and sides that give way where no plate is.
 
 use super::rig;
 use crate::diag::{Code, Diagnostic};
@@ -9,12 +9,19 @@ use crate::scenario::{Force, RigLoad, Scenario, Target};
 pub(super) fn refusals(scenario: &Scenario, schedule: Option<&Schedule>) -> Vec<Diagnostic> {
     let loads = rig::loads(scenario);
     let has_bed = matches!(schedule, Some(Schedule::Actuators(_) | Schedule::Custom { .. }));
-    let on_bed = loads.iter().find(|load| load.on == Target::Bed && !has_bed);
-    on_bed.map(no_bed).into_iter().chain(loads.iter().find_map(sides)).collect()
+    // without rails the sleepers, too, stand on nothing but a bed
+    let needs_bed = |load: &&RigLoad| match load.on {
+        Target::Bed => true,
+        Target::Sleepers => !scenario.track.has_rails(),
+        Target::Rail => false,
+    };
+    let without = loads.iter().filter(|_| !has_bed).find(needs_bed);
+    without.map(no_bed).into_iter().chain(loads.iter().find_map(sides)).collect()
 }
 
 fn no_bed(load: &RigLoad) -> Diagnostic {
-    let message = format!("plate `{}` presses on a bed of grains, and nothing of this scene asks for one", load.name);
+    let what = if load.on == Target::Bed { "plate" } else { "load" };
+    let message = format!("{what} `{}` presses on a bed of grains, and nothing of this scene asks for one", load.name);
     let help = "write `solve { substructure = full }`, with layers of grains, without rails and without trains";
     Diagnostic::new(Code::E0611, message).label(load.span, "no bed").help(help)
 }
