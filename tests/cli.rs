@@ -319,6 +319,7 @@ fn a_new_scene_checks_plans_and_is_laid_out() {
     assert_eq!(code(&trackbed(&["new", name])), 2, "an existing file is not overwritten");
     let checked = trackbed(&["check", name]);
     assert_eq!(code(&checked), 0, "{}", said(&checked));
+    assert!(!said(&checked).contains("warning"), "{}", said(&checked));
     assert_eq!(code(&trackbed(&["fmt", "--check", name])), 0);
     let plan = trackbed(&["plan", name]);
     assert!(said(&plan).contains("10000 axles"), "{}", said(&plan));

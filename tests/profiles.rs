@@ -85,7 +85,7 @@ fn close(a: f64, b: f64) {
 fn each_seat_takes_the_value_of_its_place() {
     let settled = |value: &str, numbers: &[i32]| -> Vec<f64> {
         let scenario = sound(&scene(&format!("settlement = {value}"), "", ""));
-        numbers.iter().map(|n| seat(&scenario, *n).initial_settlement * 1e3).collect()
+        numbers.iter().map(|n| *seat(&scenario, *n).initial_settlement * 1e3).collect()
     };
     for (value, expected) in [
         ("2 mm", [2.0, 2.0, 2.0, 2.0]),
@@ -133,7 +133,7 @@ fn pads_and_supports_vary_with_their_damping() {
 #[test]
 fn profiles_have_names_and_can_be_taken_over() {
     let text = scene("settlement = sunk", "", "let sunk = ramp(0 mm .. deep)\nlet deep = 12 mm");
-    close(seat(&sound(&text), -9).initial_settlement, 6.6e-3);
+    close(*seat(&sound(&text), -9).initial_settlement, 6.6e-3);
     let text = scene(
         "pad.damping_time = 0.1 ms",
         "",
@@ -162,17 +162,17 @@ trackform deck : open { sleeper = none, support = none, settlement = 0 mm, slab 
         "{mirrored}track line {{ sections = [deck: 12 m, open: 12 m], transitions = [edge: stiff_to_soft] }}\n"
     );
     let scenario = sound(&one.replace("VALUE", "ramp(0 .. 4 mm, over = -5 .. -1 sleepers)"));
-    close(seat(&scenario, -1).initial_settlement, 4e-3);
-    close(seat(&scenario, -2).initial_settlement, 3e-3);
-    close(seat(&scenario, -8).initial_settlement, 0.0);
+    close(*seat(&scenario, -1).initial_settlement, 4e-3);
+    close(*seat(&scenario, -2).initial_settlement, 3e-3);
+    close(*seat(&scenario, -8).initial_settlement, 0.0);
     let scenario = sound(&one.replace("VALUE", "[-12 m: 0 mm, -6 m: 0 mm, 0 m: 6 mm]"));
-    close(seat(&scenario, -1).initial_settlement, 5.4e-3);
+    close(*seat(&scenario, -1).initial_settlement, 5.4e-3);
     let two = format!(
         "{mirrored}track line {{ sections = [deck: 12 m, open: 20 sleepers, deck: 12 m], transitions = [west: stiff_to_soft, east: soft_to_stiff] }}\n"
     );
     let scenario = sound(&two.replace("VALUE", "[0 .. 6 m: 1 mm, 6 .. 12.6 m: 2 mm]"));
     let settled: Vec<f64> =
-        scenario.track.seats.iter().filter(|s| s.is_ballasted()).map(|s| s.initial_settlement).collect();
+        scenario.track.seats.iter().filter(|s| s.is_ballasted()).map(|s| *s.initial_settlement).collect();
     assert_eq!(settled.len(), 20);
     // x = 6 m is sleeper 10 of the section: where two spans meet, the right one holds
     assert_eq!(settled.iter().filter(|s| **s == 1e-3).count(), 9);
@@ -220,7 +220,7 @@ fn a_file_of_levels_is_a_smooth_curve() {
     // other fields are straight between the rows
     let files = Files(BTreeMap::from([("s.csv", "x_km,sunk_m,bed_mm\n-0.012,0,0\n0,0.006,12\n".to_string())]));
     let scenario = sound_with(&scene("settlement = file(\"s.csv\", column = bed)", "", ""), files);
-    close(seat(&scenario, -9).initial_settlement, 6.6e-3);
+    close(*seat(&scenario, -9).initial_settlement, 6.6e-3);
     let files = Files(BTreeMap::from([("k.csv", "x_m,k_MN/m\n-12,40\n0,64\n".to_string())]));
     let text = scene("", "", "").replace("stiffness = 50 MN/m per seat,", "stiffness = file(\"k.csv\") per sleeper,");
     close(*support(&sound_with(&text, files), -9).stiffness, 0.5 * (40.0 + 24.0 * 6.6 / 12.0) * 1e6);

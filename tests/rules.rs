@@ -13,6 +13,8 @@ struct Scene<'a> {
     support: &'a str,
     spacing: &'a str,
     level: &'a str,
+    /// Initial settlement of the supports.
+    settlement: &'a str,
     vehicle: &'a str,
     speed: f64,
     /// More declarations.
@@ -25,6 +27,7 @@ const SCENE: Scene<'_> = Scene {
     support: "40 MN/m per seat",
     spacing: "0.6 m",
     level: "0 mm",
+    settlement: "0 mm",
     vehicle: "vehicles.ore_wagon_20t",
     speed: 60.0,
     rest: "",
@@ -33,12 +36,12 @@ const SCENE: Scene<'_> = Scene {
 impl Scene<'_> {
     /// The messages of one rule.
     fn says(self, code: Code) -> Vec<String> {
-        let Scene { rail, sleeper, support, spacing, level, vehicle, speed, rest } = self;
+        let Scene { rail, sleeper, support, spacing, level, settlement, vehicle, speed, rest } = self;
         let text = format!(
             "use std
 trackform open {{
   rail = {rail}, pad = {{ stiffness = 40 MN/m }}, sleeper = {sleeper}, spacing = {spacing}
-  support = {{ stiffness = {support} }}
+  support = {{ stiffness = {support} }}, settlement = {settlement}
 }}
 track line {{ sections = [open: 42 m], irregularity = {level} }}
 vehicle wagon : {vehicle}
@@ -72,14 +75,91 @@ fn a_wheel_on_the_track_has_its_frequency() {
     let frequency = resonance(20e6);
     let at = |share: f64| {
         let speed = frequency * share * 0.6 * 3.6;
-        Scene { support: "20 MN/m per seat", speed, ..SCENE }.says(Code::L1012)
+        let rest = "scenario { allow = [passing_frequency: \"bogies are another rule\"] }";
+        Scene { support: "20 MN/m per seat", speed, rest, ..SCENE }.says(Code::L1012)
     };
     let said = format!(
-        "sleepers of `open` pass at {0:.0} Hz, near the resonance of a wheel of `wagon` on the track at {0:.0} Hz",
+        "at {:.1} km/h sleepers pass at {1:.0} Hz, near a wheel of `wagon` on the track of `open` at {1:.0} Hz",
+        frequency * 0.6 * 3.6,
         frequency.round()
     );
     assert_eq!(at(1.0), [said]);
     assert!(!at(0.91).is_empty() && !at(1.09).is_empty() && at(0.89).is_empty() && at(1.11).is_empty());
+}
+
+#[test]
+fn speeds_that_one_resonance_or_another_forbids_are_told_as_one_range() {
+    let at = |speed: f64| {
+        let scene = Scene { support: "20 MN/m per seat", speed, ..SCENE };
+        [scene.says(Code::L1007), scene.says(Code::L1012)].concat()
+    };
+    // bogies of 30 MN/m a wheelset (half of it one wheel's) under 400 kg, pitching at 0.89 m with 365 kg m^2
+    let bounce = (30e6f64 / 400.0).sqrt() / (2.0 * PI);
+    let pitch = (30e6f64 * 0.89 * 0.89 / 365.0).sqrt() / (2.0 * PI);
+    let speed = |frequency: f64| frequency * 0.6 * 3.6;
+    let lowest = speed(resonance(20e6).min(pitch).min(bounce)) * 0.9;
+    let highest = speed(resonance(20e6).max(pitch).max(bounce)) * 1.1;
+    for inside in [lowest + 1.0, 0.5 * (lowest + highest), highest - 1.0] {
+        assert_eq!(at(inside).len(), 1, "{inside}: {:?}", at(inside));
+    }
+    assert!(at(lowest - 2.0).is_empty() && at(highest + 2.0).is_empty());
+    let all = at(speed(bounce));
+    assert!(all[0].contains("the bogie bounce of `wagon`") && all[0].contains("the bogie pitch of `wagon`"), "{all:?}");
+}
+
+#[test]
+fn wagons_run_no_faster_than_wagons() {
+    let at = |vehicle: &str, speed: f64| Scene { vehicle, speed, ..SCENE }.says(Code::L1027);
+    assert!(at("vehicles.ore_wagon_20t", 200.0).is_empty());
+    let fast = at("vehicles.ore_wagon_20t", 216.0);
+    assert_eq!(fast, ["`wagon` runs at 216 km/h: its car body bounces at 1.6 Hz, on the springs of a freight wagon"]);
+    assert!(at("vehicles.ore_wagon_30t", 120.0).is_empty());
+    let heavy = at("vehicles.ore_wagon_30t", 121.0);
+    assert_eq!(heavy, ["`wagon` runs at 121 km/h: vehicles with 29.5 t an axle run at 120 km/h at most"]);
+    assert!(at("vehicles.ice3_middle", 300.0).is_empty() && at("vehicles.manchester_coach", 200.0).is_empty());
+}
+
+#[test]
+fn a_void_is_wide_where_no_wheel_bends_the_rail_down_to_the_support() {
+    let at = |settlement: &str| Scene { settlement, ..SCENE }.says(Code::L1030);
+    // five sleepers, as a step
+    let under = |mm: f64| at(&format!("[0 .. 18.3 m: 0 mm, 18.3 .. 21.3 m: {mm} mm, 21.3 .. 42 m: 0 mm]"));
+    let found = under(90.0);
+    assert!(
+        found.len() == 1 && found[0].starts_with("5 sleepers hang above supports that no wheel reaches"),
+        "{found:?}"
+    );
+    assert!(under(8.0).is_empty());
+    // the rail follows what is long enough
+    assert!(at("smooth(0 .. 90 mm, over = 5 .. 37 m)").is_empty());
+    // one sleeper: at its middle Q l^3 / 48 EI and, of the seats beside it, Q / k; with what 60 km/h add
+    let wheel = 1.6 * 10e3 * 9.81;
+    let closed = 1e3 * (wheel * 1.2f64.powi(3) / (48.0 * 210e9 * 3038.3e-8) + wheel * (1.0 / 40e6 + 1.0 / 40e6));
+    let one = at("[0 .. 20.7 m: 0 mm, 20.7 .. 21.3 m: 11 mm, 21.3 .. 42 m: 0 mm]");
+    let said = format!("the void is 11 mm, and a wheel bends the rail down by {closed:.1} mm at most");
+    assert!(
+        one.len() == 1 && one[0].starts_with("1 sleeper hangs") && one[0].ends_with(&said),
+        "{one:?}, expected {said}"
+    );
+}
+
+#[test]
+fn a_level_is_held_against_the_limit_of_its_speed() {
+    let hump = |mm: f64, speed: f64| {
+        let level = format!("[0 m: 0 mm, 19 m: 0 mm, 21 m: {mm} mm, 23 m: 0 mm, 42 m: 0 mm]");
+        Scene { level: &level, speed, ..SCENE }.says(Code::L1031)
+    };
+    // the mean over 25 m of a triangle of 4 m is 0.08 of its height
+    let found = hump(-20.0, 60.0);
+    let said = "at x = 21 m the rail lies 18.4 mm above its mean level over 25 m: at 60 km/h 12 mm are the alert limit";
+    assert_eq!(found, [said]);
+    for (speed, limit) in [(80.0, 12.0), (120.0, 10.0), (160.0, 8.0), (200.0, 7.0)] {
+        let height = limit / (1.0 - 8.0 / 101.0);
+        assert!(hump(0.99 * height, speed).is_empty(), "{speed}");
+        assert_eq!(hump(1.01 * height, speed).len(), 1, "{speed}");
+    }
+    // a slope is its own mean
+    assert!(Scene { level: "[0 m: -40 mm, 42 m: 40 mm]", ..SCENE }.says(Code::L1031).is_empty());
 }
 
 #[test]

@@ -113,8 +113,8 @@ stretch stiff { over = -3 .. 0 m, support.stiffness = smooth(50 .. 90 MN/m per s
     // a span in metres runs on distance and stays on its side: -5 lies on its end, -1 is 0.6 m before the boundary
     close(*support(at(-5)).stiffness, 50e6);
     close(*support(at(-1)).stiffness, 50e6 + 40e6 * (0.64 * (3.0 - 1.6)));
-    close(at(-1).initial_settlement, 1e-3 + 3e-3 * 0.8);
-    close(at(1).initial_settlement, 0.0);
+    close(*at(-1).initial_settlement, 1e-3 + 3e-3 * 0.8);
+    close(*at(1).initial_settlement, 0.0);
     close(*support(at(-1)).damping, 1e-3 * *support(at(-1)).stiffness);
     let names: Vec<&str> = scenario.track.stretches.iter().map(|s| s.name.as_str()).collect();
     assert_eq!(names, ["firm", "wide", "soft", "stiff"]);
@@ -356,9 +356,10 @@ fn row(rows: &[SleeperRow], number: i32) -> &SleeperRow {
 
 /// Stiffness at rail level of the stiffer side of the transition over that of the softer one.
 fn jump(scenario: &Scenario) -> f64 {
-    let side =
-        |section: usize| Winkler::beside(&scenario.track, &supports(scenario), section, 0.0).unwrap().rail_stiffness();
-    side(1) / side(0)
+    let stiffness =
+        |seat: usize| Winkler::at_seat(&scenario.track, &supports(scenario), seat).unwrap().rail_stiffness();
+    let first = scenario.track.seats_of(1).start;
+    stiffness(first) / stiffness(first - 1)
 }
 
 #[test]

@@ -157,6 +157,12 @@ codes! {
     L1024 Warning "volume of few grains"
     L1025 Warning "histories sampled at another rate than they move"
     L1026 Warning "waves of the level too short for steps or elements"
+    L1027 Warning "wagon faster than wagons run"
+    L1028 Warning "ballast thicker than tracks have it"
+    L1029 Warning "ballast below finer layers"
+    L1030 Warning "void that no wheel closes"
+    L1031 Warning "level of the rail beyond its alert limit"
+    L1032 Warning "stretch that softens towards the stiffer side"
     L1040 Warning "softer side that is the stiffer one"
     L1041 Warning "ballast on a structure under a law of force"
 }
@@ -196,6 +202,12 @@ impl Code {
             Code::L1024 => "small_volume",
             Code::L1025 => "coarse_record",
             Code::L1026 => "wavelength",
+            Code::L1027 => "wagon_speed",
+            Code::L1028 => "ballast_thickness",
+            Code::L1029 => "layer_order",
+            Code::L1030 => "wide_void",
+            Code::L1031 => "track_level",
+            Code::L1032 => "reversed_wedge",
             Code::L1040 => "transition_sides",
             Code::L1041 => "ballast_on_structure",
             _ => return None,

@@ -79,7 +79,7 @@ impl Scene<'_> {
                     given.iter().map(|(parameter, text)| (self.span_of(*parameter), (*text).into())).collect();
                 labels.push(self.place(x.clamp(*start, *end)));
                 let help = format!(
-                    "keep every wheel and load between {} m and {} m, or lengthen a section by {} m",
+                    "keep every wheel and load between {} m and {} m, or put {} m more track at that end of the model",
                     number(*start),
                     number(*end),
                     number((start - x).max(x - end).max(0.0).ceil())

@@ -38,7 +38,7 @@ fn structure<'a>(scenario: &'a Scenario, graph: &Graph) -> Option<(&'a str, &'a 
     let track = &scenario.track;
     let ballasted = |section: usize| track.seats[track.seats_of(section)].iter().all(|seat| seat.is_ballasted());
     let settled =
-        |section: usize| track.seats[track.seats_of(section)].iter().any(|seat| seat.initial_settlement > 0.0);
+        |section: usize| track.seats[track.seats_of(section)].iter().any(|seat| *seat.initial_settlement > 0.0);
     (0..track.transitions.len()).find_map(|i| {
         let (before, behind) = (of_section(scenario, graph, i)?, of_section(scenario, graph, i + 1)?);
         let (soft, stiff) = if behind > before { (i, i + 1) } else { (i + 1, i) };

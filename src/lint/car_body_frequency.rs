@@ -7,7 +7,7 @@
 use super::led;
 use crate::diag::{Code, Diagnostic};
 use crate::graph::Graph;
-use crate::scenario::Scenario;
+use crate::scenario::{Scenario, Vehicle};
 use crate::units::number;
 
 /// Hz.
@@ -18,8 +18,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let mut found = Vec::new();
     for vehicle in &traffic.train.vehicles {
-        let bogie = 1.0 / (1.0 / *vehicle.secondary_stiffness + 0.5 / *vehicle.primary_stiffness);
-        let frequency = (2.0 * bogie / *vehicle.car_body_mass).sqrt() / (2.0 * std::f64::consts::PI);
+        let (bogie, frequency) = (springs(vehicle), bounce(vehicle));
         if (SLOWEST..=FASTEST).contains(&frequency) {
             continue;
         }
@@ -45,4 +44,14 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         }
     }
     found
+}
+
+/// Primary and secondary springs of a bogie in series, N/m.
+fn springs(vehicle: &Vehicle) -> f64 {
+    1.0 / (1.0 / *vehicle.secondary_stiffness + 0.5 / *vehicle.primary_stiffness)
+}
+
+/// Natural frequency of a car body on its springs, Hz.
+pub(super) fn bounce(vehicle: &Vehicle) -> f64 {
+    (2.0 * springs(vehicle) / *vehicle.car_body_mass).sqrt() / (2.0 * std::f64::consts::PI)
 }

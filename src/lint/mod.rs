@@ -5,6 +5,7 @@
 
 mod ballast_on_structure;
 mod ballast_pressure;
+mod ballast_thickness;
 mod below_threshold;
 mod car_body_frequency;
 mod coarse_record;
@@ -17,6 +18,7 @@ mod grain_step;
 mod grains;
 mod irregularity_too_sharp;
 mod law_outside_calibration;
+mod layer_order;
 mod narrow_bed;
 mod over_budget;
 mod overdamped;
@@ -24,17 +26,22 @@ mod passing_frequency;
 mod rail_stiffness;
 mod rail_stress;
 mod reads;
+mod reversed_wedge;
 mod small_volume;
 mod stiffness_jump;
+mod strata;
 mod support_stiffness;
 mod thin_layer;
+mod track_level;
 mod track_too_short;
 mod transition_sides;
 mod unchecked_values;
 mod update_overshoot;
+mod wagon_speed;
 mod wavelength;
 mod wheel_on_track;
 mod wheel_unloading;
+mod wide_void;
 mod winkler;
 
 pub use reads::readers;
@@ -47,7 +54,7 @@ use std::borrow::Cow;
 
 type Rule = fn(&Scenario, &Graph) -> Vec<Diagnostic>;
 
-const RULES: [Rule; 28] = [
+const RULES: [Rule; 33] = [
     transition_sides::check,
     stiffness_jump::check,
     ballast_on_structure::check,
@@ -59,7 +66,6 @@ const RULES: [Rule; 28] = [
     passing_frequency::check,
     below_threshold::check,
     irregularity_too_sharp::check,
-    wheel_on_track::check,
     wheel_unloading::check,
     rail_stress::check,
     ballast_pressure::check,
@@ -76,6 +82,12 @@ const RULES: [Rule; 28] = [
     grain_overlap::check,
     over_budget::check,
     small_volume::check,
+    wagon_speed::check,
+    ballast_thickness::check,
+    layer_order::check,
+    wide_void::check,
+    track_level::check,
+    reversed_wedge::check,
 ];
 
 /// Applies every rule, at the level that the scene gives it. A rule speaks where the plan has what it is about. Rules know one

@@ -6,10 +6,11 @@
 
 use super::winkler::Winkler;
 use super::{Led, led};
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, and_list};
 use crate::graph::Graph;
-use crate::scenario::{RailEnds, Scenario, Section};
+use crate::scenario::{RailEnds, Scenario, Section, Track};
 use crate::units::number;
+use std::ops::Range;
 
 const LENGTHS: f64 = 3.0;
 const PASSED: usize = 10;
@@ -40,8 +41,8 @@ fn near_ends(scenario: &Scenario, graph: &Graph, traffic: Led<'_>) -> Vec<Diagno
             format!("wheels come within {} m of the {side} end of the track", number((distance * 10.0).round() / 10.0)),
         )
         .help(format!(
-            "lengthen section `{}`: {} m, three characteristic lengths of the rail, keep the end out of the answer",
-            form.name,
+            "{}: {} m, three characteristic lengths of the rail, keep the end out of the answer",
+            more_track(track, side, ((needed - distance) * 10.0).ceil() / 10.0),
             number((needed * 10.0).ceil() / 10.0)
         ));
         (distance < needed).then(|| at_length(diagnostic, form))
@@ -52,16 +53,15 @@ fn near_ends(scenario: &Scenario, graph: &Graph, traffic: Led<'_>) -> Vec<Diagno
 /// A ballasted section in which fewer than ten sleepers see every wheel.
 fn sparsely_passed(scenario: &Scenario, traffic: Led<'_>, section: usize) -> Option<Diagnostic> {
     let track = &scenario.track;
-    let ballasted = || track.seats[track.seats_of(section)].iter().filter(|s| s.is_ballasted());
+    let ballasted = track.seats[track.seats_of(section)].iter().filter(|seat| seat.is_ballasted());
+    let places: Vec<f64> = ballasted.map(|seat| seat.x).collect();
     let passed = traffic.blocks.passed();
-    let seen = ballasted().filter(|s| passed.contains(&s.x)).count();
-    if seen >= PASSED || ballasted().next().is_none() {
+    let (seen, count) = (places.iter().filter(|x| passed.contains(x)).count(), places.len());
+    // those of a short bridge may be few, and need no mean where all are passed
+    if seen >= PASSED.min(count) {
         return None;
     }
     let form = &track.sections[section];
-    let missing = (PASSED - seen) as f64 * *form.spacing;
-    let starts = if seen == 0 && passed.start > form.end { passed.start - form.end } else { 0.0 };
-    let count = ballasted().count();
     let message = match seen {
         0 => format!(
             "no sleeper of section `{}` sees every wheel of the train: they settle by the wheels that they see",
@@ -72,10 +72,35 @@ fn sparsely_passed(scenario: &Scenario, traffic: Led<'_>, section: usize) -> Opt
             form.name
         ),
     };
-    let wanted = number((form.end - form.start + missing + starts).ceil());
-    let diagnostic =
-        Diagnostic::new(Code::L1003, message).help(format!("lengthen section `{}` to about {wanted} m", form.name));
-    Some(at_length(diagnostic, form))
+    Some(at_length(Diagnostic::new(Code::L1003, message).help(to_be_passed(track, section, &places, passed)), form))
+}
+
+/// Where more track lets enough sleepers of a section, at these places, be passed: ten of an outer one, all of an inner one.
+fn to_be_passed(track: &Track, section: usize, places: &[f64], passed: Range<f64>) -> String {
+    let (Some(first), Some(last)) = (places.first(), places.last()) else { return String::new() };
+    let (spacing, outermost) = (*track.sections[section].spacing, track.sections.len() - 1);
+    let spare = places.len().saturating_sub(PASSED) as f64 * spacing;
+    if outermost == 0 {
+        let missing = last - first - spare - (passed.end - passed.start);
+        return more_track(track, "right", missing.max(spacing).ceil());
+    }
+    let sides = [("left", passed.start - first, section == 0), ("right", last - passed.end, section == outermost)];
+    let advice = sides.into_iter().filter(|(_, unseen, _)| *unseen > 0.0).map(|(side, unseen, outer)| {
+        let metres = if outer { unseen - spare } else { unseen };
+        more_track(track, side, metres.max(spacing).ceil())
+    });
+    and_list(&advice.collect::<Vec<_>>())
+}
+
+/// Advice to let the model begin earlier or end later. The length of a structure is given: it never changes.
+fn more_track(track: &Track, side: &str, metres: f64) -> String {
+    let outer = if side == "left" { track.sections.first() } else { track.sections.last() };
+    let section = outer.map_or("", |section| section.name.as_str());
+    let longer = match outer {
+        Some(Section { slab: None, .. }) => format!("a longer section `{section}`, or a section beyond it"),
+        _ => format!("a section of track beyond `{section}`"),
+    };
+    format!("put {} m more track at the {side} end of the model, {longer}", number(metres))
 }
 
 /// Points at the length of a section.

@@ -96,7 +96,7 @@ fn nodes(track: &Track, carried: &OfSeats) -> Vec<SupportNode> {
         SupportNode {
             spring: support.as_ref().map(|support| support.below(seat.usp())),
             support: support.as_ref().map(|support| support.below(None)),
-            settlement: seat.initial_settlement,
+            settlement: *seat.initial_settlement,
             onto_subgrade: carried.map(|carried| carried.onto_subgrade),
         }
     };

@@ -100,7 +100,7 @@ pub(crate) fn transition() -> Run {
         pad: Some(pad()),
         foot: if number < 0 { ballast.clone() } else { Foot::Slab },
         sleeper: (number < 0).then(sleeper),
-        initial_settlement: 0.0,
+        initial_settlement: Given::derived(0.0),
         stack: None,
     };
     let expectation = |text: &str, low: f64, high: f64, reduction, response, unit: (&str, f64)| Expectation {
@@ -327,7 +327,7 @@ pub(crate) fn bench() -> Run {
             pad: Some(pad()),
             foot: Foot::Rigid,
             sleeper: Some(sleeper()),
-            initial_settlement: 0.0,
+            initial_settlement: Given::derived(0.0),
             stack: None,
         })
         .collect();

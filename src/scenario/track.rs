@@ -41,7 +41,7 @@ pub enum RailEnds {
     Absorbing,
 }
 
-/// What differs along a part of the track, for its drawing.
+/// What differs along a part of the track, for its drawing and for rules.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stretch {
     pub name: String,
@@ -50,6 +50,8 @@ pub struct Stretch {
     pub end: f64,
     /// The paths that it sets: `usp`, `pad.stiffness`.
     pub changes: String,
+    /// Where its `over` stands.
+    pub span: Span,
 }
 
 /// The layers over a part of a section where they are not those of the section.
@@ -303,7 +305,7 @@ pub struct Seat {
     /// The whole sleeper, where there is one whose size is known.
     pub sleeper: Option<SleeperBody>,
     /// Permanent settlement of its support at the start, m; 0 where nothing settles.
-    pub initial_settlement: f64,
+    pub initial_settlement: Given,
     /// What lies under it; `None` where layers or their moduli are not known.
     pub stack: Option<Stack>,
 }

@@ -82,7 +82,7 @@ pub fn lay_seats(
             }
             LaidFoot::Fixed(foot) => foot.clone(),
         };
-        let (initial_settlement, sleeper) = (*settlement.value_at(x), built.sleeper_body());
+        let (initial_settlement, sleeper) = (settlement.value_at(x), built.sleeper_body());
         let stack = stacks.next();
         seats.push(Seat { number, transition, x, section, pad, foot, sleeper, initial_settlement, stack });
     }

@@ -178,7 +178,7 @@ pub fn described(stood: &[Instance]) -> Vec<Stretch> {
     };
     let stretch = |instance: &Instance| {
         let (start, end) = instance.reach;
-        Stretch { name: instance.stretch.name.clone(), start, end, changes: what(instance) }
+        Stretch { name: instance.stretch.name.clone(), start, end, changes: what(instance), span: instance.over() }
     };
     stood.iter().map(stretch).collect()
 }

@@ -188,7 +188,7 @@ fn too_far(plan: &Plan, bays: usize, findings: &mut Findings) {
     findings.report(
         Diagnostic::new(Code::E0502, message)
             .label(plan.span, "too few sleepers")
-            .help("shorten the stretches that set `spacing`, or lengthen the section"),
+            .help(format!("shorten the stretches that set `spacing`: they may change {bays} bays at most")),
     );
 }
 
@@ -201,10 +201,18 @@ fn does_not_meet(plan: &Plan, usual: f64, findings: &mut Findings) {
         number(length),
         number(bay)
     );
+    let plain = plan.bays.iter().all(Vec::is_empty) && plan.first == [None; 2];
+    // a structure has the length that it has
+    let spacing = match usual.round() {
+        bays if plain && bays >= 1.0 => {
+            format!("; where the length is given, write `spacing = {} m / {}`", number(length), number(bays))
+        }
+        _ => String::new(),
+    };
     findings.report(
         Diagnostic::new(Code::E0502, message).label(plan.span, "the counts from both transitions do not meet").help(
             format!(
-                "write `{} m` or `{} m`, or give the length in sleepers",
+                "write `{} m` or `{} m`, or give the length in sleepers{spacing}",
                 fits(usual.floor().max(0.0)),
                 fits(usual.ceil().max(0.0))
             ),
