@@ -140,7 +140,7 @@ fn mistakes_of_a_study_are_told_at_their_place() {
     near(&vary("opn.spacing: [0.6, 0.65] m"), Code::E0704, "opn", "did you mean `open`");
     near(&vary("open.pad.stifness: [20, 40] MN/m"), Code::E0704, "stifness", "did you mean `stiffness`");
     near(&vary("pads.soft.stiffness: [20, 40] MN/m"), Code::E0704, "pads", "is a module");
-    near(&vary("open: [stiff]"), Code::E0704, "open", "such as `open.rail`");
+    near(&vary("open: [stiff]"), Code::E0704, "open", "such as `open.spacing`");
     near(&vary("open.pad.stiffness: [20] kN"), Code::E0302, "20", "a stiffness in `MN/m`");
     near(&vary("open.pad.stiffness: [20, 4000] MN/m"), Code::E0405, "4000", "5 .. 3000");
     near(&vary("ground: [20] kN per seat"), Code::E0302, "20", "expected a stiffness");

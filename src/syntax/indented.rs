@@ -52,13 +52,13 @@ fn section(draft: &mut Draft, tokens: &mut [Token], i: usize, end: usize, quiet:
         let mistake = Diagnostic::new(Code::E0105, "a declaration stands in braces").label(at, "its fields follow");
         draft.report(mistake.help(format!("write `{header} {{`, and `}}` behind its last field")));
     }
-    for k in i..end {
-        match tokens[k].text(text) {
-            "[" | "." => draft.overwrite(&tokens[k], ""),
-            "]" => draft.overwrite(&tokens[k], "{"),
+    for token in &mut tokens[i..end] {
+        match token.text(text) {
+            "[" | "." => draft.overwrite(token, ""),
+            "]" => draft.overwrite(token, "{"),
             _ => continue,
         }
-        tokens[k].kind = Kind::Comment;
+        token.kind = Kind::Comment;
     }
     draft.insertions.push((tokens[stop].end, '}'));
     Some(tokens[stop].end)

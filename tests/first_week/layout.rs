@@ -33,7 +33,7 @@ pub const SLIPS: &[Slip] = &[
     (S, "sections    = [open: 42 m, stiff: 24 m], stretches", "sections    = [open: 42 m, ...\n  stiff: 24 m], stretches", E0101, "take it away", ""),
     // what stands in the wrong place
     (S, "spacing = bay", "spacing = bay, let x = 5 mm", E0101, "outside of braces", ""),
-    (J, "expect {\n  that   = [17.6", "expect {\n  [17.6", E0101, "`that", ""),
+    (J, "expect {\n  that   = [17.6", "expect {\n▸  [17.6", E0101, "`that = [", ""),
     (W, "expect { that = [max(subgrade_pressure) < 80 kPa] }", "expect { max(subgrade_pressure) < 80 kPa }", E0101, "`that = [max(subgrade_pressure) < 80 kPa]`", "max(subgrade_pressure) < 80 kPa"),
     (W, "expect { that = [max(subgrade_pressure) < 80 kPa] }", "expect max(subgrade_pressure) < 80 kPa", E0101, "`expect { that = [max(subgrade_pressure) < 80 kPa] }`", "expect max(subgrade_pressure) < 80 kPa"),
     (W, "expect { that = [max(subgrade_pressure) < 80 kPa] }", "expect { that = [max(subgrade_pressure) < 80] }", E0305, "`80 kPa`", "80"),

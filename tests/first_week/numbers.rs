@@ -97,7 +97,7 @@ pub const SLIPS: &[Slip] = &[
     (X, "after      = [1, 10, 50] cycles", "after      = [1, 10, 50] axles", E0302, "`cycles`", ""),
     (S, "vehicles  = wagon", "vehicles  = 10 wagon", E0406, "`[wagon: 10]`", ""),
     (S, "vehicles  = wagon", "vehicles  = 10 * wagon", E0406, "`[wagon: 10]`", ""),
-    (S, "vehicles  = wagon", "vehicles  = [wagon x 10]", E0101, "`wagon: 10`", "wagon x 10"),
+    (S, "vehicles  = wagon", "vehicles  = [wagon x 10]", E0101, "`wagon: 10`", ""),
     (S, "  after = 200 axles\n", "  every = 200 axles\n", E0402, "`after`", "every"),
     (S, "  after = 200 axles\n", "  interval = 200 axles\n", E0402, "`after`", "interval"),
     (S, "  over  = -20 .. -1 sleepers\n  left", "  at    = -20 .. -1 sleepers\n  left", E0402, "`over`", ""),

@@ -8,7 +8,7 @@ use crate::units::{UnitError, parse_unit};
 
 const SUCH: &str = "units are such as `mm`, `kN`, `MN/m`, `kN s/m`, `kg/m^3`, `km/h`, `axles`";
 
-/// Of what is counted in speech: a train, a vehicle.
+/// Words for trains and vehicles, which people count in the place of axles.
 const TRAINS: [&str; 6] = ["train", "trains", "züge", "trenes", "treinen", "passages"];
 const VEHICLES: [&str; 8] = ["wagon", "wagons", "car", "cars", "vehicle", "vehicles", "coaches", "waggons"];
 /// Spans of time over which traffic is told elsewhere.
@@ -21,7 +21,7 @@ const MILLION: [&str; 5] = ["million", "millions", "mio", "mln", "millionen"];
 /// Axles of a vehicle: two bogies of two axles each.
 const AXLES_OF_A_VEHICLE: u64 = 4;
 
-/// What to say of a unit; `whole` is it with its number.
+/// The mistake of a unit; `whole` is it with its number.
 pub(super) fn unit_mistake(unit: &UnitText, error: &UnitError, whole: &str) -> Diagnostic {
     match error {
         UnitError::Unknown { symbol, instead } => {
@@ -97,7 +97,9 @@ fn by_custom(unit: &UnitText, symbol: &str, whole: &str) -> Option<String> {
     }
     match text {
         "axle loads" | "axle load" => Some(format!("write `{digits} axles`")),
-        "load cycles" | "load applications" => Some(format!("write `{digits} cycles`, or `{digits} axles` where trains run")),
+        "load cycles" | "load applications" => {
+            Some(format!("write `{digits} cycles`, or `{digits} axles` where trains run"))
+        }
         _ => None,
     }
 }
@@ -123,7 +125,8 @@ impl Evaluator<'_> {
             Some(list) => list.rfind('[')?,
             None => before.trim_end_matches(|c: char| c.is_ascii_digit() || "._e".contains(c)).len(),
         };
-        let counts = before[start..].trim_matches(['[', ']']).split(',').map(|n| n.trim().replace('_', "").parse().ok());
+        let counts =
+            before[start..].trim_matches(['[', ']']).split(',').map(|n| n.trim().replace('_', "").parse().ok());
         let counts: Vec<f64> = counts.collect::<Option<_>>()?;
         let told: Vec<String> = counts.iter().map(|n| grouped((n * axles as f64).round() as u64)).collect();
         let written = match before.ends_with(']') {
