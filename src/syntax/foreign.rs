@@ -33,7 +33,8 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
             Kind::ForeignComment => {
                 draft.overwrite(token, "");
                 let words = text.trim_start_matches(['#', '-', '%', '!', '\'']);
-                let included = words.trim().strip_prefix("include").map(|name| name.trim().trim_matches(['<', '>', '"']));
+                let included =
+                    words.trim().strip_prefix("include").map(|name| name.trim().trim_matches(['<', '>', '"']));
                 let sign = if text.starts_with("--") { "--" } else { &text[..1] };
                 let help = match included {
                     Some(name) => format!("write `use {name}`"),

@@ -99,7 +99,9 @@ impl Builder<'_> {
             ":" if exact == Rule::exact_entry && before.starts_with(digit) && after.starts_with(digit) => {
                 let mut parts = part.split(':');
                 let (from, step, to) = (parts.next()?, parts.next()?, parts.next()?);
-                Some(format!("from one value to another in steps: `steps({from} .. {to}, by = {step})`, each with its unit"))
+                Some(format!(
+                    "from one value to another in steps: `steps({from} .. {to}, by = {step})`, each with its unit"
+                ))
             }
             ":" if exact == Rule::exact_entry && before.contains(':') => Some("pairs are parted by commas".to_owned()),
             ":" if value && !before.is_empty() => {
@@ -187,10 +189,12 @@ fn unit_or_remark(word: &str, before: &str, rest: &str, after: &str) -> Option<S
     let number = before.starts_with(|c: char| c.is_ascii_digit() || c == '-');
     let rest = rest.trim_end();
     match word {
-        "\\" if number && after.starts_with(char::is_alphabetic) => Some(format!("write `{before}/{}`", rest.trim_start_matches('\\'))),
-        "." if number && before.ends_with(char::is_alphabetic) && after.starts_with(char::is_alphabetic) => {
-            Some(format!("the factors of a unit are parted by a blank: write `{before} {}`", rest.trim_start_matches('.')))
+        "\\" if number && after.starts_with(char::is_alphabetic) => {
+            Some(format!("write `{before}/{}`", rest.trim_start_matches('\\')))
         }
+        "." if number && before.ends_with(char::is_alphabetic) && after.starts_with(char::is_alphabetic) => Some(
+            format!("the factors of a unit are parted by a blank: write `{before} {}`", rest.trim_start_matches('.')),
+        ),
         "(" if number && after.starts_with("per ") => {
             Some(format!("write `{before} {}`", rest.trim_start_matches('(').trim_end_matches(')')))
         }

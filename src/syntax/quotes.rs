@@ -30,7 +30,10 @@ fn lost_opening(draft: &mut Draft, tokens: &mut [Token], first: usize, line: usi
     let inner = text[tokens[begin].start..tokens[quote].start].trim_end();
     let inches = inner.chars().all(|c| c.is_ascii_digit() || c == '.');
     let help = match inches {
-        true => format!("a length in inches? {inner} in are {} mm (1 in = 25.4 mm)", crate::units::number(25.4 * inches_of(inner))),
+        true => format!(
+            "a length in inches? {inner} in are {} mm (1 in = 25.4 mm)",
+            crate::units::number(25.4 * inches_of(inner))
+        ),
         false => format!("write `\"{inner}\"`"),
     };
     let mistake = Diagnostic::new(Code::E0106, "text without its opening quote");
@@ -55,7 +58,8 @@ fn over_two_lines(draft: &mut Draft, tokens: &mut [Token], first: usize, line: u
     }
     let (start, stop) = (tokens[open].start, tokens[close].end);
     let one_line = text[start..stop].split_whitespace().collect::<Vec<_>>().join(" ");
-    let mistake = Diagnostic::new(Code::E0106, "a text over two lines").label(draft.span(start, tokens[open].end), "it begins here");
+    let mistake = Diagnostic::new(Code::E0106, "a text over two lines")
+        .label(draft.span(start, tokens[open].end), "it begins here");
     draft.report(mistake.help(format!("a text stands on one line: write `{one_line}`")));
     poison(draft, tokens, open..open + 1);
     for token in &mut tokens[next..=close] {
@@ -68,7 +72,8 @@ fn over_two_lines(draft: &mut Draft, tokens: &mut [Token], first: usize, line: u
 fn inside(draft: &mut Draft, tokens: &mut [Token], first: usize, line: usize) {
     let text = draft.original;
     let closed = |k: usize| tokens[k].kind == Kind::Text { closed: true };
-    let touch = |k: usize| tokens[k].end == tokens[k + 1].start && !matches!(tokens[k + 1].kind, Kind::Close(_) | Kind::Sign);
+    let touch =
+        |k: usize| tokens[k].end == tokens[k + 1].start && !matches!(tokens[k + 1].kind, Kind::Close(_) | Kind::Sign);
     let Some(begin) = (first..line.saturating_sub(1)).find(|k| closed(*k) && touch(*k)) else { return };
     let Some(last) = (begin + 1..line).rev().find(|k| closed(*k)) else { return };
     let whole = &text[tokens[begin].start..tokens[last].end];
@@ -82,7 +87,14 @@ fn inside(draft: &mut Draft, tokens: &mut [Token], first: usize, line: usize) {
     told(draft, tokens, begin..last + 1, mistake, "", help);
 }
 
-fn told(draft: &mut Draft, tokens: &mut [Token], range: std::ops::Range<usize>, mistake: Diagnostic, label: &str, help: String) {
+fn told(
+    draft: &mut Draft,
+    tokens: &mut [Token],
+    range: std::ops::Range<usize>,
+    mistake: Diagnostic,
+    label: &str,
+    help: String,
+) {
     let (start, end) = (tokens[range.start].start, tokens[range.end - 1].end);
     draft.report(mistake.label(draft.span(start, end), label).help(help));
     poison(draft, tokens, range);

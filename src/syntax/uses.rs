@@ -41,7 +41,8 @@ fn by_file(draft: &mut Draft, tokens: &mut [Token], i: usize) {
         true => format!("write `use {name}{alias}`: a module lies below the main file's folder, copy it there"),
         false => format!("write `use {name}{alias}`"),
     };
-    let mistake = Diagnostic::new(Code::E0101, "a module is named by names with dots between them, not by the path of a file");
+    let mistake =
+        Diagnostic::new(Code::E0101, "a module is named by names with dots between them, not by the path of a file");
     draft.report(mistake.label(draft.span(start, end), "no name of a module").help(help));
     for token in tokens[i..].iter_mut().take_while(|t| t.start < end) {
         if token.kind == Kind::LineBreak {

@@ -258,9 +258,11 @@ impl<'p> Builder<'p> {
                     let mistake = Diagnostic::new(Code::E0101, format!("`\\{c}` in a text"));
                     let whole = raw.trim_matches('"');
                     let help = match (whole.contains(":\\"), whole.ends_with(".csv") || whole.ends_with(".stl")) {
-                        (true, true) => "a file lies below the main file's folder: copy it there and name it from there, \
+                        (true, true) => {
+                            "a file lies below the main file's folder: copy it there and name it from there, \
                                          with `/` between folders"
-                            .to_owned(),
+                                .to_owned()
+                        }
                         (false, true) => format!("write `{}`", whole.replace('\\', "/")),
                         _ if whole.contains("\\\\") => format!("write `\\\\{c}`"),
                         _ => format!("write `\"{}\"`", whole.replace('\\', "\\\\")),

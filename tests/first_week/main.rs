@@ -60,7 +60,8 @@ fn slips() -> Vec<Slip> {
 fn judged(&(scene, right, typed, code, way_out, over): &Slip) -> Result<(), String> {
     assert_eq!(scene.matches(right).count(), 1, "`{right}` stands once");
     let marked = scene.replace(right, typed);
-    let at = marked.find('▸').unwrap_or(scene.find(right).unwrap() + (typed.len() - typed.trim_start_matches('\n').len()));
+    let at =
+        marked.find('▸').unwrap_or(scene.find(right).unwrap() + (typed.len() - typed.trim_start_matches('\n').len()));
     let line = marked[..at].matches('\n').count() + 1;
     let typed = typed.replace('▸', "");
     let found = compiled(&scene.replace(right, &typed));

@@ -3,9 +3,9 @@
 
 use super::expression::one_line;
 use super::reader::Reader;
+use crate::check::evaluate::measure::swapped;
 use crate::check::evaluate::number::Raw;
 use crate::check::evaluate::records::object_kind;
-use crate::check::evaluate::measure::swapped;
 use crate::check::evaluate::written::{looks_like, with_unit};
 use crate::check::text::scope::{ItemId, ScopeId};
 use crate::diag::nearest::nearest;
@@ -117,9 +117,10 @@ impl Reader<'_, '_> {
         let first = entries.get(at.checked_sub(1)?)?;
         let text = self.eval.files.sources.text(first.value.span.to(last.value.span));
         let (numbers, unit) = match text.rsplit_once(',') {
-            Some((_, last)) => last.trim().split_once(' ').map_or((text, ""), |(_, unit)| {
-                (text.trim_end_matches(unit).trim_end(), unit)
-            }),
+            Some((_, last)) => last
+                .trim()
+                .split_once(' ')
+                .map_or((text, ""), |(_, unit)| (text.trim_end_matches(unit).trim_end(), unit)),
             None => (text, ""),
         };
         let path = self.eval.files.sources.text(first.key.as_ref()?.span);
@@ -193,7 +194,10 @@ impl Reader<'_, '_> {
         let Item::Declaration(declared) = &self.eval.scopes[*other].tree.items[*item] else { return None };
         let kind = &declared.kind.text;
         let behind: String = rest.iter().map(|name| format!(".{}", name.text)).collect();
-        let declare = format!("declare `{kind} {0} : {1}.{0}` here, let the scene use it, and vary `{0}{behind}`", own.text, module.text);
+        let declare = format!(
+            "declare `{kind} {0} : {1}.{0}` here, let the scene use it, and vary `{0}{behind}`",
+            own.text, module.text
+        );
         // a field of this file that may hold such a thing
         let holds = |d: &Declaration| {
             let field = schema::kind(&d.kind.text)?.field(kind)?;
@@ -218,7 +222,8 @@ impl Reader<'_, '_> {
         }
         let named = |d: &Declaration| Some((schema::kind(&d.kind.text)?, d.name.as_ref()?.text.clone()));
         if !rest.is_empty()
-            && let Some((_, name)) = self.declarations(scope).filter_map(named).find(|(kind, _)| kind.name == first.text)
+            && let Some((_, name)) =
+                self.declarations(scope).filter_map(named).find(|(kind, _)| kind.name == first.text)
         {
             return Some(format!("{name}.{}", text(rest)));
         }
@@ -352,11 +357,9 @@ impl Reader<'_, '_> {
                 let words: Vec<String> = DISTRIBUTIONS.iter().map(|w| format!("`{w}`")).collect();
                 let expected =
                     format!("expected a list, `from .. to`, {}, found {}", or_list(&words), looks_like(other));
-                self.eval.findings.report(
-                    Diagnostic::new(Code::E0406, expected)
-                        .label(inner.span, "not several values")
-                        .help(help),
-                );
+                self.eval
+                    .findings
+                    .report(Diagnostic::new(Code::E0406, expected).label(inner.span, "not several values").help(help));
                 None
             }
         }

@@ -269,9 +269,10 @@ impl Evaluator<'_> {
 /// `5 kN-s/m` with a blank in the place of the dash, where that is a number with its unit.
 fn dashed_unit(text: &str) -> Option<String> {
     let letter = |c: Option<char>| c.is_some_and(char::is_alphabetic);
-    let dash = text.match_indices('-').map(|(at, _)| at).find(|at| {
-        letter(text[..*at].chars().next_back()) && letter(text[at + 1..].chars().next())
-    })?;
+    let dash = text
+        .match_indices('-')
+        .map(|(at, _)| at)
+        .find(|at| letter(text[..*at].chars().next_back()) && letter(text[at + 1..].chars().next()))?;
     let written = format!("{} {}", &text[..dash], &text[dash + 1..]);
     let (number, unit) = written.split_once(' ')?;
     (number.parse::<f64>().is_ok() && parse_unit(unit).is_ok()).then_some(written)

@@ -304,7 +304,9 @@ impl Evaluator<'_> {
         let field = self.asked.map(|(_, field)| field);
         let has = |name: &str| self.asked.is_some_and(|(kind, _)| kind.field(name).is_some());
         if found == "a number" {
-            if let Some((module, entry)) = text.split_once('/').filter(|(m, _)| self.scopes[self.standard].modules.contains_key(*m)) {
+            if let Some((module, entry)) =
+                text.split_once('/').filter(|(m, _)| self.scopes[self.standard].modules.contains_key(*m))
+            {
                 let entry = entry.split([' ', '{']).next().unwrap_or(entry);
                 return Some(format!("write `{module}.{entry}`"));
             }
@@ -559,7 +561,10 @@ impl Evaluator<'_> {
         let (one, other) = (&found[0], &found[found.len() - 1]);
         let of_keys = first.key.as_ref().is_some_and(|key| key.span.covers(one.labels[0].span));
         let several = found.len() == entries.len() || code == Code::E0405;
-        if found.len() < 2 && entries.len() > 1 && !all_bare(entries) || entries.len() < 2 || !several && found.len() > 1 {
+        if found.len() < 2 && entries.len() > 1 && !all_bare(entries)
+            || entries.len() < 2
+            || !several && found.len() > 1
+        {
             return;
         }
         let start = first.key.as_ref().map_or(first.value.span, |key| key.span);
@@ -567,8 +572,7 @@ impl Evaluator<'_> {
         // `write `-20 sleepers` or `-20 m`` says which units there are
         let help = other.help.as_deref().unwrap_or_default();
         let wrote = self.files.sources.text(other.labels[0].span);
-        let units: Vec<&str> =
-            help.split('`').skip(1).step_by(2).filter_map(|code| code.strip_prefix(wrote)).collect();
+        let units: Vec<&str> = help.split('`').skip(1).step_by(2).filter_map(|code| code.strip_prefix(wrote)).collect();
         let text = |value: &Value| self.files.sources.text(value.span);
         let with = |unit: &&str| match of_keys {
             true => {

@@ -91,7 +91,10 @@ impl Evaluator<'_> {
         });
         let library = crate::check::text::library::MODULES.iter().any(|(m, _)| *m == name.text);
         let help = if name.text == "std" && path.names.len() > 1 {
-            Some(format!("write `{}`: `use std` brings its modules in by their own names", behind.trim_start_matches('.')))
+            Some(format!(
+                "write `{}`: `use std` brings its modules in by their own names",
+                behind.trim_start_matches('.')
+            ))
         } else if library && !here.modules.contains_key(&name.text) {
             // one line is missing, however many modules it would have brought in
             if !self.without_library.insert(scope) || self.wanted_library(name.span) {

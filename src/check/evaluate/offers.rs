@@ -172,11 +172,16 @@ fn special(measure: &Measure, raw: &Raw, per: &str) -> Option<String> {
         });
     }
     if expected == bedding && found == stiffness {
-        return Some("a bedding modulus is a stiffness per area: divide it by half of the sleeper's base area".to_owned());
+        return Some(
+            "a bedding modulus is a stiffness per area: divide it by half of the sleeper's base area".to_owned(),
+        );
     }
     let angle = found == Dimension::ANGLE && expected.is_none() && measure.unit.is_empty();
     if angle && measure.takes(raw.value.tan(), None) {
-        return Some(format!("write `{}`: a coefficient of friction is the tangent of its angle", four_digits(raw.value.tan())));
+        return Some(format!(
+            "write `{}`: a coefficient of friction is the tangent of its angle",
+            four_digits(raw.value.tan())
+        ));
     }
     if found.is_none() {
         let slope = expected == Dimension::LENGTH && measure.varies == crate::schema::Varies::Yes;
@@ -193,7 +198,10 @@ fn special(measure: &Measure, raw: &Raw, per: &str) -> Option<String> {
         return Some("a share is given in `%`: the length divided by the whole".to_owned());
     }
     if expected == Dimension::TIME && [Dimension::AXLES, Dimension::CYCLES].contains(&found) {
-        return Some("an interval of samples is a time; counts of traffic stand in a list: `after = [100, 200] axles`".to_owned());
+        return Some(
+            "an interval of samples is a time; counts of traffic stand in a list: `after = [100, 200] axles`"
+                .to_owned(),
+        );
     }
     if expected == Dimension::AXLES && found == Dimension::TIME {
         return Some("traffic is counted in `axles` or as the mass carried, `MGT`, not by the time".to_owned());

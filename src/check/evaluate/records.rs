@@ -59,7 +59,8 @@ impl Evaluator<'_> {
         }
         // what is misspelt is read on as what was probably meant
         let near = schema::meant_kind(&name.text);
-        let help = near.map_or("`trackbed docs` lists the kinds".to_string(), |k| format!("did you mean `{}`?", k.name));
+        let help =
+            near.map_or("`trackbed docs` lists the kinds".to_string(), |k| format!("did you mean `{}`?", k.name));
         self.findings.report(
             Diagnostic::new(Code::E0401, format!("unknown kind `{}`", name.text))
                 .label(name.span, "not a kind")
@@ -304,7 +305,8 @@ impl Evaluator<'_> {
             })
         };
         let near = || kind.meant(&name.text).map(|n| format!("did you mean `{n}`?"));
-        let help = argument().or_else(near).unwrap_or_else(|| format!("`trackbed docs {}` lists its fields", kind.name));
+        let help =
+            argument().or_else(near).unwrap_or_else(|| format!("`trackbed docs {}` lists its fields", kind.name));
         self.findings.report(
             Diagnostic::new(Code::E0402, format!("`{}` has no field `{}`", kind.name, name.text))
                 .label(name.span, "unknown field")

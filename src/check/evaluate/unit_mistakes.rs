@@ -97,7 +97,9 @@ fn by_custom(unit: &UnitText, symbol: &str, whole: &str) -> Option<String> {
     }
     match text {
         "axle loads" | "axle load" => Some(format!("write `{digits} axles`")),
-        "load cycles" | "load applications" => Some(format!("write `{digits} cycles`, or `{digits} axles` where trains run")),
+        "load cycles" | "load applications" => {
+            Some(format!("write `{digits} cycles`, or `{digits} axles` where trains run"))
+        }
         _ => None,
     }
 }
@@ -123,7 +125,8 @@ impl Evaluator<'_> {
             Some(list) => list.rfind('[')?,
             None => before.trim_end_matches(|c: char| c.is_ascii_digit() || "._e".contains(c)).len(),
         };
-        let counts = before[start..].trim_matches(['[', ']']).split(',').map(|n| n.trim().replace('_', "").parse().ok());
+        let counts =
+            before[start..].trim_matches(['[', ']']).split(',').map(|n| n.trim().replace('_', "").parse().ok());
         let counts: Vec<f64> = counts.collect::<Option<_>>()?;
         let told: Vec<String> = counts.iter().map(|n| grouped((n * axles as f64).round() as u64)).collect();
         let written = match before.ends_with(']') {

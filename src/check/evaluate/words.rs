@@ -78,7 +78,9 @@ impl Evaluator<'_> {
             return None;
         }
         if let (Some(Form::Interval(_)), [first, second, ..]) = (word.arguments.first().map(|a| &a.form), arguments)
-            && [first, second].iter().all(|a| a.name.is_none() && matches!(bare(&a.value).0.kind, ValueKind::Number { .. }))
+            && [first, second]
+                .iter()
+                .all(|a| a.name.is_none() && matches!(bare(&a.value).0.kind, ValueKind::Number { .. }))
         {
             let [from, to] = [first, second].map(|a| self.files.sources.text(bare(&a.value).0.span));
             let help = format!("from one to the other: write `{from} .. {to}`");
