@@ -46,7 +46,8 @@ pub(super) fn decades(low: f64, high: f64) -> Vec<f64> {
     let sets: [&[f64]; 3] = [&[1.0], &[1.0, 2.0, 5.0], &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]];
     let from = if last - first > 4 { 0 } else { 1 };
     let enough = sets[from..].iter().map(|parts| marks(parts)).find(|marks| marks.len() > 1);
-    enough.unwrap_or_else(|| ticks(low, high, 3))
+    let finer = || (3..20).map(|count| ticks(low, high, count)).find(|marks| marks.len() > 1);
+    enough.or_else(finer).unwrap_or_default()
 }
 
 pub(super) fn rows(height: f64) -> usize {
