@@ -63,7 +63,7 @@ fn missing_sides_are_offered_as_the_ground_has_them() {
         let compiled = check(&format!("sections = {sections}"), JACK);
         assert_eq!(offered(only(&compiled, Code::E0504)), line, "{sections}");
         let followed = check(&format!("sections = {sections}, {line}"), TRAIN);
-        let followed = followed.diagnostics.iter().filter(|d| [Code::E0504, Code::L1040].contains(&d.code));
+        let followed = followed.diagnostics.iter().filter(|d| [Code::E0504, Code::L1033].contains(&d.code));
         assert_eq!(followed.count(), 0, "{sections}");
     }
 }
@@ -95,13 +95,13 @@ fn sides_against_the_ground_are_told_with_the_line_to_write() {
         ),
     ] {
         let compiled = check(track, TRAIN);
-        let found: Vec<&Diagnostic> = compiled.diagnostics.iter().filter(|d| d.code == Code::L1040).collect();
+        let found: Vec<&Diagnostic> = compiled.diagnostics.iter().filter(|d| d.code == Code::L1033).collect();
         assert!(found.len() == 1 && found[0].message.starts_with(says), "{}", told(&compiled));
         assert_eq!(offered(found[0]), line);
         // followed, nothing is left to say
         let start = track.find(", transitions").unwrap_or(track.len());
         let followed = check(&format!("{}, {line}", &track[..start]), TRAIN);
-        assert!(followed.diagnostics.iter().all(|d| d.code != Code::L1040), "{}", told(&followed));
+        assert!(followed.diagnostics.iter().all(|d| d.code != Code::L1033), "{}", told(&followed));
     }
 }
 
@@ -115,7 +115,7 @@ fn soft_pads_on_a_deck_do_not_make_it_the_softer_side() {
 fn a_law_of_force_on_a_ballasted_bridge_is_told() {
     let rule = |forms: &str, law: &str| {
         let compiled = check(forms, &format!("{TRAIN}\nsolve {{ substructure = law, law = {law} }}"));
-        let found: Vec<Diagnostic> = compiled.diagnostics.iter().filter(|d| d.code == Code::L1041).cloned().collect();
+        let found: Vec<Diagnostic> = compiled.diagnostics.iter().filter(|d| d.code == Code::L1034).cloned().collect();
         (found, told(&compiled))
     };
     let ballasted = "sections = [open: 42 m, bridge: 36 m]";

@@ -163,8 +163,8 @@ codes! {
     L1030 Warning "void that no wheel closes"
     L1031 Warning "level of the rail beyond its alert limit"
     L1032 Warning "stretch that softens towards the stiffer side"
-    L1040 Warning "softer side that is the stiffer one"
-    L1041 Warning "ballast on a structure under a law of force"
+    L1033 Warning "softer side that is the stiffer one"
+    L1034 Warning "ballast on a structure under a law of force"
 }
 
 impl Code {
@@ -208,8 +208,8 @@ impl Code {
             Code::L1030 => "wide_void",
             Code::L1031 => "track_level",
             Code::L1032 => "reversed_wedge",
-            Code::L1040 => "transition_sides",
-            Code::L1041 => "ballast_on_structure",
+            Code::L1033 => "transition_sides",
+            Code::L1034 => "ballast_on_structure",
             _ => return None,
         })
     }

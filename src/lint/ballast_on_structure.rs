@@ -1,4 +1,4 @@
-//! L1041: ballast lies on both sides of a transition, and the law knows forces alone.
+//! L1034: ballast lies on both sides of a transition, and the law knows forces alone.
 //!
 //! Where the track is stiffer, a sleeper takes more of the wheel and a law of force settles it more; in the field the softer side
 //! settles more, since its subgrade does (section 1 of the paper). The step then has the wrong sign.
@@ -23,7 +23,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             "law `{}` counts forces on the ballast and knows no subgrade: on `{structure}`, which is stiffer, sleepers carry more and settle more than on `{softer}`",
             law.name
         );
-        let diagnostic = Diagnostic::new(Code::L1041, message).help(
+        let diagnostic = Diagnostic::new(Code::L1034, message).help(
             "give what the subgrade settles as `settlement` of the softer trackform, choose a law of deflection such as \
              `laws.guerin_1996`, or read the step at the structure as the ballast's part alone",
         );

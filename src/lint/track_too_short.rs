@@ -14,12 +14,35 @@ use std::ops::Range;
 
 const LENGTHS: f64 = 3.0;
 const PASSED: usize = 10;
+/// Seats within this distance of a transition lie beside it, m, as for the step at the structure.
+const BESIDE: f64 = 5.0;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let sections = 0..scenario.track.sections.len();
     let sparse = sections.filter_map(|section| sparsely_passed(scenario, traffic, section));
-    near_ends(scenario, graph, traffic).into_iter().chain(sparse).collect()
+    let transitions = scenario.track.transitions.iter().filter_map(|t| partly_passed(&scenario.track, traffic, t.x));
+    near_ends(scenario, graph, traffic).into_iter().chain(sparse).chain(transitions).collect()
+}
+
+/// A transition beside which a ballasted seat sees only some wheels of the train: its forces there are means of seats farther on.
+fn partly_passed(track: &Track, traffic: Led<'_>, x: f64) -> Option<Diagnostic> {
+    let passed = traffic.blocks.passed();
+    let beside = [x - BESIDE, x + BESIDE].map(|end| end.clamp(track.start(), track.end()));
+    let mut seats = track.seats.iter().filter(|s| s.is_ballasted() && (beside[0]..=beside[1]).contains(&s.x));
+    let unseen = seats.find(|seat| !passed.contains(&seat.x))?;
+    let tenths = |x: f64| number((x * 10.0).round() / 10.0);
+    let message = format!(
+        "train `{}` does not pass the transition at {} m whole: all its wheels run from {} m to {} m, and sleepers beyond take means",
+        traffic.train.name,
+        tenths(x),
+        tenths(passed.start),
+        tenths(passed.end)
+    );
+    let (side, section) = if unseen.x < passed.start { ("left", 0) } else { ("right", track.sections.len() - 1) };
+    let metres = if side == "left" { passed.start - beside[0] } else { beside[1] - passed.end };
+    let advice = more_track(track, side, metres.ceil());
+    Some(at_length(Diagnostic::new(Code::L1003, message).help(advice), &track.sections[section]))
 }
 
 /// Ends that wheels come near; free ends have been asked for.

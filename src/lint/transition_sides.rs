@@ -1,4 +1,4 @@
-//! L1040: a transition counts its places from a side that is not the stiffer one.
+//! L1033: a transition counts its places from a side that is not the stiffer one.
 //!
 //! The sides are declared, so that a study that changes a stiffness renumbers nothing; the rule holds them against the median stiffness
 //! under the pads of both sections. Pads are left out: soft ones lie on a structure to hide its stiffness.
@@ -23,7 +23,7 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let sides: Vec<Side> = (0..track.transitions.len()).map(computed).collect();
     let swapped: Vec<usize> = (0..sides.len()).filter(|i| sides[*i] != track.transitions[*i].side).collect();
     let Some(first) = swapped.first() else { return Vec::new() };
-    let mut diagnostic = Diagnostic::new(Code::L1040, message(track, &swapped)).help(format!(
+    let mut diagnostic = Diagnostic::new(Code::L1033, message(track, &swapped)).help(format!(
         "write `{}`: sleepers -1, -2, ... then lie on the softer side; what counts places from there changes sides",
         line(track, &sides)
     ));

@@ -134,7 +134,7 @@ fn lack_on_track(measure: &Measure, graph: &Graph, track: &Track, counts: &[u64]
         if records.is_empty() {
             return Some(Lack::Record);
         }
-        let there: Vec<&Record> = records.into_iter().filter(|record| record.seats.iter().any(|s| inside(s))).collect();
+        let there: Vec<&Record> = records.into_iter().filter(|record| record.seats.iter().any(inside)).collect();
         let mut counts: Vec<u64> = there.iter().flat_map(|record| record.after.iter().copied()).collect();
         counts.sort_unstable();
         counts.dedup();

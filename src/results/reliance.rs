@@ -49,7 +49,7 @@ pub struct Unchecked {
 }
 
 impl Reliance {
-    /// Of a run whose check said `diagnostics` of `sources`, and which has these tables and scalars.
+    /// What the answers rest on of a run whose check said `diagnostics` of `sources`, and which has these tables and scalars.
     pub fn new(
         scenario: &Scenario,
         graph: &Graph,

@@ -13,6 +13,7 @@ mod names;
 pub mod number;
 mod objects;
 pub mod offers;
+mod pairs;
 mod profile;
 mod random;
 pub mod records;
