@@ -54,7 +54,8 @@ impl Compiled {
     }
 }
 
-/// Checks a text that a person calls `name`, lowers it and applies the physics rules. Costs milliseconds.
+/// Checks a text that a person calls `name`, lowers it, applies the physics rules and computes the state of rest with which its run begins.
+/// Costs milliseconds; of a scene that packs clumps a tenth of a second.
 pub fn compile(name: &str, text: &str, modules: &dyn Modules, overrides: &[Override]) -> Compiled {
     compile_with(&Planner::default(), name, text, modules, overrides)
 }
