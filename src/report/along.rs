@@ -1,8 +1,8 @@
 //! What happens along the track: settlement, level, loads and moments, one curve a recorded axle count.
 
 use super::Figure;
-use super::chart::{Axis, Chart, Mark, Series};
 use super::counts::{self, Count};
+use super::curves::{Axis, Chart, Mark, Series};
 use super::number::{shown_unit, significant, whole};
 use super::svg::{Frame, Svg};
 use super::view::WIDTH;

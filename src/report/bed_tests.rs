@@ -2,7 +2,7 @@
 
 use super::Figure;
 use super::bed::{BedView, Colour, Side, bed_svg};
-use super::chart::{Axis, Chart, Mark, Series};
+use super::curves::{Axis, Chart, Mark, Series};
 use super::number::{significant, whole};
 use super::page::{close, expectations, opening, picture, provenance, subtitle};
 use super::prose::prose;

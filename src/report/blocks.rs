@@ -1,7 +1,7 @@
 //! How long the blocks were, and what each was worth.
 
 use super::Figure;
-use super::chart::{Axis, Chart, Mark, Series};
+use super::curves::{Axis, Chart, Mark, Series};
 use super::number::significant;
 use super::svg::{Frame, Svg};
 use super::view::WIDTH;

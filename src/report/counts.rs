@@ -1,6 +1,6 @@
 //! Which axle counts a figure shows and in which colour: the same count has the same colour in every figure of a run.
 
-use super::chart::Band;
+use super::curves::Band;
 use super::number::whole;
 use crate::results::Run;
 use crate::scenario::{Scenario, Section};

@@ -2,7 +2,7 @@
 
 use super::Figure;
 use super::along::ballasted_names;
-use super::chart::{Axis, Chart, Mark, Series};
+use super::curves::{Axis, Chart, Mark, Series};
 use super::number::shown_unit;
 use super::panels::{Names, panels};
 use crate::results::{Run, SleeperRow};

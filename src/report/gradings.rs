@@ -1,6 +1,6 @@
 //! Sieve curves of the granular layers: the whole curve, and what of it is modelled.
 
-use super::chart::{Axis, Chart, Mark, Series};
+use super::curves::{Axis, Chart, Mark, Series};
 use super::number::plain;
 use super::svg::{Anchor, Frame, Svg};
 use super::view::WIDTH;

@@ -1,7 +1,7 @@
 //! How a hanging sleeper meets its ballast, beside one of the far field: contact force, velocity and acceleration during a
 //! passage, shaded while there is no contact (paper, Figs. 16 and 17).
 
-use super::chart::Chart;
+use super::curves::Chart;
 use super::panels::{Names, panels, share_scale};
 use super::seat_clock::{panel, seats, shown};
 use super::{Figure, counts};

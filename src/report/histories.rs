@@ -1,6 +1,6 @@
 //! What rail and seats do while a vehicle passes, at the recorded sleepers (paper, Figs. 13 to 15).
 
-use super::chart::Chart;
+use super::curves::Chart;
 use super::panels::{Names, panels, share_scale};
 use super::seat_clock::{panel, seats, shown};
 use super::{Figure, counts};

@@ -2,7 +2,7 @@
 
 use super::Figure;
 use super::along::{figure, track_chart};
-use super::chart::{Axis, Chart, Mark, Series};
+use super::curves::{Axis, Chart, Mark, Series};
 use super::number::{plain, shown_unit, significant, whole};
 use super::prose::prose;
 use crate::results::{LawRow, Run, unsettled};

@@ -2,8 +2,8 @@
 
 use super::Figure;
 use super::along::track_chart;
-use super::chart::{Chart, Mark, Series};
 use super::counts::{self, Count};
+use super::curves::{Chart, Mark, Series};
 use super::limits::{self, LevelLimits};
 use super::number::significant;
 use super::panels::{Names, panels, share_scale};

@@ -12,6 +12,7 @@ mod chart;
 mod colour_map;
 mod counts;
 mod cross_section;
+mod curves;
 mod drawing;
 mod exchanges;
 mod gradings;

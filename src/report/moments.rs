@@ -2,7 +2,7 @@
 //! vehicle.
 
 use super::along::{along_profile, track_chart};
-use super::chart::Series;
+use super::curves::Series;
 use super::number::significant;
 use super::panels::{Names, panels};
 use super::{Figure, counts};

@@ -3,7 +3,7 @@
 
 use super::Figure;
 use super::along::{ballasted_names, track_chart};
-use super::chart::{Chart, Mark, Series};
+use super::curves::{Chart, Mark, Series};
 use super::number::whole;
 use super::panels::{Names, panels};
 use crate::results::{Run, SleeperRow};

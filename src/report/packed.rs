@@ -2,7 +2,7 @@
 
 use super::Figure;
 use super::bed::{BedView, Colour, Side, bed_svg};
-use super::chart::{Axis, Chart, Mark, Series};
+use super::curves::{Axis, Chart, Mark, Series};
 use super::number::{plain, significant, whole};
 use super::packed_readings as readings;
 use super::page::{close, opening, picture};

@@ -1,7 +1,7 @@
 //! What was measured in a packed bed: over its height, in its contacts, under a plate.
 
 use super::Figure;
-use super::chart::{Axis, Chart, Mark, Series};
+use super::curves::{Axis, Chart, Mark, Series};
 use super::number::{plain, significant, whole};
 use super::page::picture;
 use super::panels::{Names, panels};

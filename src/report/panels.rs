@@ -1,7 +1,7 @@
 //! Several charts in one picture, side by side or one above the other.
 
 use super::Figure;
-use super::chart::{Axis, Chart, Mark, Series};
+use super::curves::{Axis, Chart, Mark, Series};
 use super::svg::{Frame, Svg};
 use super::view::WIDTH;
 

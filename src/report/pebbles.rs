@@ -1,7 +1,7 @@
 //! What pebbles buy and what they cost: the error of shape against their number, and the tests of contacts that they
 //! make.
 
-use super::chart::{Axis, Chart, Mark, Series};
+use super::curves::{Axis, Chart, Mark, Series};
 use super::svg::{Anchor, Frame, Svg};
 use super::view::WIDTH;
 

@@ -1,7 +1,7 @@
 //! Pressure of the sleepers on the ballast along the track, against the usual limit.
 
 use super::along::track_chart;
-use super::chart::{Mark, Series};
+use super::curves::{Mark, Series};
 use super::panels::{Names, panels};
 use super::{Figure, counts, limits};
 use crate::results::{Run, contact_pressures};

@@ -3,7 +3,7 @@
 //! One JSON object in the `metadata` of the chart, in the units of its axes. A line holds what is needed to
 //! tell it to a part of a pixel, so that the data are smaller than the drawing; dots, bars and curves that move hold every value.
 
-use super::chart::{Axis, Chart, Mark, Series};
+use super::curves::{Axis, Chart, Mark, Series};
 use super::plane::Plane;
 use super::series::{has_dots, line_pixels};
 use super::svg::Svg;

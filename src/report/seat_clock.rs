@@ -1,7 +1,7 @@
 //! The time of a passage as a seat sees it: zero when the leading wheel stands over it, so that seats can be compared.
 
-use super::chart::{Axis, Band, Chart, Mark, Series};
 use super::counts::Count;
+use super::curves::{Axis, Band, Chart, Mark, Series};
 use super::number::shown_unit;
 use crate::results::{HistoryRow, Run};
 use crate::scenario::Loading;

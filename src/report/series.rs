@@ -1,6 +1,6 @@
 //! The curves of a chart as they are drawn: lines thinned to the pixels, dots, bars.
 
-use super::chart::{Axis, Chart, Mark, Series};
+use super::curves::{Axis, Chart, Mark, Series};
 use super::number::significant;
 use super::plane::{Plane, finite};
 use super::svg::{Anchor, Frame, Svg};

@@ -1,7 +1,7 @@
 //! Main effects: the mean of what is measured over the points that share a value, for every value that varies.
 
 use super::plane::{Plane, cut, range, titled};
-use crate::report::chart::{Mark, Series};
+use crate::report::curves::{Mark, Series};
 use crate::report::number::significant;
 use crate::report::svg::{Anchor, Frame, Svg};
 use crate::scenario::Measured;

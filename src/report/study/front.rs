@@ -1,7 +1,7 @@
 //! The Pareto front of the first two objectives.
 
 use super::plane::{Plane, range, titled};
-use crate::report::chart::{Mark, Series};
+use crate::report::curves::{Mark, Series};
 use crate::report::svg::{Anchor, Frame, Svg};
 use crate::scenario::{Goal, Objective};
 use crate::study::{Answer, Row};

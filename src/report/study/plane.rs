@@ -1,6 +1,6 @@
 //! A small diagram with two plain scales, for points of a study.
 
-use crate::report::chart::{Axis, Chart, Series};
+use crate::report::curves::{Axis, Chart, Series};
 use crate::report::number::{nice_step, tick_label, ticks};
 use crate::report::svg::{Anchor, Frame, Svg};
 use crate::report::{plane, readings};
