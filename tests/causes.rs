@@ -2,7 +2,7 @@
 
 use trackbed::check::NoModules;
 use trackbed::compile;
-use trackbed::diag::Code;
+use trackbed::diag::{Code, Severity};
 
 const ZONE: &str = include_str!("../scenarios/transition.track");
 const TRIAXIAL: &str = include_str!("../scenarios/triaxial.track");
@@ -27,7 +27,11 @@ fn without(scene: &str, block: &str) -> String {
 fn told(scene: &str, before: &str) -> Vec<(Code, String, String)> {
     let all = |text: &str| {
         let diagnostics = compile("scene.track", text, &NoModules, &[]).diagnostics;
-        diagnostics.into_iter().map(|d| (d.code, d.message, d.help.unwrap_or_default())).collect::<Vec<_>>()
+        diagnostics
+            .into_iter()
+            .filter(|d| d.severity != Severity::Note)
+            .map(|d| (d.code, d.message, d.help.unwrap_or_default()))
+            .collect::<Vec<_>>()
     };
     let known = all(before);
     all(scene).into_iter().filter(|said| !known.iter().any(|k| k.1 == said.1)).collect()

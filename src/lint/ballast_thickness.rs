@@ -10,7 +10,7 @@ use crate::scenario::Scenario;
 use crate::units::number;
 
 /// m.
-const THICKEST: f64 = 0.6;
+const THICKEST: f64 = 1.0;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let mut found: Vec<Diagnostic> = Vec::new();
