@@ -9,7 +9,9 @@ fn errors(text: &str) -> Vec<(Code, String, Vec<String>)> {
     let compiled = compile("scene.track", text, &NoModules, &[]);
     println!("{}", render::human(&compiled.diagnostics, &compiled.sources, false, 120));
     let (_, source) = compiled.sources.iter().next().unwrap();
-    let pointed = |span: trackbed::diag::Span| source.text.get(span.start..span.end).unwrap_or_default().to_owned();
+    let pointed = |span: trackbed::diag::Span| {
+        source.text.get(span.start as usize..span.end as usize).unwrap_or_default().to_owned()
+    };
     let of_scene = |d: &trackbed::diag::Diagnostic| d.labels.iter().map(|label| pointed(label.span)).collect();
     let errors = compiled.diagnostics.iter().filter(|d| d.is_error());
     errors.map(|d| (d.code, d.message.clone(), of_scene(d))).collect()
