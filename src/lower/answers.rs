@@ -94,7 +94,7 @@ fn lack(measure: &Measure, graph: &Graph, track: &Track) -> Option<Lack> {
     }
 }
 
-/// Of a track: tables at the recorded counts, and the histories that a `record` asks for.
+/// Why a track has no value of a measure: it keeps tables at the recorded counts, and the histories that a `record` asks for.
 fn lack_on_track(measure: &Measure, graph: &Graph, track: &Track, counts: &[u64]) -> Option<Lack> {
     let response = measure.response;
     let trains = graph.blocks().is_some();
@@ -152,7 +152,7 @@ fn covers(measure: &Measure, x: f64) -> bool {
     measure.over.is_none_or(|(a, b)| x >= a.min(b) - PLACE_TOLERANCE && x <= a.max(b) + PLACE_TOLERANCE)
 }
 
-/// Of a test rig: what its sleepers do in every cycle, and what volumes show in those that are kept.
+/// Why a test rig has none: it keeps what its sleepers do in every cycle, and what volumes show in those that are recorded.
 fn lack_of_tests(measure: &Measure, bed: &BedNode, cycles: u64, kept: &[u64]) -> Option<Lack> {
     match measure.response {
         Response::ContactPressure if bed.plate.is_some() => {
