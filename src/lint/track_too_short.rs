@@ -20,9 +20,14 @@ const BESIDE: f64 = 5.0;
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Some(traffic) = led(scenario, graph) else { return Vec::new() };
     let sections = 0..scenario.track.sections.len();
-    let sparse = sections.filter_map(|section| sparsely_passed(scenario, traffic, section));
-    let transitions = scenario.track.transitions.iter().filter_map(|t| partly_passed(&scenario.track, traffic, t.x));
-    near_ends(scenario, graph, traffic).into_iter().chain(sparse).chain(transitions).collect()
+    let mut found = near_ends(scenario, graph, traffic);
+    let sparse: Vec<Diagnostic> = sections.filter_map(|section| sparsely_passed(scenario, traffic, section)).collect();
+    // a section that is hardly passed says enough of its transitions
+    if sparse.is_empty() {
+        found.extend(scenario.track.transitions.iter().find_map(|t| partly_passed(&scenario.track, traffic, t.x)));
+    }
+    found.extend(sparse);
+    found
 }
 
 /// A transition beside which a ballasted seat sees only some wheels of the train: its forces there are means of seats farther on.

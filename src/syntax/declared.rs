@@ -8,10 +8,17 @@ use crate::diag::{Code, Diagnostic};
 const EXTENDS: [&str; 6] = ["extends", "inherits", "from", "is", "based_on", "of"];
 
 pub(super) fn mend(draft: &mut Draft, tokens: &mut [Token]) {
+    // brackets that are open: a field may begin its line too, where nobody has laid out the text
+    let mut depth = 0_usize;
     for i in 0..tokens.len() {
+        match tokens[i].kind {
+            Kind::Open(_) => depth += 1,
+            Kind::Close(_) => depth = depth.saturating_sub(1),
+            _ => {}
+        }
         let at = tokens[i].start;
         let starts_line = at == 0 || draft.original.as_bytes()[at - 1] == b'\n';
-        if starts_line && tokens[i].kind == Kind::Word {
+        if depth == 0 && starts_line && tokens[i].kind == Kind::Word {
             match tokens[i].text(draft.original) {
                 "use" => {}
                 "let" => digit_first(draft, tokens, i + 1, "let "),
