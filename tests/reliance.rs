@@ -50,9 +50,13 @@ fn warnings_assumptions_and_spread_stand_on_the_first_page() {
         None => assert!(first.contains("differ by a factor of ten"), "{first}"),
     }
     let assumed = texts("assumptions", None).join("\n");
-    for text in
-        ["from the force on its own ballast", "springs of 50 to 120 MN/m", "level as built", "part of each train"]
-    {
+    for text in [
+        "from the force on its own ballast",
+        "springs of 50 to 120 MN/m",
+        "level as built",
+        "part of each train",
+        "3 passages stand for 10 trains",
+    ] {
         assert!(assumed.contains(text), "{text}: {assumed}");
     }
     assert!(texts("unchecked", Some("name")).iter().any(|name| name == "sleepers.B70"), "{reliance}");

@@ -5,8 +5,8 @@ use crate::graph::{Blocks, Cost, PassagePlan, PassageWork, Record, TrackFoot, Tr
 
 /// Seconds of a time step on one core, and of each unknown in it: a straight line through passages of 400 and of 1300 unknowns
 /// (`cargo bench --bench track_passage`, `benches/estimates.py`).
-const STEP: f64 = 4e-6;
-const UNKNOWN: f64 = 2.2e-8;
+const STEP: f64 = 3.5e-6;
+const UNKNOWN: f64 = 1.95e-8;
 /// Seconds of a place of the profile of stiffness and of an unknown of the track there: an equilibrium at each.
 const PLACE: f64 = 3e-8;
 /// Places of the profile in a bay.

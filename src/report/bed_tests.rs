@@ -39,7 +39,7 @@ impl<'a> BedTestsPage<'a> {
         expectations(&mut html, &run.summary.expectations);
         self.figures().iter().for_each(|figure| picture(&mut html, figure));
         self.beds(&mut html);
-        provenance(&mut html, &run.summary.provenance, &run.scenario);
+        provenance(&mut html, &run.summary.provenance);
         close(&mut html);
         html
     }

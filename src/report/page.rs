@@ -23,7 +23,7 @@ pub fn page(run: &Run) -> String {
     figures.iter().for_each(|figure| picture(&mut html, figure));
     trains(&mut html, run);
     blocks(&mut html, run);
-    provenance(&mut html, &run.summary.provenance, &run.scenario);
+    provenance(&mut html, &run.summary.provenance);
     close(&mut html);
     html
 }
@@ -223,7 +223,7 @@ fn blocks(html: &mut String, run: &Run) {
     );
 }
 
-pub(super) fn provenance(html: &mut String, made: &Provenance, scenario: &Scenario) {
+pub(super) fn provenance(html: &mut String, made: &Provenance) {
     let _ = writeln!(
         html,
         "<section class=\"long\" id=\"provenance\"><h2>What made this</h2><dl><dt>Program</dt><dd>{} {}</dd>\
@@ -234,10 +234,6 @@ pub(super) fn provenance(html: &mut String, made: &Provenance, scenario: &Scenar
         escape(&made.source_sha256),
         made.seed
     );
-    for (rule, reason) in &scenario.allow {
-        let _ =
-            writeln!(html, "<p class=\"note\">Rule <code>{}</code> is silenced: {}</p>", escape(rule), prose(reason));
-    }
     if !made.plan.is_empty() {
         let _ = writeln!(html, "<p class=\"note\">The plan</p><pre>{}</pre>", prose(&made.plan));
     }

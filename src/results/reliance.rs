@@ -178,7 +178,7 @@ fn assumptions(scenario: &Scenario, graph: &Graph, tables: &RunTables) -> Vec<St
         told.push("both rails are alike: one rail with half of each vehicle is computed".to_owned());
         told.extend(at_the_ends(&scenario.track, tables));
     }
-    told.extend(graph.decisions.iter().filter(|decision| decision.pass == "share").map(|d| d.what.clone()));
+    told.extend(shared(graph, tables));
     told.extend(coarse_grains(&scenario.track));
     told
 }
@@ -197,6 +197,17 @@ fn supports(graph: &Graph) -> Option<String> {
     let how = graph.decisions.iter().find(|decision| decision.pass == "supports");
     let how = how.map_or(String::new(), |decision| format!(" ({})", decision.what));
     Some(format!("under the sleepers lie springs of {range} MN/m per seat, which keep their stiffness{how}"))
+}
+
+/// How many passages stood for how many trains.
+fn shared(graph: &Graph, tables: &RunTables) -> Option<String> {
+    let trains = graph.blocks()?.trains_left(0);
+    let passages: u64 = tables.blocks.iter().map(|block| block.passages).sum();
+    (passages < trains).then(|| {
+        format!(
+            "{passages} passages stand for {trains} trains: all of a kind in a block run over the same settled track"
+        )
+    })
 }
 
 /// Seats that no train passes whole.
