@@ -52,7 +52,7 @@ MIXES = [
     ("transition, Selig and Waters", "transition", ADAPTIVE + COARSE + ["solve.law=laws.selig_waters_1994"]),
     ("transition, Shenton", "transition", ADAPTIVE + COARSE + ["solve.law=laws.shenton_1985"]),
     ("transition, 60 km/h", "transition", ADAPTIVE + COARSE + ["ore.speed=60 km/h"]),
-    ("transition, four wagons", "transition", ADAPTIVE + COARSE + ["ore.vehicles=[wagon, wagon, wagon, wagon]", "line.sections=[open: 90 m, stiff: 90 m]", "traffic.total=480 axles", "track_response.after=[0, 480] axles"]),
+    ("transition, four wagons", "transition", ADAPTIVE + COARSE + ["ore.vehicles=[wagon, wagon, wagon, wagon]", "wagon.length=12 m", "line.sections=[open: 90 m, stiff: 90 m]", "traffic.total=480 axles", "track_response.after=[0, 480] axles"]),
     ("transition, 400 m", "transition", ADAPTIVE + COARSE + ["line.sections=[open: 300 m, stiff: 100 m]"]),
     ("transition, every seat recorded", "transition", COARSE + [f"track_response.at=[{EVERY_SEAT}] sleepers", "track_response.every=1e-4 s"]),
     ("transition, states", "transition", COARSE + ["track_response.states=vtk"]),
