@@ -110,8 +110,8 @@ fn offer(names: &[(&str, Span)], boundaries: usize, built: &[Built], plans: &[Pl
     }
 }
 
-/// Stiffness under the pad of a seat in the middle of a trackform, N/m, as if it had no neighbours: that of the ground or of the structure.
-/// Pads are left out, since soft ones lie on structures to hide their stiffness. `None` where it is not known.
+/// The stiffness, N/m, of the ground or of the structure under one seat of a trackform. The seat lies in its middle, without other sections
+/// beside it. Pads are left out, since soft pads lie on structures to hide their stiffness. `None` where the stiffness is not known.
 fn stiffness(built: &Built, plan: &Plan, asked: Asked) -> Option<f64> {
     // what is wrong with the form is said where it is built
     let mut aside = Findings::default();
