@@ -15,6 +15,7 @@ use super::motion::{Felt, Pose, WallMotion};
 use super::record::Record;
 use super::rotation;
 use super::shape::Shape;
+use super::sheet::Sheet;
 use super::timings::Timings;
 use super::vector::{Vec3, add, cross};
 use super::walls::{Wall, WallContacts, WallId};
@@ -234,6 +235,7 @@ impl<R: Real> Bed<R> {
             spin: Vector3::zeros(),
             felt: Felt::default(),
             moment: [0.0; 3],
+            sheet: None,
         });
         self.lists.outdated = true;
         let id = WallId(self.walls.len() as u32 - 1);
@@ -245,6 +247,18 @@ impl<R: Real> Bed<R> {
     pub fn add_plane(&mut self, point: [f64; 3], normal: [f64; 3], surface: u16) -> WallId {
         let pose = Pose { position: point.into(), ..Pose::default() };
         self.add_wall(Shape::Plane { normal: normal.into() }, pose, surface, WallMotion::Fixed)
+    }
+
+    /// Lets the corners of a floor move: they are a guide's to move, see [`Bed::guided_step`].
+    ///
+    /// # Panics
+    /// If the wall is no level plane.
+    pub fn soften(&mut self, wall: WallId, sheet: Sheet) {
+        let wall = &mut self.walls[wall.0 as usize];
+        let up = matches!(wall.shape, Shape::Plane { normal } if normal == Vector3::z());
+        assert!(up && wall.pose.orientation == Pose::default().orientation, "a floor is level");
+        wall.sheet = Some(Box::new(sheet));
+        self.lists.outdated = true;
     }
 
     /// Moves a wall in another way from now on.

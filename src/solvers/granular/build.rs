@@ -414,6 +414,7 @@ impl<R: Real> Bed<R> {
         self.lists.reference =
             records.iter().enumerate().map(|(p, r)| sub(r.position(), origin[p / BLOCK]).map(|x| x as f32)).collect();
         self.lists.walls = self.walls.iter().map(|w| w.pose).collect();
+        self.walls.iter_mut().filter_map(|w| w.sheet.as_mut()).for_each(|sheet| sheet.remember());
         let far = |wall: &Wall| {
             let pebbles = records.iter().zip(&self.owner);
             pebbles

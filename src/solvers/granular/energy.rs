@@ -56,6 +56,9 @@ pub(super) struct Ledger {
     pending: [f64; 2],
     /// Forces and moments on walls one step ago.
     walls: Vec<(Vector3<f64>, Vector3<f64>)>,
+    /// Forces on the corners of floors that move one step ago.
+    #[serde(default)]
+    sheets: Vec<Vec<[f64; 3]>>,
 }
 
 impl Ledger {
@@ -80,7 +83,10 @@ impl Ledger {
                 // what the wall does to the grains is the opposite of what it feels
                 now.walls -= 0.5 * dt * ((force + f).dot(&wall.velocity) + (moment + m).dot(&wall.spin));
             }
+            let sheets = walls.iter().filter_map(Wall::sheet).zip(&self.sheets);
+            now.walls += sheets.map(|(sheet, before)| sheet.work(before, dt)).sum::<f64>();
         }
+        self.sheets = walls.iter().filter_map(Wall::sheet).map(|sheet| sheet.forces().to_vec()).collect();
         self.walls = felt;
     }
 

@@ -63,6 +63,7 @@ pub mod rotation;
 mod scaling;
 mod search;
 pub mod shape;
+mod sheet;
 mod snapshot;
 mod step;
 mod stride;
@@ -89,6 +90,8 @@ pub use law::{
 pub use motion::{Felt, Pose, WallMotion};
 pub use scaling::Scaling;
 pub use shape::Shape;
+pub use sheet::{Corner, Sheet};
 pub use snapshot::{ContactState, Party, Snapshot};
+pub use step::Guided;
 pub use timings::Timings;
 pub use walls::{Wall, WallId};

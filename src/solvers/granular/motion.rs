@@ -44,6 +44,8 @@ pub struct Felt {
 pub enum WallMotion {
     #[default]
     Fixed,
+    /// As a guide says in every step, see [`super::Bed::guided_step`].
+    Guided,
     /// Constant velocity (m/s) of the frame's origin and angular velocity (rad/s) about it, in the axes of space.
     Velocity { linear: Vector3<f64>, angular: Vector3<f64> },
     /// Velocity (m/s) straight between times (s, growing); the first value holds before, the last one after.
@@ -105,7 +107,7 @@ impl WallMotion {
     /// The first number that is out of its range.
     pub fn check(&self) -> Result<(), MotionError> {
         match self {
-            WallMotion::Fixed => Ok(()),
+            WallMotion::Fixed | WallMotion::Guided => Ok(()),
             WallMotion::Velocity { linear, angular } => {
                 finite("velocity of a wall", linear)?;
                 finite("angular velocity of a wall", angular)
@@ -140,6 +142,8 @@ impl WallMotion {
     pub fn velocity(&self, time: f64, dt: f64, felt: &Felt) -> (Vector3<f64>, Vector3<f64>) {
         let linear = match self {
             WallMotion::Fixed => Vector3::zeros(),
+            // what nobody changes goes on
+            WallMotion::Guided => felt.velocity,
             WallMotion::Velocity { linear, angular } => return (*linear, *angular),
             WallMotion::Table { times, velocities } => mean_of_table(times, velocities, time, dt),
             WallMotion::Harmonic { axis, amplitude, frequency, phase } => {

@@ -7,14 +7,42 @@ use super::failure::Failure;
 use super::force::Prepared;
 use super::integrate::{self, Drive, Moving, Tally};
 use super::lanes::Real;
+use super::motion::{Felt, WallMotion};
+use super::sheet::Sheet;
 use super::timings::Timings;
-use super::walls::{Pebbles, approach};
+use super::walls::{Pebbles, Wall, WallId, approach};
 use std::time::Instant;
 
 /// Tasks that one thread does before it moves their bodies: what fits into its own cache.
 const ALONE: usize = 3;
 /// Tasks a thread that several do: threads wait for each other twice a window.
 const TOGETHER: usize = 6;
+
+/// Walls between the forces of a step and their motion.
+pub struct Guided<'a> {
+    walls: &'a mut [Wall],
+    /// At which the forces stand, s.
+    pub time: f64,
+    /// Length of the step, s.
+    pub dt: f64,
+}
+
+impl Guided<'_> {
+    /// What the contacts do to a wall.
+    pub fn felt(&self, wall: WallId) -> &Felt {
+        &self.walls[wall.0 as usize].felt
+    }
+
+    /// Velocity of a guided wall in this step, m/s.
+    pub fn drive(&mut self, wall: WallId, velocity: [f64; 3]) {
+        self.walls[wall.0 as usize].velocity = velocity.into();
+    }
+
+    /// The corners of a floor: their forces stand, and where they go is to be set.
+    pub fn sheet(&mut self, wall: WallId) -> Option<&mut Sheet> {
+        self.walls[wall.0 as usize].sheet.as_deref_mut()
+    }
+}
 
 impl<R: Real> Bed<R> {
     /// Does `count` steps, or as many as go well.
@@ -26,8 +54,16 @@ impl<R: Real> Bed<R> {
     /// Does one step of the leapfrog: `v += F/m dt`, `x += v dt`. The first kick is half a step long, so that velocities
     /// stand half a step before positions from then on.
     pub fn step(&mut self) -> Result<(), Failure> {
+        self.guided_step(|_| Ok(()))
+    }
+
+    /// The same, where `guide` hears the forces on walls at the start of the step and says how those that it guides move in it.
+    pub fn guided_step<E: From<Failure>>(
+        &mut self,
+        guide: impl FnOnce(&mut Guided<'_>) -> Result<(), E>,
+    ) -> Result<(), E> {
         if self.dt == 0.0 {
-            return Err(Failure::NoTimeStep);
+            return Err(Failure::NoTimeStep.into());
         }
         let start = Instant::now();
         self.refresh()?;
@@ -43,6 +79,7 @@ impl<R: Real> Bed<R> {
         if drive.watched {
             self.ledger.enter(energy, &self.tally, &self.walls, self.dt);
         }
+        guide(&mut Guided { walls: &mut self.walls, time: self.time, dt: self.dt })?;
         self.move_walls();
         self.lists.travel +=
             2.0 * self.tally.fastest.0.sqrt() * self.dt + approach(&self.walls, self.dt, self.lists.extent);
@@ -50,7 +87,7 @@ impl<R: Real> Bed<R> {
         self.steps += 1;
         self.time += self.dt;
         self.settle();
-        self.look()
+        Ok(self.look()?)
     }
 
     /// Computes every force, and moves the bodies where there is a drive.
@@ -110,7 +147,9 @@ impl<R: Real> Bed<R> {
 
     fn move_walls(&mut self) {
         for wall in &mut self.walls {
-            (wall.velocity, wall.spin) = wall.motion.velocity(self.time, self.dt, &wall.felt);
+            if !matches!(wall.motion, WallMotion::Guided) {
+                (wall.velocity, wall.spin) = wall.motion.velocity(self.time, self.dt, &wall.felt);
+            }
             wall.pose.advance(&wall.velocity, &wall.spin, self.dt);
             let (cell, position) = self.domain.settle(wall.cell, wall.pose.position.into());
             if cell != wall.cell {

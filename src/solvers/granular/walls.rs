@@ -11,6 +11,7 @@ use super::prefetch::prefetch;
 use super::record::Record;
 use super::search::{Grids, Seen};
 use super::shape::{Shape, Touch, inherit};
+use super::sheet::Sheet;
 use super::vector::{Vec3, add, cross, dot, norm, scale, sub};
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -39,6 +40,9 @@ pub struct Wall {
     pub(super) felt: Felt,
     /// Moment about the origin of the wall's frame \[N m\].
     pub(super) moment: Vec3,
+    /// Corners that move, of a plane that is a floor.
+    #[serde(default)]
+    pub(super) sheet: Option<Box<Sheet>>,
 }
 
 impl Wall {
@@ -65,6 +69,11 @@ impl Wall {
         self.surface
     }
 
+    /// The corners of a floor that moves.
+    pub fn sheet(&self) -> Option<&Sheet> {
+        self.sheet.as_deref()
+    }
+
     /// Where the wall is, its position not wrapped into the period.
     pub fn pose(&self, domain: &Domain) -> Pose {
         Pose { position: domain.place(self.cell, self.pose.position.into()).into(), ..self.pose }
@@ -72,12 +81,25 @@ impl Wall {
 
     /// Largest speed of a point of the wall, of a plane within `extent` \[m\] of its origin \[m/s\].
     pub(super) fn fastest(&self, extent: f64) -> f64 {
-        self.velocity.norm() + self.spin.norm() * self.reach(extent)
+        let sheet = self.sheet.as_ref().map_or(0.0, |sheet| sheet.fastest());
+        self.velocity.norm() + self.spin.norm() * self.reach(extent) + sheet
     }
 
     /// Distance of its farthest point from its origin, of a plane `extent` \[m\].
     fn reach(&self, extent: f64) -> f64 {
         self.shape.bounds().map_or(extent, |[low, high]| low.norm().max(high.norm()))
+    }
+
+    /// Where a sphere touches the wall, `away` from its origin, in the wall's frame; a floor that moves is not turned.
+    #[inline]
+    pub(super) fn touches(&self, away: Vec3, radius: f64, facets: &[u32], touches: &mut Vec<Touch>) {
+        match &self.sheet {
+            Some(sheet) => {
+                touches.clear();
+                touches.extend(sheet.touch(away, radius));
+            }
+            None => self.shape.touches(&self.turned_back(away), radius, facets, touches),
+        }
     }
 
     /// A vector of space in the wall's frame.
@@ -265,6 +287,7 @@ impl<R: Real> WallContacts<R> {
     fn load(&self, walls: &mut [Wall], laws: &ContactLaws, records: &[R::Record], outcomes: &[Outcome<R>]) {
         for wall in walls.iter_mut() {
             (wall.felt, wall.moment) = (Felt { velocity: wall.velocity, ..Felt::default() }, [0.0; 3]);
+            wall.sheet.iter_mut().for_each(|sheet| sheet.unload());
         }
         for entry in &self.entries {
             let range = entry.slots.0 as usize..entry.slots.1 as usize;
@@ -278,6 +301,7 @@ impl<R: Real> WallContacts<R> {
                 wall.felt.dashpot += tangent.normal_dashpot;
                 wall.felt.contacts += 1;
                 wall.moment = sub(wall.moment, cross(slot.point, force));
+                wall.sheet.iter_mut().for_each(|sheet| sheet.load(slot.point, scale(force, -1.0), tangent.normal));
             }
         }
     }
@@ -287,6 +311,10 @@ impl Wall {
     /// Whether the surface is within reach of a pebble; of a mesh, the facets that are, those on the other side of a period
     /// among them: there the pebble may be before the next list.
     fn near(&self, domain: &Domain, away: Vec3, reach: f64, facets: &mut Vec<u32>) -> bool {
+        if let Some(sheet) = &self.sheet {
+            facets.clear();
+            return sheet.touch(away, reach).is_some();
+        }
         let mut found = self.shape.near(&self.turned_back(away), reach, facets);
         let periods = [0, 1, 2].map(|axis| domain.period(axis));
         if !matches!(self.shape, Shape::Mesh(_)) || periods.iter().all(Option::is_none) {
@@ -398,7 +426,7 @@ impl<R: Real> Shared<'_, R> {
         let cell = self.pebbles.bodies[self.pebbles.owner[entry.pebble as usize] as usize].cell;
         let away = wall.to(self.pebbles.domain, cell, record.position());
         let facets = &self.facets[entry.facets.0 as usize..entry.facets.1 as usize];
-        wall.shape.touches(&wall.turned_back(away), record.radius(), facets, &mut scratch.touches);
+        wall.touches(away, record.radius(), facets, &mut scratch.touches);
         if scratch.touches.is_empty() && slots.iter().all(|slot| !slot.touches()) {
             // it was near and still is no more than that
             return;
@@ -443,12 +471,14 @@ fn numbers<R: Real>(v: Vector<One<R>>) -> [R; 3] {
 fn meet<R: Real>(wall: &Wall, record: &R::Record, away: Vec3, touch: &Touch) -> (Meeting<One<R>>, Vec3) {
     let normal: Vec3 = touch.normal.into();
     let overlap = record.radius() - touch.distance;
-    let arm = record.radius() - 0.5 * overlap;
+    // on a floor that moves the contact point lies on the facet, so that its corners feel the moment too
+    let arm = if wall.sheet.is_some() { touch.distance } else { record.radius() - 0.5 * overlap };
     let point = sub(away, scale(normal, arm));
     let (velocity, spin) = (record.velocity().map(R::to_f64), record.spin().map(R::to_f64));
     let own = sub(velocity, scale(cross(spin, normal), arm));
     let (wall_velocity, wall_spin): (Vec3, Vec3) = (wall.velocity.into(), wall.spin.into());
-    let [u, v, w] = sub(own, add(wall_velocity, cross(wall_spin, point)));
+    let of_sheet = wall.sheet.as_ref().map_or([0.0; 3], |sheet| sheet.velocity_at(point));
+    let [u, v, w] = sub(own, add(add(wall_velocity, of_sheet), cross(wall_spin, point)));
     let lanes = One::<R>::new();
     let num = |value: f64| Num { lanes, value: [R::from_f64(value)] };
     let meeting = Meeting {
@@ -520,5 +550,6 @@ pub(super) fn approach(walls: &[Wall], dt: f64, extent: f64) -> f64 {
 /// Distance that a wall has gone since its pose was `before` \[m\].
 pub(super) fn moved(wall: &Wall, before: &Pose, extent: f64) -> f64 {
     let turned = (0..4).map(|k| (wall.pose.orientation[k] - before.orientation[k]).powi(2)).sum::<f64>().sqrt();
-    norm((wall.pose.position - before.position).into()) + 2.0 * turned * wall.reach(extent)
+    let sheet = wall.sheet.as_ref().map_or(0.0, |sheet| sheet.moved());
+    norm((wall.pose.position - before.position).into()) + 2.0 * turned * wall.reach(extent) + sheet
 }

@@ -149,7 +149,7 @@ impl<R: Real> Bed<R> {
         let away = wall.to(&self.domain, self.bodies[body as usize].cell, record.position());
         let facets = &self.wall_contacts.facets[entry.facets.0 as usize..entry.facets.1 as usize];
         let mut touches = Vec::new();
-        wall.shape.touches(&wall.turned_back(away), record.radius() + gap, facets, &mut touches);
+        wall.touches(away, record.radius() + gap, facets, &mut touches);
         let (mass, law) = (record.mass().to_f64(), &self.laws.all()[usize::from(entry.law)]);
         links.extend(touches.iter().map(|touch| {
             let normal: Vec3 = wall.pose.direction_to_space(&touch.normal).into();

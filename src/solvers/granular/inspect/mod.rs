@@ -226,10 +226,10 @@ impl<R: Real> Bed<R> {
             let wall = &self.walls[entry.wall as usize];
             let record = &self.records[entry.pebble as usize];
             let body = &self.bodies[self.owner[entry.pebble as usize] as usize];
-            let away = wall.turned_back(wall.to(&self.domain, body.cell, record.position()));
+            let away = wall.to(&self.domain, body.cell, record.position());
             let facets = &self.wall_contacts.facets[entry.facets.0 as usize..entry.facets.1 as usize];
             let mut touches = Vec::new();
-            wall.shape.touches(&away, record.radius(), facets, &mut touches);
+            wall.touches(away, record.radius(), facets, &mut touches);
             let deepest = touches.iter().map(|t| record.radius() - t.distance).fold(0.0, f64::max);
             let share = deepest / record.radius();
             count += usize::from(share > limit);
