@@ -61,6 +61,10 @@ impl Scene<'_> {
             TrackError::StepNotConverged { x, .. } | TrackError::Unstable { x, .. } => {
                 (vec![self.time_step(), self.contact(), self.place(*x)], self.half_a_step())
             }
+            TrackError::StepTooLong { x, limit, .. } => (
+                vec![self.time_step(), self.place(*x)],
+                format!("write a `time_step` of at most {} us", number((1e6 * limit * 10.0).floor() / 10.0)),
+            ),
             TrackError::NoEquilibrium { x, .. } if axles > 0 => {
                 (vec![(self.span_of(Parameter::Update), "too long here".into()), self.place(*x)], self.half_a_block())
             }

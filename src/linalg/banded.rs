@@ -123,6 +123,17 @@ impl SymmetricBanded {
         }
     }
 
+    /// `xᵀ A x`.
+    pub fn quadratic_form(&self, x: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for d in 0..=self.half_band.min(self.order.saturating_sub(1)) {
+            let diagonal = &self.diagonals[d * self.order + d..(d + 1) * self.order];
+            let products = diagonal.iter().zip(x).zip(&x[d..]).map(|((a, x), y)| a * x * y).sum::<f64>();
+            sum += if d == 0 { products } else { 2.0 * products };
+        }
+        sum
+    }
+
     /// Factors the matrix; fails with the first row whose pivot is not clearly positive.
     pub fn factor(&self) -> Result<BandedFactor, NotPositiveDefinite> {
         let (n, width) = (self.order, kernel_width(self.half_band));
@@ -345,6 +356,7 @@ mod tests {
             let mut product = vec![0.0; order];
             a.subtract_product(x.as_slice(), &mut product);
             prop_assert!((0..order).all(|i| (product[i] + b[i]).abs() < 1e-12));
+            prop_assert!((a.quadratic_form(x.as_slice()) - x.dot(&b)).abs() < 1e-11);
 
             let factor = a.factor().unwrap();
             let mut solution: Vec<f64> = b.iter().copied().collect();

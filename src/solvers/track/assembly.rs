@@ -3,7 +3,7 @@
 use super::beam::add_element;
 use super::ends;
 use super::error::TrackError;
-use super::mesh::{FootUnknown, Track};
+use super::mesh::{CarriedSleeper, FootUnknown, Track};
 use super::model::{Foot, RailEnds, TrackLevel, TrackModel};
 use super::numbering::{Numbering, place_nodes, rail_elements};
 use crate::linalg::banded::SymmetricBanded;
@@ -34,6 +34,7 @@ impl Track {
             seat_nodes: numbering.seat_nodes,
             feet: numbering.feet,
             sleepers: numbering.sleepers,
+            carried: numbering.carried,
             slabs: numbering.slabs,
             auxiliary_rails: numbering.auxiliary_rails,
             stiffness: zeros.clone(),
@@ -128,20 +129,34 @@ impl Track {
     }
 
     fn assemble_seats(&mut self) {
+        let mut bodies = Vec::new();
         for (i, seat) in self.model.seats.iter().enumerate() {
             let (rail, foot) = (self.rail[self.seat_nodes[i]], self.foot_unknown(i));
             add_spring(&mut self.stiffness, rail, foot, seat.pad_stiffness);
             add_spring(&mut self.damping, rail, foot, seat.pad_damping);
-            if let (Foot::Sleeper { mass, support_stiffness, support_damping, .. }, FootUnknown::Sleeper(s)) =
-                (seat.foot, self.feet[i])
-            {
-                let unknown = self.sleepers[s].unknown;
-                self.stiffness.add(unknown, unknown, support_stiffness);
-                self.damping.add(unknown, unknown, support_damping);
-                self.mass.add(unknown, unknown, mass);
-                self.weight[unknown] += mass * self.model.gravity;
-                self.dead_weight += mass * self.model.gravity;
+            match (seat.foot, self.feet[i]) {
+                (Foot::Sleeper { mass, support_stiffness, support_damping, .. }, FootUnknown::Sleeper(s)) => {
+                    let unknown = self.sleepers[s].unknown;
+                    self.stiffness.add(unknown, unknown, support_stiffness);
+                    self.damping.add(unknown, unknown, support_damping);
+                    bodies.push((unknown, mass));
+                }
+                (Foot::Carried { mass, pad }, FootUnknown::Carried(c)) => {
+                    let CarriedSleeper { unknown, underside, .. } = self.carried[c];
+                    bodies.push((unknown, mass));
+                    if let Some(pad) = pad {
+                        bodies.push((underside, pad.mass));
+                        add_spring(&mut self.stiffness, unknown, Some(underside), pad.stiffness);
+                        add_spring(&mut self.damping, unknown, Some(underside), pad.damping);
+                    }
+                }
+                _ => {}
             }
+        }
+        for (unknown, mass) in bodies {
+            self.mass.add(unknown, unknown, mass);
+            self.weight[unknown] += mass * self.model.gravity;
+            self.dead_weight += mass * self.model.gravity;
         }
     }
 }

@@ -2,6 +2,9 @@
 
 use super::WheelContact;
 
+/// Newton steps after which an indentation is as exact as numbers are.
+const NEWTON_LIMIT: usize = 30;
+
 /// The force of a wheel over its indentation of the rail, at one instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum WheelLaw {
@@ -91,6 +94,30 @@ impl WheelLaw {
         }
     }
 
+    /// The indentation of a wheel that approaches by `approach` (m) a rail that yields by `compliance` (m/N) under it:
+    /// `δ + compliance F(δ) = approach`.
+    #[inline]
+    pub fn behind(&self, approach: f64, compliance: f64) -> f64 {
+        match *self {
+            WheelLaw::Hertz { .. } if approach > 0.0 => {
+                // Convex and growing: Newton's method comes down to the root from above.
+                let mut indentation = approach;
+                for _ in 0..NEWTON_LIMIT {
+                    let excess = indentation + compliance * self.force(indentation) - approach;
+                    let change = excess / (1.0 + compliance * self.stiffness(indentation));
+                    indentation -= change;
+                    if change <= f64::EPSILON * approach {
+                        break;
+                    }
+                }
+                indentation
+            }
+            WheelLaw::Hertz { .. } => approach,
+            WheelLaw::Line { stiffness, offset } => (approach - compliance * offset) / (1.0 + compliance * stiffness),
+            WheelLaw::Given { force } => approach - compliance * force,
+        }
+    }
+
     /// The indentation under `force` (N), m; 0 where the force is given.
     pub fn indentation(&self, force: f64) -> f64 {
         match *self {
@@ -120,6 +147,19 @@ mod tests {
             let (flexibility, rest) = law.line(1e-4);
             assert!((flexibility * law.force(1e-4) + rest - 1e-4).abs() < 1e-18);
         }
+    }
+
+    #[test]
+    fn a_rail_that_yields_takes_its_share() {
+        let laws = [WheelLaw::Hertz { constant: 100e9 }, WheelLaw::Line { stiffness: 3e6, offset: 50.0 }];
+        for law in laws {
+            for (approach, compliance) in [(1e-4, 0.0), (1e-4, 1e-9), (3e-4, 1e-7)] {
+                let indentation = law.behind(approach, compliance);
+                let sum = indentation + compliance * law.force(indentation);
+                assert!((sum / approach - 1.0).abs() < 1e-14, "{law:?} {sum}");
+            }
+        }
+        assert_eq!(laws[0].behind(-1e-3, 1e-9), -1e-3);
     }
 
     /// A damper on a path of constant curvature: its speed is exact.

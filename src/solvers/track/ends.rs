@@ -42,7 +42,8 @@ impl Continuation {
         let below = match seat.foot {
             Foot::Sleeper { support_stiffness, .. } => 1.0 / support_stiffness,
             Foot::Slab => model.slab_under(seat.x).map_or(0.0, |s| 1.0 / (model.slabs[s].foundation_stiffness * bay)),
-            Foot::Rigid => 0.0,
+            Foot::Carried { pad: Some(pad), .. } => 1.0 / pad.stiffness,
+            Foot::Rigid | Foot::Carried { pad: None, .. } => 0.0,
         };
         Some(Self {
             bending_stiffness: section.bending_stiffness,

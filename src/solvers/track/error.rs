@@ -20,6 +20,8 @@ pub enum TrackError {
     StepNotConverged { step: usize, time: f64, x: f64, contact: Unsettled },
     /// A wheel force (N) is so many times its static value that the answer means nothing; `x` (m) is the seat that bears most.
     RanAway { x: f64, force: f64, times: f64 },
+    /// A step (s) is longer than a contact bears whose force acts from one step to the next: at `x` (m) by `limit` (s).
+    StepTooLong { time_step: f64, limit: f64, x: f64, contact: Explicit },
     /// A value has gone beyond sense, or is no number: the step is too long for what happens at `x` (m).
     Unstable { step: usize, time: f64, x: f64, what: Wild },
 }
@@ -41,6 +43,9 @@ pub enum Flaw {
     Pad,
     Seating,
     Sleeper,
+    Carried,
+    UnderPad,
+    Unsupported,
     NoSlab,
     AuxiliaryRailOutside,
     AuxiliaryRailShort,
@@ -68,6 +73,14 @@ pub enum TrackParameter {
     Train(&'static str),
     Vehicle(&'static str),
     Wheel(&'static str),
+}
+
+/// A contact whose force is computed from what is known at the beginning of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Explicit {
+    /// The support of an ordinary sleeper.
+    Support,
+    Wheel,
 }
 
 /// The contact that was last moved in a step whose contacts do not settle.
@@ -108,6 +121,12 @@ impl fmt::Display for TrackError {
             TrackError::RanAway { x, force, times } => {
                 write!(f, "a wheel force of {:.0} kN near x = {x} m, {times:.0} times the static one", force / 1e3)
             }
+            TrackError::StepTooLong { time_step, limit, x, contact } => write!(
+                f,
+                "a time step of {:.3} us is too long for {contact} at x = {x} m, which allows {:.3} us",
+                1e6 * time_step,
+                1e6 * limit
+            ),
             TrackError::Unstable { step, time, x, what } => write!(
                 f,
                 "the motion is unstable: {what} at x = {x} m in step {step} at {time} s; a shorter \
@@ -136,6 +155,9 @@ impl fmt::Display for Flaw {
             Flaw::Pad => "a pad has no stiffness or a negative damping",
             Flaw::Seating => "a seating is not softer than its support, or lacks stiffness or closure",
             Flaw::Sleeper => "a sleeper lacks mass or support stiffness, or has a negative damping",
+            Flaw::Carried => "a sleeper carried from outside has no mass",
+            Flaw::UnderPad => "an under sleeper pad lacks mass or stiffness, or has a negative damping",
+            Flaw::Unsupported => "a sleeper is carried by forces from outside, which this time step does not have: give it a support",
             Flaw::NoSlab => "no slab under the seat",
             Flaw::AuxiliaryRailOutside => "an auxiliary rail reaches beyond the track",
             Flaw::AuxiliaryRailShort => "an auxiliary rail lies on fewer than two seats",
@@ -163,6 +185,15 @@ impl fmt::Display for TrackParameter {
             | TrackParameter::Train(words)
             | TrackParameter::Vehicle(words)
             | TrackParameter::Wheel(words) => words,
+        })
+    }
+}
+
+impl fmt::Display for Explicit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Explicit::Support => "the support of the sleeper",
+            Explicit::Wheel => "a wheel on the rail",
         })
     }
 }

@@ -30,8 +30,9 @@ pub struct Stepper {
 const NEGLIGIBLE: f64 = 1e-18;
 
 impl Stepper {
-    /// Factors one step; fails where the track is a mechanism without mass.
+    /// Factors one step; fails where the track is a mechanism without mass, or where a sleeper has no support of its own.
     pub fn new(track: Arc<Track>, scheme: Scheme) -> Result<Self, TrackError> {
+        track.check_supported()?;
         let (of_mass, of_damping, of_stiffness) = scheme.effective();
         let mut matrix = SymmetricBanded::zeros(track.order(), track.mass.half_band());
         matrix.add_scaled(of_mass, &track.mass);

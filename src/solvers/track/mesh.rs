@@ -1,7 +1,7 @@
 //! The meshed track: its nodes, its unknowns and its matrices, and what a place on it is to them.
 
 use super::beam::Element;
-use super::error::{TrackError, TrackParameter};
+use super::error::{Flaw, TrackError, TrackParameter};
 use super::model::{SAME_PLACE, TrackLevel, TrackModel};
 use super::support::SleeperSupport;
 use crate::linalg::banded::SymmetricBanded;
@@ -22,6 +22,8 @@ pub struct Track {
     pub(super) seat_nodes: Vec<usize>,
     pub(super) feet: Vec<FootUnknown>,
     pub(super) sleepers: Vec<SleeperSupport>,
+    /// Sleepers that forces from outside carry.
+    pub(super) carried: Vec<CarriedSleeper>,
     pub(super) slabs: Vec<BeamMesh>,
     pub(super) auxiliary_rails: Vec<BeamMesh>,
     /// All supports closed, nothing held.
@@ -53,6 +55,17 @@ pub(super) enum FootUnknown {
         unknown: usize,
     },
     Rigid,
+    /// Index into [`Track::carried`].
+    Carried(usize),
+}
+
+/// A sleeper that forces from outside carry.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct CarriedSleeper {
+    pub seat: usize,
+    /// Its unknown, and that of its underside, which is the same where there is no pad under it.
+    pub unknown: usize,
+    pub underside: usize,
 }
 
 /// A beam below or beside the rail, over some of its nodes.
@@ -156,6 +169,25 @@ impl Track {
             FootUnknown::Sleeper(s) => Some(self.sleepers[s].unknown),
             FootUnknown::Slab { unknown } => Some(unknown),
             FootUnknown::Rigid => None,
+            FootUnknown::Carried(c) => Some(self.carried[c].unknown),
+        }
+    }
+
+    /// The level of a prescribed unknown, m: that of its rail end, or 0 for a rotation.
+    pub(super) fn held_at<'a>(&'a self, level: &'a TrackLevel) -> impl Iterator<Item = (usize, f64)> + 'a {
+        self.held.iter().map(|(unknown, end)| (*unknown, end.map_or(0.0, |end| level.ends[end])))
+    }
+
+    /// The unknowns that are prescribed at rest with their levels, m: those that always are, and undersides of carried sleepers.
+    pub(super) fn held_at_rest<'a>(&'a self, level: &'a TrackLevel) -> impl Iterator<Item = (usize, f64)> + 'a {
+        self.held_at(level).chain(self.carried.iter().map(|c| (c.underside, level.settlements[c.seat])))
+    }
+
+    /// Fails where a sleeper has no support of its own.
+    pub(super) fn check_supported(&self) -> Result<(), TrackError> {
+        match self.carried.first() {
+            Some(c) => Err(TrackError::Model { x: self.model.seats[c.seat].x, flaw: Flaw::Unsupported }),
+            None => Ok(()),
         }
     }
 

@@ -89,6 +89,20 @@ pub enum Foot {
     Rigid,
     /// The slab under the seat; the right one where two slabs meet.
     Slab,
+    /// Half a sleeper (kg) that forces from outside carry, step by step: grains under it, say. At rest its underside is held at
+    /// the settlement of its seat.
+    Carried { mass: f64, pad: Option<UnderPad> },
+}
+
+/// An under sleeper pad: a spring and a damper between a sleeper and its underside, on which the ground pushes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct UnderPad {
+    /// kg, of what moves with the underside, above 0.
+    pub mass: f64,
+    /// N/m.
+    pub stiffness: f64,
+    /// N s/m.
+    pub damping: f64,
 }
 
 /// Half a slab: a beam with free ends on a Winkler foundation that acts in both directions. Its level as built is that of the
@@ -124,7 +138,8 @@ pub enum RailEnds {
 /// How far the track has settled; zeros are the track as built.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrackLevel {
-    /// Downward displacement of the support under each seat, m; read for sleepers only.
+    /// Downward displacement of the support under each seat, m; read for sleepers only. Feet that are carried from outside
+    /// are held at it at rest, and leave it as they move.
     pub settlements: Vec<f64>,
     /// Level at which rail ends that are not free are held, m below the level as built. The level of the rail at rest, its
     /// deflection under gravity included, leaves no bending at a clamped end.
@@ -257,6 +272,15 @@ impl TrackModel {
                     }
                     if !positive(mass) || !positive(support_stiffness) || !not_negative(support_damping) {
                         return fail(seat.x, Flaw::Sleeper);
+                    }
+                }
+                Foot::Carried { mass, pad } => {
+                    let sound = |p: UnderPad| positive(p.mass) && positive(p.stiffness) && not_negative(p.damping);
+                    if !positive(mass) {
+                        return fail(seat.x, Flaw::Carried);
+                    }
+                    if pad.is_some_and(|p| !sound(p)) {
+                        return fail(seat.x, Flaw::UnderPad);
                     }
                 }
                 Foot::Slab if self.slab_under(seat.x).is_none() => return fail(seat.x, Flaw::NoSlab),

@@ -2,11 +2,11 @@
 //!
 //! Nodes stand at every seat, joint, section boundary, end of a slab or auxiliary rail and rail end, with `elements_per_bay` elements between two seats and
 //! proportionally fewer in shorter stretches. Unknowns are numbered node by node - rail deflection and rotation (two
-//! rotations at a joint), sleeper, slab, auxiliary rails - so the half band is 5 with sleepers on one side and a slab on the
-//! other, 7 where two slabs meet or beside one auxiliary rail.
+//! rotations at a joint), sleeper, its underside, slab, auxiliary rails - so the half band is 5 with sleepers on one side and a slab on the
+//! other or with pads under sleepers, 7 where two slabs meet or beside one auxiliary rail.
 
 use super::beam::Element;
-use super::mesh::{BeamMesh, FootUnknown, RailElement};
+use super::mesh::{BeamMesh, CarriedSleeper, FootUnknown, RailElement};
 use super::model::{Foot, SAME_PLACE, TrackModel};
 use super::support::SleeperSupport;
 
@@ -20,6 +20,7 @@ pub(super) struct Numbering {
     pub seat_nodes: Vec<usize>,
     pub feet: Vec<FootUnknown>,
     pub sleepers: Vec<SleeperSupport>,
+    pub carried: Vec<CarriedSleeper>,
     pub slabs: Vec<BeamMesh>,
     pub auxiliary_rails: Vec<BeamMesh>,
 }
@@ -44,6 +45,7 @@ impl Numbering {
             right_rotation: Vec::with_capacity(nodes.len()),
             feet: vec![FootUnknown::Rigid; model.seats.len()],
             sleepers: Vec::new(),
+            carried: Vec::new(),
             slabs: empty(&slab_spans),
             auxiliary_rails: empty(&auxiliary_spans),
             seat_nodes,
@@ -78,18 +80,21 @@ impl Numbering {
     }
 
     fn number_sleeper(&mut self, model: &TrackModel, seat: Option<usize>) {
-        if let Some(seat) = seat
-            && let Foot::Sleeper { support_stiffness, support_damping, seating, .. } = model.seats[seat].foot
-        {
-            self.feet[seat] = FootUnknown::Sleeper(self.sleepers.len());
-            self.sleepers.push(SleeperSupport {
-                seat,
-                unknown: self.order,
-                support_stiffness,
-                support_damping,
-                seating,
-            });
-            self.order += 1;
+        let Some(seat) = seat else { return };
+        let unknown = self.order;
+        match model.seats[seat].foot {
+            Foot::Sleeper { support_stiffness, support_damping, seating, .. } => {
+                self.feet[seat] = FootUnknown::Sleeper(self.sleepers.len());
+                self.sleepers.push(SleeperSupport { seat, unknown, support_stiffness, support_damping, seating });
+                self.order += 1;
+            }
+            Foot::Carried { pad, .. } => {
+                let underside = unknown + usize::from(pad.is_some());
+                self.feet[seat] = FootUnknown::Carried(self.carried.len());
+                self.carried.push(CarriedSleeper { seat, unknown, underside });
+                self.order = underside + 1;
+            }
+            Foot::Rigid | Foot::Slab => {}
         }
     }
 
@@ -117,6 +122,7 @@ impl Numbering {
                 FootUnknown::Sleeper(s) => self.sleepers[*s].unknown,
                 FootUnknown::Slab { unknown } => *unknown,
                 FootUnknown::Rigid => self.rail[*node],
+                FootUnknown::Carried(c) => self.carried[*c].unknown,
             };
             half_band = half_band.max(foot - self.rail[*node]);
             for beam in &self.auxiliary_rails {

@@ -16,13 +16,13 @@ use crate::linalg::vector::add_scaled;
 use std::ops::Range;
 
 /// A displacement of the track beyond this is beyond sense, m; a rotation, rad.
-const WILD_DISPLACEMENT: f64 = 1.0;
+pub(super) const WILD_DISPLACEMENT: f64 = 1.0;
 /// A wheel force beyond this many static ones is beyond sense.
-const WILD_FORCE: f64 = 100.0;
+pub(super) const WILD_FORCE: f64 = 100.0;
 
 /// Whether a value makes sense; one that is not a number does not.
 #[inline]
-fn within(value: f64, limit: f64) -> bool {
+pub(super) fn within(value: f64, limit: f64) -> bool {
     value.abs() <= limit
 }
 

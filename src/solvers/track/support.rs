@@ -125,6 +125,16 @@ impl SleeperSupport {
         (self.support_stiffness - self.lacking_stiffness(phase)) * gap + self.offset_at_rest(phase)
     }
 
+    /// The force at a gap coordinate (m) that changes by `rate`, m/s: `max(0, E(g) + c g')` while g > 0, N.
+    #[inline]
+    pub fn push(&self, gap: f64, rate: f64) -> f64 {
+        if gap <= 0.0 {
+            return 0.0;
+        }
+        let (lack, closure) = self.seating();
+        (self.support_stiffness * gap - lack * gap.min(closure) + self.support_damping * rate).max(0.0)
+    }
+
     /// The phase at rest at a gap coordinate (m); the phase `now` unless that contradicts it.
     pub fn phase_at_rest(&self, now: SupportPhase, gap: f64) -> SupportPhase {
         let (lack, closure) = self.seating();

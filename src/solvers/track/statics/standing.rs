@@ -117,16 +117,16 @@ impl StandingTrain {
         forces: &[f64],
     ) -> Result<Vec<f64>, TrackError> {
         let mut held = vec![0.0; track.order()];
-        for (unknown, end) in &track.held {
-            held[*unknown] = end.map_or(0.0, |end| level.ends[end]);
+        for (unknown, at) in track.held_at_rest(level) {
+            held[unknown] = at;
         }
         let mut steady = forces.to_vec();
         for (sleeper, phase) in track.sleepers.iter().zip(phases) {
             steady[sleeper.unknown] -= sleeper.spring_force(*phase, -level.settlements[sleeper.seat]);
         }
         let solve = |forces: &mut Vec<f64>| {
-            for (unknown, _) in &track.held {
-                forces[*unknown] = 0.0;
+            for (unknown, _) in track.held_at_rest(level) {
+                forces[unknown] = 0.0;
             }
             factor.solve_in_place(forces);
         };

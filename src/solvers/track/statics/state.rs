@@ -16,7 +16,8 @@ pub struct StaticState {
     pub rail_moment: Vec<f64>,
     /// Force of the rail on the pad, per seat, N.
     pub seat_loads: Vec<f64>,
-    /// Force of the sleeper on its support, per seat, N; 0 for seats without a sleeper.
+    /// Force of the sleeper on its support, per seat, N; 0 for seats without a sleeper. A sleeper that is carried from outside
+    /// is held: a negative force keeps it down.
     pub contact_forces: Vec<f64>,
     /// Displacement of sleeper or slab under each seat, m, from the track as built; 0 for rigid seats.
     pub foot_displacements: Vec<f64>,
@@ -73,15 +74,8 @@ pub(super) fn describe(
         let clamping: f64 = on_rail.iter().map(|(point, force)| track.clamping_moment(node, point, *force)).sum();
         track.cubic_moment(node, u) + clamping
     };
-    let foot_displacements: Vec<f64> = track
-        .feet
-        .iter()
-        .map(|foot| match foot {
-            FootUnknown::Sleeper(s) => u[track.sleepers[*s].unknown],
-            FootUnknown::Slab { unknown } => u[*unknown],
-            FootUnknown::Rigid => 0.0,
-        })
-        .collect();
+    let foot_displacements: Vec<f64> =
+        (0..model.seats.len()).map(|seat| track.foot_unknown(seat).map_or(0.0, |unknown| u[unknown])).collect();
     let seat_loads: Vec<f64> = (0..model.seats.len())
         .map(|i| model.seats[i].pad_stiffness * (rail_deflection[track.seat_nodes[i]] - foot_displacements[i]))
         .collect();
@@ -97,6 +91,9 @@ pub(super) fn describe(
         track.add_force(point, *force, &mut reactions);
     }
     track.stiffness.subtract_product(u, &mut reactions);
+    for carried in &track.carried {
+        contact_forces[carried.seat] = reactions[carried.underside];
+    }
     let balance = Balance {
         loads: track.dead_weight + vehicle_weight + point_loads,
         sleeper_supports: contact_forces.iter().sum(),

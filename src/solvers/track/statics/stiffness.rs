@@ -10,9 +10,8 @@ pub(super) fn factor(track: &Track, phases: &[SupportPhase]) -> Result<BandedFac
     for (sleeper, phase) in track.sleepers.iter().zip(phases) {
         stiffness.add(sleeper.unknown, sleeper.unknown, -sleeper.lacking_stiffness(*phase));
     }
-    for (unknown, _) in &track.held {
-        stiffness.pin(*unknown);
-    }
+    let carried = track.carried.iter().map(|c| c.underside);
+    track.held.iter().map(|(unknown, _)| *unknown).chain(carried).for_each(|unknown| stiffness.pin(unknown));
     stiffness.factor().map_err(|e| e.row)
 }
 

@@ -1,0 +1,88 @@
+//! The energy account of a track: what is in it, what the forces brought and what is lost.
+
+use super::Leapfrog;
+use serde::{Deserialize, Serialize};
+
+/// Energy of the track half a step before the present time, and work since the account began, J.
+///
+/// `stored() = begin + pushes + supports + wheels - dissipated` to rounding, while the length of the step stays the same.
+/// What elastic supports of ordinary sleepers hold counts as work that they have taken.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct EnergyAccount {
+    pub kinetic: f64,
+    /// In rails, slabs, pads and what continues the rail.
+    pub strain: f64,
+    /// Of gravity and of the level of what continues the rail, from the track as built.
+    pub potential: f64,
+    /// What was stored when the account began.
+    pub begin: f64,
+    /// Work on the track: of pushes on carried feet, of supports of ordinary sleepers, of wheels.
+    pub pushes: f64,
+    pub supports: f64,
+    pub wheels: f64,
+    /// By pads, slabs, ends and drag.
+    pub dissipated: f64,
+}
+
+impl EnergyAccount {
+    /// Kinetic, elastic and potential energy, J.
+    pub fn stored(&self) -> f64 {
+        self.kinetic + self.strain + self.potential
+    }
+
+    /// What the account does not explain, J.
+    pub fn residual(&self) -> f64 {
+        self.stored() - (self.begin + self.pushes + self.supports + self.wheels - self.dissipated)
+    }
+}
+
+impl Leapfrog {
+    /// Begins an energy account at the last half step.
+    pub fn watch(&mut self) {
+        let empty = EnergyAccount::default();
+        let begin = self.stored(empty).stored();
+        self.state.account = Some(EnergyAccount { begin, ..empty });
+    }
+
+    /// The energy account at the last half step; none where none was begun.
+    pub fn energy(&self) -> Option<EnergyAccount> {
+        self.state.account.map(|account| self.stored(account))
+    }
+
+    fn stored(&self, account: EnergyAccount) -> EnergyAccount {
+        let (v, half) = (&self.state.velocity, 0.5 * self.state.last_step);
+        let middle: Vec<f64> = self.state.displacement.iter().zip(v).map(|(u, v)| u - half * v).collect();
+        EnergyAccount {
+            kinetic: 0.5 * self.track.mass.quadratic_form(v),
+            strain: 0.5 * self.stiffness.quadratic_form(&middle),
+            potential: -self.own_forces.iter().zip(&middle).map(|(f, u)| f * u).sum::<f64>(),
+            ..account
+        }
+    }
+
+    /// Adds the work of the step that was just done: forces times `½ (Δt_- v_- + Δt_+ v_+)`, the way between the half steps.
+    pub(super) fn keep_account(&mut self) {
+        let Some(mut account) = self.state.account else { return };
+        let (track, state) = (&*self.track, &self.state);
+        let (kick, next) = (state.last_kick, self.time_step);
+        let last = 2.0 * kick - next;
+        let (v, a) = (&state.velocity, &state.acceleration);
+        let way = |i: usize| 0.5 * (last * (v[i] - kick * a[i]) + next * v[i]);
+        for (carried, push) in track.carried.iter().zip(&state.pushes) {
+            account.pushes -= push * way(carried.underside);
+        }
+        for (sleeper, support) in track.sleepers.iter().zip(&state.supports) {
+            account.supports -= support * way(sleeper.unknown);
+        }
+        for (x, force) in &state.on_rail {
+            let Ok(point) = track.rail_point(*x) else { continue };
+            let unknowns = track.element_unknowns(point.element);
+            account.wheels += force * (0..4).map(|k| point.shape[k] * way(unknowns[k])).sum::<f64>();
+        }
+        for ((mean, v), a) in self.mean_velocity.iter_mut().zip(v).zip(a) {
+            *mean = v - 0.5 * kick * a;
+        }
+        account.dissipated += kick * self.damping.quadratic_form(&self.mean_velocity);
+        self.state.account = Some(account);
+    }
+}

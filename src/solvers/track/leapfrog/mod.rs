@@ -1,0 +1,255 @@
+//! The track in steps that it shares with something explicit, such as grains under its sleepers: central differences in time
+//! whose linear, stiff part is implicit.
+//!
+//! Displacements and forces belong to full steps n, velocities to the half steps between them, as a leapfrog of grains has
+//! them:
+//!
+//! ```text
+//! M a_n + C (v_{n-1/2} + v_{n+1/2})/2 + K (β u_{n-1} + (1-2β) u_n + β u_{n+1}) = f + F_n
+//! v_{n+1/2} = v_{n-1/2} + Δt a_n,    u_{n+1} = u_n + Δt v_{n+1/2}
+//! ```
+//!
+//! f are gravity and the pull of the track beyond the rail's ends, F_n all forces that are computed from what is known at step n: pushes of the ground on carried
+//! sleepers, supports of ordinary ones, wheels. With `u_{n-1} - 2 u_n + u_{n+1} = Δt² a_n` one system is left, whose matrix is
+//! factored once for a step:
+//!
+//! ```text
+//! M̂ a_n = f + F_n - C v_{n-1/2} - K u_n,    M̂ = M + ½ Δt C + β Δt² K,    β = ¼
+//! ```
+//!
+//! This is Newmark's method (β = ¼, γ = ½) for the implicit part and central differences for the explicit one, mixed as Hughes
+//! and Liu do (1978, J. Appl. Mech. 45, 371–378). It is symmetric in time and of second order. A track at rest that is let go
+//! begins with half a kick; where the length of a step changes, one kick has the mean of both.
+//!
+//! **Energy.** The product with the mean velocity `v̄_n = (v_{n-1/2} + v_{n+1/2})/2` gives, with `ū = (u_n + u_{n+1})/2` at half steps,
+//!
+//! ```text
+//! E = ½ vᵀ M v + ½ ūᵀ K ū - f ū,    E_{n+1/2} - E_{n-1/2} = Δt v̄_nᵀ (F_n - C v̄_n)
+//! ```
+//!
+//! to rounding. So a force on the interface gives one side the power `F_n v̄_n` that it takes from the other, and without F no
+//! step is too long. [`Leapfrog::watch`] keeps this account.
+//!
+//! **Limit.** A spring k and a damper c in F, the damper with the velocity `v_{n-1/2} + ½ Δt a_{n-1}`, act on the displacement
+//! `e u`. In the fastest motion, `u_n = (-1)ⁿ u`, the implicit elasticity cancels (1 - 4β = 0), whatever its stiffness, and
+//!
+//! ```text
+//! 4/Δt² > (k + 4 c/Δt) eᵀ M⁻¹ e,    so  Δt < 2 m/(c + √(c² + k m)),    1/m = eᵀ M⁻¹ e
+//! ```
+//!
+//! For the support of a sleeper m is the sleeper; for a wheel it is the wheel and the rail mass that an element lends it.
+
+mod energy;
+mod limit;
+mod rider;
+mod riding;
+mod state;
+mod step;
+mod view;
+
+pub use energy::EnergyAccount;
+pub use limit::StepLimit;
+pub use state::LeapfrogState;
+pub use view::{FootMotion, LeapfrogView};
+
+use super::error::{TrackError, TrackParameter};
+use super::mesh::Track;
+use super::{Loads, Motion, TrackLevel, Train, solve_static};
+use crate::linalg::banded::{NotPositiveDefinite, SymmetricBanded};
+use crate::linalg::twisted::TwistedFactor;
+use riding::Ride;
+use std::sync::Arc;
+
+/// β of the implicit part: the least that is stable for every stiffness.
+const BETA: f64 = 0.25;
+
+/// What presses on the rail in a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum WheelLoads<'a> {
+    None,
+    /// Forces that are known: chainage (m) and force (N, down) at the present time. Those off the track do nothing.
+    Given(&'a [(f64, f64)]),
+    /// The train of [`Leapfrog::ride`].
+    Riding,
+}
+
+/// A track in motion, step by step. Vectors run over the unknowns of the track unless said otherwise.
+#[derive(Debug, Clone)]
+pub struct Leapfrog {
+    track: Arc<Track>,
+    level: TrackLevel,
+    /// s.
+    time_step: f64,
+    /// 1/s.
+    drag: f64,
+    /// K and C, without the supports of ordinary sleepers.
+    stiffness: SymmetricBanded,
+    damping: SymmetricBanded,
+    /// Of M̂.
+    factor: TwistedFactor,
+    /// f, N and N m.
+    own_forces: Vec<f64>,
+    ride: Option<Ride>,
+    /// Seats of the carried feet.
+    carried: Vec<usize>,
+    state: LeapfrogState,
+    forces: Vec<f64>,
+    mean_velocity: Vec<f64>,
+}
+
+impl Leapfrog {
+    /// The track at rest at `level` under gravity, with its carried feet held at their settlements, before a first step of
+    /// `time_step` (s).
+    ///
+    /// Fails where nothing holds the track, and where the step is longer than the supports of its ordinary sleepers allow.
+    pub fn new(track: Arc<Track>, level: &TrackLevel, time_step: f64) -> Result<Self, TrackError> {
+        let rest = solve_static(&track, level, &Loads::default())?;
+        let mut stiffness = track.stiffness.clone();
+        for sleeper in &track.sleepers {
+            stiffness.add(sleeper.unknown, sleeper.unknown, -sleeper.support_stiffness);
+        }
+        let damping = damping(&track, 0.0);
+        let order = track.order();
+        check_step(&track, None, time_step)?;
+        Ok(Self {
+            factor: factor(&track, &stiffness, &damping, time_step)?,
+            own_forces: track.own_forces(level),
+            level: level.clone(),
+            time_step,
+            drag: 0.0,
+            ride: None,
+            carried: track.carried.iter().map(|c| c.seat).collect(),
+            state: LeapfrogState::at_rest(&track, rest.unknowns),
+            forces: vec![0.0; order],
+            mean_velocity: vec![0.0; order],
+            stiffness,
+            damping,
+            track,
+        })
+    }
+
+    /// Goes on in steps of another length, s. Fails where that is longer than the supports and wheels allow.
+    pub fn set_time_step(&mut self, time_step: f64) -> Result<(), TrackError> {
+        check_step(&self.track, self.ride.as_ref(), time_step)?;
+        if time_step != self.time_step {
+            self.factor = factor(&self.track, &self.stiffness, &self.damping, time_step)?;
+            if let Some(ride) = &mut self.ride {
+                ride.set_time_step(time_step)?;
+            }
+            self.time_step = time_step;
+        }
+        Ok(())
+    }
+
+    /// Brakes every mass of the track by a force of its momentum times `drag` (1/s, 0 for none), to bring it to rest.
+    pub fn set_drag(&mut self, drag: f64) -> Result<(), TrackError> {
+        if !(drag >= 0.0 && drag.is_finite()) {
+            let name = TrackParameter::Damping("drag of a track");
+            return Err(TrackError::Parameter { name, value: drag, expected: "of 0 or more" });
+        }
+        if drag != self.drag {
+            self.damping = damping(&self.track, drag);
+            self.factor = factor(&self.track, &self.stiffness, &self.damping, self.time_step)?;
+            self.drag = drag;
+        }
+        Ok(())
+    }
+
+    /// Moves the supports of ordinary sleepers and the ends of the rail to another level. Carried feet stay where they are.
+    pub fn set_level(&mut self, level: &TrackLevel) -> Result<(), TrackError> {
+        self.track.check_level(level)?;
+        self.level.clone_from(level);
+        self.own_forces = self.track.own_forces(level);
+        for (unknown, at) in self.track.held_at(level) {
+            self.state.displacement[unknown] = at;
+        }
+        Ok(())
+    }
+
+    /// Lets `train` run from now on, its leading wheel at `start` (m), before the track: every vehicle at rest on level ground
+    /// at the level that the end of the rail has now, which it leaves for the rail and reaches again beyond it.
+    ///
+    /// To be called while the track is at rest. Fails where a wheel stands on the track, and where the step is longer than the
+    /// wheels allow.
+    pub fn ride(&mut self, train: &Train, motion: &Motion, start: f64) -> Result<(), TrackError> {
+        let mut ride = Ride::new(&self.track, train, motion, start)?;
+        ride.check_start(&self.track, start)?;
+        check_step(&self.track, Some(&ride), self.time_step)?;
+        ride.set_time_step(self.time_step)?;
+        self.state.ride = ride.standing(&self.track, &self.state)?;
+        self.ride = Some(ride);
+        Ok(())
+    }
+
+    /// The longest stable step and where it is set; none where no contact is explicit.
+    pub fn limit(&self) -> Option<StepLimit> {
+        limit::of_track(&self.track).into_iter().chain(self.ride.as_ref().and_then(Ride::limit)).min_by(StepLimit::shorter)
+    }
+
+    pub fn track(&self) -> &Track {
+        &self.track
+    }
+
+    pub fn level(&self) -> &TrackLevel {
+        &self.level
+    }
+
+    /// s.
+    pub fn time_step(&self) -> f64 {
+        self.time_step
+    }
+
+    /// s, of the present displacements.
+    pub fn time(&self) -> f64 {
+        self.state.time
+    }
+
+    /// Steps done.
+    pub fn steps(&self) -> u64 {
+        self.state.steps
+    }
+
+    /// Seats of the carried feet, left to right, in the order of their pushes.
+    pub fn carried(&self) -> &[usize] {
+        &self.carried
+    }
+}
+
+/// Fails where a step (s) is not above 0 or longer than the explicit contacts allow.
+fn check_step(track: &Track, ride: Option<&Ride>, time_step: f64) -> Result<(), TrackError> {
+    if !(time_step > 0.0 && time_step.is_finite()) {
+        return Err(TrackError::Parameter { name: TrackParameter::TimeStep, value: time_step, expected: "above 0" });
+    }
+    let limits = limit::of_track(track).into_iter().chain(ride.and_then(Ride::limit));
+    match limits.min_by(StepLimit::shorter).filter(|limit| time_step > limit.time_step) {
+        Some(StepLimit { time_step: limit, x, contact }) => {
+            Err(TrackError::StepTooLong { time_step, limit, x, contact })
+        }
+        None => Ok(()),
+    }
+}
+
+/// C without the supports of ordinary sleepers, with a drag (1/s).
+fn damping(track: &Track, drag: f64) -> SymmetricBanded {
+    let mut damping = track.damping.clone();
+    for sleeper in &track.sleepers {
+        damping.add(sleeper.unknown, sleeper.unknown, -sleeper.support_damping);
+    }
+    damping.add_scaled(drag, &track.mass);
+    damping
+}
+
+/// Factors M̂; fails where the track is a mechanism without mass.
+fn factor(
+    track: &Track,
+    stiffness: &SymmetricBanded,
+    damping: &SymmetricBanded,
+    time_step: f64,
+) -> Result<TwistedFactor, TrackError> {
+    let mut matrix = track.mass.clone();
+    matrix.add_scaled(0.5 * time_step, damping);
+    matrix.add_scaled(BETA * time_step * time_step, stiffness);
+    track.held.iter().for_each(|(unknown, _)| matrix.pin(*unknown));
+    TwistedFactor::new(&matrix)
+        .map_err(|e: NotPositiveDefinite| TrackError::Mechanism { x: track.place_of(e.row) })
+}

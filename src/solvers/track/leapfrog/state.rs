@@ -1,0 +1,80 @@
+//! What the next step depends on, as data.
+
+use super::energy::EnergyAccount;
+use super::Leapfrog;
+use super::riding::RideState;
+use crate::solvers::track::error::{TrackError, TrackParameter};
+use crate::solvers::track::mesh::Track;
+use serde::{Deserialize, Serialize};
+
+/// The motion of a [`Leapfrog`]. With the same track, level, step, drag and train it goes on to the same bits.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct LeapfrogState {
+    pub(super) steps: u64,
+    /// s, of `displacement`.
+    pub(super) time: f64,
+    /// Length of the last step and of the last kick, s; 0 before the first.
+    pub(super) last_step: f64,
+    pub(super) last_kick: f64,
+    pub(super) displacement: Vec<f64>,
+    /// A step before.
+    pub(super) before: Vec<f64>,
+    /// Half a step before.
+    pub(super) velocity: Vec<f64>,
+    /// A step before.
+    pub(super) acceleration: Vec<f64>,
+    /// Forces of the last step: pushes on carried feet and of the supports of ordinary sleepers, N up; wheels on the rail, m
+    /// and N down.
+    pub(super) pushes: Vec<f64>,
+    pub(super) supports: Vec<f64>,
+    pub(super) on_rail: Vec<(f64, f64)>,
+    pub(super) ride: RideState,
+    pub(super) account: Option<EnergyAccount>,
+}
+
+impl LeapfrogState {
+    pub(super) fn at_rest(track: &Track, displacement: Vec<f64>) -> Self {
+        let zeros = vec![0.0; track.order()];
+        Self {
+            steps: 0,
+            time: 0.0,
+            last_step: 0.0,
+            last_kick: 0.0,
+            before: displacement.clone(),
+            displacement,
+            velocity: zeros.clone(),
+            acceleration: zeros,
+            pushes: vec![0.0; track.carried.len()],
+            supports: vec![0.0; track.sleepers.len()],
+            on_rail: Vec::new(),
+            ride: RideState::default(),
+            account: None,
+        }
+    }
+
+    /// The lengths of its lists.
+    fn shape(&self) -> [usize; 8] {
+        let [vehicles, wheels] = self.ride.shape();
+        let lists = [&self.displacement, &self.before, &self.velocity, &self.acceleration, &self.pushes, &self.supports];
+        let [a, b, c, d, e, f] = lists.map(Vec::len);
+        [a, b, c, d, e, f, vehicles, wheels]
+    }
+}
+
+impl Leapfrog {
+    /// The present motion.
+    pub fn state(&self) -> &LeapfrogState {
+        &self.state
+    }
+
+    /// Goes on from a state of this track and train; fails where it belongs to another.
+    pub fn restore(&mut self, state: &LeapfrogState) -> Result<(), TrackError> {
+        if state.shape() != self.state.shape() {
+            let name = TrackParameter::Load("unknowns of a stored state");
+            let (value, expected) = (state.displacement.len() as f64, "as many as this track and its train have");
+            return Err(TrackError::Parameter { name, value, expected });
+        }
+        self.state.clone_from(state);
+        Ok(())
+    }
+}

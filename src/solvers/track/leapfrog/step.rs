@@ -1,0 +1,108 @@
+//! One step: the forces at its beginning, the kick, the drift.
+
+use super::{Leapfrog, WheelLoads};
+use crate::solvers::track::error::{TrackError, TrackParameter, Wild};
+use crate::solvers::track::passage::{WILD_DISPLACEMENT, within};
+
+impl Leapfrog {
+    /// One step from the present time. `pushes[i]` is the force of the ground on the underside of the i-th carried foot at the
+    /// present time, N, positive up.
+    ///
+    /// Fails where a number is missing or none, and where the motion has grown beyond sense; then the state is not to be used.
+    pub fn step(&mut self, pushes: &[f64], wheels: &WheelLoads<'_>) -> Result<(), TrackError> {
+        self.forces.copy_from_slice(&self.own_forces);
+        self.push_feet(pushes)?;
+        self.carry_sleepers();
+        match wheels {
+            WheelLoads::None => self.state.on_rail.clear(),
+            WheelLoads::Given(given) => self.load_rail(given)?,
+            WheelLoads::Riding => self.ride_on()?,
+        }
+        self.advance();
+        self.keep_account();
+        self.check_sense()
+    }
+
+    fn push_feet(&mut self, pushes: &[f64]) -> Result<(), TrackError> {
+        if pushes.len() != self.track.carried.len() {
+            let (name, value) = (TrackParameter::Load("pushes on carried feet"), pushes.len() as f64);
+            return Err(TrackError::Parameter { name, value, expected: "one per carried foot" });
+        }
+        for (carried, push) in self.track.carried.iter().zip(pushes) {
+            self.forces[carried.underside] -= push;
+        }
+        self.state.pushes.copy_from_slice(pushes);
+        Ok(())
+    }
+
+    /// Supports of ordinary sleepers push by what their gaps and velocities are now.
+    fn carry_sleepers(&mut self) {
+        let state = &mut self.state;
+        let half = 0.5 * state.last_step;
+        for (sleeper, support) in self.track.sleepers.iter().zip(&mut state.supports) {
+            let i = sleeper.unknown;
+            let gap = state.displacement[i] - self.level.settlements[sleeper.seat];
+            *support = sleeper.push(gap, state.velocity[i] + half * state.acceleration[i]);
+            self.forces[i] -= *support;
+        }
+    }
+
+    fn load_rail(&mut self, given: &[(f64, f64)]) -> Result<(), TrackError> {
+        self.state.on_rail.clear();
+        for &(x, force) in given {
+            if !(x.is_finite() && force.is_finite()) {
+                let name = TrackParameter::Load("place and force of a wheel");
+                return Err(TrackError::Parameter { name, value: x + force, expected: "finite numbers" });
+            }
+            if let Ok(point) = self.track.rail_point(x) {
+                self.track.add_force(&point, force, &mut self.forces);
+                self.state.on_rail.push((x, force));
+            }
+        }
+        Ok(())
+    }
+
+    fn ride_on(&mut self) -> Result<(), TrackError> {
+        self.state.on_rail.clear();
+        let Some(ride) = &mut self.ride else {
+            let (name, expected) = (TrackParameter::Train("vehicles"), "of 1 or more: `Leapfrog::ride` begins a ride");
+            return Err(TrackError::Parameter { name, value: 0.0, expected });
+        };
+        ride.step(&self.track, &mut self.state, &mut self.forces)
+    }
+
+    /// `M̂ a = F - C v - K u`, then the kick and the drift.
+    fn advance(&mut self) {
+        let (state, dt) = (&mut self.state, self.time_step);
+        self.damping.subtract_product(&state.velocity, &mut self.forces);
+        self.stiffness.subtract_product(&state.displacement, &mut self.forces);
+        self.track.held.iter().for_each(|(unknown, _)| self.forces[*unknown] = 0.0);
+        self.factor.solve_in_place(&mut self.forces);
+        std::mem::swap(&mut state.acceleration, &mut self.forces);
+        state.before.copy_from_slice(&state.displacement);
+        let kick = 0.5 * (state.last_step + dt);
+        let motion = state.displacement.iter_mut().zip(&mut state.velocity).zip(&state.acceleration);
+        for ((u, v), a) in motion {
+            *v += kick * a;
+            *u += dt * *v;
+        }
+        (state.last_kick, state.last_step) = (kick, dt);
+        state.steps += 1;
+        state.time += dt;
+    }
+
+    /// Fails where a displacement is beyond sense.
+    fn check_sense(&self) -> Result<(), TrackError> {
+        let state = &self.state;
+        if state.displacement.iter().fold(true, |sound, u| sound & within(*u, WILD_DISPLACEMENT)) {
+            return Ok(());
+        }
+        let unknown = state.displacement.iter().position(|u| !within(*u, WILD_DISPLACEMENT)).unwrap_or(0);
+        Err(TrackError::Unstable {
+            step: state.steps as usize,
+            time: state.time,
+            x: self.track.place_of(unknown),
+            what: Wild::Displacement(state.displacement[unknown]),
+        })
+    }
+}
