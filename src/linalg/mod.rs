@@ -2,5 +2,6 @@
 
 pub mod banded;
 pub mod skyline;
+pub mod sparse;
 pub mod twisted;
 pub mod vector;

@@ -1,0 +1,150 @@
+//! A few hundred elements that one thread computes at a time.
+//!
+//! A chunk holds the nodes of its elements and sums their forces there, so that nothing is shared while threads work. Chunks are
+//! cut by the number of elements alone and their forces are added in their order: any number of threads gives the same bits.
+
+use super::kernel;
+use super::lanes::{LANES, Lanes};
+use super::mesh::Mesh;
+use super::shape::{Corners, Shape};
+use pulp::NullaryFnOnce;
+
+/// Elements of a chunk: their nodes fit into the first caches of a core.
+const ELEMENTS: usize = 480;
+
+/// Up to eight elements of one shape.
+#[derive(Debug, Clone)]
+struct Batch {
+    shape: u32,
+    count: usize,
+    elements: [u32; LANES],
+    /// Nodes of the chunk: corner, lane. Lanes without an element repeat the first.
+    corners: [[u16; LANES]; 8],
+}
+
+#[derive(Debug, Clone)]
+pub struct Chunk {
+    /// Nodes of the elements, in the order in which elements name them.
+    pub nodes: Vec<u32>,
+    /// Forces of the elements on these nodes \[N\].
+    pub force: Vec<[f64; 3]>,
+    batches: Vec<Batch>,
+    place: Vec<[f64; 3]>,
+}
+
+/// What the elements of a chunk hold and lose \[J\].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Held {
+    pub strain: f64,
+    pub plastic: f64,
+}
+
+impl Chunk {
+    /// All elements of a mesh in chunks; `shapes` says the shape of each element.
+    pub fn cut(mesh: &Mesh, shapes: &[u32]) -> Vec<Chunk> {
+        let mut local = vec![u16::MAX; mesh.nodes().len()];
+        (0..shapes.len()).step_by(ELEMENTS).map(|from| {
+            let to = (from + ELEMENTS).min(shapes.len());
+            let chunk = Chunk::new(mesh, from..to, shapes, &mut local);
+            chunk.nodes.iter().for_each(|&node| local[node as usize] = u16::MAX);
+            chunk
+        }).collect()
+    }
+
+    fn new(mesh: &Mesh, elements: std::ops::Range<usize>, shapes: &[u32], local: &mut [u16]) -> Chunk {
+        let mut nodes: Vec<u32> = Vec::new();
+        for element in elements.clone() {
+            for node in mesh.elements()[element].nodes {
+                if local[node as usize] == u16::MAX {
+                    local[node as usize] = nodes.len() as u16;
+                    nodes.push(node);
+                }
+            }
+        }
+        let mut sorted: Vec<usize> = elements.collect();
+        sorted.sort_by_key(|&element| (shapes[element], element));
+        let mut batches = Vec::new();
+        for alike in sorted.chunk_by(|&a, &b| shapes[a] == shapes[b]) {
+            for group in alike.chunks(LANES) {
+                let lane = |l: usize| group[l.min(group.len()) % group.len()];
+                let mut batch = Batch {
+                    shape: shapes[group[0]],
+                    count: group.len(),
+                    elements: [0; LANES],
+                    corners: [[0; LANES]; 8],
+                };
+                for l in 0..LANES {
+                    batch.elements[l] = lane(l) as u32;
+                    for corner in 0..8 {
+                        batch.corners[corner][l] = local[mesh.elements()[lane(l)].nodes[corner] as usize];
+                    }
+                }
+                batches.push(batch);
+            }
+        }
+        let zeros = vec![[0.0; 3]; nodes.len()];
+        Chunk { force: zeros.clone(), place: zeros, nodes, batches }
+    }
+
+    /// Computes the forces of the elements as if they were linear.
+    pub fn pull(&mut self, shapes: &[Shape], displacement: &[[f64; 3]]) -> Held {
+        pulp::Arch::new().dispatch(Pull { chunk: self, shapes, displacement })
+    }
+}
+
+/// Work for the widest instructions of the machine. A closure would not do: its body might be compiled without them.
+struct Pull<'a> {
+    chunk: &'a mut Chunk,
+    shapes: &'a [Shape],
+    displacement: &'a [[f64; 3]],
+}
+
+impl NullaryFnOnce for Pull<'_> {
+    type Output = Held;
+
+    #[inline(always)]
+    fn call(self) -> Held {
+        let Chunk { nodes, force, batches, place } = self.chunk;
+        for (place, &node) in place.iter_mut().zip(nodes.iter()) {
+            *place = self.displacement[node as usize];
+        }
+        force.fill([0.0; 3]);
+        let mut held = Held::default();
+        for batch in batches {
+            let u = gather(batch, place);
+            let mut f: Corners = [[Lanes::ZERO; 8]; 3];
+            let energy = kernel::elastic(&self.shapes[batch.shape as usize], &u, &mut f);
+            for l in 0..batch.count {
+                held.strain += energy.0[l];
+            }
+            scatter(batch, &f, force);
+        }
+        held
+    }
+}
+
+#[inline(always)]
+fn gather(batch: &Batch, place: &[[f64; 3]]) -> Corners {
+    let mut u = [[Lanes::ZERO; 8]; 3];
+    for corner in 0..8 {
+        for l in 0..LANES {
+            let [x, y, z] = place[batch.corners[corner][l] as usize];
+            u[0][corner].0[l] = x;
+            u[1][corner].0[l] = y;
+            u[2][corner].0[l] = z;
+        }
+    }
+    u
+}
+
+#[inline(always)]
+fn scatter(batch: &Batch, f: &Corners, force: &mut [[f64; 3]]) {
+    for corner in 0..8 {
+        for l in 0..batch.count {
+            let sum = &mut force[batch.corners[corner][l] as usize];
+            sum[0] += f[0][corner].0[l];
+            sum[1] += f[1][corner].0[l];
+            sum[2] += f[2][corner].0[l];
+        }
+    }
+}

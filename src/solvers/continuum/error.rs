@@ -1,0 +1,92 @@
+//! What can be wrong with a soil, its boundaries and its steps.
+
+use std::fmt;
+
+#[derive(Debug, Clone, PartialEq)]
+pub enum SoilError {
+    /// A property of a material, counted from 0, that cannot be.
+    Material { number: usize, what: &'static str, value: f64, expected: &'static str },
+    /// A number of the soil or of its settings that cannot be.
+    Value { what: &'static str, value: f64, expected: &'static str },
+    /// No element at all.
+    Empty,
+    /// An element that names a node or a material that there is not.
+    Missing { element: usize, what: &'static str, number: usize },
+    /// A node of no element.
+    Loose { node: usize },
+    /// An element without volume, or turned inside out.
+    Turned { element: usize, volume: f64 },
+    /// Grid lines must grow.
+    Lines { axis: usize, at: usize },
+    /// No face of an element lies on that side of the soil.
+    NoFace { side: &'static str },
+    /// A step beyond the limit \[s\].
+    Step { dt: f64, limit: f64 },
+    /// The motion of a node is no number any more.
+    Lost { node: usize, step: u64 },
+    /// Boundaries leave the soil free to move as a whole.
+    NotHeld,
+    /// A factor that does not fit into memory.
+    TooLarge { unknowns: usize },
+    /// Plastic soil that finds no state of rest: what is left of the load after so many iterations.
+    NoRest { iterations: usize, left: f64 },
+    /// A state that belongs to another soil.
+    OtherSoil { what: &'static str, expected: usize, found: usize },
+}
+
+impl fmt::Display for SoilError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            SoilError::Material { number, what, value, expected } => {
+                write!(f, "soil material {number}: expected {what} to be {expected}, found {value}")
+            }
+            SoilError::Value { what, value, expected } => write!(f, "expected {what} to be {expected}, found {value}"),
+            SoilError::Empty => f.write_str("the soil has no element"),
+            SoilError::Missing { element, what, number } => {
+                write!(f, "soil element {element} names {what} {number}, which does not exist")
+            }
+            SoilError::Loose { node } => write!(f, "node {node} of the soil belongs to no element"),
+            SoilError::Turned { element, volume } => write!(
+                f,
+                "soil element {element} is turned inside out or too distorted (its volume is {volume:.3e} m^3); number its lower four nodes counterclockwise seen from above, then its upper four"
+            ),
+            SoilError::Lines { axis, at } => {
+                write!(f, "the grid lines of the soil along {} must grow; line {at} does not", ["x", "y", "z"][*axis])
+            }
+            SoilError::NoFace { side } => write!(f, "no face of a soil element lies on the side {side}"),
+            SoilError::Step { dt, limit } => write!(
+                f,
+                "a step of {dt:.3e} s is above the limit of {limit:.3e} s of the soil; take a shorter step or larger elements"
+            ),
+            SoilError::Lost { node, step } => write!(
+                f,
+                "the motion of node {node} of the soil is no number any more in step {step}; the forces on it are no numbers or grow without bound"
+            ),
+            SoilError::NotHeld => {
+                f.write_str("the soil has no state of rest: it can move as a whole; fix a face or put it on rollers")
+            }
+            SoilError::TooLarge { unknowns } => write!(
+                f,
+                "the stiffness of the soil with {unknowns} unknowns does not fit into memory when it is factored; take larger elements or a shorter box"
+            ),
+            SoilError::NoRest { iterations, left } => write!(
+                f,
+                "the soil finds no state of rest: after {iterations} iterations {:.2e} of the load is out of balance; the load is beyond its bearing capacity or near to it",
+                left
+            ),
+            SoilError::OtherSoil { what, expected, found } => {
+                write!(f, "this state belongs to another soil: it has {found} {what}, the soil has {expected}")
+            }
+        }
+    }
+}
+
+impl std::error::Error for SoilError {}
+
+pub(super) fn number(what: &'static str, value: f64) -> Result<(), SoilError> {
+    if value.is_finite() { Ok(()) } else { Err(SoilError::Value { what, value, expected: "a number" }) }
+}
+
+pub(super) fn within(what: &'static str, value: f64, fine: bool, expected: &'static str) -> Result<(), SoilError> {
+    if fine && value.is_finite() { Ok(()) } else { Err(SoilError::Value { what, value, expected }) }
+}

@@ -1,0 +1,127 @@
+//! What elements of one shape and one material share: the mean gradient of a hexahedron, its hourglass patterns, its masses.
+//!
+//! The mean gradient `b = (1/V) ∫ ∇N dV` is exact (the integrand is a polynomial that two points an axis integrate), so that a
+//! linear field has its exact strain in any hexahedron. What the mean does not see are four patterns `γ`, bending and twisting
+//! among them (Flanagan and Belytschko 1981): `γ = (h - Σ (h·x) b) / 8` for the four patterns h = ηζ, ζξ, ξη, ξηζ. They
+//! are orthogonal to every linear field, so their stiffness spoils no patch test. Its size is the energy of bending and twisting
+//! of a block with the edges of the element, which the whole element would have without locking.
+
+use super::lanes::Lanes;
+use super::material::{Material, Strength};
+use super::mesh::CORNERS;
+use super::tetra::Tetrahedra;
+
+/// Values at the corners of eight elements: axis by axis, corner by corner.
+pub type Corners = [[Lanes; 8]; 3];
+
+/// How an element feels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Formulation {
+    /// One mean strain with stiffness against hourglass patterns: exact for linear fields, free of volumetric locking, long steps.
+    #[default]
+    MeanStrain,
+    /// Two overlays of five tetrahedra of constant strain, whose volumetric strain is averaged over the overlay
+    /// (Marti and Cundall 1982). Steps are about a quarter as long.
+    MixedDiscretisation,
+}
+
+/// The element of a shape and a material.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shape {
+    pub volume: f64,
+    /// Mean gradient: axis, corner \[1/m\].
+    pub gradient: [[f64; 8]; 3],
+    /// Hourglass patterns: pattern, corner.
+    pub patterns: [[f64; 8]; 4],
+    /// Modulus of each pattern for each axis of displacement \[Pa/m²\].
+    pub moduli: [[f64; 3]; 4],
+    /// Mass of each corner \[kg\].
+    pub masses: [f64; 8],
+    /// Lamé's constants \[Pa\].
+    pub lambda: f64,
+    pub mu: f64,
+    pub strength: Option<Strength>,
+    /// In place of the mean strain.
+    pub tetrahedra: Option<Box<Tetrahedra>>,
+}
+
+impl Shape {
+    /// The element between eight corners \[m\]; the volume of one that is turned inside out otherwise.
+    pub fn new(corners: &[[f64; 3]; 8], material: &Material, formulation: Formulation) -> Result<Shape, f64> {
+        let mut shape = Shape {
+            volume: 0.0,
+            gradient: [[0.0; 8]; 3],
+            patterns: [[0.0; 8]; 4],
+            moduli: [[0.0; 3]; 4],
+            masses: [0.0; 8],
+            lambda: material.lame().0,
+            mu: material.lame().1,
+            strength: material.strength,
+            tetrahedra: None,
+        };
+        let point = 1.0 / 3f64.sqrt();
+        for at in CORNERS.map(|c| c.map(|x| x * point)) {
+            let (jacobian, cofactors, shares, slopes) = at_point(corners, at);
+            if !(jacobian > 0.0) {
+                return Err(jacobian * 8.0);
+            }
+            shape.volume += jacobian;
+            for corner in 0..8 {
+                shape.masses[corner] += material.density * shares[corner] * jacobian;
+                for axis in 0..3 {
+                    let slope: f64 = (0..3).map(|k| cofactors[k][axis] * slopes[corner][k]).sum();
+                    shape.gradient[axis][corner] += slope;
+                }
+            }
+        }
+        let volume = shape.volume;
+        shape.gradient.iter_mut().flatten().for_each(|b| *b /= volume);
+        shape.add_patterns(corners);
+        if formulation == Formulation::MixedDiscretisation {
+            shape.tetrahedra = Some(Box::new(Tetrahedra::new(corners)?));
+        }
+        Ok(shape)
+    }
+
+    fn add_patterns(&mut self, corners: &[[f64; 3]; 8]) {
+        let products = |c: &[f64; 3]| [c[1] * c[2], c[2] * c[0], c[0] * c[1], c[0] * c[1] * c[2]];
+        for pattern in 0..4 {
+            let h = CORNERS.map(|c| products(&c)[pattern]);
+            let along = [0, 1, 2].map(|axis| (0..8).map(|c| h[c] * corners[c][axis]).sum::<f64>());
+            for corner in 0..8 {
+                let linear: f64 = (0..3).map(|axis| along[axis] * self.gradient[axis][corner]).sum();
+                self.patterns[pattern][corner] = (h[corner] - linear) / 8.0;
+            }
+        }
+        // 4 / h² of a block with edges h: Σ b² = 1 / (2 h²)
+        let stretch = self.gradient.map(|b| 8.0 * b.iter().map(|b| b * b).sum::<f64>());
+        let poisson = self.lambda / (2.0 * (self.lambda + self.mu));
+        let bending = 2.0 * self.mu / (1.0 - poisson);
+        for axis in 0..3 {
+            let (other, third) = ((axis + 1) % 3, (axis + 2) % 3);
+            // u_x = q ξη bends: strain q η 2/h, mean square 1/3; the shear that comes with it is the locking of a full element
+            self.moduli[other][axis] = bending * stretch[axis] / 3.0;
+            self.moduli[third][axis] = bending * stretch[axis] / 3.0;
+            // u_x = q ηζ twists; two of three such displacements make one twist, which halves the energy of each
+            self.moduli[axis][axis] = self.mu * (stretch[other] + stretch[third]) / 6.0;
+            self.moduli[3][axis] = bending * stretch[axis] / 9.0;
+        }
+    }
+}
+
+/// Determinant and cofactors of the Jacobian at a point of the unit cube, shape functions and their slopes there.
+fn at_point(corners: &[[f64; 3]; 8], at: [f64; 3]) -> (f64, [[f64; 3]; 3], [f64; 8], [[f64; 3]; 8]) {
+    let factor = |c: &[f64; 3], axis: usize| 0.5 * (1.0 + c[axis] * at[axis]);
+    let shares = CORNERS.map(|c| factor(&c, 0) * factor(&c, 1) * factor(&c, 2));
+    let slope = |c: &[f64; 3], k: usize| 0.5 * c[k] * factor(c, (k + 1) % 3) * factor(c, (k + 2) % 3);
+    let slopes = CORNERS.map(|c| [0, 1, 2].map(|k| slope(&c, k)));
+    // rows: derivative of the place along ξ, η, ζ
+    let jacobian = [0, 1, 2].map(|k| [0, 1, 2].map(|axis| (0..8).map(|c| slopes[c][k] * corners[c][axis]).sum::<f64>()));
+    let cross = |a: [f64; 3], b: [f64; 3]| {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    };
+    let [x, y, z] = jacobian;
+    let cofactors = [cross(y, z), cross(z, x), cross(x, y)];
+    let determinant = (0..3).map(|axis| x[axis] * cofactors[0][axis]).sum();
+    (determinant, cofactors, shares, slopes)
+}

@@ -1,0 +1,160 @@
+//! The soil: its elements, its nodes and what holds them.
+
+use super::chunk::Chunk;
+use super::energy::{Energy, Ledger};
+use super::error::{SoilError, number, within};
+use super::mesh::Mesh;
+use super::nodes::Nodes;
+use super::shape::{Formulation, Shape};
+use super::shapes::shapes;
+use super::stiffness::fastest;
+
+/// How a soil is computed.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Settings {
+    pub formulation: Formulation,
+    /// \[m/s²\]
+    pub gravity: [f64; 3],
+    pub damping: Damping,
+}
+
+/// Losses besides those of plastic flow and quiet boundaries.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Damping {
+    /// Time β \[s\]: damping forces are β times the stiffness times the velocity; a wave of frequency f has the damping ratio
+    /// π f β. It shortens the step.
+    pub stiffness: f64,
+    /// Local damping of Cundall, from 0 to below 1: the share of the unbalanced force of a node that acts against its velocity.
+    /// For states of rest; it slows down waves of every frequency and makes a falling body fall slowly.
+    pub local: f64,
+}
+
+/// Soil in motion: hexahedra of small strain, masses at the nodes, leapfrog in time.
+///
+/// Strains and rotations are small: forces act on the soil as it was made. Velocities stand half a step before positions once the
+/// first step is done.
+#[derive(Debug, Clone)]
+pub struct Soil {
+    pub(super) mesh: Mesh,
+    pub(super) settings: Settings,
+    pub(super) shapes: Vec<Shape>,
+    /// Shape of each element.
+    pub(super) kinds: Vec<u32>,
+    pub(super) chunks: Vec<Chunk>,
+    pub(super) nodes: Nodes,
+    /// Largest squared frequency of the elements at each node \[1/s²\].
+    pub(super) rates: Vec<f64>,
+    /// Largest squared frequency of the mesh, with a margin, once it has been measured \[1/s²\].
+    pub(super) measured: Option<f64>,
+    pub(super) ledger: Ledger,
+    pub(super) clock: Clock,
+}
+
+/// Where a soil stands in time.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Clock {
+    pub steps: u64,
+    pub time: f64,
+    /// The last step \[s\]; 0 where velocities stand at the time of the positions.
+    pub last: f64,
+}
+
+impl Soil {
+    /// Unstressed soil that nothing holds.
+    ///
+    /// # Errors
+    /// Elements without volume, settings that cannot be.
+    pub fn new(mesh: Mesh, settings: Settings) -> Result<Soil, SoilError> {
+        settings.gravity.iter().try_for_each(|&g| number("gravity", g))?;
+        let Damping { stiffness, local } = settings.damping;
+        within("the stiffness damping of the soil", stiffness, stiffness >= 0.0, "a time from 0")?;
+        within("the local damping of the soil", local, (0.0..1.0).contains(&local), "from 0 to below 1")?;
+        let (shapes, kinds) = shapes(&mesh, settings.formulation)?;
+        let chunks = Chunk::cut(&mesh, &kinds);
+        let nodes = Nodes::new(&mesh, &shapes, &kinds, &chunks);
+        let fastest: Vec<f64> = shapes.iter().map(fastest).collect();
+        let mut rates = vec![0.0; mesh.nodes().len()];
+        for (element, &kind) in mesh.elements().iter().zip(&kinds) {
+            for &node in &element.nodes {
+                let rate: &mut f64 = &mut rates[node as usize];
+                *rate = rate.max(fastest[kind as usize]);
+            }
+        }
+        let (ledger, clock) = (Ledger::default(), Clock::default());
+        Ok(Soil { mesh, settings, shapes, kinds, chunks, nodes, rates, measured: None, ledger, clock })
+    }
+
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Where the nodes are \[m\].
+    pub fn positions(&self) -> &[[f64; 3]] {
+        &self.nodes.position
+    }
+
+    /// How far the nodes are from where they were made \[m\].
+    pub fn displacements(&self) -> &[[f64; 3]] {
+        &self.nodes.displacement
+    }
+
+    /// Velocities of the nodes \[m/s\]: the mean of the last step.
+    pub fn velocities(&self) -> &[[f64; 3]] {
+        &self.nodes.velocity
+    }
+
+    /// Masses of the nodes \[kg\].
+    pub fn masses(&self) -> &[f64] {
+        &self.nodes.mass
+    }
+
+    /// Simulated time \[s\].
+    pub fn time(&self) -> f64 {
+        self.clock.time
+    }
+
+    pub fn steps(&self) -> u64 {
+        self.clock.steps
+    }
+
+    /// Adds to the force on a node \[N\] in the next step, or in the next state of rest.
+    #[inline]
+    pub fn add_force(&mut self, node: usize, force: [f64; 3]) {
+        for axis in 0..3 {
+            self.nodes.external[node][axis] += force[axis];
+        }
+    }
+
+    /// Puts a node at another displacement \[m\] and velocity \[m/s\]; its motion begins there.
+    pub fn set_motion(&mut self, node: usize, displacement: [f64; 3], velocity: [f64; 3]) {
+        self.nodes.displacement[node] = displacement;
+        self.nodes.velocity[node] = velocity;
+        let place = self.mesh.nodes()[node];
+        self.nodes.position[node] = [0, 1, 2].map(|axis| place[axis] + displacement[axis]);
+        self.clock.last = 0.0;
+    }
+
+    /// Changes gravity \[m/s²\] from the next step on.
+    ///
+    /// # Errors
+    /// A component that is no number.
+    pub fn set_gravity(&mut self, gravity: [f64; 3]) -> Result<(), SoilError> {
+        gravity.iter().try_for_each(|&g| number("gravity", g))?;
+        self.settings.gravity = gravity;
+        Ok(())
+    }
+
+    /// Begins to keep account of energies from the next step on, or ends it. It costs a tenth of a step.
+    pub fn watch(&mut self, on: bool) {
+        self.ledger = Ledger::begin(on);
+    }
+
+    /// The account; zeros where nothing is watched.
+    pub fn energy(&self) -> Energy {
+        self.ledger.now
+    }
+}

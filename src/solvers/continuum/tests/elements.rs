@@ -1,0 +1,91 @@
+//! Elements: linear fields, stability of single elements, order in their size.
+
+use super::super::*;
+use super::scenes::*;
+
+/// Gradient of a linear field of displacement: row by axis of displacement.
+const GRADIENT: [[f64; 3]; 3] = [[1e-3, 2e-4, -3e-4], [-1e-4, -7e-4, 5e-4], [4e-4, 1e-4, 6e-4]];
+
+fn linear(place: [f64; 3]) -> [f64; 3] {
+    GRADIENT.map(|row| (0..3).map(|k| row[k] * place[k]).sum())
+}
+
+/// Displacements of the outer nodes make the inner ones follow the same linear field, and the stress is the exact one everywhere.
+#[test]
+fn a_linear_field_is_exact_in_distorted_elements() {
+    for formulation in FORMULATIONS {
+        let mut soil = soil(distorted(4, 0.3), formulation, 0.0);
+        let places = soil.mesh().nodes().to_vec();
+        for side in Side::ALL {
+            for node in soil.side_nodes(side) {
+                (0..3).for_each(|axis| soil.drive(node, axis, 0.0).unwrap());
+                soil.set_motion(node, linear(places[node]), [0.0; 3]);
+            }
+        }
+        soil.rest(&[]).unwrap();
+        for (place, u) in places.iter().zip(soil.displacements()) {
+            let exact = linear(*place);
+            (0..3).for_each(|axis| assert!((u[axis] - exact[axis]).abs() < 1e-12 * 1e-3, "{u:?} {exact:?}"));
+        }
+        let (lambda, mu) = SUBGRADE.lame();
+        let trace: f64 = (0..3).map(|axis| GRADIENT[axis][axis]).sum();
+        let exact = |i: usize, j: usize| mu * (GRADIENT[i][j] + GRADIENT[j][i]) + if i == j { lambda * trace } else { 0.0 };
+        for element in 0..soil.mesh().elements().len() {
+            for (found, (i, j)) in soil.stress(element).iter().zip([(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)]) {
+                assert!((found - exact(i, j)).abs() < 1e-12 * 1e6, "{found} {}", exact(i, j));
+            }
+        }
+    }
+}
+
+#[test]
+fn moving_and_turning_as_a_whole_costs_no_force() {
+    for formulation in FORMULATIONS {
+        let mut soil = soil(distorted(3, 0.3), formulation, 0.0);
+        for (node, p) in soil.mesh().nodes().to_vec().into_iter().enumerate() {
+            soil.set_motion(node, [0.1 - 1e-3 * p[1], 0.2 + 1e-3 * p[0], -0.3], [0.0; 3]);
+        }
+        soil.watch(true);
+        soil.step(1e-6).unwrap();
+        assert!(soil.energy().strain < 1e-12, "{}", soil.energy().strain);
+        assert!(soil.velocities().iter().flatten().all(|v| v.abs() < 1e-9));
+    }
+}
+
+/// Cubes: `h / sqrt(3 K / rho)` for the mean strain (methods 2.2), where the volume pulses.
+#[test]
+fn the_limit_of_a_cube() {
+    let (lambda, mu) = SUBGRADE.lame();
+    let bulk = lambda + 2.0 * mu / 3.0;
+    let mut cube = soil(block([0.1; 3], [1; 3], SUBGRADE), Formulation::MeanStrain, 0.0);
+    let theory = 0.1 / (3.0 * bulk / SUBGRADE.density).sqrt();
+    assert!((cube.limit() / theory - 1.0).abs() < 1e-12, "{} {theory}", cube.limit());
+    assert!((2.0 / cube.lanczos(24).unwrap().sqrt() / theory - 1.0).abs() < 1e-9);
+    assert!(matches!(cube.step(1.001 * theory), Err(SoilError::Step { .. })));
+    let springs: Vec<(usize, f64)> = (0..8).map(|node| (node, cube.masses()[node] * 3.0 * 4.0 / theory.powi(2))).collect();
+    assert!((cube.limit_with(&springs) / theory - 0.5).abs() < 1e-12);
+}
+
+/// Below the limit nothing grows; two per cent above it the fastest vibration does.
+#[test]
+fn motion_is_stable_up_to_the_limit() {
+    for formulation in FORMULATIONS {
+        let start = |soil: &mut Soil| {
+            let mut numbers = Numbers(3);
+            (0..soil.masses().len()).for_each(|node| soil.set_motion(node, [(); 3].map(|()| 1e-6 * numbers.next()), [0.0; 3]));
+        };
+        let mut block = soil(block([0.4, 0.3, 0.3], [4, 3, 3], SUBGRADE), formulation, 0.0);
+        support(&mut block, &[Side::Bottom], Support::Fixed);
+        let measured = 2.0 / block.lanczos(80).unwrap().sqrt();
+        let bound = block.limit();
+        assert!(bound <= measured && measured < 1.3 * bound, "{bound} {measured}");
+        let allowed = block.measure_limit(40).unwrap();
+        assert!(allowed > bound && allowed < measured, "{bound} {allowed} {measured}");
+        let largest = |soil: &Soil| soil.displacements().iter().flatten().fold(0.0f64, |m, u| m.max(u.abs()));
+        for (dt, stable) in [(bound, true), (allowed, true), (0.999 * measured, true), (1.02 * measured, false)] {
+            start(&mut block);
+            (0..3000).try_for_each(|_| block.advance(dt)).ok();
+            assert_eq!(largest(&block) < 1e-4, stable, "{formulation:?} {dt} {}", largest(&block));
+        }
+    }
+}

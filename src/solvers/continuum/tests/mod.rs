@@ -1,0 +1,7 @@
+//! The soil against closed forms.
+
+mod elements;
+mod motion;
+mod rest;
+mod scenes;
+mod surface;
