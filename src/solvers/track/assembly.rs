@@ -63,8 +63,8 @@ impl Track {
     /// Gravity on the nodes, and what pulls the rail ends to `level` where the track goes on beyond them.
     pub(super) fn own_forces(&self, level: &TrackLevel) -> Vec<f64> {
         let mut forces = self.weight.clone();
-        if self.model.rail_ends == RailEnds::Absorbing {
-            ends::add_forces(self, level, &mut forces);
+        for (end, unknown, pull) in ends::pulls(self) {
+            forces[unknown] += pull * level.ends[end];
         }
         forces
     }

@@ -12,7 +12,7 @@
 
 use super::beam::add_element;
 use super::mesh::Track;
-use super::model::{Foot, TrackLevel};
+use super::model::{Foot, RailEnds, TrackLevel};
 
 /// Length of the damped layer, m, where the track is at least four times as long.
 const LAYER: f64 = 5.0;
@@ -84,15 +84,15 @@ pub(super) fn assemble(track: &mut Track) {
     }
 }
 
-/// Adds the forces by which the settled track beyond the ends pulls them to its level, N and N m.
-pub(super) fn add_forces(track: &Track, level: &TrackLevel, forces: &mut [f64]) {
-    for end in [0, 1] {
-        if let Some(beyond) = Continuation::new(track, end) {
-            let (w, stiffness) = (end_unknown(track, end), beyond.stiffness());
-            forces[w] += stiffness[0][0] * level.ends[end];
-            forces[w + 1] += stiffness[1][0] * level.ends[end];
-        }
-    }
+/// The forces by which the settled track beyond the ends pulls them to its level: end, unknown and N or N m per metre of level.
+pub(super) fn pulls(track: &Track) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
+    let continued = track.model.rail_ends == RailEnds::Absorbing;
+    let of_end = move |end: usize| {
+        Continuation::new(track, end)
+            .filter(|_| continued)
+            .map(|beyond| (end, end_unknown(track, end), beyond.stiffness()))
+    };
+    [0, 1].into_iter().filter_map(of_end).flat_map(|(end, w, k)| [(end, w, k[0][0]), (end, w + 1, k[1][0])])
 }
 
 /// What the track beyond both ends carries, N.

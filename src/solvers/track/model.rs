@@ -136,7 +136,7 @@ pub enum RailEnds {
 }
 
 /// How far the track has settled; zeros are the track as built.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct TrackLevel {
     /// Downward displacement of the support under each seat, m; read for sleepers only. Feet that are carried from outside
     /// are held at it at rest, and leave it as they move.

@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 
 /// Energy of the track half a step before the present time, and work since the account began, J.
 ///
-/// `stored() = begin + pushes + supports + wheels - dissipated` to rounding, while the length of the step stays the same.
+/// `stored() = begin + pushes + supports + wheels - dissipated` to rounding, while the length of the step and the level stay the
+/// same.
 /// What elastic supports of ordinary sleepers hold counts as work that they have taken.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct EnergyAccount {
@@ -52,10 +53,11 @@ impl Leapfrog {
     fn stored(&self, account: EnergyAccount) -> EnergyAccount {
         let (v, half) = (&self.state.velocity, 0.5 * self.state.last_step);
         let middle: Vec<f64> = self.state.displacement.iter().zip(v).map(|(u, v)| u - half * v).collect();
+        let pulled: f64 = self.pulls.iter().map(|(end, i, pull)| pull * self.state.level.ends[*end] * middle[*i]).sum();
         EnergyAccount {
             kinetic: 0.5 * self.track.mass.quadratic_form(v),
             strain: 0.5 * self.stiffness.quadratic_form(&middle),
-            potential: -self.own_forces.iter().zip(&middle).map(|(f, u)| f * u).sum::<f64>(),
+            potential: -self.track.weight.iter().zip(&middle).map(|(f, u)| f * u).sum::<f64>() - pulled,
             ..account
         }
     }

@@ -40,6 +40,7 @@
 //! For the support of a sleeper m is the sleeper; for a wheel it is the wheel and the rail mass that an element lends it.
 
 mod energy;
+mod level;
 mod limit;
 mod rider;
 mod riding;
@@ -52,6 +53,7 @@ pub use limit::StepLimit;
 pub use state::LeapfrogState;
 pub use view::{FootMotion, LeapfrogView};
 
+use super::ends;
 use super::error::{TrackError, TrackParameter};
 use super::mesh::Track;
 use super::{Loads, Motion, TrackLevel, Train, solve_static};
@@ -77,7 +79,6 @@ pub enum WheelLoads<'a> {
 #[derive(Debug, Clone)]
 pub struct Leapfrog {
     track: Arc<Track>,
-    level: TrackLevel,
     /// s.
     time_step: f64,
     /// 1/s.
@@ -87,8 +88,8 @@ pub struct Leapfrog {
     damping: SymmetricBanded,
     /// Of M̂.
     factor: TwistedFactor,
-    /// f, N and N m.
-    own_forces: Vec<f64>,
+    /// What continues the rail pulls its ends to their level: end, unknown and N or N m per metre.
+    pulls: Vec<(usize, usize, f64)>,
     ride: Option<Ride>,
     /// Seats of the carried feet.
     carried: Vec<usize>,
@@ -113,13 +114,12 @@ impl Leapfrog {
         check_step(&track, None, time_step)?;
         Ok(Self {
             factor: factor(&track, &stiffness, &damping, time_step)?,
-            own_forces: track.own_forces(level),
-            level: level.clone(),
+            pulls: ends::pulls(&track).collect(),
             time_step,
             drag: 0.0,
             ride: None,
             carried: track.carried.iter().map(|c| c.seat).collect(),
-            state: LeapfrogState::at_rest(&track, rest.unknowns),
+            state: LeapfrogState::at_rest(&track, level, rest.unknowns),
             forces: vec![0.0; order],
             mean_velocity: vec![0.0; order],
             stiffness,
@@ -141,7 +141,8 @@ impl Leapfrog {
         Ok(())
     }
 
-    /// Brakes every mass of the track by a force of its momentum times `drag` (1/s, 0 for none), to bring it to rest.
+    /// Brakes every mass of the track by a force of its momentum times `drag` (1/s, 0 for none), to bring it to rest. Motion
+    /// much faster than the step hardly feels it: loads that grow over some milliseconds do not wake it.
     pub fn set_drag(&mut self, drag: f64) -> Result<(), TrackError> {
         if !(drag >= 0.0 && drag.is_finite()) {
             let name = TrackParameter::Damping("drag of a track");
@@ -151,17 +152,6 @@ impl Leapfrog {
             self.damping = damping(&self.track, drag);
             self.factor = factor(&self.track, &self.stiffness, &self.damping, self.time_step)?;
             self.drag = drag;
-        }
-        Ok(())
-    }
-
-    /// Moves the supports of ordinary sleepers and the ends of the rail to another level. Carried feet stay where they are.
-    pub fn set_level(&mut self, level: &TrackLevel) -> Result<(), TrackError> {
-        self.track.check_level(level)?;
-        self.level.clone_from(level);
-        self.own_forces = self.track.own_forces(level);
-        for (unknown, at) in self.track.held_at(level) {
-            self.state.displacement[unknown] = at;
         }
         Ok(())
     }
@@ -183,15 +173,14 @@ impl Leapfrog {
 
     /// The longest stable step and where it is set; none where no contact is explicit.
     pub fn limit(&self) -> Option<StepLimit> {
-        limit::of_track(&self.track).into_iter().chain(self.ride.as_ref().and_then(Ride::limit)).min_by(StepLimit::shorter)
+        limit::of_track(&self.track)
+            .into_iter()
+            .chain(self.ride.as_ref().and_then(Ride::limit))
+            .min_by(StepLimit::shorter)
     }
 
     pub fn track(&self) -> &Track {
         &self.track
-    }
-
-    pub fn level(&self) -> &TrackLevel {
-        &self.level
     }
 
     /// s.
@@ -250,6 +239,5 @@ fn factor(
     matrix.add_scaled(0.5 * time_step, damping);
     matrix.add_scaled(BETA * time_step * time_step, stiffness);
     track.held.iter().for_each(|(unknown, _)| matrix.pin(*unknown));
-    TwistedFactor::new(&matrix)
-        .map_err(|e: NotPositiveDefinite| TrackError::Mechanism { x: track.place_of(e.row) })
+    TwistedFactor::new(&matrix).map_err(|e: NotPositiveDefinite| TrackError::Mechanism { x: track.place_of(e.row) })
 }

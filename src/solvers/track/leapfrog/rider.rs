@@ -108,8 +108,8 @@ impl Rider {
         Ok(())
     }
 
-    /// Its rest on ground at `level`, m: `K y + Σ F(y_w - level) e_w = weight` by Newton's method.
-    pub fn standing(&self, level: f64) -> Result<(BodyState, Vec<WheelState>), TrackError> {
+    /// Its rest on ground at `level` (m): `K y + Σ F(y_w - level) e_w = weight` by Newton's method; `x` (m) is where it stands.
+    pub fn standing(&self, level: f64, x: f64) -> Result<(BodyState, Vec<WheelState>), TrackError> {
         let (vehicle, order) = (&self.vehicle, self.vehicle.order());
         let mean_load = self.force_limit / WILD_FORCE;
         let law = |contact: WheelContact| WheelLaw::at_rest(contact);
@@ -125,11 +125,12 @@ impl Rider {
             let mut forces = DVector::from_column_slice(&self.weight);
             for (wheel, indentation) in vehicle.wheels.iter().zip(&indentations) {
                 let Some(unknown) = wheel.unknown else { continue };
-                let (force, slope) = (law(wheel.contact).force(*indentation), law(wheel.contact).stiffness(*indentation));
+                let (force, slope) =
+                    (law(wheel.contact).force(*indentation), law(wheel.contact).stiffness(*indentation));
                 stiffness[(unknown, unknown)] += slope;
                 forces[unknown] -= force - slope * (indentation + level);
             }
-            let factor = stiffness.cholesky().ok_or(TrackError::Mechanism { x: -self.offsets[0] })?;
+            let factor = stiffness.cholesky().ok_or(TrackError::Mechanism { x })?;
             displacement = factor.solve(&forces);
             settled = true;
             for (wheel, indentation) in vehicle.wheels.iter().zip(&mut indentations) {
@@ -140,7 +141,7 @@ impl Rider {
             }
         }
         if !settled {
-            return Err(TrackError::NoEquilibrium { x: -self.offsets[0], iterations: NEWTON_LIMIT });
+            return Err(TrackError::NoEquilibrium { x, iterations: NEWTON_LIMIT });
         }
         let zeros = DVector::zeros(order);
         let wheels = vehicle.wheels.iter().zip(indentations);

@@ -92,7 +92,8 @@ impl Ride {
         let level = ground[entry] + track.model.irregularity.depth_at(track.model.ends[entry]);
         let mut ride = RideState { began: state.time, ground, ..RideState::default() };
         for rider in &self.riders {
-            let (body, wheels) = rider.standing(level)?;
+            let x = rider.position(0, self.timetable.position(0.0), self.sign);
+            let (body, wheels) = rider.standing(level, x)?;
             ride.bodies.push(body);
             ride.wheels.extend(wheels);
         }
@@ -141,5 +142,22 @@ impl Ride {
             rider.advance(body, state.last_step);
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+impl Ride {
+    /// The vehicles of a passage as they are.
+    pub fn moving(&self, state: &LeapfrogState, passage: &crate::solvers::track::Passage<'_>) -> RideState {
+        let vector = nalgebra::DVector::from_column_slice;
+        let half = 0.5 * state.last_step;
+        let bodies = passage.vehicles.iter().map(|(running, _)| {
+            let (velocity, acceleration) = (vector(&running.velocity), vector(&running.acceleration));
+            let velocity = velocity - half * &acceleration;
+            BodyState { displacement: vector(&running.displacement), velocity, acceleration }
+        });
+        let wheels =
+            passage.interface.indentations.iter().map(|d| WheelState { indentation: *d, ..Default::default() });
+        RideState { began: state.time, ground: [0.0; 2], bodies: bodies.collect(), wheels: wheels.collect() }
     }
 }

@@ -1,13 +1,15 @@
 //! What the next step depends on, as data.
 
-use super::energy::EnergyAccount;
 use super::Leapfrog;
+use super::energy::EnergyAccount;
+use super::level::LevelMove;
 use super::riding::RideState;
 use crate::solvers::track::error::{TrackError, TrackParameter};
 use crate::solvers::track::mesh::Track;
+use crate::solvers::track::model::TrackLevel;
 use serde::{Deserialize, Serialize};
 
-/// The motion of a [`Leapfrog`]. With the same track, level, step, drag and train it goes on to the same bits.
+/// The motion of a [`Leapfrog`]. With the same track, step, drag and train it goes on to the same bits.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LeapfrogState {
     pub(super) steps: u64,
@@ -28,12 +30,14 @@ pub struct LeapfrogState {
     pub(super) pushes: Vec<f64>,
     pub(super) supports: Vec<f64>,
     pub(super) on_rail: Vec<(f64, f64)>,
+    pub(super) level: TrackLevel,
+    pub(super) level_move: Option<LevelMove>,
     pub(super) ride: RideState,
     pub(super) account: Option<EnergyAccount>,
 }
 
 impl LeapfrogState {
-    pub(super) fn at_rest(track: &Track, displacement: Vec<f64>) -> Self {
+    pub(super) fn at_rest(track: &Track, level: &TrackLevel, displacement: Vec<f64>) -> Self {
         let zeros = vec![0.0; track.order()];
         Self {
             steps: 0,
@@ -47,17 +51,20 @@ impl LeapfrogState {
             pushes: vec![0.0; track.carried.len()],
             supports: vec![0.0; track.sleepers.len()],
             on_rail: Vec::new(),
+            level: level.clone(),
+            level_move: None,
             ride: RideState::default(),
             account: None,
         }
     }
 
     /// The lengths of its lists.
-    fn shape(&self) -> [usize; 8] {
+    fn shape(&self) -> [usize; 9] {
         let [vehicles, wheels] = self.ride.shape();
-        let lists = [&self.displacement, &self.before, &self.velocity, &self.acceleration, &self.pushes, &self.supports];
+        let lists =
+            [&self.displacement, &self.before, &self.velocity, &self.acceleration, &self.pushes, &self.supports];
         let [a, b, c, d, e, f] = lists.map(Vec::len);
-        [a, b, c, d, e, f, vehicles, wheels]
+        [a, b, c, d, e, f, self.level.settlements.len(), vehicles, wheels]
     }
 }
 
@@ -76,5 +83,45 @@ impl Leapfrog {
         }
         self.state.clone_from(state);
         Ok(())
+    }
+}
+
+#[cfg(test)]
+impl Leapfrog {
+    /// Goes on in steps that may be too long, as if the last one had been of this length.
+    pub(in super::super) fn force_time_step(&mut self, time_step: f64) {
+        self.factor = super::factor(&self.track, &self.stiffness, &self.damping, time_step).unwrap();
+        if let Some(ride) = &mut self.ride {
+            ride.set_time_step(time_step).unwrap();
+        }
+        (self.time_step, self.state.last_step) = (time_step, time_step);
+    }
+
+    /// Adds to the velocity of an unknown, m/s.
+    pub(in super::super) fn kick(&mut self, unknown: usize, velocity: f64) {
+        self.state.velocity[unknown] += velocity;
+    }
+
+    /// Begins as a passage does whose leading wheel is at `start` (m).
+    pub(in super::super) fn start_from(
+        &mut self,
+        passage: &crate::solvers::track::Passage<'_>,
+        train: &crate::solvers::track::Train,
+        start: f64,
+    ) {
+        let dt = self.time_step;
+        let state = &mut self.state;
+        state.last_step = dt;
+        state.displacement.clone_from(&passage.displacement);
+        state.before.clone_from(&passage.displacement);
+        state.acceleration.clone_from(&passage.acceleration);
+        for (half, (v, a)) in state.velocity.iter_mut().zip(passage.velocity.iter().zip(&passage.acceleration)) {
+            *half = v - 0.5 * dt * a;
+        }
+        let Some((run, _)) = &passage.train else { return };
+        let mut ride = super::riding::Ride::new(&self.track, train, run.motion, start).unwrap();
+        ride.set_time_step(dt).unwrap();
+        self.state.ride = ride.moving(&self.state, passage);
+        self.ride = Some(ride);
     }
 }

@@ -10,7 +10,10 @@ impl Leapfrog {
     ///
     /// Fails where a number is missing or none, and where the motion has grown beyond sense; then the state is not to be used.
     pub fn step(&mut self, pushes: &[f64], wheels: &WheelLoads<'_>) -> Result<(), TrackError> {
-        self.forces.copy_from_slice(&self.own_forces);
+        self.forces.copy_from_slice(&self.track.weight);
+        for (end, unknown, pull) in &self.pulls {
+            self.forces[*unknown] += pull * self.state.level.ends[*end];
+        }
         self.push_feet(pushes)?;
         self.carry_sleepers();
         match wheels {
@@ -20,6 +23,7 @@ impl Leapfrog {
         }
         self.advance();
         self.keep_account();
+        self.advance_level();
         self.check_sense()
     }
 
@@ -41,7 +45,7 @@ impl Leapfrog {
         let half = 0.5 * state.last_step;
         for (sleeper, support) in self.track.sleepers.iter().zip(&mut state.supports) {
             let i = sleeper.unknown;
-            let gap = state.displacement[i] - self.level.settlements[sleeper.seat];
+            let gap = state.displacement[i] - state.level.settlements[sleeper.seat];
             *support = sleeper.push(gap, state.velocity[i] + half * state.acceleration[i]);
             self.forces[i] -= *support;
         }

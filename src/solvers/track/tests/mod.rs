@@ -5,6 +5,7 @@ mod beams;
 mod dynamics;
 mod ends;
 mod harsh;
+mod leapfrog;
 mod momentum;
 mod oracle;
 mod reference;
