@@ -1,6 +1,11 @@
 //! `trackbed bench`: how fast the solvers are on this machine. `grains` is the first of its kind.
 
-use super::{Format, Outcome, progress, subject, terminal};
+use super::scene::{SceneArguments, failed, not_yet, show};
+use super::{Format, Outcome, pack, progress, subject, terminal};
+use crate::execute;
+use crate::graph::Graph;
+use crate::lower::Origins;
+use crate::nodes::TimedSteps;
 use crate::report::{self, BedView, Colour, Side};
 use crate::results;
 use crate::solvers::granular::Real;
@@ -20,6 +25,27 @@ pub(super) struct Arguments {
 #[derive(clap::Subcommand)]
 enum What {
     Grains(Grains),
+    Scene(SceneSteps),
+}
+
+/// Steps of the grains of a scene under its first train, with the rail over them and the soil below, and where their time goes
+///
+/// The beds are packed, or taken from where they are kept, laid and brought to rest first; that is not timed.
+#[derive(clap::Args)]
+struct SceneSteps {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Steps that are timed.
+    #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
+    steps: u64,
+    /// Threads; all cores where it is not given. The motion does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Where packed beds are kept, by what made them.
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
+    #[arg(long, value_enum, default_value = "human")]
+    format: Format,
 }
 
 /// Steps of a bed of spheres or clumps under shaken gravity, and where their time goes
@@ -91,37 +117,107 @@ enum Precision {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
-    let What::Grains(grains) = &arguments.what;
-    let name = grains.bed.display();
-    let pile = match File::open(&grains.bed).map_err(PileError::from).and_then(|file| Pile::read(BufReader::new(file)))
-    {
-        Ok(pile) => pile,
-        Err(PileError::Unreadable(cause)) => {
-            terminal::error(&format!("cannot read `{name}`: {cause}"));
-            return Outcome::Usage;
-        }
-        Err(error) => {
-            terminal::error(&format!("`{name}`, {error}"));
-            return Outcome::Failed;
-        }
-    };
-    if let Err(mistake) = grains.check(&pile) {
-        terminal::error(&mistake);
-        return Outcome::Usage;
+    match &arguments.what {
+        What::Grains(grains) => grains.run(),
+        What::Scene(scene) => scene.run(),
     }
+}
+
+/// Does work with so many threads.
+fn with_threads(threads: Option<u16>, work: impl FnOnce() -> Outcome + Send) -> Outcome {
     let mut pool = rayon::ThreadPoolBuilder::new();
-    if let Some(threads) = grains.threads {
+    if let Some(threads) = threads {
         pool = pool.num_threads(threads.into());
     }
     match pool.build() {
-        Ok(pool) => pool.install(|| match grains.precision {
-            Precision::Mixed => grains.measure::<f32>(&pile),
-            Precision::F64 => grains.measure::<f64>(&pile),
-        }),
+        Ok(pool) => pool.install(work),
         Err(error) => {
             terminal::error(&format!("cannot start the threads: {error}"));
             Outcome::Failed
         }
+    }
+}
+
+impl SceneSteps {
+    fn run(&self) -> Outcome {
+        let Some(compiled) = self.scene.compile() else { return Outcome::Usage };
+        show(&compiled);
+        let Some(graph) = compiled.graph.as_ref().filter(|graph| graph.runs && !failed(&compiled)) else {
+            return not_yet(&compiled);
+        };
+        with_threads(self.threads, || self.measure(graph, &compiled.origins))
+    }
+
+    fn measure(&self, graph: &Graph, origins: &Origins) -> Outcome {
+        let mut bar = progress::Patient::seen("building the track on grains");
+        let beds = pack::beds(self.cache.as_deref());
+        let timed = execute::time_steps(graph, &beds, self.steps, &mut |_, share| bar.show((1e3 * share) as u64, 1000));
+        drop(bar);
+        match timed {
+            Ok(timed) if self.format == Format::Json => subject::json(&timed),
+            Ok(timed) => {
+                terminal::out(&text_of_steps(&timed));
+                Outcome::Fine
+            }
+            Err(error) => {
+                terminal::error(&execute::diagnose(&error, graph, origins).message);
+                Outcome::Failed
+            }
+        }
+    }
+}
+
+fn text_of_steps(m: &TimedSteps) -> String {
+    let mut out = format!("{} grains of {} pebbles under {} sleepers\n", m.grains, m.pebbles, m.sleepers);
+    let added = 100.0 * m.added_inertia;
+    out += &format!(
+        "steps of {:.2} us, {added:.2} % of the mass added as inertia; soil: one step in {}\n",
+        m.time_step_us, m.soil_ratio
+    );
+    out += &format!("{:.2} ms a step (median of {} steps)\n\n", m.milliseconds_per_step, m.steps);
+    let p = &m.parts_ms;
+    for (label, ms) in [
+        ("lists", p.lists),
+        ("forces", p.forces),
+        ("walls", p.walls),
+        ("motion", p.motion),
+        ("rail", p.rail),
+        ("soil", p.soil),
+        ("inertia, other", p.inertia),
+    ] {
+        out += &format!("  {label:<18}{ms:>8.3} ms\n");
+    }
+    out += &format!(
+        "\n{:.0} s of computing a simulated second, {:.0} s an axle\n",
+        m.seconds_a_simulated_second, m.seconds_an_axle
+    );
+    out
+}
+
+impl Grains {
+    fn run(&self) -> Outcome {
+        let grains = self;
+        let name = grains.bed.display();
+        let pile =
+            match File::open(&grains.bed).map_err(PileError::from).and_then(|file| Pile::read(BufReader::new(file))) {
+                Ok(pile) => pile,
+                Err(PileError::Unreadable(cause)) => {
+                    terminal::error(&format!("cannot read `{name}`: {cause}"));
+                    return Outcome::Usage;
+                }
+                Err(error) => {
+                    terminal::error(&format!("`{name}`, {error}"));
+                    return Outcome::Failed;
+                }
+            };
+        if let Err(mistake) = grains.check(&pile) {
+            terminal::error(&mistake);
+            return Outcome::Usage;
+        }
+        with_threads(grains.threads, || match grains.precision {
+            Precision::Mixed => grains.measure::<f32>(&pile),
+            Precision::F64 => grains.measure::<f64>(&pile),
+        })
     }
 }
 

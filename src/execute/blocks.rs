@@ -5,8 +5,9 @@ use super::exchange::{Exchange, Work};
 use super::machine::{Ending, Machine, RunError};
 use super::pair::{Pair, settling};
 use super::step::{BlockMeasures, Done};
-use crate::graph::{Blocks, Clock, Control, Graph, Runner, Update};
-use crate::nodes::{Builders, Forces, Kept, NodeError, PassageOutcome, Request, Superstructure};
+use crate::graph::{Blocks, Clock, Control, Graph, Model, Runner, Update};
+use crate::nodes::{Builders, Forces, Kept, NodeError, PassageOutcome, Request, Stage, Superstructure};
+use crate::solvers::granular::packing::Progress;
 use crate::store::Beds;
 use std::ops::ControlFlow;
 
@@ -18,17 +19,26 @@ pub(super) fn run(
     from: Option<Checkpoint>,
 ) -> Result<Ending, RunError> {
     let at = |axles: u64| move |cause: NodeError| RunError::node(Clock::Axles(axles), cause);
-    let (mut track, mut ground) = machine.track_on_ground().map_err(at(0))?;
-    let (mut done, mut axles, mut control) = (0, 0, Control::default());
+    let (mut done, mut axles, mut control, mut state) = (0, 0, Control::default(), None);
     if let Some(checkpoint) = from {
-        let (Clock::Axles(count), ScheduleState::Blocks { blocks, control: kept, ground: state }) =
+        let (Clock::Axles(count), ScheduleState::Blocks { blocks, control: kept, ground }) =
             (checkpoint.clock, checkpoint.state)
         else {
             return Err(RunError::ForeignCheckpoint);
         };
-        ground.restore(&state).map_err(at(count))?;
-        track.stand_on(ground.responses()).map_err(at(count))?;
-        (done, axles, control) = (blocks, count, kept);
+        (done, axles, control, state) = (blocks, count, kept, Some(ground));
+    }
+    let mut stopped = false;
+    let begun = machine.track_on_ground_that(|ground| match &state {
+        Some(state) => ground.restore(state),
+        None => ground.prepare(&mut |stage, share| {
+            let progress = Progress { stage: stage.to_string(), share, bodies: 0, steps: 0 };
+            stopped |= listener.hear(&Event::Packing(&progress)).is_break();
+        }),
+    });
+    let (track, ground) = begun.map_err(at(axles))?;
+    if stopped {
+        return Ok(Ending::Stopped);
     }
     let runs = machine.graph.track().map(settling).unwrap_or_default();
     let mut run = Run { pair: Pair { blocks, track, ground, control, runs }, done, listener };
@@ -38,9 +48,13 @@ pub(super) fn run(
     })
 }
 
-/// The first passage of a graph, over the track as the scene starts it; `None` where no train runs.
+/// The first passage of a graph, over the track as the scene starts it; `None` where no train runs, and where grains would have to be
+/// packed for it.
 pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunError> {
     let Some(blocks) = graph.blocks() else { return Ok(None) };
+    if graph.nodes.iter().any(|node| matches!(node.model, Model::Grains(_))) {
+        return Ok(None);
+    }
     let machine = Machine { graph, builders: &Builders::default(), beds: &Beds::default() };
     let at = |cause: NodeError| RunError::node(Clock::Axles(0), cause);
     let (track, ground) = machine.track_on_ground().map_err(at)?;
@@ -119,9 +133,15 @@ impl Run<'_, '_> {
             here = going!(self.tamp(here.axles));
         }
         let revision = self.pair.ground.responses().revision;
+        let listener = &mut *self.listener;
+        let tell = &mut |stage: Stage, share: f64| {
+            let progress = Progress { stage: stage.to_string(), share, bodies: 0, steps: 0 };
+            // a run ends between two blocks only
+            let _ = listener.hear(&Event::Packing(&progress));
+        };
         let Done { block, measured, next } = match self.pair.blocks.adaptive() {
-            Some((tolerance, cap)) => self.pair.adaptive(&mut here, tolerance, cap)?,
-            None => self.pair.prescribed(&mut here)?,
+            Some((tolerance, cap)) => self.pair.adaptive(&mut here, tolerance, cap, tell)?,
+            None => self.pair.prescribed(&mut here, tell)?,
         };
         work.add(&here, Work::default());
         let after = self.pair.ground.settlement();

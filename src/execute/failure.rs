@@ -32,6 +32,8 @@ fn of_node(clock: Clock, cause: &NodeError, graph: &Graph, origins: &Origins) ->
             said(Code::E0811).help("give the `packing` of the material more `pressure`, or its grains more `friction`")
         }
         NodeError::Rig(_) => said(Code::E0812).help("is the `force` meant `per sleeper` or `per seat`?"),
+        NodeError::Grains(_) => said(Code::E0801).help("write a shorter `grain_step`"),
+        NodeError::Soil(_) => said(Code::E0801).help("give the soil more strength, or less load"),
         NodeError::Foreign { .. } => said(Code::E0803).help("run with `--force`"),
         NodeError::NoBuilder { .. } => said(Code::E0604),
         NodeError::NoGround | NodeError::NoTrain | NodeError::Other { .. } => said(Code::E0801),

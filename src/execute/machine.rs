@@ -2,7 +2,7 @@
 
 use crate::graph::quantity::SETTLEMENT;
 use crate::graph::{Blocks, Clock, Fault, Graph, Model, Node, TrackNode};
-use crate::nodes::{Builders, NodeError, Substructure, Superstructure, TrackSystem};
+use crate::nodes::{Builders, GrainGround, GrainParts, NodeError, Substructure, Superstructure, TrackSystem};
 use crate::store::Beds;
 use std::fmt;
 
@@ -75,21 +75,46 @@ impl<'a> Machine<'a> {
 
     /// The track and the ground that an edge joins to it, standing on each other.
     pub fn track_on_ground(&self) -> Result<(TrackSystem<'a>, Box<dyn Substructure + 'a>), NodeError> {
-        self.standing(self.graph.blocks())
+        self.standing(self.graph.blocks(), |ground| ground.prepare(&mut |_, _| {}))
+    }
+
+    /// The same, where `begin` prepares the ground or restores it.
+    pub(super) fn track_on_ground_that(
+        &self,
+        begin: impl FnOnce(&mut dyn Substructure) -> Result<(), NodeError>,
+    ) -> Result<(TrackSystem<'a>, Box<dyn Substructure + 'a>), NodeError> {
+        self.standing(self.graph.blocks(), begin)
     }
 
     /// The same without the time steps of trains, which take most of the time to make it.
     pub(super) fn track_without_trains(&self) -> Result<(TrackSystem<'a>, Box<dyn Substructure + 'a>), NodeError> {
-        self.standing(None)
+        self.standing(None, |ground| ground.prepare(&mut |_, _| {}))
     }
 
-    fn standing(&self, blocks: Option<&'a Blocks>) -> Result<(TrackSystem<'a>, Box<dyn Substructure + 'a>), NodeError> {
+    fn standing(
+        &self,
+        blocks: Option<&'a Blocks>,
+        begin: impl FnOnce(&mut dyn Substructure) -> Result<(), NodeError>,
+    ) -> Result<(TrackSystem<'a>, Box<dyn Substructure + 'a>), NodeError> {
         let none = |kind: &str| NodeError::NoBuilder { node: kind.to_owned(), kind: kind.to_owned() };
         let (name, node) = self.track_node().ok_or_else(|| none("track"))?;
         let ground = self.ground_node(name).ok_or_else(|| none("ground"))?;
-        let ground = self.builders.substructure(ground)?;
+        let mut ground: Box<dyn Substructure> = match (&ground.model, self.grain_parts()) {
+            (Model::Grains(_), Some(parts)) => Box::new(GrainGround::new(parts)),
+            _ => self.builders.substructure(ground)?,
+        };
+        begin(&mut *ground)?;
         let mut track = TrackSystem::new(node, blocks, &self.graph.records);
         track.stand_on(ground.responses())?;
         Ok((track, ground))
+    }
+
+    /// Grains under the track of the graph, with the soil below them; `None` where there are none.
+    pub(super) fn grain_parts(&self) -> Option<GrainParts<'a>> {
+        let nodes = || self.graph.nodes.iter().map(|node| &node.model);
+        let grains = nodes().find_map(|model| if let Model::Grains(grains) = model { Some(grains) } else { None })?;
+        let soil = nodes().find_map(|model| if let Model::Soil(soil) = model { Some(soil) } else { None });
+        let (_, track) = self.track_node()?;
+        Some(GrainParts { grains, soil, track, beds: self.beds })
     }
 }

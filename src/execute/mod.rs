@@ -14,6 +14,7 @@ mod oscillation;
 mod pair;
 mod step;
 mod tests_of_beds;
+mod timed;
 
 pub use equilibrium::at_rest;
 pub use event::{Between, Both, Checkpoint, Event, Listener, ScheduleState};
@@ -21,6 +22,7 @@ pub use executor::{Custom, Executor};
 pub use failure::diagnose;
 pub use machine::{Ending, Machine, RunError};
 pub use step::BlockMeasures;
+pub use timed::time_steps;
 
 pub use blocks::passage_as_built;
 

@@ -5,6 +5,7 @@ use super::machine::RunError;
 use super::oscillation::{amplification, sawtooth};
 use super::pair::Pair;
 use crate::graph::Block;
+use crate::nodes::Telling;
 
 /// What the exchange of a block was worth, and what it took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -42,7 +43,7 @@ const UNSTABLE: f64 = 2.0;
 impl Pair<'_> {
     /// A block of the length that the scene prescribes, with the forces of its start. Where it overshoots it is done again
     /// in halves until it is far from that, down to one train.
-    pub fn prescribed(&mut self, here: &mut Exchange) -> Result<Done, RunError> {
+    pub fn prescribed(&mut self, here: &mut Exchange, tell: &mut Telling<'_>) -> Result<Done, RunError> {
         let wanted = self.blocks.wanted(here.axles).unwrap_or(1);
         let mut measured = BlockMeasures::default();
         loop {
@@ -67,7 +68,7 @@ impl Pair<'_> {
                 continue;
             }
             self.control.lengthen(trains, wanted);
-            self.advance(here.axles, &loads)?;
+            self.advance(here.axles, &loads, tell)?;
             return Ok(Done { block, measured, next: Some(next) });
         }
     }
@@ -89,7 +90,13 @@ impl Pair<'_> {
     /// It is done in one piece with the forces of its start, and in two halves with forces computed anew between them; the
     /// difference is the error of the first. What is kept is of second order: the first train passes with the forces of the
     /// start, as it truly does, all others with those of the middle. Two trains are therefore exact.
-    pub fn adaptive(&mut self, here: &mut Exchange, tolerance: f64, cap: Option<f64>) -> Result<Done, RunError> {
+    pub fn adaptive(
+        &mut self,
+        here: &mut Exchange,
+        tolerance: f64,
+        cap: Option<f64>,
+        tell: &mut Telling<'_>,
+    ) -> Result<Done, RunError> {
         let mut measured = BlockMeasures::default();
         let mut most = self.blocks.trains_left(here.axles);
         let mut middle: Option<Exchange> = None;
@@ -103,7 +110,7 @@ impl Pair<'_> {
             let settled = difference(&whole, &here.settlement);
             if trains == 1 {
                 measured.sawtooth = sawtooth(&self.runs, &settled);
-                self.advance(here.axles, &loads)?;
+                self.advance(here.axles, &loads, tell)?;
                 return Ok(Done { block, measured, next: None });
             }
 
@@ -133,18 +140,24 @@ impl Pair<'_> {
                 continue;
             }
             measured.error = if trains > 2 { error } else { 0.0 };
-            self.second_order(here, &between, trains)?;
+            self.second_order(here, &between, trains, tell)?;
             measured.sawtooth = sawtooth(&self.runs, &difference(&self.settlement(), &here.settlement));
             return Ok(Done { block, measured, next: None });
         }
     }
 
     /// Lets a block pass: its first train with the forces of the start, the others with those of the middle.
-    fn second_order(&mut self, here: &Exchange, between: &Exchange, trains: u64) -> Result<(), RunError> {
+    fn second_order(
+        &mut self,
+        here: &Exchange,
+        between: &Exchange,
+        trains: u64,
+        tell: &mut Telling<'_>,
+    ) -> Result<(), RunError> {
         let one = self.blocks.block(here.axles, 1);
         let others = self.blocks.block(here.axles + one.axles, trains - 1);
         let first = here.loads(&self.blocks.parts(&one));
-        self.advance(here.axles, &[first, between.loads(&self.blocks.parts(&others))].concat())
+        self.advance(here.axles, &[first, between.loads(&self.blocks.parts(&others))].concat(), tell)
     }
 
     /// Trains of the next block: as many as settle the aim of the control with the forces of the start. Of unlike trains their order

@@ -1,10 +1,12 @@
 //! Nodes of grains: beds to pack, what stands on them, what loads them, and the soil below.
 
+use crate::solvers::continuum::Strength;
 use crate::solvers::granular::grains::{ClumpShape, TemplatesError};
 use crate::solvers::granular::measure::Region;
 use crate::solvers::granular::packing::{PackingError, Recipe};
 use crate::solvers::granular::probe::Plate;
 use crate::solvers::granular::rig::{Load, Rig, Sensor, Sleeper, Specimen};
+use crate::solvers::track::UnderPad;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -156,14 +158,70 @@ pub struct ActuatorsNode {
     pub cycles: u64,
 }
 
-/// The grains under a track: a bed for each section with layers of its own.
+/// The grains under a track: packed cells side by side in each window, sleepers on them, and springs under all other sleepers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GrainsNode {
+    /// Each once: sections with equal layers share one.
     pub beds: Vec<BedPlan>,
-    /// Chainages between which grains are modelled, m.
+    /// Chainages between which the scene wants grains, m.
     pub window: Vec<[f64; 2]>,
+    /// Where grains lie, from left to right; empty where a plan is only looked at.
+    pub stretches: Vec<GrainStretch>,
     /// Whether soil lies below.
     pub on_soil: bool,
+    /// Settlement of every seat of the track at the start, m.
+    pub settlement: Vec<f64>,
+    /// Where the stiffness of supports is taken from.
+    pub stiffness_from: StiffnessFrom,
+    /// Distance from the front of a train to that of the next one that follows it closely, m; `None` lets the track come to rest between
+    /// trains.
+    pub headway: Option<f64>,
+    /// Damping of a support over its stiffness, s.
+    pub damping_time: f64,
+    /// m/s^2.
+    pub gravity: f64,
+    /// Time step of the grains, s; `None` is the longest for which `added_inertia` suffices.
+    pub time_step: Option<f64>,
+    /// Share of the mass of a bed that may be added as inertia for the sake of a longer step.
+    pub added_inertia: f64,
+}
+
+/// From which loads grains say how stiff the support of a sleeper is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StiffnessFrom {
+    /// Static loads on a copy of the beds.
+    StaticLoad,
+    /// The forces of the last passage.
+    Passage,
+}
+
+/// Grains between two places of a track.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GrainStretch {
+    /// Index into [`GrainsNode::beds`].
+    pub bed: usize,
+    /// Chainage of its left end, m.
+    pub start: f64,
+    /// Cells of the bed side by side.
+    pub copies: u32,
+    pub sleepers: Vec<SleeperOnGrains>,
+}
+
+/// A sleeper, or half of it, on grains.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SleeperOnGrains {
+    /// Index of its seat.
+    pub seat: usize,
+    /// Its middle, from the left end of the stretch and from the side wall at the centre line, m.
+    pub place: [f64; 2],
+    /// Along, across, height, m.
+    pub size: [f64; 3],
+    /// Of half of it, kg.
+    pub mass: f64,
+    /// Of the rails that it carries, kg.
+    pub rail_mass: f64,
+    pub pad: Option<UnderPad>,
 }
 
 /// The layers below the grains.
@@ -171,6 +229,12 @@ pub struct GrainsNode {
 pub struct SoilNode {
     /// From the top downwards.
     pub layers: Vec<SoilLayer>,
+    /// About the size of its elements, m.
+    pub element: f64,
+    /// Whether waves leave through its base, which does not move otherwise.
+    pub quiet_base: bool,
+    /// m/s^2.
+    pub gravity: f64,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -181,6 +245,10 @@ pub struct SoilLayer {
     /// Pa.
     pub youngs_modulus: f64,
     pub poisson_ratio: f64,
+    /// kg/m3.
+    pub density: f64,
+    /// `None` does not yield.
+    pub strength: Option<Strength>,
 }
 
 impl BedNode {

@@ -2,7 +2,7 @@
 
 use super::{
     ActuatorsNode, BedNode, Blocks, Cost, Decision, Edge, GrainsNode, Graph, LawNode, Model, Node, Quantity, Schedule,
-    SoilNode, TestWork, Tests, TrackNode, Update, Work,
+    SoilNode, StiffnessFrom, TestWork, Tests, TrackNode, Update, Work,
 };
 use crate::solvers::granular::rig::Load;
 use crate::solvers::track::Integrator;
@@ -135,16 +135,55 @@ fn of_actuators(actuators: &ActuatorsNode) -> Vec<String> {
 }
 
 fn of_grains(grains: &GrainsNode) -> Vec<String> {
-    let spans = grains.window.iter().map(|[a, b]| format!("grains from {} m to {} m", number(*a), number(*b)));
-    spans.chain(grains.beds.iter().map(|bed| format!("bed of `{}`", bed.section))).collect()
+    let mut lines: Vec<String> = grains
+        .window
+        .iter()
+        .map(|[a, b]| format!("grains from {} m to {} m are asked for", number(*a), number(*b)))
+        .collect();
+    lines.extend(grains.beds.iter().map(|bed| format!("bed of `{}`", bed.section)));
+    for stretch in &grains.stretches {
+        let bed = &grains.beds[stretch.bed];
+        let [length, width] = bed.numbers().plan;
+        let end = stretch.start + length * f64::from(stretch.copies);
+        lines.push(format!(
+            "grains from {} m to {} m: {} cells of `{}` of {} m x {} m, {} sleepers",
+            number(stretch.start),
+            number(rounded_to_mm(end)),
+            stretch.copies,
+            bed.section,
+            number(length),
+            number(width),
+            stretch.sleepers.len()
+        ));
+    }
+    let stiffness = match grains.stiffness_from {
+        StiffnessFrom::StaticLoad => "static loads on a copy of the grains",
+        StiffnessFrom::Passage => "the forces of the last passage",
+    };
+    lines.push(format!(
+        "stiffness of supports: by {stiffness}; sleepers beyond the grains as the nearest third of those on them"
+    ));
+    lines.push(match grains.headway {
+        Some(headway) => format!("trains of a block follow each other every {} m", number(headway)),
+        None => "trains run one by one, and the track comes to rest between them".into(),
+    });
+    lines
+}
+
+fn rounded_to_mm(length: f64) -> f64 {
+    (length * 1e3).round() / 1e3
 }
 
 fn of_soil(soil: &SoilNode) -> Vec<String> {
     let line = |layer: &super::SoilLayer| {
         let (thickness, modulus) = (number(1e3 * layer.thickness), number(layer.youngs_modulus / 1e6));
-        format!("{}: {thickness} mm, {modulus} MPa", layer.name)
+        let strength = if layer.strength.is_some() { ", yields after Mohr and Coulomb" } else { "" };
+        format!("{}: {thickness} mm, {modulus} MPa{strength}", layer.name)
     };
-    soil.layers.iter().map(line).collect()
+    let mut lines: Vec<String> = soil.layers.iter().map(line).collect();
+    let base = if soil.quiet_base { "waves leave through its base" } else { "its base does not move" };
+    lines.push(format!("elements of about {} mm; {base}", number(rounded_to_mm(soil.element) * 1e3)));
+    lines
 }
 
 fn integrator(integrator: Integrator) -> String {

@@ -22,8 +22,8 @@ pub use blocks::Due;
 pub use control::Control;
 pub use decision::{Cost, Decision, PassageWork, Rejected, TestWork, Work};
 pub use grains::{
-    ActuatorsNode, BedError, BedNode, BedPlan, BedRecipe, GrainsNode, SensorNode, SensorVolume, SoilLayer, SoilNode,
-    StandingBody,
+    ActuatorsNode, BedError, BedNode, BedPlan, BedRecipe, GrainStretch, GrainsNode, SensorNode, SensorVolume,
+    SleeperOnGrains, SoilLayer, SoilNode, StandingBody, StiffnessFrom,
 };
 pub use ground::{LawNode, NamedLaw, SpringsNode, SupportNode};
 pub use listing::Listing;

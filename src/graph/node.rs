@@ -66,7 +66,7 @@ impl Node {
             Model::Grains(grains) => {
                 let below = grains.on_soil;
                 let gives = [SUPPORT_STIFFNESS, SUPPORT_DAMPING, SETTLEMENT].into_iter();
-                let takes = std::iter::once(SLEEPER_FORCES);
+                let takes = std::iter::once(WHEEL_FORCES);
                 (
                     gives.chain(below.then_some(GRAIN_FORCE)).collect(),
                     takes.chain(below.then_some(SOIL_VELOCITY)).collect(),

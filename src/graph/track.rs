@@ -72,6 +72,13 @@ pub struct Responses {
     pub seats: Vec<Option<Spring>>,
 }
 
+impl TrackFoot {
+    /// Mass of half the sleeper, kg; 0 where there is none.
+    pub fn mass(&self) -> f64 {
+        if let TrackFoot::Sleeper { mass } = self { *mass } else { 0.0 }
+    }
+}
+
 impl TrackSeat {
     /// Whether a support that can settle carries it.
     pub fn is_ballasted(&self) -> bool {

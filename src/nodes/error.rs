@@ -1,6 +1,9 @@
 //! Why a node could not do what the schedule asked of it.
 
 use crate::graph::BedError;
+use crate::solvers::continuum::SoilError;
+use crate::solvers::granular::Failure;
+use crate::solvers::granular::packing::PackingError;
 use crate::solvers::granular::rig::RigError;
 use crate::solvers::track::TrackError;
 use crate::store::BedsError;
@@ -17,6 +20,10 @@ pub enum NodeError {
     Packing(BedsError),
     /// A test.
     Rig(RigError),
+    /// The motion of grains under a track.
+    Grains(Failure),
+    /// The soil below them.
+    Soil(SoilError),
     /// A track that stands on nothing yet.
     NoGround,
     /// A passage of a schedule without trains.
@@ -36,6 +43,8 @@ impl fmt::Display for NodeError {
             NodeError::Bed(cause) => cause.fmt(f),
             NodeError::Packing(cause) => cause.fmt(f),
             NodeError::Rig(cause) => cause.fmt(f),
+            NodeError::Grains(cause) => write!(f, "the grains under the track: {cause}"),
+            NodeError::Soil(cause) => write!(f, "the soil below the grains: {cause}"),
             NodeError::NoGround => f.write_str("the track stands on no ground"),
             NodeError::NoTrain => f.write_str("no train runs over the track"),
             NodeError::Foreign { node, why } => write!(f, "the kept state of the {node} cannot be used: {why}"),
@@ -52,6 +61,24 @@ impl std::error::Error for NodeError {}
 impl From<TrackError> for NodeError {
     fn from(cause: TrackError) -> NodeError {
         NodeError::Track(cause)
+    }
+}
+
+impl From<Failure> for NodeError {
+    fn from(cause: Failure) -> NodeError {
+        NodeError::Grains(cause)
+    }
+}
+
+impl From<SoilError> for NodeError {
+    fn from(cause: SoilError) -> NodeError {
+        NodeError::Soil(cause)
+    }
+}
+
+impl From<PackingError> for NodeError {
+    fn from(cause: PackingError) -> NodeError {
+        NodeError::Packing(BedsError::Packing(cause))
     }
 }
 

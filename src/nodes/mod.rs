@@ -7,6 +7,7 @@ mod build;
 mod error;
 mod grains;
 mod law;
+mod on_grains;
 mod outcome;
 mod profile;
 mod sampler;
@@ -17,8 +18,10 @@ pub use build::Builders;
 pub use error::NodeError;
 pub use grains::{BedUnderActuators, TestState, Tested};
 pub use law::LawGround;
+pub use on_grains::{GrainGround, Parted, Parts as GrainParts, Stage, Telling, TimedSteps};
 pub use outcome::{
     PassageOutcome, RailPlace, RailPoint, Sample, SampledPart, SeatForces, SeatOutcome, Unloaded, UnloadedSeat,
+    WheelHistories,
 };
 pub use profile::between;
 pub use steps::Steps;
@@ -43,6 +46,8 @@ pub enum Forces {
     Peaks,
     /// Peaks and the whole history at every seat.
     Histories,
+    /// Peaks, and where every wheel was and how it pressed.
+    Wheels,
 }
 
 /// A passage to be computed.
@@ -81,6 +86,11 @@ pub struct Mark(pub Box<dyn Any + Send>);
 
 /// What carries the sleepers: forces in, responses and settlement out.
 pub trait Substructure: Send + Sync {
+    /// Builds what takes its time to be built; `tell` hears how far it is. Not asked of one whose state is restored.
+    fn prepare(&mut self, _tell: &mut Telling<'_>) -> Result<(), NodeError> {
+        Ok(())
+    }
+
     /// Stiffness, damping and seating of every seat.
     fn responses(&self) -> &Responses;
 
@@ -102,6 +112,11 @@ pub trait Substructure: Send + Sync {
 
     /// Lets trains pass. After an error the state is that of the last mark only once it is rolled back.
     fn advance(&mut self, loads: &[Load<'_>]) -> Result<(), NodeError>;
+
+    /// The same; `tell` hears how far it is.
+    fn advance_and_tell(&mut self, loads: &[Load<'_>], _tell: &mut Telling<'_>) -> Result<(), NodeError> {
+        self.advance(loads)
+    }
 
     /// The present state, to be rolled back to.
     fn mark(&self) -> Mark;

@@ -76,6 +76,33 @@ pub struct PassageOutcome {
     pub samples: Vec<Sample>,
     /// The force of every sleeper on its support over the passage, where the substructure takes it.
     pub forces: Option<SeatForces>,
+    /// Where every wheel was and how it pressed, where the substructure takes it.
+    pub wheels: Option<WheelHistories>,
+}
+
+/// Wheels of a train over a passage, at equal intervals.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WheelHistories {
+    /// Time between two instants, s.
+    pub interval: f64,
+    /// Largest speed of the train, m/s.
+    pub speed: f64,
+    /// Number of wheels.
+    pub wheels: usize,
+    /// Chainage, m, and force on the rail, N, of each wheel, instant after instant.
+    pub values: Vec<(f64, f64)>,
+}
+
+impl WheelHistories {
+    /// How many instants there are.
+    pub fn instants(&self) -> usize {
+        self.values.len() / self.wheels.max(1)
+    }
+
+    /// All wheels at an instant.
+    pub fn instant(&self, at: usize) -> &[(f64, f64)] {
+        &self.values[at * self.wheels..(at + 1) * self.wheels]
+    }
 }
 
 /// Forces of sleepers on their supports at equal intervals, R(t).

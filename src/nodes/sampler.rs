@@ -1,7 +1,7 @@
 //! Takes histories of a passage: every wheel force, what the scene records, and the forces of sleepers where the ground takes
 //! them whole.
 
-use super::{Forces, Sample, SampledPart, SeatForces};
+use super::{Forces, Sample, SampledPart, SeatForces, WheelHistories};
 use crate::graph::{History, Record};
 use crate::solvers::track::{Observer, StepView};
 
@@ -69,6 +69,29 @@ fn at_seat(view: &StepView<'_>, seat: usize, quantity: History) -> Option<f64> {
         History::SleeperAcceleration => view.foot_acceleration(seat),
         History::WheelForce => return None,
     })
+}
+
+/// Takes places and forces of all wheels at every longest step.
+pub(super) struct WheelSampler(Option<WheelHistories>);
+
+impl WheelSampler {
+    /// Takes them where `forces` asks for wheels, at intervals of `step` (s), of a train so fast (m/s).
+    pub fn new(forces: Forces, step: f64, speed: f64) -> WheelSampler {
+        let histories = WheelHistories { interval: step, speed, wheels: 0, values: Vec::new() };
+        WheelSampler((forces == Forces::Wheels).then_some(histories))
+    }
+
+    pub fn taken(self) -> Option<WheelHistories> {
+        self.0
+    }
+}
+
+impl Observer for WheelSampler {
+    fn observe(&mut self, view: &StepView<'_>) {
+        let Some(histories) = self.0.as_mut().filter(|_| view.is_on_grid(1)) else { return };
+        histories.wheels = view.wheel_positions().len();
+        histories.values.extend(view.wheel_positions().iter().copied().zip(view.wheel_forces().iter().copied()));
+    }
 }
 
 /// Takes the forces of all sleepers at every longest step.

@@ -1,6 +1,6 @@
 //! The track node at work: its statics and its passages.
 
-use super::sampler::{ForceSampler, Sampler};
+use super::sampler::{ForceSampler, Sampler, WheelSampler};
 use super::steps::{Steps, steps_of_kinds};
 use super::{
     Kept, NodeError, PassageOutcome, RailPoint, Request, SeatOutcome, Superstructure, Unloaded, UnloadedSeat, profile,
@@ -77,7 +77,9 @@ impl<'a> TrackSystem<'a> {
         let mut envelope = Envelope::default();
         let mut sampler = Sampler::new(if recorded { self.records } else { &[] }, axles, plan.sample_every, recorded);
         let mut force_sampler = ForceSampler::new(forces, settlement.len(), plan.time_step);
-        let counters = passage.run(&mut (&mut envelope, &mut (&mut sampler, &mut force_sampler)))?;
+        let mut wheel_sampler = WheelSampler::new(forces, plan.time_step, train.speed);
+        let samplers = &mut (&mut force_sampler, &mut wheel_sampler);
+        let counters = passage.run(&mut (&mut envelope, &mut (&mut sampler, samplers)))?;
 
         let seats = self.at_seats(&envelope, plan.passed(train));
         let outcome = PassageOutcome {
@@ -85,6 +87,7 @@ impl<'a> TrackSystem<'a> {
             newton_iterations: counters.iterations as u64,
             samples: sampler.samples,
             forces: force_sampler.taken(),
+            wheels: wheel_sampler.taken(),
             ..self.extremes(train, plan, track, envelope, seats)
         };
         self.bounded(train, &outcome)?;
@@ -124,6 +127,7 @@ impl<'a> TrackSystem<'a> {
             newton_iterations: 0,
             samples: Vec::new(),
             forces: None,
+            wheels: None,
         }
     }
 

@@ -64,6 +64,8 @@ pub struct Grains {
     pub window: Option<Vec<[f64; 2]>>,
     /// Whether track and grains are solved together, step by step, instead of in turn.
     pub monolithic: bool,
+    /// Whether trains of a block follow each other coupler to coupler, instead of one by one.
+    pub continuous: Given<bool>,
     /// Whether grains give the stiffness of supports from the forces of a passage, instead of from a static load.
     pub support_from_passage: bool,
     /// Time step, s; `None` is chosen by the planner.
@@ -88,6 +90,7 @@ impl Default for Grains {
             tier: Given { value: Tier::Auto, origin: Origin::Default },
             window: None,
             monolithic: false,
+            continuous: Given { value: false, origin: Origin::Default },
             support_from_passage: false,
             step: None,
             zone_size: None,

@@ -4,9 +4,6 @@ use super::fields::*;
 use super::{Alternative, Basis, Field, Form, Kind, Measure, Role, Word};
 use super::{materials, results, traffic};
 
-const fn planned(name: &'static str) -> Word {
-    Word { name, doc: "not in this version", arguments: &[], planned: true }
-}
 const fn side(name: &'static str, doc: &'static str) -> Word {
     const SEATS: &[Field] = &[optional(
         "seats",
@@ -522,12 +519,18 @@ pub const KINDS: &[Kind] = &[
                 "adaptive(0.003 mm)",
                 "axles between two exchanges of forces and settlement",
             ),
-            unread(default(
+            default(
                 "passages",
-                Form::Words(&[word("isolated", "trains run one by one"), planned("continuous")]),
+                Form::Words(&[
+                    word("isolated", "trains run one by one, and the track comes to rest between them"),
+                    word(
+                        "continuous",
+                        "those of a block follow each other coupler to coupler; every vehicle needs its `length`",
+                    ),
+                ]),
                 "isolated",
-                "",
-            )),
+                "of trains over grains",
+            ),
             default(
                 "beam",
                 Form::Words(&[
@@ -609,15 +612,15 @@ pub const KINDS: &[Kind] = &[
                 "iterated",
                 "of track and grains",
             )),
-            unread(default(
+            default(
                 "support_from",
                 Form::Words(&[
-                    word("static_load", "each sleeper pressed once"),
+                    word("static_load", "all sleepers pressed at once, on a copy of the grains"),
                     word("passage", "the forces of the last passage"),
                 ]),
                 "static_load",
                 "from which grains give the stiffness of supports",
-            )),
+            ),
             default(
                 "grain_step",
                 Form::OneOf(&[number("s", 1e-9, 1e-2), Form::Words(AUTO)]),

@@ -110,6 +110,7 @@ pub fn grains(record: &Record, places: Option<&Places>, findings: &mut Findings)
         tier: Given { value: tier(record), origin: record.get("substructure")?.origin },
         window: window?,
         monolithic: record.word("coupling")? == "monolithic",
+        continuous: Given { value: record.word("passages")? == "continuous", origin: record.get("passages")?.origin },
         support_from_passage: record.word("support_from")? == "passage",
         step: optional("grain_step")?,
         zone_size: optional("zone_size")?,

@@ -1,14 +1,19 @@
 //! Tiers `cells`, `zone` and `full`: grains under the sleepers of a track, one cell for each distinct sleeper, under the bays that
-//! differ, or under all of the window. This version plans them and cannot run them.
+//! differ, or under all of the window. `cells` is planned and not run.
 
-use super::{ExpectedError, Proposal, Tier, edges, waiting};
+use super::{ExpectedError, Proposal, Tier, edges, refused, waiting};
 use crate::diag::{Diagnostic, Severity};
-use crate::graph::{GrainsNode, Model, Node, PointLoad, Schedule, SoilLayer, SoilNode};
+use crate::graph::{
+    BedPlan, Blocks, GrainStretch, GrainsNode, Model, Node, PointLoad, Schedule, SleeperOnGrains, SoilLayer, SoilNode,
+    StiffnessFrom, Update,
+};
 use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
 use crate::lower::tier::rig::cost::grains_under_track;
 use crate::lower::{Draft, track};
-use crate::scenario::{Loading, Material, Scenario};
+use crate::scenario::{self, Base, Foot, Loading, Material, Scenario, Seat, Section, SleeperBody};
 use crate::schema::Reads;
+use crate::solvers::continuum::Strength;
+use crate::solvers::track::UnderPad;
 
 pub struct Cells;
 pub struct Zone;
@@ -23,6 +28,14 @@ const READS: Reads = Reads {
         "soil.poisson_ratio",
         "soil.bulk_modulus",
         "soil.shear_modulus",
+        "soil.density",
+        "soil.strength",
+        "solve.passages",
+        "solve.support_from",
+        "solve.zone_size",
+        "solve.grain_step",
+        "track.base",
+        "usp.bedding_modulus",
     ],
     acts_where: "where grains lie under a track: `substructure = cells`, `zone` or `full`",
 };
@@ -40,8 +53,8 @@ impl Tier for Cells {
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
-        let bays = draft.scenario.track.sections.iter().map(|section| *section.spacing).sum();
-        propose(draft, "a cell of grains for each distinct sleeper", bays)
+        let spacing: f64 = draft.scenario.track.sections.iter().map(|section| *section.spacing).sum();
+        propose(draft, "a cell of grains for each distinct sleeper", vec![[-spacing, 0.0]], false)
     }
 }
 
@@ -55,7 +68,9 @@ impl Tier for Zone {
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
-        propose(draft, "grains under the bays that differ", window_length(draft.scenario).min(ZONE))
+        let near = |[left, right]: [f64; 2]| [left.max(-ZONE), right.min(ZONE)];
+        let windows = window(draft.scenario).into_iter().map(near).collect();
+        propose(draft, "grains under the bays next to the transition", windows, true)
     }
 }
 
@@ -69,14 +84,14 @@ impl Tier for Full {
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
-        propose(draft, "grains under all of the window", window_length(draft.scenario))
+        propose(draft, "grains under all of the window", window(draft.scenario), true)
     }
 }
 
 /// Length of track beside a transition that differs from the far field, m, until a pass chooses it.
 const ZONE: f64 = 10.0;
 
-fn propose(draft: &Draft<'_>, what: &str, length: f64) -> Result<Proposal, String> {
+fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) -> Result<Proposal, String> {
     let scenario = draft.scenario;
     if !scenario.track.has_rails() {
         return Err("there are no rails".into());
@@ -86,21 +101,42 @@ fn propose(draft: &Draft<'_>, what: &str, length: f64) -> Result<Proposal, Strin
         true => beds(scenario, BedUse::Track),
         false => beds_of_spheres(scenario, BedUse::Track),
     };
-    let (beds, unpackable): (_, Vec<Diagnostic>) = match found {
+    let severity = if runs { Severity::Error } else { Severity::Warning };
+    let (beds, mut refusals): (_, Vec<Diagnostic>) = match found {
         Ok(beds) if beds.is_empty() => return Err("no section has a layer of grains".into()),
         Ok(beds) => (beds, Vec::new()),
         // what cannot be packed stands against a run only, as E0604 does
-        Err(refusals) => {
-            (Vec::new(), refusals.into_iter().map(|refusal| refusal.severity(Severity::Warning)).collect())
-        }
+        Err(refusals) => (Vec::new(), refusals.into_iter().map(|refusal| refusal.severity(severity)).collect()),
     };
     let schedule = match (&scenario.loading, &draft.blocks) {
-        (Some(Loading::Traffic(_)), Some(blocks)) => Schedule::Blocks(Box::new(blocks.clone())),
+        (Some(Loading::Traffic(_)), Some(blocks)) => Schedule::Blocks(Box::new(train_by_train(blocks))),
         (Some(Loading::Static(_) | Loading::Rig(_)), _) => Schedule::Static { loads: Vec::<PointLoad>::new() },
         _ => return Err("nothing acts on the track".into()),
     };
+    let length = windows.iter().map(|[a, b]| b - a).sum();
     let soil = soil(scenario);
-    let grains = GrainsNode { beds, window: window(scenario), on_soil: !soil.layers.is_empty() };
+    let stretches = if beds.is_empty() { Vec::new() } else { stretches(scenario, &beds, &windows) };
+    if runs {
+        refusals.extend(refused::refusals(scenario, &stretches));
+    } else {
+        refusals.extend(waiting::refusal(scenario));
+    }
+    let grains = GrainsNode {
+        beds,
+        window: windows,
+        stretches,
+        on_soil: !soil.layers.is_empty(),
+        settlement: scenario.track.seats.iter().map(|seat| *seat.initial_settlement).collect(),
+        stiffness_from: match scenario.solve.grains.support_from_passage {
+            true => StiffnessFrom::Passage,
+            false => StiffnessFrom::StaticLoad,
+        },
+        headway: headway(scenario),
+        damping_time: DAMPING_TIME,
+        gravity: *scenario.solve.gravity,
+        time_step: scenario.solve.grains.step.map(|step| *step),
+        added_inertia: ADDED,
+    };
     let mut nodes = vec![
         Node::new("track", Model::Track(Box::new(track::track(scenario)))),
         Node::new("grains", Model::Grains(grains)),
@@ -114,12 +150,93 @@ fn propose(draft: &Draft<'_>, what: &str, length: f64) -> Result<Proposal, Strin
         schedule,
         cost: grains_under_track(draft, length),
         what: what.into(),
-        why: "the scene asks for grains, and this version plans them without running them".into(),
+        why: "the scene asks for grains".into(),
         error: ExpectedError { share: None, evidence: "its error is not measured yet".into() },
-        runs: false,
-        refusals: waiting::refusal(scenario).into_iter().chain(unpackable).collect(),
+        runs,
+        refusals,
     })
 }
+
+/// Blocks that grains decide nothing of: where the scene asks for an error, forces and settlement are exchanged after every train.
+fn train_by_train(blocks: &Blocks) -> Blocks {
+    let mut blocks = blocks.clone();
+    if matches!(blocks.update, Update::Adaptive { .. }) {
+        blocks.update = Update::Fixed { axles: blocks.train.axles() };
+    }
+    // one passage of the plane track gives the forces of all trains of a block, and blocks are as long as they are asked to be
+    blocks.cure = false;
+    blocks
+}
+
+/// Share of the mass of a bed that is added as inertia.
+const ADDED: f64 = 0.02;
+/// Damping of a support over its stiffness where grains are the support, s (methods 2; Nielsen 2008).
+const DAMPING_TIME: f64 = 1e-3;
+/// Size of the elements of soil over the width of a sleeper's base, where the scene says none.
+const ELEMENT: f64 = 0.1;
+/// Density of the rubber of an under sleeper pad whose lower half moves with the ballast, kg/m3.
+const PAD_DENSITY: f64 = 1100.0;
+
+/// Distance between the fronts of trains that follow each other, m; `None` where they run one by one.
+fn headway(scenario: &Scenario) -> Option<f64> {
+    let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
+    let lengths = traffic.train.vehicles.iter().map(|vehicle| vehicle.length.map(|length| *length));
+    scenario.solve.grains.continuous.then(|| lengths.sum::<Option<f64>>()).flatten()
+}
+
+/// Cells over each window, as many as fit, and the sleepers that stand on them with half a bay before them.
+fn stretches(scenario: &Scenario, beds: &[BedPlan], windows: &[[f64; 2]]) -> Vec<GrainStretch> {
+    let track = &scenario.track;
+    let of = |[left, right]: &[f64; 2]| -> Option<GrainStretch> {
+        let inside = |seat: &&(usize, &Seat)| {
+            seat.1.is_ballasted() && seat.1.sleeper.is_some() && (*left..=*right).contains(&seat.1.x)
+        };
+        let seats: Vec<(usize, &Seat)> = track.seats.iter().enumerate().filter(|seat| inside(&seat)).collect();
+        let section = &track.sections[seats.first()?.1.section];
+        let bed = beds.iter().position(|bed| bed.section == section.name).unwrap_or(0);
+        // grains end where their section does
+        let [start, end] = [left.max(section.start), right.min(section.end)];
+        let [cell, _] = beds[bed].numbers().plan;
+        let copies = ((end - start) / cell + 1e-6).floor().max(1.0);
+        // the structure is where it is, and the other end gives way
+        let at_left = track.sections.first().is_some_and(|first| first.start < section.start) && section.start >= *left;
+        let start = if at_left { start } else { end - copies * cell };
+        let fits = |seat: &&(usize, &Seat)| {
+            let half = 0.5 * *section.spacing - 1e-6;
+            seat.1.x - half >= start && seat.1.x + half.min(END) <= start + copies * cell + 1e-6
+        };
+        let sleepers = seats.iter().filter(fits).filter_map(|(number, seat)| standing(scenario, *number, seat, start));
+        Some(GrainStretch { bed, start, copies: copies as u32, sleepers: sleepers.collect() })
+    };
+    windows.iter().filter_map(of).collect()
+}
+
+/// Room that a sleeper needs before the end of the grains, m.
+const END: f64 = 0.2;
+
+/// A sleeper on grains that begin at a chainage, m.
+fn standing(scenario: &Scenario, number: usize, seat: &Seat, start: f64) -> Option<SleeperOnGrains> {
+    let Foot::Sleeper { mass, usp, .. } = &seat.foot else { return None };
+    let SleeperBody { length, base_width, height, base_area, .. } = seat.sleeper?;
+    let rail = scenario.track.sections[seat.section].rail.as_ref()?;
+    let pad = usp.as_ref().map(|usp| UnderPad {
+        mass: 0.5 * PAD_DENSITY * usp.thickness.max(THIN) * base_area / 2.0,
+        stiffness: *usp.stiffness,
+        damping: *usp.damping,
+    });
+    Some(SleeperOnGrains {
+        seat: number,
+        place: [seat.x - start, 0.0],
+        // what bears is as wide as the sleeper, and no longer than it
+        size: [base_width, (base_area / base_width).min(length), height],
+        mass: **mass,
+        rail_mass: *rail.mass * scenario.track.bay(number),
+        pad,
+    })
+}
+
+/// Thickness of a pad that a scene does not say, m.
+const THIN: f64 = 0.007;
 
 /// Chainages between which grains are modelled: those of the scene, else all of it.
 fn window(scenario: &Scenario) -> Vec<[f64; 2]> {
@@ -127,13 +244,9 @@ fn window(scenario: &Scenario) -> Vec<[f64; 2]> {
     scenario.solve.grains.window.clone().unwrap_or_else(all)
 }
 
-fn window_length(scenario: &Scenario) -> f64 {
-    window(scenario).iter().map(|[a, b]| b - a).sum()
-}
-
 /// The layers of soil below the grains of the first section that has some.
 fn soil(scenario: &Scenario) -> SoilNode {
-    let middle = |section: &crate::scenario::Section| 0.5 * (section.start + section.end);
+    let middle = |section: &Section| 0.5 * (section.start + section.end);
     let layers = scenario.track.sections.iter().map(|section| {
         let of_soil = section.layers.iter().filter_map(|layer| match &layer.material {
             Material::Soil(soil) => Some(SoilLayer {
@@ -141,10 +254,30 @@ fn soil(scenario: &Scenario) -> SoilNode {
                 thickness: layer.thickness.value_at(middle(section)),
                 youngs_modulus: soil.youngs_modulus.value_at(middle(section)),
                 poisson_ratio: *soil.poisson_ratio,
+                density: *soil.density,
+                strength: strength(&soil.strength),
             }),
             Material::Granular(_) => None,
         });
         of_soil.collect::<Vec<_>>()
     });
-    SoilNode { layers: layers.into_iter().find(|layers| !layers.is_empty()).unwrap_or_default() }
+    let grains = &scenario.solve.grains;
+    SoilNode {
+        layers: layers.into_iter().find(|layers| !layers.is_empty()).unwrap_or_default(),
+        element: grains.zone_size.map_or(ELEMENT, |size| *size),
+        quiet_base: scenario.track.bed.base == Base::Quiet,
+        gravity: *scenario.solve.gravity,
+    }
+}
+
+fn strength(strength: &scenario::Strength) -> Option<Strength> {
+    match strength {
+        scenario::Strength::Elastic => None,
+        scenario::Strength::MohrCoulomb { cohesion, friction_angle, dilation, tension } => Some(Strength {
+            cohesion: **cohesion,
+            friction_angle: **friction_angle,
+            dilation_angle: **dilation,
+            tension: **tension,
+        }),
+    }
 }

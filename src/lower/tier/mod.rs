@@ -7,6 +7,7 @@ mod equilibrium;
 mod grains;
 mod law;
 mod loads;
+mod refused;
 mod rig;
 mod waiting;
 

@@ -43,12 +43,15 @@ impl Chunk {
     /// All elements of a mesh in chunks; `shapes` says the shape of each element.
     pub fn cut(mesh: &Mesh, shapes: &[u32]) -> Vec<Chunk> {
         let mut local = vec![u16::MAX; mesh.nodes().len()];
-        (0..shapes.len()).step_by(ELEMENTS).map(|from| {
-            let to = (from + ELEMENTS).min(shapes.len());
-            let chunk = Chunk::new(mesh, from..to, shapes, &mut local);
-            chunk.nodes.iter().for_each(|&node| local[node as usize] = u16::MAX);
-            chunk
-        }).collect()
+        (0..shapes.len())
+            .step_by(ELEMENTS)
+            .map(|from| {
+                let to = (from + ELEMENTS).min(shapes.len());
+                let chunk = Chunk::new(mesh, from..to, shapes, &mut local);
+                chunk.nodes.iter().for_each(|&node| local[node as usize] = u16::MAX);
+                chunk
+            })
+            .collect()
     }
 
     fn new(mesh: &Mesh, elements: std::ops::Range<usize>, shapes: &[u32], local: &mut [u16]) -> Chunk {

@@ -64,7 +64,8 @@ impl Soil {
         let left = self.unbalanced(&load, springs);
         let mut worst = 0.0f64;
         for (unknowns, left) in factor.unknowns.iter().zip(&left) {
-            worst = (0..3).filter(|&axis| unknowns[axis].is_some()).fold(worst, |worst, axis| worst.max(left[axis].abs()));
+            worst =
+                (0..3).filter(|&axis| unknowns[axis].is_some()).fold(worst, |worst, axis| worst.max(left[axis].abs()));
         }
         // written so that what is no number fails; a soil that is free but for rounding balances nothing
         if !(worst <= 1e-6 * size) {
@@ -102,9 +103,12 @@ impl Soil {
                 }
             }
         }
-        let places: Vec<[Option<usize>; FREEDOMS]> = self.mesh.elements().iter().map(|element| {
-            std::array::from_fn(|i| unknowns[element.nodes[i / 3] as usize][i % 3])
-        }).collect();
+        let places: Vec<[Option<usize>; FREEDOMS]> = self
+            .mesh
+            .elements()
+            .iter()
+            .map(|element| std::array::from_fn(|i| unknowns[element.nodes[i / 3] as usize][i % 3]))
+            .collect();
         let groups: Vec<Vec<usize>> = places.iter().map(|places| places.iter().flatten().copied().collect()).collect();
         let mut matrix = SparseSymmetric::from_groups(order, &groups);
         let mut known: Vec<Option<DMatrix<f64>>> = vec![None; self.shapes.len()];
@@ -143,10 +147,12 @@ impl Soil {
     /// What is left of a load at the present displacements \[N\].
     fn unbalanced(&mut self, load: &[[f64; 3]], springs: &[(usize, [f64; 3])]) -> Vec<[f64; 3]> {
         pull(&mut self.chunks, &self.shapes, &self.nodes.displacement);
-        let mut left: Vec<[f64; 3]> = (0..load.len()).map(|node| {
-            let pull = self.nodes.pull(&self.chunks, node);
-            [0, 1, 2].map(|axis| load[node][axis] + pull[axis])
-        }).collect();
+        let mut left: Vec<[f64; 3]> = (0..load.len())
+            .map(|node| {
+                let pull = self.nodes.pull(&self.chunks, node);
+                [0, 1, 2].map(|axis| load[node][axis] + pull[axis])
+            })
+            .collect();
         for &(node, stiffness) in springs {
             (0..3).for_each(|axis| left[node][axis] -= stiffness[axis] * self.nodes.displacement[node][axis]);
         }

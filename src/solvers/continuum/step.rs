@@ -76,21 +76,25 @@ fn advance(nodes: &mut Nodes, chunks: &[Chunk], made: &[[f64; 3]], kick: Kick) -
     let (mut displacement, mut velocity, mut position) =
         (take(&mut nodes.displacement), take(&mut nodes.velocity), take(&mut nodes.position));
     let still = &*nodes;
-    let parts = displacement.par_chunks_mut(NODES).zip(velocity.par_chunks_mut(NODES)).zip(position.par_chunks_mut(NODES));
-    let tallies: Vec<Tally> = parts.enumerate().map(|(part, ((displacement, velocity), position))| {
-        let mut tally = Tally::default();
-        for (i, ((u, v), x)) in displacement.iter_mut().zip(velocity).zip(position).enumerate() {
-            let node = part * NODES + i;
-            let after = still.kick(chunks, node, *v, kick, &mut tally);
-            for axis in 0..3 {
-                u[axis] += after[axis] * kick.dt;
-                x[axis] = made[node][axis] + u[axis];
+    let parts =
+        displacement.par_chunks_mut(NODES).zip(velocity.par_chunks_mut(NODES)).zip(position.par_chunks_mut(NODES));
+    let tallies: Vec<Tally> = parts
+        .enumerate()
+        .map(|(part, ((displacement, velocity), position))| {
+            let mut tally = Tally::default();
+            for (i, ((u, v), x)) in displacement.iter_mut().zip(velocity).zip(position).enumerate() {
+                let node = part * NODES + i;
+                let after = still.kick(chunks, node, *v, kick, &mut tally);
+                for axis in 0..3 {
+                    u[axis] += after[axis] * kick.dt;
+                    x[axis] = made[node][axis] + u[axis];
+                }
+                *v = after;
+                tally.speed += after[0] * after[0] + after[1] * after[1] + after[2] * after[2];
             }
-            *v = after;
-            tally.speed += after[0] * after[0] + after[1] * after[1] + after[2] * after[2];
-        }
-        tally
-    }).collect();
+            tally
+        })
+        .collect();
     (nodes.displacement, nodes.velocity, nodes.position) = (displacement, velocity, position);
     tallies.into_iter().fold(Tally::default(), Tally::join)
 }
@@ -111,7 +115,8 @@ impl Nodes {
             let damper = self.dashpot[node][axis];
             // against the velocity in the middle of the kick, so that a node that turns round every step is damped too
             let local = kick.local * total.abs() * sign(before[axis] + 0.5 * total / mass * time);
-            let free = ((mass - 0.5 * damper * time) * before[axis] + (total - local) * time) / (mass + 0.5 * damper * time);
+            let free =
+                ((mass - 0.5 * damper * time) * before[axis] + (total - local) * time) / (mass + 0.5 * damper * time);
             after[axis] = self.driven[node][axis].unwrap_or(free);
             if kick.watched {
                 let now = before[axis] + (after[axis] - before[axis]) * kick.last / (kick.dt + kick.last);
@@ -139,5 +144,11 @@ impl Nodes {
 /// 0 at 0, unlike `signum`.
 #[inline(always)]
 fn sign(x: f64) -> f64 {
-    if x > 0.0 { 1.0 } else if x < 0.0 { -1.0 } else { 0.0 }
+    if x > 0.0 {
+        1.0
+    } else if x < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
 }

@@ -346,6 +346,10 @@ impl<R: Real> Bed<R> {
         self.unchecked = true;
     }
 
+    pub fn damping(&self) -> f64 {
+        self.damping
+    }
+
     /// Changes every contact law, friction for example.
     pub fn change_laws(&mut self, change: impl FnMut(&mut ContactLaw)) {
         self.laws.change(change);

@@ -21,7 +21,7 @@ const WIDEST: f64 = 64.0;
 
 /// A step that a bed is held at, s.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Stride(pub f64);
+pub struct Stride(pub f64);
 
 impl Stride {
     /// The longest for which no more than `share` of the mass of all bodies is added as inertia.
@@ -41,15 +41,25 @@ impl Stride {
     }
 
     /// Prepares a bed for some steps, and gives the share of mass that is added.
-    fn hold<R: Real>(&self, bed: &mut Bed<R>) -> Result<f64, Failure> {
+    pub fn hold<R: Real>(&self, bed: &mut Bed<R>) -> Result<f64, Failure> {
         let stiffness = stiffness(bed);
         let root = PRIOR / (SAFE * self.0);
         let least = |body: &BodyState| stiffness[usize::from(body.surface)] / (root * root * body.mass);
         Ok(bed.hold_time_step(self.0, least)?.added_share)
     }
 
+    /// The one that takes such steps, s.
+    pub fn of_step(step: f64) -> Stride {
+        Stride(step / SAFE)
+    }
+
+    /// The step to take, s: what it is held at, with a margin for contacts still to come.
+    pub fn step(&self) -> f64 {
+        SAFE * self.0
+    }
+
     /// Runs for a time, s, and gives the steps that it took.
-    pub fn run<R: Real>(&self, bed: &mut Bed<R>, sleepers: &[WallId], time: f64) -> Result<u64, Failure> {
+    pub(super) fn run<R: Real>(&self, bed: &mut Bed<R>, sleepers: &[WallId], time: f64) -> Result<u64, Failure> {
         let (mut left, mut steps) = (time, 0);
         loop {
             self.hold(bed)?;
@@ -67,7 +77,7 @@ impl Stride {
     }
 
     /// Runs some steps.
-    pub fn run_steps<R: Real>(&self, bed: &mut Bed<R>, sleepers: &[WallId], steps: u64) -> Result<(), Failure> {
+    pub(super) fn run_steps<R: Real>(&self, bed: &mut Bed<R>, sleepers: &[WallId], steps: u64) -> Result<(), Failure> {
         self.hold(bed)?;
         bed.set_time_step(self.longest(bed, sleepers));
         bed.run(steps)

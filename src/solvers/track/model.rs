@@ -95,7 +95,7 @@ pub enum Foot {
 }
 
 /// An under sleeper pad: a spring and a damper between a sleeper and its underside, on which the ground pushes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct UnderPad {
     /// kg, of what moves with the underside, above 0.
     pub mass: f64,

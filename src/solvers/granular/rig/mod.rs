@@ -26,6 +26,7 @@ pub use answer::{Cycle, CycleSample};
 pub use description::{ADDED, Load, Rig, Sleeper};
 pub use error::{Resting, RigError};
 pub use sensor::{Sensor, SensorReading};
+pub use set_down::stand;
 pub use specimen::{Specimen, SpecimenState};
 pub use store::StoredTrial;
 pub use trial::Trial;

@@ -9,12 +9,25 @@ use super::super::shape::Shape;
 use super::super::stride::Stride;
 use super::super::walls::WallId;
 use super::calm::{AT_REST, DAMPING, calmed, restless};
-use super::description::{Rig, Sleeper};
+use super::description::Sleeper;
 use super::error::{Resting, RigError, in_cycle};
 use nalgebra::Vector3;
 
+/// Sets sleepers down on a bed, each where it touches its first grain, and lets them come to rest under their own weight: what acts on
+/// them is not asked for. Gives their walls, in the order of the sleepers.
+pub fn stand<R: Real>(
+    bed: &mut Bed<R>,
+    sleepers: &[Sleeper],
+    gravity: f64,
+    tell: impl FnMut(f64),
+) -> Result<Vec<WallId>, RigError> {
+    let walls = place(bed, sleepers, gravity);
+    until_rest(bed, &walls, tell)?;
+    Ok(walls)
+}
+
 /// Puts the sleepers on the bed, each where it touches its first grain.
-pub(super) fn place<R: Real>(bed: &mut Bed<R>, rig: &Rig) -> Vec<WallId> {
+pub(super) fn place<R: Real>(bed: &mut Bed<R>, sleepers: &[Sleeper], gravity: f64) -> Vec<WallId> {
     // walls, floor and plate are of one surface, the last; sleepers are too
     let surface = bed.laws().surfaces() as u16 - 1;
     let stand = |sleeper: &Sleeper| {
@@ -23,9 +36,9 @@ pub(super) fn place<R: Real>(bed: &mut Bed<R>, rig: &Rig) -> Vec<WallId> {
         let position = Vector3::new(x, y, highest(bed, sleeper) + height / 2.0);
         (Shape::Block { half: Vector3::new(length, width, height) / 2.0 }, Pose { position, ..Pose::default() })
     };
-    let blocks: Vec<_> = rig.sleepers.iter().map(stand).collect();
-    let walls = blocks.into_iter().zip(&rig.sleepers).map(|((shape, pose), sleeper)| {
-        let weight = rig.gravity * sleeper.mass;
+    let blocks: Vec<_> = sleepers.iter().map(stand).collect();
+    let walls = blocks.into_iter().zip(sleepers).map(|((shape, pose), sleeper)| {
+        let weight = gravity * sleeper.mass;
         bed.add_wall(shape, pose, surface, motion(sleeper, weight, DAMPING, Push::Constant(0.0)))
     });
     walls.collect()

@@ -67,7 +67,7 @@ impl<'a, R: Real> Trial<'a, R> {
     /// Sets the sleepers down and lets them come to rest. `tell` hears the share of the longest time that this may take.
     pub fn new(mut bed: Bed<R>, rig: &'a Rig, mut tell: impl FnMut(f64)) -> Result<Self, RigError> {
         let before = bed.steps();
-        let walls = place(&mut bed, rig);
+        let walls = place(&mut bed, &rig.sleepers, rig.gravity);
         until_rest(&mut bed, &walls, &mut tell)?;
         let size = consolidated(&mut bed, rig, &walls, tell)?;
         let rest = walls.iter().map(|wall| bed.wall(*wall).pose(bed.domain()).position.z).collect();

@@ -1,0 +1,31 @@
+//! How fast the steps of a graph with grains under its track are, without running it.
+
+use super::machine::{Machine, RunError};
+use crate::graph::{Clock, Graph, Runner};
+use crate::nodes::{
+    Builders, Forces, GrainGround, Kept, Load, NodeError, Request, Substructure, Superstructure, Telling, TimedSteps,
+    TrackSystem,
+};
+use crate::store::Beds;
+
+/// Builds a track on grains, lets its first train come and times so many steps under its wheels. Fails where no grains lie under a track
+/// with trains.
+pub fn time_steps(graph: &Graph, beds: &Beds, steps: u64, tell: &mut Telling<'_>) -> Result<TimedSteps, RunError> {
+    let machine = Machine { graph, builders: &Builders::default(), beds };
+    timed(&machine, steps, tell).map_err(|cause| RunError::node(Clock::Axles(0), cause))
+}
+
+fn timed(machine: &Machine<'_>, steps: u64, tell: &mut Telling<'_>) -> Result<TimedSteps, NodeError> {
+    let no_grains = NodeError::Other { node: "grains".into(), why: "no grains lie under a track".into() };
+    let parts = machine.grain_parts().ok_or(no_grains)?;
+    let blocks = machine.graph.blocks().ok_or(NodeError::NoTrain)?;
+    let mut ground = GrainGround::new(parts);
+    ground.prepare(tell)?;
+    let mut track = TrackSystem::new(parts.track, Some(blocks), &machine.graph.records);
+    track.stand_on(ground.responses())?;
+    let runner = Runner { kind: 0, direction: blocks.leading_direction() };
+    let settlement = ground.settlement();
+    let request = Request { axles: 0, settlement: &settlement, runner, kept: Kept::Nothing, forces: Forces::Wheels };
+    let (_, passage) = track.passage(request)?;
+    ground.time_steps(&Load { passage: &passage, trains: 1 }, steps)
+}

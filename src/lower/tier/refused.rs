@@ -1,0 +1,64 @@
+//! What grains under a track cannot run, told at what asks for it.
+
+use crate::diag::{Code, Diagnostic, Span};
+use crate::graph::GrainStretch;
+use crate::scenario::{Loading, Scenario};
+
+/// Why a track on grains cannot run; nothing where it can.
+pub(super) fn refusals(scenario: &Scenario, stretches: &[GrainStretch]) -> Vec<Diagnostic> {
+    let grains = &scenario.solve.grains;
+    let mut found = Vec::new();
+    let Some(Loading::Traffic(traffic)) = &scenario.loading else {
+        found.push(waits(
+            "grains under a track run under trains, and no train runs here".into(),
+            None,
+            "give the scene `traffic`",
+        ));
+        return found;
+    };
+    if traffic.is_mixed() {
+        let message = "trains of several kinds cannot run over grains in this version";
+        found.push(waits(message.into(), traffic.total.origin.span(), "name one train in `traffic`"));
+    }
+    if !scenario.tampings.is_empty() {
+        found.push(waits("grains cannot be tamped in this version".into(), None, "leave the `tamping` out"));
+    }
+    if grains.monolithic {
+        let help = "write `coupling = iterated`";
+        found.push(waits("this version runs track and grains in turn, not together".into(), None, help));
+    }
+    if grains.both_rails {
+        found.push(waits(
+            "the bed of both rails cannot carry a track in this version".into(),
+            None,
+            "write `symmetry = half`",
+        ));
+    }
+    let short: Vec<&str> =
+        traffic.train.vehicles.iter().filter(|v| v.length.is_none()).map(|v| v.name.as_str()).collect();
+    if *grains.continuous
+        && let Some(name) = short.first()
+    {
+        let message = format!("vehicle `{name}` has no `length`: how closely do trains follow each other?");
+        let help = "give the vehicle its `length` over couplers, such as `length = 10.3 m`";
+        found.push(waits(message, grains.continuous.origin.span(), help));
+    }
+    if stretches.iter().map(|stretch| stretch.sleepers.len()).sum::<usize>() < FEWEST {
+        let message = format!("fewer than {FEWEST} sleepers stand on grains");
+        let help = "let `solve.window` reach over more bays of a section with a layer of grains";
+        found.push(waits(message, None, help));
+    }
+    found
+}
+
+/// Sleepers on grains, at least.
+const FEWEST: usize = 2;
+
+fn waits(message: String, at: Option<Span>, help: &str) -> Diagnostic {
+    let diagnostic = Diagnostic::new(Code::E0604, message);
+    let diagnostic = match at {
+        Some(span) => diagnostic.label(span, "asked for here"),
+        None => diagnostic,
+    };
+    diagnostic.help(help)
+}

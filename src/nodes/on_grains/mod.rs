@@ -1,0 +1,182 @@
+//! A track whose sleepers stand on grains: packed beds under a rail, and soil below (the paper's DEM-FDM model).
+//!
+//! Between two exchanges the wheel forces of the plane track run over the rail of this model, and what they leave goes back: settlement
+//! of every support, and how stiff it is (the paper's Fig. 3). Sleepers beyond the grains stand on springs; their supports settle as the
+//! median of the outer third of the sleepers on grains.
+
+mod build;
+mod passage;
+mod reading;
+mod soil;
+mod step;
+mod stored;
+mod timed;
+mod wheels;
+
+pub use build::Parts;
+pub use timed::{Parted, TimedSteps};
+
+use crate::graph::{Responses, StiffnessFrom};
+use crate::nodes::{Forces, Load, Mark, NodeError, Substructure};
+use crate::solvers::track::Spring;
+use reading::Reading;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use step::Coupled;
+
+/// What a track on grains is busy with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stage {
+    Packing,
+    Laying,
+    Sleepers,
+    Soil,
+    Rail,
+    StaticLoad,
+    Passage,
+    Rest,
+}
+
+impl fmt::Display for Stage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Stage::Packing => "packing a cell",
+            Stage::Laying => "cells side by side",
+            Stage::Sleepers => "sleepers are set down",
+            Stage::Soil => "soil below",
+            Stage::Rail => "rail laid on, coming to rest",
+            Stage::StaticLoad => "static load on the sleepers",
+            Stage::Passage => "trains on grains",
+            Stage::Rest => "coming to rest",
+        })
+    }
+}
+
+/// Hears what is being done, and the share of it that is done.
+pub type Telling<'a> = dyn FnMut(Stage, f64) + 'a;
+
+/// Grains as the ground of a track.
+pub struct GrainGround<'a> {
+    parts: Parts<'a>,
+    responses: Responses,
+    live: Option<Live>,
+}
+
+/// The ground at work.
+#[derive(Clone)]
+pub(super) struct Live {
+    coupled: Coupled,
+    books: Books,
+}
+
+/// What is known of every seat.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Books {
+    /// Under the seats that do not stand on grains.
+    beyond: Vec<Option<Spring>>,
+    /// Stiffness of the support of every carried foot, N/m.
+    stiffness: Vec<f64>,
+    /// Each carried foot at rest, before the first axle and now.
+    first: Vec<Reading>,
+    rest: Vec<Reading>,
+    /// Level of every support without load below the level as built, m, of the seats.
+    settlement: Vec<f64>,
+    /// What the last train added, m.
+    rate: Vec<f64>,
+    /// Grows whenever a stiffness changes.
+    revision: u64,
+}
+
+impl<'a> GrainGround<'a> {
+    /// A ground that is not built yet: [`Substructure::prepare`] does that, or [`Substructure::restore`].
+    pub fn new(parts: Parts<'a>) -> GrainGround<'a> {
+        GrainGround { parts, responses: Responses { revision: 0, seats: Vec::new() }, live: None }
+    }
+
+    /// Times steps under the wheels of a passage, on a copy.
+    pub fn time_steps(&self, load: &Load<'_>, steps: u64) -> Result<TimedSteps, NodeError> {
+        self.live.as_ref().ok_or(NodeError::NoGround)?.time_steps(self.parts, load, steps)
+    }
+
+    fn live(&mut self) -> Result<&mut Live, NodeError> {
+        self.live.as_mut().ok_or(NodeError::NoGround)
+    }
+
+    /// Takes over what the books say of the supports.
+    fn answer(&mut self) {
+        let Some(Live { books, coupled }) = &self.live else { return };
+        let mut seats = books.beyond.clone();
+        for (foot, seat) in coupled.rail.carried().iter().enumerate() {
+            let stiffness = books.stiffness[foot];
+            seats[*seat] =
+                Some(Spring { stiffness, damping: self.parts.grains.damping_time * stiffness, seating: None });
+        }
+        self.responses = Responses { revision: books.revision, seats };
+    }
+}
+
+impl Substructure for GrainGround<'_> {
+    fn prepare(&mut self, tell: &mut Telling<'_>) -> Result<(), NodeError> {
+        self.live = Some(Live::build(self.parts, tell)?);
+        self.answer();
+        Ok(())
+    }
+
+    fn responses(&self) -> &Responses {
+        &self.responses
+    }
+
+    fn settlement(&self) -> Vec<f64> {
+        self.live.as_ref().map_or(&self.parts.grains.settlement, |live| &live.books.settlement).clone()
+    }
+
+    fn forces(&self) -> Forces {
+        Forces::Wheels
+    }
+
+    /// What the last train added, once more for each: nobody knows what grains do before they have done it.
+    fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError> {
+        let trains: u64 = loads.iter().map(|load| load.trains).sum();
+        let rate = self.live.as_ref().map(|live| live.books.rate.as_slice()).unwrap_or_default();
+        let settlement = self.settlement().into_iter().enumerate();
+        Ok(settlement.map(|(seat, s)| s + trains as f64 * rate.get(seat).copied().unwrap_or(0.0)).collect())
+    }
+
+    fn advance(&mut self, loads: &[Load<'_>]) -> Result<(), NodeError> {
+        self.advance_and_tell(loads, &mut |_, _| {})
+    }
+
+    fn advance_and_tell(&mut self, loads: &[Load<'_>], tell: &mut Telling<'_>) -> Result<(), NodeError> {
+        let parts = self.parts;
+        let live = self.live()?;
+        for load in loads {
+            live.pass(parts, load, tell)?;
+        }
+        if parts.grains.stiffness_from == StiffnessFrom::StaticLoad {
+            live.press(parts, tell)?;
+        }
+        self.answer();
+        Ok(())
+    }
+
+    /// A failure of grains ends the run, and nothing goes back to before it.
+    fn mark(&self) -> Mark {
+        Mark(Box::new(()))
+    }
+
+    fn roll_back(&mut self, _: Mark) {}
+
+    fn tamp(&mut self, _: &[usize], _: f64) -> Result<(), NodeError> {
+        Err(NodeError::Other { node: "grains".into(), why: "this version cannot tamp grains".into() })
+    }
+
+    fn save(&self) -> Result<serde_json::Value, NodeError> {
+        self.live.as_ref().ok_or(NodeError::NoGround)?.save()
+    }
+
+    fn restore(&mut self, state: &serde_json::Value) -> Result<(), NodeError> {
+        self.live = Some(Live::restore(self.parts, state)?);
+        self.answer();
+        Ok(())
+    }
+}

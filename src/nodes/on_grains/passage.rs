@@ -1,0 +1,264 @@
+//! What is done to a track on grains: it comes to rest, it is pressed, trains pass.
+
+use super::build::Parts;
+use super::reading::{Reading, Watched};
+use super::step::Coupled;
+use super::wheels::WheelRun;
+use super::{Books, Live, Stage, Telling};
+use crate::graph::StiffnessFrom;
+use crate::nodes::{Load, NodeError};
+use crate::solvers::granular::Stride;
+use crate::solvers::granular::measure::unbalance;
+use crate::solvers::track::WheelLoads;
+
+/// Local damping of grains (Cundall), and drag of the rail (1/s), on the way to rest.
+const DAMPING: f64 = 0.7;
+const DRAG: f64 = 200.0;
+/// Steps between looks at rest and at inertia.
+const LOOK: u64 = 200;
+/// At rest forces are in balance to this share of those that act, and no sleeper is faster, m/s: at two looks in a row.
+const UNBALANCE: f64 = 2e-3;
+const CREEP: f64 = 2e-5;
+const CALM: u32 = 2;
+/// Time after which a track that is built counts as restless, and time that it has to rest after a passage, s.
+const LONGEST: f64 = 2.0;
+pub(super) const AFTER: f64 = 0.25;
+/// Wheels act on the rail from so far before the grains on to so far behind them, m: wheels beyond do not reach them.
+pub(super) const REACH: f64 = 10.0;
+/// Stiffness of supports before the grains are asked, N/m.
+const GUESS: f64 = 80e6;
+/// Static load on every sleeper, N, about what bears on one under a wheel of 20 t an axle; time in which it grows and stands, s.
+const PRESS: f64 = 40e3;
+const PRESSING: [f64; 2] = [0.06, 0.03];
+
+impl Coupled {
+    /// Each carried foot now.
+    fn readings(&self) -> Vec<Reading> {
+        let of = |(foot, force): (usize, &f64)| Reading { level: self.level(foot), force: *force };
+        self.pushes.iter().enumerate().map(of).collect()
+    }
+
+    /// Adds the inertia that the contacts of now need for the step.
+    fn hold(&mut self) -> Result<(), NodeError> {
+        let stride = Stride::of_step(self.time_step());
+        self.added = 0.0;
+        for standing in &mut self.beds {
+            self.added = stride.hold(&mut standing.bed)?.max(self.added);
+            standing.bed.set_time_step(self.rail.time_step());
+        }
+        Ok(())
+    }
+
+    /// Steps under wheels that are known until a time has passed (s); `see` hears the time and looks after each.
+    pub fn run(
+        &mut self,
+        time: f64,
+        mut wheels: impl FnMut(f64, &mut Vec<(f64, f64)>),
+        mut see: impl FnMut(f64, &Coupled),
+    ) -> Result<(), NodeError> {
+        let steps = (time / self.time_step()).ceil() as u64;
+        let mut loads = Vec::new();
+        for step in 0..steps {
+            if step.is_multiple_of(LOOK) {
+                self.hold()?;
+            }
+            let now = step as f64 * self.time_step();
+            wheels(now, &mut loads);
+            self.step(&WheelLoads::Given(&loads))?;
+            see(now, self);
+        }
+        Ok(())
+    }
+
+    /// Damps everything while `work` is done.
+    fn damped<T>(&mut self, work: impl FnOnce(&mut Coupled) -> Result<T, NodeError>) -> Result<T, NodeError> {
+        let before: Vec<f64> = self.beds.iter().map(|standing| standing.bed.damping()).collect();
+        self.beds.iter_mut().for_each(|standing| standing.bed.set_damping(DAMPING));
+        self.rail.set_drag(DRAG)?;
+        let done = work(self)?;
+        self.rail.set_drag(0.0)?;
+        self.beds.iter_mut().zip(before).for_each(|(standing, damping)| standing.bed.set_damping(damping));
+        Ok(done)
+    }
+
+    /// Runs until all is at rest, or the time is over (s); gives how far from rest it is, over what counts as rest.
+    fn come_to_rest(&mut self, longest: f64, tell: &mut dyn FnMut(f64)) -> Result<f64, NodeError> {
+        self.damped(|coupled| {
+            let (mut calm, mut passed) = (0, 0.0);
+            loop {
+                let part = LOOK as f64 * coupled.time_step();
+                coupled.run(part, |_, loads| loads.clear(), |_, _| {})?;
+                passed += part;
+                let away = coupled.restlessness()?;
+                calm = if away <= 1.0 { calm + 1 } else { 0 };
+                tell((passed / longest).min(1.0));
+                if calm >= CALM || passed >= longest {
+                    return Ok(away);
+                }
+            }
+        })
+    }
+
+    /// How far from rest: 1 where it just counts as rest.
+    fn restlessness(&mut self) -> Result<f64, NodeError> {
+        let mut most: f64 = 0.0;
+        for standing in &mut self.beds {
+            let snapshot = standing.bed.snapshot()?;
+            most = most.max(unbalance(&standing.bed, &snapshot) / UNBALANCE);
+        }
+        let speed = |foot: usize| self.rail.underside(foot).velocity.abs() / CREEP;
+        Ok((0..self.pushes.len()).map(speed).fold(most, f64::max))
+    }
+
+    /// Presses all sleepers at once, and gives how stiff each support is, N/m.
+    fn press(&mut self, parts: Parts<'_>, tell: &mut dyn FnMut(f64)) -> Result<Vec<f64>, NodeError> {
+        let seats: Vec<f64> = self.rail.carried().iter().map(|seat| parts.track.seats[*seat].x).collect();
+        let [growing, standing] = PRESSING;
+        let before = self.readings();
+        self.damped(|coupled| {
+            let loads = |time: f64, loads: &mut Vec<(f64, f64)>| {
+                loads.clear();
+                loads.extend(seats.iter().map(|x| (*x, PRESS * (time / growing).min(1.0))));
+            };
+            coupled.run(growing + standing, loads, |time, _| tell(time / (growing + standing)))
+        })?;
+        let secant = |(before, now): (&Reading, Reading)| (now.force - before.force) / (now.level - before.level);
+        Ok(before.iter().zip(self.readings()).map(secant).collect())
+    }
+}
+
+impl Live {
+    /// Builds a track on grains and brings it to rest. Supports beyond the grains are made as stiff as those on them: the grains are asked on
+    /// a copy first.
+    pub fn build(parts: Parts<'_>, tell: &mut Telling<'_>) -> Result<Live, NodeError> {
+        let mut coupled = parts.build(&parts.beyond(GUESS), tell)?;
+        let mut copy = coupled.clone();
+        copy.come_to_rest(LONGEST, &mut |share| tell(Stage::Rail, share))?;
+        let stiffness = copy.press(parts, &mut |share| tell(Stage::StaticLoad, share))?;
+        drop(copy);
+        let beyond = parts.beyond(median(stiffness.clone()));
+        coupled.rail = parts.rail(&beyond, coupled.time_step())?;
+        let away = coupled.come_to_rest(LONGEST, &mut |share| tell(Stage::Rail, share))?;
+        if away > 1.0 {
+            let why = format!(
+                "the track on grains is not at rest after {LONGEST} s: {away:.1} times what counts as rest; pack the bed under more pressure"
+            );
+            return Err(NodeError::Other { node: "grains".into(), why });
+        }
+        let first = coupled.readings();
+        let settlement = parts.grains.settlement.clone();
+        let books = Books {
+            beyond,
+            stiffness,
+            rest: first.clone(),
+            first,
+            rate: vec![0.0; settlement.len()],
+            settlement,
+            revision: 1,
+        };
+        Ok(Live { coupled, books })
+    }
+
+    /// Presses a copy as it is now.
+    pub fn press(&mut self, parts: Parts<'_>, tell: &mut Telling<'_>) -> Result<(), NodeError> {
+        self.books.stiffness = self.coupled.clone().press(parts, &mut |share| tell(Stage::StaticLoad, share))?;
+        self.books.revision += 1;
+        Ok(())
+    }
+
+    /// Lets trains pass, with the wheel forces of the plane track.
+    pub fn pass(&mut self, parts: Parts<'_>, load: &Load<'_>, tell: &mut Telling<'_>) -> Result<(), NodeError> {
+        let none = || NodeError::Other { node: "grains".into(), why: "a passage brings no wheel forces".into() };
+        let wheels = load.passage.wheels.as_ref().ok_or_else(none)?;
+        // trains that follow each other closely are one run; others pass one by one, and the track comes to rest between them
+        let runs: Vec<WheelRun<'_>> = match parts.grains.headway {
+            Some(distance) => vec![WheelRun::new(wheels, load.trains, distance / wheels.speed)],
+            None => (0..load.trains).map(|_| WheelRun::new(wheels, 1, 0.0)).collect(),
+        };
+        let before = self.books.settlement.clone();
+        let all = runs.len() as f64;
+        for (number, run) in runs.iter().enumerate() {
+            self.pass_once(parts, run, &mut |stage, share| tell(stage, (number as f64 + share) / all))?;
+        }
+        let added = self.books.settlement.iter().zip(&before).map(|(now, before)| now - before);
+        self.books.rate = added.map(|added| added / load.trains.max(1) as f64).collect();
+        Ok(())
+    }
+
+    fn pass_once(&mut self, parts: Parts<'_>, wheels: &WheelRun<'_>, tell: &mut Telling<'_>) -> Result<(), NodeError> {
+        let [left, right] = parts.ends();
+        let Some([begin, end]) = wheels.within([left - REACH, right + REACH]) else { return Ok(()) };
+        let mut watched: Vec<Watched> = self.books.rest.iter().map(|rest| Watched::from_rest(*rest)).collect();
+        let time_step = self.coupled.time_step();
+        let mut shown = 0.0;
+        self.coupled.run(
+            end - begin,
+            |time, loads| wheels.at(begin + time, begin, loads),
+            |time, coupled| {
+                for (foot, watched) in watched.iter_mut().enumerate() {
+                    watched.see(Reading { level: coupled.level(foot), force: coupled.pushes[foot] }, time_step);
+                }
+                let share = time / (end - begin);
+                if share - shown > 0.01 {
+                    shown = share;
+                    tell(Stage::Passage, share);
+                }
+            },
+        )?;
+        self.coupled.come_to_rest(AFTER, &mut |_| {})?;
+        self.close_the_books(parts, &watched)
+    }
+
+    /// What a passage has left.
+    fn close_the_books(&mut self, parts: Parts<'_>, watched: &[Watched]) -> Result<(), NodeError> {
+        let Live { coupled, books } = self;
+        books.rest = coupled.readings();
+        if parts.grains.stiffness_from == StiffnessFrom::Passage {
+            for (stiffness, watched) in books.stiffness.iter_mut().zip(watched) {
+                *stiffness = watched.stiffness().unwrap_or(*stiffness);
+            }
+            books.revision += 1;
+        }
+        let started = &parts.grains.settlement;
+        let carried = coupled.rail.carried();
+        let settled: Vec<f64> = (0..carried.len())
+            .map(|foot| {
+                let (first, k) = (books.first[foot], books.stiffness[foot]);
+                watched[foot].unloaded_level(books.rest[foot], k) - (first.level - first.force / k)
+            })
+            .collect();
+        for (seat, settlement) in books.settlement.iter_mut().enumerate() {
+            let settled = match carried.binary_search(&seat) {
+                Ok(foot) => settled[foot],
+                Err(_) if parts.track.seats[seat].is_ballasted() => {
+                    median(nearest_third(parts, carried, &settled, seat))
+                }
+                Err(_) => 0.0,
+            };
+            *settlement = started[seat] + settled;
+        }
+        let added: Vec<f64> = books.settlement.iter().zip(started).map(|(now, start)| now - start).collect();
+        let level = parts.level(&books.beyond, &added);
+        Ok(coupled.rail.set_level(&level)?)
+    }
+}
+
+/// The values of the third of the carried feet that is nearest to a seat.
+fn nearest_third(parts: Parts<'_>, carried: &[usize], values: &[f64], seat: usize) -> Vec<f64> {
+    let x = |seat: usize| parts.track.seats[seat].x;
+    let mut near: Vec<(f64, f64)> =
+        carried.iter().zip(values).map(|(other, value)| ((x(*other) - x(seat)).abs(), *value)).collect();
+    near.sort_by(|a, b| a.0.total_cmp(&b.0));
+    near.truncate(carried.len().div_ceil(3));
+    near.into_iter().map(|(_, value)| value).collect()
+}
+
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => 0.0,
+        n if n.is_multiple_of(2) => 0.5 * (values[middle - 1] + values[middle]),
+        _ => values[middle],
+    }
+}

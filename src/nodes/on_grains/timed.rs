@@ -1,0 +1,121 @@
+//! How fast the steps of a track on grains are, and where their time goes.
+
+use super::Live;
+use super::build::Parts;
+use super::passage::{AFTER, REACH, median};
+use super::step::{Coupled, StandingBed};
+use super::wheels::WheelRun;
+use crate::nodes::{Load, NodeError};
+use serde::Serialize;
+use std::time::{Duration, Instant};
+
+/// Steps of a track on grains under wheels, and where their time went.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TimedSteps {
+    pub grains: usize,
+    pub pebbles: usize,
+    pub sleepers: usize,
+    pub time_step_us: f64,
+    /// Share of the mass of the beds that is added as inertia.
+    pub added_inertia: f64,
+    /// Steps of the grains in one of the soil.
+    pub soil_ratio: u32,
+    pub steps: u64,
+    /// Median of parts of the steps.
+    pub milliseconds_per_step: f64,
+    /// Mean over all steps, by part.
+    pub parts_ms: Parted,
+    /// Computing a simulated second, s, and an axle of the traffic of the scene.
+    pub seconds_a_simulated_second: f64,
+    pub seconds_an_axle: f64,
+}
+
+/// Milliseconds of a step by part.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Parted {
+    pub lists: f64,
+    pub forces: f64,
+    pub walls: f64,
+    pub motion: f64,
+    pub rail: f64,
+    pub soil: f64,
+    pub inertia: f64,
+}
+
+/// Parts of the steps that are timed.
+const TIMED: u64 = 20;
+
+impl Live {
+    /// Times steps on a copy, from where the first wheel of a passage reaches the grains.
+    pub fn time_steps(&self, parts: Parts<'_>, load: &Load<'_>, steps: u64) -> Result<TimedSteps, NodeError> {
+        let mut coupled = self.coupled.clone();
+        let none = || NodeError::Other { node: "grains".into(), why: "a passage brings no wheel forces".into() };
+        let histories = load.passage.wheels.as_ref().ok_or_else(none)?;
+        let axles = load.passage.peaks.iter().map(Vec::len).max().unwrap_or(1) as f64;
+        let run = WheelRun::new(histories, 1, 0.0);
+        let [left, right] = parts.ends();
+        let Some([begin, _]) = run.within([left, right]) else { return Err(none()) };
+        let Some([first, last]) = run.within([left - REACH, right + REACH]) else { return Err(none()) };
+        let before = coupled.parted();
+        let (mut times, mut all) = (Vec::new(), 0);
+        for part in 0..TIMED.min(steps) {
+            let count = (steps * (part + 1) / TIMED.min(steps)) - all;
+            let start = Instant::now();
+            let shift = begin + all as f64 * coupled.time_step();
+            let time = (count as f64 - 0.5) * coupled.time_step();
+            coupled.run(time, |now, loads| run.at(shift + now, begin - 1.0, loads), |_, _| {})?;
+            times.push(1e3 * start.elapsed().as_secs_f64() / count as f64);
+            all += count;
+        }
+        let milliseconds_per_step = median(times.clone());
+        let after = coupled.parted();
+        let mean = |of: fn(&Parted) -> f64| (of(&after) - of(&before)) / all as f64;
+        let [lists, forces, walls] = [mean(|p| p.lists), mean(|p| p.forces), mean(|p| p.walls)];
+        let [motion, rail, soil] = [mean(|p| p.motion), mean(|p| p.rail), mean(|p| p.soil)];
+        let whole = times.iter().sum::<f64>() / times.len().max(1) as f64;
+        let inertia = whole - (lists + forces + walls + motion + rail + soil);
+        let seconds_a_simulated_second = 1e-3 * milliseconds_per_step / coupled.time_step();
+        let time_an_axle = match parts.grains.headway {
+            Some(distance) => distance / histories.speed,
+            None => last - first + AFTER,
+        } / axles;
+        let beds = || coupled.beds.iter().map(|standing| &standing.bed);
+        Ok(TimedSteps {
+            grains: beds().map(|bed| bed.len()).sum(),
+            pebbles: beds().map(|bed| bed.pebbles().count()).sum(),
+            sleepers: coupled.pushes.len(),
+            time_step_us: 1e6 * coupled.time_step(),
+            added_inertia: coupled.added,
+            soil_ratio: coupled
+                .beds
+                .iter()
+                .filter_map(|standing| Some(standing.soil.as_ref()?.ratio()))
+                .min()
+                .unwrap_or(1),
+            steps: all,
+            milliseconds_per_step,
+            parts_ms: Parted { lists, forces, walls, motion, rail, soil, inertia },
+            seconds_a_simulated_second,
+            seconds_an_axle: seconds_a_simulated_second * time_an_axle,
+        })
+    }
+}
+
+impl Coupled {
+    /// Milliseconds spent so far, by part.
+    fn parted(&self) -> Parted {
+        let ms = |time: Duration| 1e3 * time.as_secs_f64();
+        let of_bed = |sum: Parted, standing: &StandingBed| {
+            let timings = standing.bed.timings();
+            Parted {
+                lists: sum.lists + ms(timings.search),
+                forces: sum.forces + ms(timings.forces),
+                walls: sum.walls + ms(timings.walls),
+                motion: sum.motion + ms(timings.motion),
+                ..sum
+            }
+        };
+        let of_beds = self.beds.iter().fold(Parted::default(), of_bed);
+        Parted { rail: ms(self.spent.rail), soil: ms(self.spent.soil), ..of_beds }
+    }
+}
