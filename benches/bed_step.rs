@@ -65,7 +65,7 @@ fn main() {
         "bays": options.bays,
         "bodies": bed.len(),
         "pebbles": bed.pebbles().count(),
-        "lists_made": bed.lists_made(),
+        "lists_made": bed.lists_made(), "listed_contacts": bed.listed_contacts(),
         "skin_mm": 1e3 * bed.skin(),
         "time_step_us": 1e6 * options.step,
         "laid_seconds": laid.as_secs_f64(),
