@@ -497,11 +497,7 @@ impl<R: Real> Shared<'_, R> {
         let (meeting, point) = meet(wall, record, away, touch);
         let lanes = One::<R>::new();
         let [x, y, z] = history.shear;
-        let shear = Vector([
-            Num { lanes, value: [x] },
-            Num { lanes, value: [y] },
-            Num { lanes, value: [z] },
-        ]);
+        let shear = Vector([Num { lanes, value: [x] }, Num { lanes, value: [y] }, Num { lanes, value: [z] }]);
         let contact = self.around.laws[law].force(lanes, &meeting, shear);
         if self.watched {
             *energy += spent(&meeting, &contact, history.damping, self.around.dt);

@@ -133,7 +133,8 @@ impl<R: Real> Bed<R> {
             return Ok(self.weigh_down(&[], bound, bound));
         }
         let plain = Network::new(&links, &roots).limit(&around, bound, TOLERANCE).step;
-        let masses: Vec<f64> = self.states().map(|state| if self.is_held(state.id) { 0.0 } else { state.mass }).collect();
+        let masses: Vec<f64> =
+            self.states().map(|state| if self.is_held(state.id) { 0.0 } else { state.mass }).collect();
         let moving: f64 = masses.iter().sum();
         let added = |factors: &[f64]| masses.iter().zip(factors).map(|(m, f)| m * (f - 1.0)).sum::<f64>() / moving;
         // contacts between bodies count as often as it takes: hardly ever twice
