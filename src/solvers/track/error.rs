@@ -157,9 +157,7 @@ impl fmt::Display for Flaw {
             Flaw::Sleeper => "a sleeper lacks mass or support stiffness, or has a negative damping",
             Flaw::Carried => "a sleeper carried from outside has no mass",
             Flaw::UnderPad => "an under sleeper pad lacks mass or stiffness, or has a negative damping",
-            Flaw::Unsupported => {
-                "a sleeper is carried by forces from outside, which this time step does not have: give it a support"
-            }
+            Flaw::Unsupported => "a sleeper is carried by forces from outside, which this time step does not have: give it a support",
             Flaw::NoSlab => "no slab under the seat",
             Flaw::AuxiliaryRailOutside => "an auxiliary rail reaches beyond the track",
             Flaw::AuxiliaryRailShort => "an auxiliary rail lies on fewer than two seats",

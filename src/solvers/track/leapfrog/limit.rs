@@ -62,10 +62,8 @@ impl LightestRail {
         let Ok(factor) = mass.factor() else { return Self { x: track.nodes[0], inverse_mass: f64::INFINITY } };
         let mut scratch = vec![0.0; track.order()];
         let free = track.rail.iter().zip(&track.nodes).filter(|(w, _)| track.held.iter().all(|(held, _)| held != *w));
-        let lent =
-            free.map(|(w, x)| Self { x: *x, inverse_mass: factor.inverse_column(*w, 1e-6, &mut scratch).entry(*w) });
-        lent.max_by(|a, b| a.inverse_mass.total_cmp(&b.inverse_mass))
-            .unwrap_or(Self { x: track.nodes[0], inverse_mass: 0.0 })
+        let lent = free.map(|(w, x)| Self { x: *x, inverse_mass: factor.inverse_column(*w, 1e-6, &mut scratch).entry(*w) });
+        lent.max_by(|a, b| a.inverse_mass.total_cmp(&b.inverse_mass)).unwrap_or(Self { x: track.nodes[0], inverse_mass: 0.0 })
     }
 
     /// The limit that the wheels of a vehicle set on this rail.

@@ -183,10 +183,7 @@ impl Leapfrog {
 
     /// The longest stable step and where it is set; none where no contact is explicit.
     pub fn limit(&self) -> Option<StepLimit> {
-        limit::of_track(&self.track)
-            .into_iter()
-            .chain(self.ride.as_ref().and_then(Ride::limit))
-            .min_by(StepLimit::shorter)
+        limit::of_track(&self.track).into_iter().chain(self.ride.as_ref().and_then(Ride::limit)).min_by(StepLimit::shorter)
     }
 
     pub fn track(&self) -> &Track {
@@ -253,5 +250,6 @@ fn factor(
     matrix.add_scaled(0.5 * time_step, damping);
     matrix.add_scaled(BETA * time_step * time_step, stiffness);
     track.held.iter().for_each(|(unknown, _)| matrix.pin(*unknown));
-    TwistedFactor::new(&matrix).map_err(|e: NotPositiveDefinite| TrackError::Mechanism { x: track.place_of(e.row) })
+    TwistedFactor::new(&matrix)
+        .map_err(|e: NotPositiveDefinite| TrackError::Mechanism { x: track.place_of(e.row) })
 }

@@ -125,8 +125,7 @@ impl Rider {
             let mut forces = DVector::from_column_slice(&self.weight);
             for (wheel, indentation) in vehicle.wheels.iter().zip(&indentations) {
                 let Some(unknown) = wheel.unknown else { continue };
-                let (force, slope) =
-                    (law(wheel.contact).force(*indentation), law(wheel.contact).stiffness(*indentation));
+                let (force, slope) = (law(wheel.contact).force(*indentation), law(wheel.contact).stiffness(*indentation));
                 stiffness[(unknown, unknown)] += slope;
                 forces[unknown] -= force - slope * (indentation + level);
             }

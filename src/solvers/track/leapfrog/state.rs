@@ -1,7 +1,7 @@
 //! What the next step depends on, as data.
 
-use super::Leapfrog;
 use super::energy::EnergyAccount;
+use super::Leapfrog;
 use super::riding::RideState;
 use crate::solvers::track::error::{TrackError, TrackParameter};
 use crate::solvers::track::mesh::Track;
@@ -55,8 +55,7 @@ impl LeapfrogState {
     /// The lengths of its lists.
     fn shape(&self) -> [usize; 8] {
         let [vehicles, wheels] = self.ride.shape();
-        let lists =
-            [&self.displacement, &self.before, &self.velocity, &self.acceleration, &self.pushes, &self.supports];
+        let lists = [&self.displacement, &self.before, &self.velocity, &self.acceleration, &self.pushes, &self.supports];
         let [a, b, c, d, e, f] = lists.map(Vec::len);
         [a, b, c, d, e, f, vehicles, wheels]
     }
