@@ -126,11 +126,12 @@ fn a_sleeper_stands_on_three_median_grains() {
 #[test]
 fn the_step_of_grains_is_set_by_the_lightest_on_the_stiffest() {
     // six contacts, as stiff across as along
-    let limit = |size: f64, stiffness: f64, beta: f64, alpha: f64| {
+    let limit_of = |size: f64, stiffness: f64, [beta, shear]: [f64; 2], alpha: f64| {
         let mass = PI / 6.0 * size.powi(3) * 2700.0;
-        let (w, xi) = ((6.0 * stiffness / mass).sqrt(), beta * 6f64.sqrt());
+        let (w, xi) = ((6.0 * stiffness / mass).sqrt(), (beta + 2.0 * shear) / 3.0 * 6f64.sqrt());
         2.0 / w * ((1.0 + xi * xi).sqrt() - xi) / (1.0 + alpha).sqrt()
     };
+    let limit = |size: f64, stiffness: f64, beta: f64, alpha: f64| limit_of(size, stiffness, [beta, 0.0], alpha);
     let stones = limit(0.02, 10e6, 0.3, 0.2);
     let with = |step: f64, stone: &str| {
         let solve = format!("substructure = cells, grain_step = {step:e} s");
@@ -142,6 +143,9 @@ fn the_step_of_grains_is_set_by_the_lightest_on_the_stiffest() {
     let softer = limit(0.02, 10e6, 0.0, 0.0);
     assert!(with(softer * 0.999, "viscous_damping = 0, local_damping = 0").is_empty());
     assert!(!with(softer * 1.001, "viscous_damping = 0, local_damping = 0").is_empty());
+    let sheared = limit_of(0.02, 10e6, [0.3; 2], 0.2);
+    assert!(with(sheared * 0.999, "shear_damping = 0.3").is_empty());
+    assert!(!with(sheared * 1.001, "shear_damping = 0.3").is_empty());
     // a second material with smaller grains sets the step
     let layers = "[stone: 400 mm, gravel: 300 mm, soils.sandy_gravel: 1 m]";
     let gravel = "granular gravel : base { grading = { passing = [10 mm: 0 %, 20 mm: 100 %] } }";

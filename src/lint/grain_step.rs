@@ -2,7 +2,8 @@
 //!
 //! A grain of mass m among larger ones, held by Z contacts of stiffness k and tangential ratio r, swings with `w^2 = K / m`,
 //! `K = Z k (1 + 2 r) / 3`. A leapfrog with dashpots of ratio beta and local damping alpha bears
-//! `dt = (2 / w) (sqrt(1 + xi^2) - xi) / sqrt(1 + alpha)`, `xi = beta sqrt(Z (1 + 2 r) / 3)`. The material with the least step is named.
+//! `dt = (2 / w) (sqrt(1 + xi^2) - xi) / sqrt(1 + alpha)`, `xi = (beta + 2 beta_s sqrt(r)) sqrt(Z / (3 (1 + 2 r)))`, beta_s that of the shear
+//! dashpot. The material with the least step is named.
 
 use super::grains::{GrainLayer, approach, beds, contact_force};
 use crate::diag::{Code, Diagnostic};
@@ -60,8 +61,10 @@ fn limit(bed: &GrainLayer<'_>, pressure: f64) -> f64 {
     let granular = bed.granular;
     let size = granular.grading.smallest();
     let (_, stiffness) = approach(&granular.contact, size, contact_force(size, pressure));
-    let held = CONTACTS * (1.0 + 2.0 * *granular.shear_ratio) / 3.0;
+    let shear = *granular.shear_ratio;
+    let held = CONTACTS * (1.0 + 2.0 * shear) / 3.0;
     let frequency = (held * stiffness / mass(bed)).sqrt();
-    let damping = *granular.viscous_damping * held.sqrt();
+    let ratio = *granular.viscous_damping + 2.0 * *granular.shear_damping * shear.sqrt();
+    let damping = ratio * (CONTACTS / (3.0 * (1.0 + 2.0 * shear))).sqrt();
     2.0 / frequency * ((1.0 + damping * damping).sqrt() - damping) / (1.0 + *granular.local_damping).sqrt()
 }

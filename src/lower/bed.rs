@@ -36,6 +36,7 @@ pub(super) const READS: Reads = Reads {
         "granular.wall_friction",
         "granular.local_damping",
         "granular.viscous_damping",
+        "granular.shear_damping",
         "granular.dashpots",
         "granular.packing",
         "packing.lifts",
@@ -242,7 +243,7 @@ fn filling(layer: &Layer, granular: &Granular, x: f64, templates: Vec<Template>)
         normal_stiffness: normal,
         shear_stiffness: normal * *granular.shear_ratio,
         friction: *granular.friction,
-        damping: [*granular.viscous_damping; 2],
+        damping: [*granular.viscous_damping, *granular.shear_damping],
         mode,
     };
     let curve = granular.grading.curve();

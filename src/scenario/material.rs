@@ -41,8 +41,10 @@ pub struct Granular {
     pub wall_friction: Given,
     /// Share of the force out of balance that opposes motion, under traffic.
     pub local_damping: Given,
-    /// Damping of a contact, as share of its critical damping, under traffic.
+    /// Normal dashpot of a contact, as share of its critical damping, under traffic.
     pub viscous_damping: Given,
+    /// The same of its shear dashpot.
+    pub shear_damping: Given,
     /// Whether a dashpot may pull grains that part.
     pub dashpots_pull: bool,
     pub packing: Packing,

@@ -67,6 +67,7 @@ fn granular(record: &Record, files: &mut Files<'_>, findings: &mut Findings) -> 
         wall_friction,
         local_damping: given(record, "local_damping")?,
         viscous_damping: given(record, "viscous_damping")?,
+        shear_damping: given(record, "shear_damping")?,
         dashpots_pull: record.word("dashpots")? == "full",
         packing: Packing {
             lifts: packing.number("lifts")?.value as u32,

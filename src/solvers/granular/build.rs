@@ -245,6 +245,7 @@ impl<R: Real> Bed<R> {
         let mut owner = Vec::with_capacity(self.owner.len());
         let mut clumps = Vec::with_capacity(self.clumps.len());
         let mut bodies = Vec::with_capacity(self.bodies.len());
+        let mut arms = Vec::with_capacity(self.arms.len());
         for (new, &(_, old)) in order.iter().enumerate() {
             let mut body = self.bodies[old as usize];
             let range = body.first as usize..body.first as usize + usize::from(body.pebbles);
@@ -252,13 +253,17 @@ impl<R: Real> Bed<R> {
             records.extend_from_slice(&self.records[range]);
             owner.resize(records.len(), new as u32);
             if body.clump != SPHERE {
-                clumps.push(self.clumps[body.clump as usize]);
-                body.clump = clumps.len() as u32 - 1;
+                let mut clump = self.clumps[body.clump as usize];
+                let own = clump.arms as usize..clump.arms as usize + usize::from(body.pebbles);
+                clump.arms = arms.len() as u32;
+                arms.extend_from_slice(&self.arms[own]);
+                body.clump = clumps.len() as u32;
+                clumps.push(clump);
             }
             self.index[body.id as usize] = new as u32;
             bodies.push(body);
         }
-        (self.records, self.owner, self.clumps, self.bodies) = (records, owner, clumps, bodies);
+        (self.records, self.owner, self.clumps, self.bodies, self.arms) = (records, owner, clumps, bodies, arms);
     }
 
     fn seen(&self) -> Vec<Seen> {

@@ -2,14 +2,13 @@
 
 use super::body::{Body, Clump, SPHERE};
 use super::force::Outcome;
-use super::lanes::{Lanes, Real, Work};
+use super::lanes::{BLOCK, Fine, FineVector, Lanes, Real, Vector, Work};
 use super::prefetch::prefetch;
 use super::record::Record;
 use super::rotation;
-use super::vector::{Vec3, add, cross, dot, scale, sub};
+use super::vector::{Vec3, dot};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::ops::Range;
 
 /// Bodies of one task. Fixed, so that threads change nothing.
 pub(super) const TASK: usize = 512;
@@ -85,39 +84,37 @@ pub(super) struct Moving<'a, R: Real> {
 
 /// Bodies and pebbles of one task.
 struct Share<'a, R: Real> {
-    at: u32,
-    bodies: &'a mut [Body],
-    first_pebble: u32,
-    records: &'a mut [R::Record],
-    clumps: &'a mut [Clump],
-    arms: &'a [Vec3],
-    contacts: (&'a Incidence, &'a [Outcome<R>]),
+    /// The first body among all, for what is told of it; the first pebble and the first clump.
+    at: Task,
+    moving: Moving<'a, R>,
+    forces: Forces<'a, R>,
     drive: &'a Drive,
 }
 
-/// Moves the bodies of `tasks` by one step under the forces of `outcomes`.
-pub(super) fn advance<R: Real>(
-    moving: Moving<R>,
-    tasks: &[Task],
-    contacts: (&Incidence, &[Outcome<R>]),
-    drive: &Drive,
-) -> Tally {
+/// Contacts, and what they do to their bodies.
+pub(super) struct Forces<'a, R: Real> {
+    pub incidence: &'a Incidence,
+    pub outcomes: &'a [Outcome<R>],
+}
+
+impl<R: Real> Clone for Forces<'_, R> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<R: Real> Copy for Forces<'_, R> {}
+
+/// Moves the bodies of `tasks` by one step under the forces of their contacts.
+pub(super) fn advance<R: Real>(moving: Moving<R>, tasks: &[Task], forces: Forces<R>, drive: &Drive) -> Tally {
     let Moving { mut bodies, mut records, mut clumps, arms } = moving;
     let mut shares = Vec::with_capacity(tasks.len());
     for (task, next) in tasks.iter().zip(&tasks[1..]) {
         let (some_bodies, rest_bodies) = bodies.split_at_mut((next.body - task.body) as usize);
         let (some_records, rest_records) = records.split_at_mut((next.pebble - task.pebble) as usize);
         let (some_clumps, rest_clumps) = clumps.split_at_mut((next.clump - task.clump) as usize);
-        shares.push(Share {
-            at: task.body,
-            bodies: some_bodies,
-            first_pebble: task.pebble,
-            records: some_records,
-            clumps: some_clumps,
-            arms,
-            contacts,
-            drive,
-        });
+        let moving = Moving { bodies: some_bodies, records: some_records, clumps: some_clumps, arms };
+        shares.push(Share { at: *task, moving, forces, drive });
         (bodies, records, clumps) = (rest_bodies, rest_records, rest_clumps);
     }
     let tallies: Vec<Tally> = shares.into_par_iter().map(R::dispatch).collect();
@@ -126,8 +123,9 @@ pub(super) fn advance<R: Real>(
 
 /// Force and moment about its centre on a pebble: the first six of eight numbers.
 #[inline(always)]
-fn sum<R: Real>(pebble: usize, (incidence, outcomes): (&Incidence, &[Outcome<R>])) -> [f64; 8] {
+fn sum<R: Real>(pebble: usize, forces: Forces<R>) -> [f64; 8] {
     let mut sums = [0.0; 8];
+    let Forces { incidence, outcomes } = forces;
     let range = incidence.start[pebble] as usize..incidence.start[pebble + 1] as usize;
     for &entry in &incidence.entries[range] {
         let outcome = &outcomes[(entry >> 1) as usize];
@@ -142,199 +140,408 @@ fn sum<R: Real>(pebble: usize, (incidence, outcomes): (&Incidence, &[Outcome<R>]
     sums
 }
 
-/// Cundall's local damping: each component is smaller where it drives the motion and larger where it brakes.
-#[inline(always)]
-fn damp(acting: Vec3, velocity: Vec3, per_inertia: f64, drive: &Drive) -> Vec3 {
-    // the velocity of the time of the force, by its own acceleration
-    [0, 1, 2].map(|c| {
-        let mid = velocity[c] + 0.5 * drive.kick * per_inertia * acting[c];
-        if mid == 0.0 { 0.0 } else { -drive.damping * acting[c].abs() * mid.signum() }
-    })
-}
-
 impl<R: Real> Work<R> for Share<'_, R> {
     type Output = Tally;
 
     #[inline(always)]
-    fn run<L: Lanes<Real = R>>(self, _: L) -> Tally {
-        let Share { arms, contacts, drive, mut bodies, mut records, mut clumps, .. } = self;
-        let (mut place, mut pebble) = (self.at, self.first_pebble as usize);
-        let mut tally = Tally::default();
-        let mut sums = Vec::with_capacity(GROUP);
-        ask_for(bodies, 0..2 * GROUP);
-        while !bodies.is_empty() {
-            // first the sums of some bodies, then their motion: what follows does not wait for what goes before
-            let count = group(bodies);
-            let (some, rest) = bodies.split_at_mut(count);
-            ask_for(rest, GROUP..GROUP + count);
-            let pebbles = some.iter().map(|body| usize::from(body.pebbles)).sum();
-            sums.clear();
-            // a closure here would be left outside the function that has the wide instructions
-            for p in pebble..pebble + pebbles {
-                sums.push(sum(p, contacts));
-            }
-            let (mine, others) = records.split_at_mut(pebbles);
-            let composed = some.iter().filter(|body| body.clump != SPHERE).count();
-            let (here, beyond) = clumps.split_at_mut(composed);
-            move_group::<R>(some, mine, here, (arms, &sums), (place, drive), &mut tally);
-            (bodies, records, clumps) = (rest, others, beyond);
-            (place, pebble) = (place + count as u32, pebble + pebbles);
+    fn run<L: Lanes<Real = R>>(mut self, lanes: L) -> Tally {
+        let count = self.moving.bodies.len();
+        let mut told = Told { speeds: vec![0.0; count], spent: Vec::new() };
+        if self.drive.watched {
+            told.spent = vec![[0.0; SPENT]; count];
         }
-        tally
+        // bodies of a kind move together, so many as there are lanes; what is left over at the end moves last
+        let (mut spheres, mut composed) = (Batch::default(), Batch::default());
+        let mut clump = 0;
+        for body in 0..count {
+            let kind = &self.moving.bodies[body];
+            let pebble = (kind.first - self.at.pebble) as usize;
+            let pebbles = usize::from(kind.pebbles);
+            ask_for(self.moving.bodies, body + AHEAD);
+            if kind.clump == SPHERE {
+                spheres.put(Member { body, pebble, pebbles, clump: 0 });
+                if spheres.count == L::WIDTH {
+                    self.spheres(lanes, &spheres, &mut told);
+                    spheres.count = 0;
+                }
+            } else {
+                composed.put(Member { body, pebble, pebbles, clump });
+                clump += 1;
+                if composed.count == L::WIDTH {
+                    self.composed(lanes, &composed, &mut told);
+                    composed.count = 0;
+                }
+            }
+        }
+        if spheres.count > 0 {
+            self.spheres(lanes, &spheres, &mut told);
+        }
+        if composed.count > 0 {
+            self.composed(lanes, &composed, &mut told);
+        }
+        told.sum_up(self.at.body)
     }
 }
 
-/// Asks for bodies that will move soon; each lies in two lines of the cache.
+/// Bodies between what is asked for and what is looked at.
+const AHEAD: usize = 32;
+
+/// Asks for a body that will move soon; each lies in two lines of the cache.
 #[inline(always)]
-fn ask_for(bodies: &[Body], range: Range<usize>) {
-    for body in bodies.iter().take(range.end).skip(range.start) {
+fn ask_for(bodies: &[Body], place: usize) {
+    if let Some(body) = bodies.get(place) {
         prefetch(&body.velocity);
         prefetch(&body.id);
     }
 }
 
-/// Pebbles whose forces are summed before their bodies move.
-const GROUP: usize = 24;
-
-/// Bodies of the next group.
-#[inline(always)]
-fn group(bodies: &[Body]) -> usize {
-    let mut pebbles = 0;
-    let fits = |body: &&Body| {
-        pebbles += usize::from(body.pebbles);
-        pebbles <= GROUP
-    };
-    bodies.iter().take_while(fits).count().max(1)
+/// A body of a task.
+#[derive(Debug, Clone, Copy, Default)]
+struct Member {
+    body: usize,
+    pebble: usize,
+    pebbles: usize,
+    clump: usize,
 }
 
+/// Bodies that move together, one a lane.
+#[derive(Default)]
+struct Batch {
+    members: [Member; BLOCK],
+    count: usize,
+}
+
+impl Batch {
+    #[inline(always)]
+    fn put(&mut self, member: Member) {
+        self.members[self.count] = member;
+        self.count += 1;
+    }
+
+    #[inline(always)]
+    fn members(&self) -> &[Member] {
+        &self.members[..self.count]
+    }
+}
+
+/// Energies of a body in a step: translation, rotation, work of gravity, lost to damping of translation and of rotation.
+const SPENT: usize = 5;
+
+/// What the bodies of a task tell, in their order: sums over it do not depend on the lanes.
+struct Told {
+    /// Largest squared speed of a pebble.
+    speeds: Vec<f64>,
+    spent: Vec<[f64; SPENT]>,
+}
+
+impl Told {
+    #[inline(always)]
+    fn speeds<L: Lanes>(&mut self, batch: &Batch, speeds: Fine<L>) {
+        let column = column(speeds);
+        for (l, member) in batch.members().iter().enumerate() {
+            self.speeds[member.body] = column[l];
+        }
+    }
+
+    /// Bodies of no inverse mass keep their velocity, and no account.
+    #[inline(always)]
+    fn spent<L: Lanes>(&mut self, batch: &Batch, inverse: Fine<L>, spent: [Fine<L>; SPENT]) {
+        let inverse = column(inverse);
+        for (kind, energies) in spent.into_iter().enumerate() {
+            let energies = column(energies);
+            for (l, member) in batch.members().iter().enumerate() {
+                if inverse[l] > 0.0 {
+                    self.spent[member.body][kind] = energies[l];
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn sum_up(self, first: u32) -> Tally {
+        let mut tally = Tally::default();
+        for (place, &speed) in (first..).zip(&self.speeds) {
+            if !speed.is_finite() {
+                tally.lost = tally.lost.or(Some(place));
+            } else if speed > tally.fastest.0 {
+                tally.fastest = (speed, place);
+            }
+        }
+        for &[translation, rotation, gravity, damping, turning] in &self.spent {
+            tally.translation += translation;
+            tally.rotation += rotation;
+            tally.gravity += gravity;
+            tally.damping -= damping;
+            tally.damping -= turning;
+        }
+        tally
+    }
+}
+
+/// A number of each lane.
 #[inline(always)]
-fn move_group<R: Real>(
-    bodies: &mut [Body],
-    records: &mut [R::Record],
-    clumps: &mut [Clump],
-    (arms, sums): (&[Vec3], &[[f64; 8]]),
-    (first, drive): (u32, &Drive),
-    tally: &mut Tally,
-) {
-    let (mut pebble, mut composed) = (0, 0);
-    for (index, body) in bodies.iter_mut().enumerate() {
-        let range = pebble..pebble + usize::from(body.pebbles);
-        pebble = range.end;
-        let speed = if body.clump == SPHERE {
-            sphere(body, &mut records[range.start], &sums[range.start], drive, tally)
-        } else {
-            let clump = &mut clumps[composed];
-            composed += 1;
-            clump_step::<R>(body, clump, &mut records[range.clone()], arms, &sums[range], drive, tally)
-        };
-        let place = first + index as u32;
-        if !speed.is_finite() {
-            tally.lost = tally.lost.or(Some(place));
-        } else if speed > tally.fastest.0 {
-            tally.fastest = (speed, place);
+fn column<L: Lanes>(value: Fine<L>) -> [f64; BLOCK] {
+    let mut column = [0.0; BLOCK];
+    value.store(&mut column[..L::WIDTH]);
+    column
+}
+
+/// Three numbers of each lane.
+#[inline(always)]
+fn columns<L: Lanes>(value: FineVector<L>) -> [[f64; BLOCK]; 3] {
+    let [x, y, z] = value.0;
+    [column(x), column(y), column(z)]
+}
+
+/// Rows, a lane each, as columns.
+#[derive(Clone, Copy)]
+struct Table<const N: usize>([[f64; BLOCK]; N]);
+
+impl<const N: usize> Table<N> {
+    #[inline(always)]
+    fn new() -> Self {
+        Table([[0.0; BLOCK]; N])
+    }
+
+    #[inline(always)]
+    fn put(&mut self, lane: usize, row: [f64; N]) {
+        for c in 0..N {
+            self.0[c][lane] = row[c];
+        }
+    }
+
+    #[inline(always)]
+    fn one<L: Lanes>(&self, lanes: L, column: usize) -> Fine<L> {
+        Fine::load(lanes, &self.0[column])
+    }
+
+    #[inline(always)]
+    fn three<L: Lanes>(&self, lanes: L, first: usize) -> FineVector<L> {
+        FineVector::load(lanes, [&self.0[first], &self.0[first + 1], &self.0[first + 2]])
+    }
+}
+
+/// Cundall's local damping: each component is smaller where it drives the motion and larger where it brakes.
+#[inline(always)]
+fn damp<L: Lanes>(
+    acting: FineVector<L>,
+    velocity: FineVector<L>,
+    per_inertia: Fine<L>,
+    drive: &Drive,
+) -> FineVector<L> {
+    let zero = per_inertia.alike(0.0);
+    // the velocity of the time of the force, by its own acceleration
+    let half = per_inertia.alike(0.5 * drive.kick) * per_inertia;
+    let mut lost = [zero; 3];
+    for c in 0..3 {
+        let mid = velocity.0[c] + half * acting.0[c];
+        let most = zero.alike(drive.damping) * acting.0[c].abs();
+        lost[c] = (-most).where_less(zero, mid, most.where_less(mid, zero, zero));
+    }
+    FineVector(lost)
+}
+
+/// What contacts, gravity and damping do to the velocity of bodies.
+struct Kick<L: Lanes> {
+    velocity: FineVector<L>,
+    /// Energy of translation, work of gravity, loss; nothing where nobody watches.
+    spent: [Fine<L>; 3],
+}
+
+/// The velocity that gravity, damping and the force of its contacts give a body.
+#[inline(always)]
+fn kick<L: Lanes>(
+    (before, inverse, mass): (FineVector<L>, Fine<L>, Fine<L>),
+    force: FineVector<L>,
+    drive: &Drive,
+) -> Kick<L> {
+    let lanes = mass.lanes;
+    let weight = FineVector::splat(lanes, drive.gravity).scale(mass);
+    let mut acting = force + weight;
+    let zero = mass.alike(0.0);
+    let mut lost = FineVector([zero; 3]);
+    if drive.damping > 0.0 {
+        lost = damp(acting, before, inverse, drive);
+        acting = acting + lost;
+    }
+    let change = acting.scale(inverse);
+    let velocity = before + change.scale(mass.alike(drive.kick));
+    let mut spent = [zero; 3];
+    if drive.watched {
+        let (mean, dt) = (velocity - change.scale(mass.alike(0.5 * drive.dt)), mass.alike(drive.dt));
+        spent = [mass.alike(0.5) / inverse * mean.dot(mean), weight.dot(mean) * dt, lost.dot(mean) * dt];
+    }
+    Kick { velocity, spent }
+}
+
+impl<R: Real> Share<'_, R> {
+    #[inline(always)]
+    fn spheres<L: Lanes<Real = R>>(&mut self, lanes: L, batch: &Batch, told: &mut Told) {
+        let Share { moving, drive, .. } = self;
+        // state is kept in values until all is known: to read back what was just written costs more than the arithmetic
+        let (mut states, mut sums, mut places) = (Table::<9>::new(), Table::<8>::new(), Table::<3>::new());
+        for (l, member) in batch.members().iter().enumerate() {
+            let body = &moving.bodies[member.body];
+            let ([u, v, w], [p, q, r]) = (body.velocity, body.spin);
+            states.put(l, [u, v, w, p, q, r, body.inverse_mass, body.inverse_inertia, body.mass]);
+            sums.put(l, sum(self.at.pebble as usize + member.pebble, self.forces));
+            places.put(l, moving.records[member.pebble].position());
+        }
+        let (inverse, per_inertia) = (states.one(lanes, 6), states.one(lanes, 7));
+        let before = (states.three(lanes, 0), inverse, states.one(lanes, 8));
+        let Kick { velocity, spent: [translation, gravity, damping] } = kick(before, sums.three(lanes, 0), drive);
+        let mut acting = sums.three(lanes, 3);
+        let zero = inverse.alike(0.0);
+        let mut lost = FineVector([zero; 3]);
+        let spin = states.three(lanes, 3);
+        if drive.damping > 0.0 {
+            lost = damp(acting, spin, per_inertia, drive);
+            acting = acting + lost;
+        }
+        let change = acting.scale(per_inertia);
+        let spin = spin + change.scale(zero.alike(drive.kick));
+        if drive.watched {
+            let mean = spin - change.scale(zero.alike(0.5 * drive.dt));
+            let none = zero;
+            // what does not turn has no energy of it
+            let rotation = (zero.alike(0.5) / per_inertia * mean.dot(mean)).where_less(zero, per_inertia, none);
+            let turning = (lost.dot(mean) * zero.alike(drive.dt)).where_less(zero, per_inertia, none);
+            told.spent(batch, inverse, [translation, rotation, gravity, damping, turning]);
+        }
+        let place = columns(places.three(lanes, 0) + velocity.scale(zero.alike(drive.dt)));
+        let (narrow, turning) = (velocity.narrow(), spin.narrow());
+        told.speeds(batch, velocity.dot(velocity));
+        let (velocity, spin) = (columns(velocity), columns(spin));
+        let motion = Motion::of(narrow, turning);
+        for (l, member) in batch.members().iter().enumerate() {
+            let record = &mut moving.records[member.pebble];
+            record.place(row(&place, l));
+            motion.give(l, record);
+            let body = &mut moving.bodies[member.body];
+            (body.velocity, body.spin) = (row(&velocity, l), row(&spin, l));
+        }
+    }
+
+    #[inline(always)]
+    fn composed<L: Lanes<Real = R>>(&mut self, lanes: L, batch: &Batch, told: &mut Told) {
+        let Share { moving, drive, .. } = self;
+        let (mut states, mut shapes) = (Table::<8>::new(), Table::<13>::new());
+        let (mut most, mut counts) = (0, [0.0; BLOCK]);
+        for (l, member) in batch.members().iter().enumerate() {
+            let (body, clump) = (&moving.bodies[member.body], &moving.clumps[member.clump]);
+            let ([u, v, w], [p, q, r]) = (body.velocity, body.spin);
+            states.put(l, [u, v, w, p, q, r, body.inverse_mass, body.mass]);
+            let ([x, y, z], [a, b, c, d], [f, g, h]) = (clump.centre, clump.attitude, clump.turning);
+            let [i, j, k] = clump.inverse_inertia;
+            shapes.put(l, [x, y, z, a, b, c, d, f, g, h, i, j, k]);
+            counts[l] = member.pebbles as f64;
+            most = most.max(member.pebbles);
+        }
+        let attitude = [shapes.one(lanes, 3), shapes.one(lanes, 4), shapes.one(lanes, 5), shapes.one(lanes, 6)];
+        let turned = rotation::matrix_in_lanes(&attitude);
+        let (inverse, mass) = (states.one(lanes, 6), states.one(lanes, 7));
+        let zero = mass.alike(0.0);
+        let (mut force, mut moment) = (FineVector([zero; 3]), FineVector([zero; 3]));
+        for k in 0..most {
+            // a lane without such a pebble adds nothing
+            let (mut sums, mut arms) = (Table::<8>::new(), Table::<3>::new());
+            for (l, member) in batch.members().iter().enumerate() {
+                if k < member.pebbles {
+                    sums.put(l, sum(self.at.pebble as usize + member.pebble + k, self.forces));
+                    arms.put(l, moving.arms[moving.clumps[member.clump].arms as usize + k]);
+                }
+            }
+            let (push, turn) = (sums.three(lanes, 0), sums.three(lanes, 3));
+            force = force + push;
+            moment = moment + (turn + turned.apply(arms.three(lanes, 0)).cross(push));
+        }
+        let before = (states.three(lanes, 0), inverse, mass);
+        let Kick { velocity, spent: [translation, gravity, damping] } = kick(before, force, drive);
+        let (turning, own) = (shapes.three(lanes, 7), shapes.three(lanes, 10));
+        let mut lost = FineVector([zero; 3]);
+        if drive.damping > 0.0 {
+            // the sign of the spin decides; the acceleration of half a step moves it by little
+            lost = damp(moment, turning, zero, drive);
+            moment = moment + lost;
+        }
+        let spin = states.three(lanes, 3) + moment.scale(mass.alike(drive.kick));
+        if drive.watched {
+            let local = turned.apply_back(spin - moment.scale(mass.alike(0.5 * drive.dt)));
+            let turning = local.times(own);
+            let rotation = mass.alike(0.5) * local.dot(turning);
+            let turned = lost.dot(turned.apply(turning)) * mass.alike(drive.dt);
+            told.spent(batch, inverse, [translation, rotation, gravity, damping, turned]);
+        }
+        let centre = shapes.three(lanes, 0) + velocity.scale(mass.alike(drive.dt));
+        // a clump that keeps its spin turns like a sphere of unit inertia
+        let free = own.0[0] + own.0[1] + own.0[2];
+        let momentum = spin.where_less(zero, free, turning);
+        let own = own.where_less(zero, free, FineVector([mass.alike(1.0); 3]));
+        let (attitude, turning) = rotation::turn_in_lanes(&attitude, &turned, momentum, own, drive.dt);
+        let turned = rotation::matrix_in_lanes(&attitude);
+        let narrow = turning.narrow();
+        let mut fastest = zero;
+        let counts = Fine::load(lanes, &counts);
+        for k in 0..most {
+            let mut arms = Table::<3>::new();
+            for (l, member) in batch.members().iter().enumerate() {
+                if k < member.pebbles {
+                    arms.put(l, moving.arms[moving.clumps[member.clump].arms as usize + k]);
+                }
+            }
+            let arm = turned.apply(arms.three(lanes, 0));
+            let own = velocity + turning.cross(arm);
+            let (place, motion) = (columns(centre + arm), Motion::of(own.narrow(), narrow));
+            for (l, member) in batch.members().iter().enumerate() {
+                if k < member.pebbles {
+                    let record = &mut moving.records[member.pebble + k];
+                    record.place(row(&place, l));
+                    motion.give(l, record);
+                }
+            }
+            let speed = own.dot(own).where_less(mass.alike(k as f64), counts, zero);
+            fastest = speed.where_less(fastest, speed, fastest);
+        }
+        // a maximum forgets what is no number
+        let of_centre = velocity.dot(velocity);
+        told.speeds(batch, fastest + (of_centre - of_centre));
+        let (velocity, spin, centre, turning) = (columns(velocity), columns(spin), columns(centre), columns(turning));
+        let [a, b, c, d] = attitude;
+        let attitude = [column(a), column(b), column(c), column(d)];
+        for (l, member) in batch.members().iter().enumerate() {
+            let (body, clump) = (&mut moving.bodies[member.body], &mut moving.clumps[member.clump]);
+            (body.velocity, body.spin) = (row(&velocity, l), row(&spin, l));
+            (clump.centre, clump.turning) = (row(&centre, l), row(&turning, l));
+            clump.attitude = [attitude[0][l], attitude[1][l], attitude[2][l], attitude[3][l]];
         }
     }
 }
 
-/// The velocity that gravity, damping and the force of its contacts give a body. State is kept in values until all is known:
-/// to read back what was just written costs more than the arithmetic.
+/// A vector of one lane.
 #[inline(always)]
-fn kick(body: &Body, force: Vec3, drive: &Drive, tally: &mut Tally) -> Vec3 {
-    let weight = scale(drive.gravity, body.mass);
-    let mut acting = add(force, weight);
-    let mut lost = [0.0; 3];
-    if drive.damping > 0.0 {
-        lost = damp(acting, body.velocity, body.inverse_mass, drive);
-        acting = add(acting, lost);
-    }
-    let change = scale(acting, body.inverse_mass);
-    let velocity = add(body.velocity, scale(change, drive.kick));
-    if drive.watched && body.inverse_mass > 0.0 {
-        let mean = sub(velocity, scale(change, 0.5 * drive.dt));
-        tally.translation += 0.5 / body.inverse_mass * dot(mean, mean);
-        tally.gravity += dot(weight, mean) * drive.dt;
-        tally.damping -= dot(lost, mean) * drive.dt;
-    }
-    velocity
+fn row<T: Copy>(columns: &[[T; BLOCK]; 3], lane: usize) -> [T; 3] {
+    [columns[0][lane], columns[1][lane], columns[2][lane]]
 }
 
-#[inline(always)]
-fn sphere<R: Real, T: Record<R>>(
-    body: &mut Body,
-    record: &mut T,
-    &[x, y, z, u, v, w, ..]: &[f64; 8],
-    drive: &Drive,
-    tally: &mut Tally,
-) -> f64 {
-    let velocity = kick(body, [x, y, z], drive, tally);
-    let mut acting = [u, v, w];
-    let mut lost = [0.0; 3];
-    if drive.damping > 0.0 {
-        lost = damp(acting, body.spin, body.inverse_inertia, drive);
-        acting = add(acting, lost);
-    }
-    let change = scale(acting, body.inverse_inertia);
-    let spin = add(body.spin, scale(change, drive.kick));
-    if drive.watched && body.inverse_inertia > 0.0 {
-        let mean = sub(spin, scale(change, 0.5 * drive.dt));
-        tally.rotation += 0.5 / body.inverse_inertia * dot(mean, mean);
-        tally.damping -= dot(lost, mean) * drive.dt;
-    }
-    record.place(add(record.position(), scale(velocity, drive.dt)));
-    record.move_with(velocity.map(R::from_f64), spin.map(R::from_f64));
-    (body.velocity, body.spin) = (velocity, spin);
-    dot(velocity, velocity)
+/// Velocity and spin of pebbles, as their contacts read them.
+struct Motion<R> {
+    velocity: [[R; BLOCK]; 3],
+    spin: [[R; BLOCK]; 3],
 }
 
-#[inline(always)]
-fn clump_step<R: Real>(
-    body: &mut Body,
-    clump: &mut Clump,
-    records: &mut [R::Record],
-    arms: &[Vec3],
-    sums: &[[f64; 8]],
-    drive: &Drive,
-    tally: &mut Tally,
-) -> f64 {
-    let arms = &arms[clump.arms as usize..clump.arms as usize + records.len()];
-    let turned = rotation::matrix(&clump.attitude);
-    let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
-    for (arm, &[x, y, z, u, v, w, ..]) in arms.iter().zip(sums) {
-        force = add(force, [x, y, z]);
-        moment = add(moment, add([u, v, w], cross(rotate(&turned, *arm), [x, y, z])));
+impl<R: Real> Motion<R> {
+    #[inline(always)]
+    fn of<L: Lanes<Real = R>>(velocity: Vector<L>, spin: Vector<L>) -> Self {
+        let mut motion = Motion { velocity: [[R::default(); BLOCK]; 3], spin: [[R::default(); BLOCK]; 3] };
+        velocity.store(&mut motion.velocity, 0);
+        spin.store(&mut motion.spin, 0);
+        motion
     }
-    let velocity = kick(body, force, drive, tally);
-    body.velocity = velocity;
-    let mut lost = [0.0; 3];
-    if drive.damping > 0.0 {
-        // the sign of the spin decides; the acceleration of half a step moves it by little
-        lost = damp(moment, clump.turning, 0.0, drive);
-        moment = add(moment, lost);
+
+    #[inline(always)]
+    fn give(&self, lane: usize, record: &mut R::Record) {
+        record.move_with(row(&self.velocity, lane), row(&self.spin, lane));
     }
-    body.spin = add(body.spin, scale(moment, drive.kick));
-    if drive.watched && body.inverse_mass > 0.0 {
-        let mean = sub(body.spin, scale(moment, 0.5 * drive.dt));
-        let local = rotate_back(&turned, mean);
-        let turning = [0, 1, 2].map(|c| local[c] * clump.inverse_inertia[c]);
-        tally.rotation += 0.5 * dot(local, turning);
-        tally.damping -= dot(lost, rotate(&turned, turning)) * drive.dt;
-    }
-    clump.centre = add(clump.centre, scale(velocity, drive.dt));
-    // a clump that keeps its spin turns like a sphere of unit inertia
-    let held = clump.inverse_inertia == [0.0; 3];
-    let (momentum, inverse) = if held { (clump.turning, [1.0; 3]) } else { (body.spin, clump.inverse_inertia) };
-    clump.turning = rotation::turn(&mut clump.attitude, &momentum, &inverse, drive.dt);
-    let turned = rotation::matrix(&clump.attitude);
-    let mut fastest: f64 = 0.0;
-    for (record, arm) in records.iter_mut().zip(arms) {
-        let arm = rotate(&turned, *arm);
-        let velocity = add(velocity, cross(clump.turning, arm));
-        record.place(add(clump.centre, arm));
-        record.move_with(velocity.map(R::from_f64), clump.turning.map(R::from_f64));
-        fastest = fastest.max(dot(velocity, velocity));
-    }
-    // a maximum forgets what is no number
-    if dot(velocity, velocity).is_finite() { fastest } else { f64::NAN }
 }
 
 #[inline(always)]

@@ -247,6 +247,7 @@ impl Pose {
     }
 
     /// A point of space, m, in the wall's frame.
+    #[inline]
     pub fn to_frame(&self, point: &Vector3<f64>) -> Vector3<f64> {
         let [w, x, y, z] = self.orientation;
         turn([w, -x, -y, -z], &(point - self.position))
@@ -258,6 +259,7 @@ impl Pose {
     }
 
     /// A direction of the wall's frame in space.
+    #[inline]
     pub fn direction_to_space(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         turn(self.orientation, direction)
     }
@@ -274,7 +276,12 @@ fn product([aw, ax, ay, az]: [f64; 4], [bw, bx, by, bz]: [f64; 4]) -> [f64; 4] {
 }
 
 /// v + 2 w (q x v) + 2 q x (q x v).
+#[inline]
 fn turn([w, x, y, z]: [f64; 4], v: &Vector3<f64>) -> Vector3<f64> {
+    // most walls do not turn
+    if x == 0.0 && y == 0.0 && z == 0.0 {
+        return *v;
+    }
     let q = Vector3::new(x, y, z);
     let t = 2.0 * q.cross(v);
     v + w * t + q.cross(&t)

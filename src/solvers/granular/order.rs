@@ -17,7 +17,7 @@ pub(super) struct Strips {
     sides: [f64; 2],
 }
 
-/// Bodies across a strip, at most: two slices of so many squared, with all that belongs to them, fit into a cache of 1 MB.
+/// Bodies across a strip: two slices of so many squared, with all that belongs to them, fit into a cache of 1 MB.
 const ACROSS: f64 = 24.0;
 /// Thickness of a slice over the mean distance of bodies.
 const SLICE: f64 = 1.0;
@@ -37,9 +37,11 @@ impl Strips {
         // a bed that is flat has a spacing, too
         let spacing = extent.map(|e| e.max(1e-3 * extent[axes[0]])).iter().product::<f64>() / count;
         let spacing = spacing.cbrt().max(f64::MIN_POSITIVE);
+        // the bed of a track is wide and flat, and one strip all the same: contacts between strips are what costs
+        let one = extent[axes[1]].max(spacing) * extent[axes[2]].max(spacing) <= (ACROSS * spacing).powi(2);
+        let strips = |axis: usize| if one { 1.0 } else { (extent[axis] / (ACROSS * spacing)).ceil().max(1.0) };
         // a little more than the whole, or the last body would be a strip of its own
-        let side =
-            |axis: usize| 1.001 * extent[axis].max(spacing) / (extent[axis] / (ACROSS * spacing)).ceil().max(1.0);
+        let side = |axis: usize| 1.001 * extent[axis].max(spacing) / strips(axis);
         Strips { least, axes, spacing, sides: [side(axes[1]), side(axes[2])] }
     }
 
@@ -49,7 +51,7 @@ impl Strips {
         let part = |length: f64, of: f64, bits: u32| ((length / of).max(0.0) as u64).min((1 << bits) - 1);
         let strip = part(wide, self.sides[0], 14) << 14 | part(high, self.sides[1], 14);
         let row = wide % self.sides[0];
-        strip << 36 | part(along, SLICE * self.spacing, 30) << 6 | part(row, self.spacing, 6)
+        strip << 36 | part(along, SLICE * self.spacing, 26) << 10 | part(row, self.spacing, 10)
     }
 }
 

@@ -11,6 +11,8 @@
 //! The rotation cay(Δt Ω), by the angle 2 atan(Δt |Ω|/2) about Ω, is the quaternion (1, Δt Ω/2) but for its length. L itself
 //! is not touched, so it is kept to the last bit. Angles come out short by a share of (Δt |Ω|)²/12: 1e-11 in a bed.
 
+use super::lanes::{Fine, FineVector, Lanes, Matrix, Plain};
+
 /// Largest number of rounds: beyond, Δt |Ω| is above 1, where no scheme of second order means anything.
 const ROUNDS: usize = 60;
 
@@ -25,80 +27,87 @@ const SETTLED: f64 = 1e-15;
 /// `momentum` is the angular momentum in the world, kg m²/s, at the middle of the step; `inverse_inertia` the inverse principal
 /// moments, 1/(kg m²). Free motion keeps its energy to rounding while dt |ω| is below 1/2. Only `+ - * /` and roots: the same
 /// bits on every machine.
-#[inline]
 pub fn turn(attitude: &mut [f64; 4], momentum: &[f64; 3], inverse_inertia: &[f64; 3], dt: f64) -> [f64; 3] {
-    let axes = matrix(attitude);
-    let half = 0.5 * dt;
-    let start = to_body(&axes, momentum);
-    let spin = mid_step_spin(&start, inverse_inertia, half);
+    let lane = One::new();
+    let before = attitude.map(|part| Fine::splat(lane, part));
+    let [momentum, inverse] = [momentum, inverse_inertia].map(|v| FineVector::splat(lane, *v));
+    let (after, spin) = turn_in_lanes(&before, &matrix_in_lanes(&before), momentum, inverse, dt);
+    *attitude = after.map(|part| part.value[0]);
+    spin.0.map(|part| part.value[0])
+}
+
+/// The rotation of a unit quaternion (w, x, y, z), as rows: it takes the principal frame to the world.
+pub fn matrix(attitude: &[f64; 4]) -> [[f64; 3]; 3] {
+    let rows = matrix_in_lanes(&attitude.map(|part| Fine::splat(One::new(), part))).0;
+    rows.map(|row| row.0.map(|part| part.value[0]))
+}
+
+type One = Plain<f64, 1>;
+
+/// [`turn`] for a body a lane, whose matrix is known: attitudes after the step, and spins of it.
+#[inline(always)]
+pub(super) fn turn_in_lanes<L: Lanes>(
+    attitude: &[Fine<L>; 4],
+    axes: &Matrix<L>,
+    momentum: FineVector<L>,
+    inverse_inertia: FineVector<L>,
+    dt: f64,
+) -> ([Fine<L>; 4], FineVector<L>) {
     let [w, x, y, z] = *attitude;
-    let [a, b, c] = [half * spin[0], half * spin[1], half * spin[2]];
-    let turned = [
+    let half = w.alike(0.5 * dt);
+    let spin = mid_step_spin(axes.apply_back(momentum), inverse_inertia, half);
+    let [a, b, c] = [half * spin.0[0], half * spin.0[1], half * spin.0[2]];
+    let [p, q, r, s] = [
         w - (x * a + y * b + z * c),
         x + (w * a + y * c - z * b),
         y + (w * b + z * a - x * c),
         z + (w * c + x * b - y * a),
     ];
-    let [w, x, y, z] = turned;
-    let shorten = 1.0 / ((w * w + x * x) + (y * y + z * z)).sqrt();
-    *attitude = [w * shorten, x * shorten, y * shorten, z * shorten];
-    to_world(&axes, &spin)
+    let shorten = w.alike(1.0) / ((p * p + q * q) + (r * r + s * s)).sqrt();
+    ([p * shorten, q * shorten, r * shorten, s * shorten], axes.apply(spin))
 }
 
-/// The rotation of a unit quaternion (w, x, y, z), as rows: it takes the principal frame to the world.
-#[inline]
-pub fn matrix(attitude: &[f64; 4]) -> [[f64; 3]; 3] {
+/// [`matrix`] for a body a lane.
+#[inline(always)]
+pub(super) fn matrix_in_lanes<L: Lanes>(attitude: &[Fine<L>; 4]) -> Matrix<L> {
     let [w, x, y, z] = *attitude;
+    let (one, two) = (w.alike(1.0), w.alike(2.0));
     let (xx, yy, zz) = (x * x, y * y, z * z);
     let (xy, yz, zx) = (x * y, y * z, z * x);
     let (wx, wy, wz) = (w * x, w * y, w * z);
-    [
-        [1.0 - 2.0 * (yy + zz), 2.0 * (xy - wz), 2.0 * (zx + wy)],
-        [2.0 * (xy + wz), 1.0 - 2.0 * (zz + xx), 2.0 * (yz - wx)],
-        [2.0 * (zx - wy), 2.0 * (yz + wx), 1.0 - 2.0 * (xx + yy)],
-    ]
+    Matrix([
+        FineVector([one - two * (yy + zz), two * (xy - wz), two * (zx + wy)]),
+        FineVector([two * (xy + wz), one - two * (zz + xx), two * (yz - wx)]),
+        FineVector([two * (zx - wy), two * (yz + wx), one - two * (xx + yy)]),
+    ])
 }
 
-/// Ω at the middle of the step, in the principal frame. Every round gains a factor of dt |Ω|/2 or so: two or three do in a bed.
-#[inline]
-fn mid_step_spin(start: &[f64; 3], inverse_inertia: &[f64; 3], half: f64) -> [f64; 3] {
-    let spin_of = |p: &[f64; 3]| [p[0] * inverse_inertia[0], p[1] * inverse_inertia[1], p[2] * inverse_inertia[2]];
-    let settled = SETTLED * SETTLED * square(start);
-    let mut middle = *start;
-    let mut spin = spin_of(start);
+/// Ω at the middle of the step, in the principal frame. Every round gains a factor of dt |Ω|/2 or so: two or three do in a bed. Each
+/// lane has its own last round, whatever the others do.
+#[inline(always)]
+fn mid_step_spin<L: Lanes>(start: FineVector<L>, inverse_inertia: FineVector<L>, half: Fine<L>) -> FineVector<L> {
+    let settled = half.alike(SETTLED * SETTLED) * start.dot(start);
+    let (mut middle, mut spin) = (start, start.times(inverse_inertia));
+    let mut change = half.alike(f64::INFINITY);
     for _ in 0..ROUNDS {
-        let next = [
-            start[0] + half * (middle[1] * spin[2] - middle[2] * spin[1]),
-            start[1] + half * (middle[2] * spin[0] - middle[0] * spin[2]),
-            start[2] + half * (middle[0] * spin[1] - middle[1] * spin[0]),
-        ];
-        let change = square(&[next[0] - middle[0], next[1] - middle[1], next[2] - middle[2]]);
-        middle = next;
-        spin = spin_of(&middle);
-        if change <= settled {
+        let next = start + middle.cross(spin).scale(half);
+        let further = next - middle;
+        // what has settled stays
+        let before = change;
+        change = further.dot(further).where_less(settled, before, before);
+        middle = next.where_less(settled, before, middle);
+        spin = middle.times(inverse_inertia);
+        if !settled.any_less(change) {
             break;
         }
     }
     spin
 }
 
-#[inline]
-fn square(a: &[f64; 3]) -> f64 {
-    a[0] * a[0] + a[1] * a[1] + a[2] * a[2]
-}
-
-#[inline]
-fn to_body(axes: &[[f64; 3]; 3], v: &[f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|k| axes[0][k] * v[0] + axes[1][k] * v[1] + axes[2][k] * v[2])
-}
-
-#[inline]
-fn to_world(axes: &[[f64; 3]; 3], v: &[f64; 3]) -> [f64; 3] {
-    axes.map(|row| row[0] * v[0] + row[1] * v[1] + row[2] * v[2])
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::integrate::{rotate as to_world, rotate_back as to_body};
+    use super::super::vector::dot;
     use super::*;
 
     const INERTIA: [f64; 3] = [1.0, 1.7, 2.2];
@@ -114,7 +123,7 @@ mod tests {
         fn new(inertia: [f64; 3], spin: [f64; 3]) -> Self {
             let attitude = [0.5, -0.5, 0.1, 0.7]; // of length 1
             let p = [inertia[0] * spin[0], inertia[1] * spin[1], inertia[2] * spin[2]];
-            Self { attitude, momentum: to_world(&matrix(&attitude), &p), inverse: inertia.map(|i| 1.0 / i) }
+            Self { attitude, momentum: to_world(&matrix(&attitude), p), inverse: inertia.map(|i| 1.0 / i) }
         }
 
         fn step(&mut self, dt: f64) {
@@ -122,12 +131,12 @@ mod tests {
         }
 
         fn spin(&self) -> [f64; 3] {
-            let p = to_body(&matrix(&self.attitude), &self.momentum);
+            let p = to_body(&matrix(&self.attitude), self.momentum);
             [p[0] * self.inverse[0], p[1] * self.inverse[1], p[2] * self.inverse[2]]
         }
 
         fn twice_energy(&self) -> f64 {
-            let p = to_body(&matrix(&self.attitude), &self.momentum);
+            let p = to_body(&matrix(&self.attitude), self.momentum);
             p[0] * p[0] * self.inverse[0] + p[1] * p[1] * self.inverse[1] + p[2] * p[2] * self.inverse[2]
         }
     }
@@ -247,7 +256,7 @@ mod tests {
             top.step(dt);
         }
         let time = steps as f64 * dt;
-        let size = square(&top.momentum).sqrt();
+        let size = dot(top.momentum, top.momentum).sqrt();
         let about = |axis: [f64; 3], angle: f64| {
             let (s, c) = (0.5 * angle).sin_cos();
             nalgebra::Quaternion::new(c, s * axis[0], s * axis[1], s * axis[2])

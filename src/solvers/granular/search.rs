@@ -134,11 +134,7 @@ impl<'a> Grids<'a> {
 
     /// Pebbles whose centre may lie within `reach` of the box from `low` to `high` \[m\], in any image.
     pub fn in_box(&self, low: Vec3, high: Vec3, mut visit: impl FnMut(u32)) {
-        for grid in &self.grids {
-            let centre = [0, 1, 2].map(|c| 0.5 * (low[c] + high[c]));
-            let reach = [0, 1, 2].map(|c| 0.5 * (high[c] - low[c]));
-            grid.visit_box(centre, reach, &mut visit);
-        }
+        self.grids.iter().for_each(|grid| grid.visit_box(low, high, &mut visit));
     }
 }
 
@@ -206,17 +202,17 @@ impl Grid {
     }
 
     fn visit(&self, centre: Vec3, reach: f64, visit: impl FnMut(u32)) {
-        self.visit_box(centre, [reach; 3], visit);
+        self.visit_box(centre.map(|x| x - reach), centre.map(|x| x + reach), visit);
     }
 
     /// Pebbles of every cell within reach, each once.
-    fn visit_box(&self, centre: Vec3, reach: Vec3, mut visit: impl FnMut(u32)) {
+    fn visit_box(&self, low: Vec3, high: Vec3, mut visit: impl FnMut(u32)) {
         if self.pebbles.is_empty() {
             return;
         }
         let range = [0, 1, 2].map(|axis| {
             let at = |x: f64| ((x - self.origin[axis]) / self.size[axis]).floor();
-            let (low, high) = (at(centre[axis] - reach[axis]), at(centre[axis] + reach[axis]));
+            let (low, high) = (at(low[axis]), at(high[axis]));
             let n = self.dims[axis];
             if !self.periodic[axis] {
                 ((low.max(0.0) as i64).min(n), (high as i64).min(n - 1))

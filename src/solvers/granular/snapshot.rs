@@ -4,7 +4,7 @@ use super::bed::Bed;
 use super::body::{BodyId, SPHERE};
 use super::failure::Failure;
 use super::force::force_of;
-use super::integrate::{self, Drive, Moving, Task};
+use super::integrate::{self, Drive, Forces, Moving, Task};
 use super::lanes::{BLOCK, Real};
 use super::record::Record;
 use super::vector::{Vec3, add, norm, scale, sub};
@@ -121,7 +121,7 @@ impl<R: Real> Bed<R> {
             damping: self.damping,
             watched: true,
         };
-        let contacts = (&self.incidence, &self.contacts.outcomes[..]);
+        let forces = Forces { incidence: &self.incidence, outcomes: &self.contacts.outcomes };
         let mut tally = integrate::Tally::default();
         for &place in &self.index {
             let body = self.bodies[place as usize];
@@ -135,7 +135,7 @@ impl<R: Real> Bed<R> {
                 clumps: &mut self.clumps[from.clump as usize..to.clump as usize].to_vec(),
                 arms: &self.arms,
             };
-            tally = tally.and(integrate::advance::<R>(moving, &[from, to], contacts, &drive));
+            tally = tally.and(integrate::advance::<R>(moving, &[from, to], forces, &drive));
         }
         tally
     }

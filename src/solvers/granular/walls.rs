@@ -142,11 +142,14 @@ pub(super) struct Slot<R> {
     /// From the wall's origin to the contact point \[m\].
     point: Vec3,
     pub overlap: f64,
+    /// Of the normal spring \[N/m\] and its dashpot \[N s/m\].
+    stiffness: [f64; 2],
 }
 
 impl<R: Real> Slot<R> {
     const fn empty(zero: R) -> Self {
-        Slot { feature: NONE, normal: [0.0; 3], shear: [zero; 3], damping: [zero; 3], point: [0.0; 3], overlap: 0.0 }
+        let (vector, shear) = ([0.0; 3], [zero; 3]);
+        Slot { feature: NONE, normal: vector, shear, damping: shear, point: vector, overlap: 0.0, stiffness: [0.0; 2] }
     }
 
     pub fn touches(&self) -> bool {
@@ -266,7 +269,7 @@ impl<R: Real> WallContacts<R> {
         outcomes: &mut [Outcome<R>],
         watched: bool,
     ) -> ContactEnergy {
-        let shared = Shared { walls, pebbles, around, facets: &self.facets, watched };
+        let shared = Shared { walls, laws, pebbles, around, facets: &self.facets, watched };
         let mut passes = Vec::with_capacity(self.entries.len().div_ceil(CHUNK));
         let (mut slots, mut places) = (&mut self.slots[..], &mut *outcomes);
         for entries in self.entries.chunks(CHUNK) {
@@ -277,32 +280,32 @@ impl<R: Real> WallContacts<R> {
             (slots, places) = (rest_slots, rest_places);
         }
         let energies: Vec<ContactEnergy> = passes.into_par_iter().map(R::dispatch).collect();
-        self.load(walls, laws, around.records, outcomes);
+        self.load(walls, outcomes);
         let mut total = ContactEnergy::default();
         energies.into_iter().for_each(|energy| total += energy);
         total
     }
 
     /// Sums what each wall feels: contact by contact, so that what is merely listed leaves no trace.
-    fn load(&self, walls: &mut [Wall], laws: &ContactLaws, records: &[R::Record], outcomes: &[Outcome<R>]) {
+    fn load(&self, walls: &mut [Wall], outcomes: &[Outcome<R>]) {
         for wall in walls.iter_mut() {
             (wall.felt, wall.moment) = (Felt { velocity: wall.velocity, ..Felt::default() }, [0.0; 3]);
             wall.sheet.iter_mut().for_each(|sheet| sheet.unload());
         }
-        for entry in &self.entries {
-            let range = entry.slots.0 as usize..entry.slots.1 as usize;
+        for of_wall in self.entries.chunk_by(|a, b| a.wall == b.wall) {
+            let wall = &mut walls[of_wall[0].wall as usize];
+            let (mut felt, mut moment) = (wall.felt, wall.moment);
+            let range = of_wall[0].slots.0 as usize..of_wall[of_wall.len() - 1].slots.1 as usize;
             for (slot, outcome) in self.slots[range.clone()].iter().zip(&outcomes[range]).filter(|(s, _)| s.touches()) {
-                let wall = &mut walls[entry.wall as usize];
-                let (force, record) = (force_of(outcome), &records[entry.pebble as usize]);
-                let law = &laws.all()[usize::from(entry.law)];
-                wall.felt.force -= Vector3::from(force);
-                let tangent = Tangent::from_law(law, slot.overlap, record.mass().to_f64(), record.radius());
-                wall.felt.stiffness += tangent.normal;
-                wall.felt.dashpot += tangent.normal_dashpot;
-                wall.felt.contacts += 1;
-                wall.moment = sub(wall.moment, cross(slot.point, force));
-                wall.sheet.iter_mut().for_each(|sheet| sheet.load(slot.point, scale(force, -1.0), tangent.normal));
+                let force = force_of(outcome);
+                felt.force -= Vector3::from(force);
+                felt.stiffness += slot.stiffness[0];
+                felt.dashpot += slot.stiffness[1];
+                felt.contacts += 1;
+                moment = sub(moment, cross(slot.point, force));
+                wall.sheet.iter_mut().for_each(|sheet| sheet.load(slot.point, scale(force, -1.0), slot.stiffness[0]));
             }
+            (wall.felt, wall.moment) = (felt, moment);
         }
     }
 }
@@ -337,8 +340,18 @@ impl Wall {
 
     /// Pebbles that may be within `skin`.
     fn candidates(&self, Near { domain, seen, grids, skin }: Near) -> Vec<u32> {
-        let Some([low, high]) = self.shape.bounds() else {
-            return (0..seen.len() as u32).collect();
+        let reach = seen.iter().map(|s| s.radius).fold(0.0, f64::max) + skin;
+        let mut found = Vec::new();
+        let [low, high] = match (&self.shape, self.shape.bounds()) {
+            (_, Some(bounds)) => bounds,
+            (Shape::Plane { normal }, _) => {
+                let Some([low, high]) = self.beside(normal, domain, reach) else {
+                    return (0..seen.len() as u32).collect();
+                };
+                grids.in_box(low, high, |pebble| found.push(pebble));
+                return found;
+            }
+            _ => return (0..seen.len() as u32).collect(),
         };
         let corners = (0..8).map(|k| {
             let corner = [0, 1, 2].map(|c| if k >> c & 1 == 0 { low[c] } else { high[c] });
@@ -352,10 +365,27 @@ impl Wall {
                 most[c] = most[c].max(origin[c] + corner[c]);
             }
         }
-        let reach = seen.iter().map(|s| s.radius).fold(0.0, f64::max) + skin;
-        let mut found = Vec::new();
         grids.in_box(sub(least, [reach; 3]), add(most, [reach; 3]), |pebble| found.push(pebble));
         found
+    }
+}
+
+impl Wall {
+    /// What lies behind a plane across an axis that ends, or within `reach` before it \[m\].
+    fn beside(&self, normal: &Vector3<f64>, domain: &Domain, reach: f64) -> Option<[Vec3; 2]> {
+        let normal = self.pose.direction_to_space(normal);
+        let axis = normal.iamax();
+        if normal[axis].abs() < 1.0 || domain.period(axis).is_some() {
+            return None;
+        }
+        let origin = domain.place(self.cell, self.pose.position.into());
+        let (mut low, mut high) = ([f64::NEG_INFINITY; 3], [f64::INFINITY; 3]);
+        if normal[axis] > 0.0 {
+            high[axis] = origin[axis] + reach;
+        } else {
+            low[axis] = origin[axis] - reach;
+        }
+        Some([low, high])
     }
 }
 
@@ -363,6 +393,7 @@ impl Wall {
 #[derive(Clone, Copy)]
 struct Shared<'a, R: Real> {
     walls: &'a [Wall],
+    laws: &'a ContactLaws,
     pebbles: Pebbles<'a>,
     around: Surroundings<'a, R>,
     facets: &'a [u32],
@@ -427,37 +458,64 @@ impl<R: Real> Shared<'_, R> {
         let away = wall.to(self.pebbles.domain, cell, record.position());
         let facets = &self.facets[entry.facets.0 as usize..entry.facets.1 as usize];
         wall.touches(away, record.radius(), facets, &mut scratch.touches);
-        if scratch.touches.is_empty() && slots.iter().all(|slot| !slot.touches()) {
+        let touched = slots.iter().any(Slot::touches);
+        if scratch.touches.is_empty() && !touched {
             // it was near and still is no more than that
             return;
         }
         for touch in &mut scratch.touches {
             touch.normal = wall.pose.direction_to_space(&touch.normal);
         }
+        if let ([slot], [touch], [place]) = (&mut *slots, &scratch.touches[..], &mut *places)
+            && (slot.feature == touch.feature || !touched)
+        {
+            // the usual case: one contact that goes on or begins
+            let before = *slot;
+            (*slot, *place) = self.contact(entry, (wall, record, away), touch, &before, energy);
+            return;
+        }
         scratch.remember(slots);
         slots.fill(Slot::empty(R::default()));
         places.fill([R::default(); 8]);
-        let law = &self.around.laws[usize::from(entry.law)];
         for (k, touch) in scratch.touches.iter().enumerate().take(slots.len()) {
-            let (meeting, point) = meet(wall, record, away, touch);
             let history = scratch.heirs[k].map_or(Slot::empty(R::default()), |old| scratch.before[old]);
-            let lanes = One::<R>::new();
-            let [x, y, z] = history.shear;
-            let num = |value: R| Num { lanes, value: [value] };
-            let contact = law.force(lanes, &meeting, Vector([num(x), num(y), num(z)]));
-            places[k] = outcome(&meeting, &contact).map(|n| n.value[0]);
-            slots[k] = Slot {
-                feature: touch.feature,
-                normal: touch.normal.into(),
-                shear: numbers(contact.shear),
-                damping: numbers(contact.damping),
-                point,
-                overlap: record.radius() - touch.distance,
-            };
-            if self.watched {
-                *energy += spent(&meeting, &contact, history.damping, self.around.dt);
-            }
+            (slots[k], places[k]) = self.contact(entry, (wall, record, away), touch, &history, energy);
         }
+    }
+
+    /// A contact that goes on with a history.
+    #[inline(always)]
+    fn contact(
+        &self,
+        entry: &Entry,
+        (wall, record, away): (&Wall, &R::Record, Vec3),
+        touch: &Touch,
+        history: &Slot<R>,
+        energy: &mut ContactEnergy,
+    ) -> (Slot<R>, Outcome<R>) {
+        let law = usize::from(entry.law);
+        let (meeting, point) = meet(wall, record, away, touch);
+        let lanes = One::<R>::new();
+        let [x, y, z] = history.shear;
+        let shear = Vector([Num { lanes, value: [x] }, Num { lanes, value: [y] }, Num { lanes, value: [z] }]);
+        let contact = self.around.laws[law].force(lanes, &meeting, shear);
+        if self.watched {
+            *energy += spent(&meeting, &contact, history.damping, self.around.dt);
+        }
+        let overlap = record.radius() - touch.distance;
+        let tangent = Tangent::from_law(&self.laws.all()[law], overlap, record.mass().to_f64(), record.radius());
+        let slot = Slot {
+            feature: touch.feature,
+            normal: touch.normal.into(),
+            shear: numbers(contact.shear),
+            damping: numbers(contact.damping),
+            point,
+            overlap,
+            stiffness: [tangent.normal, tangent.normal_dashpot],
+        };
+        let [a, b, c, d, e, f, g, h] = outcome(&meeting, &contact);
+        let outcome = [a.value[0], b.value[0], c.value[0], d.value[0], e.value[0], f.value[0], g.value[0], h.value[0]];
+        (slot, outcome)
     }
 }
 
@@ -474,21 +532,21 @@ fn meet<R: Real>(wall: &Wall, record: &R::Record, away: Vec3, touch: &Touch) -> 
     // on a floor that moves the contact point lies on the facet, so that its corners feel the moment too
     let arm = if wall.sheet.is_some() { touch.distance } else { record.radius() - 0.5 * overlap };
     let point = sub(away, scale(normal, arm));
-    let (velocity, spin) = (record.velocity().map(R::to_f64), record.spin().map(R::to_f64));
+    let ([a, b, c], [p, q, r]) = (record.velocity(), record.spin());
+    let (velocity, spin) = ([a.to_f64(), b.to_f64(), c.to_f64()], [p.to_f64(), q.to_f64(), r.to_f64()]);
     let own = sub(velocity, scale(cross(spin, normal), arm));
     let (wall_velocity, wall_spin): (Vec3, Vec3) = (wall.velocity.into(), wall.spin.into());
     let of_sheet = wall.sheet.as_ref().map_or([0.0; 3], |sheet| sheet.velocity_at(point));
     let [u, v, w] = sub(own, add(add(wall_velocity, of_sheet), cross(wall_spin, point)));
     let lanes = One::<R>::new();
-    let num = |value: f64| Num { lanes, value: [R::from_f64(value)] };
     let meeting = Meeting {
-        overlap: num(overlap),
-        normal: Vector([num(normal[0]), num(normal[1]), num(normal[2])]),
-        arms: [num(arm), num(0.0)],
-        velocity: Vector([num(u), num(v), num(w)]),
-        twist: num(0.5 * dot(add(spin, wall_spin), normal)),
+        overlap: Num::splat(lanes, overlap),
+        normal: Vector([Num::splat(lanes, normal[0]), Num::splat(lanes, normal[1]), Num::splat(lanes, normal[2])]),
+        arms: [Num::splat(lanes, arm), Num::splat(lanes, 0.0)],
+        velocity: Vector([Num::splat(lanes, u), Num::splat(lanes, v), Num::splat(lanes, w)]),
+        twist: Num::splat(lanes, 0.5 * dot(add(spin, wall_spin), normal)),
         mass: Num { lanes, value: [record.mass()] },
-        curvature_radius: num(record.radius()),
+        curvature_radius: Num::splat(lanes, record.radius()),
     };
     (meeting, point)
 }
@@ -530,15 +588,7 @@ impl<R: Real> Scratch<R> {
         self.before.extend(slots.iter().filter(|s| s.touches()));
         self.names.clear();
         self.names.extend(self.before.iter().map(|s| (s.feature, Vector3::from(s.normal))));
-        if let ([(feature, _)], [touch]) = (&self.names[..], &self.touches[..])
-            && *feature == touch.feature
-        {
-            // the usual case, without a search
-            self.heirs.clear();
-            self.heirs.push(Some(0));
-        } else {
-            inherit(&self.names, &self.touches, &mut self.heirs);
-        }
+        inherit(&self.names, &self.touches, &mut self.heirs);
     }
 }
 

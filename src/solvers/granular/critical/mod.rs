@@ -25,6 +25,7 @@ mod network;
 #[cfg(test)]
 pub(super) mod tests;
 
+pub(super) use links::{Link, Roots};
 pub(super) use local::{Around, Weight, bound, pencil};
 pub(super) use network::Network;
 

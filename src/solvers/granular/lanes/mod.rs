@@ -8,10 +8,12 @@
 #![allow(clippy::needless_range_loop)]
 
 mod dispatch;
+mod fine;
 mod plain;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+pub use fine::{FineVector, Matrix};
 pub use plain::Plain;
 
 use super::record::Record;
@@ -100,6 +102,14 @@ pub trait Lanes: Copy {
     fn fine_add(self, a: Self::Fine, b: Self::Fine) -> Self::Fine;
     fn fine_sub(self, a: Self::Fine, b: Self::Fine) -> Self::Fine;
     fn fine_fma(self, a: Self::Fine, b: Self::Fine, c: Self::Fine) -> Self::Fine;
+    fn fine_store(self, value: Self::Fine, to: &mut [f64]);
+    fn fine_mul(self, a: Self::Fine, b: Self::Fine) -> Self::Fine;
+    fn fine_div(self, a: Self::Fine, b: Self::Fine) -> Self::Fine;
+    fn fine_sqrt(self, a: Self::Fine) -> Self::Fine;
+    fn fine_abs(self, a: Self::Fine) -> Self::Fine;
+    /// `yes` where `a < b`, `no` elsewhere.
+    fn fine_where_less(self, a: Self::Fine, b: Self::Fine, yes: Self::Fine, no: Self::Fine) -> Self::Fine;
+    fn fine_any_less(self, a: Self::Fine, b: Self::Fine) -> bool;
     fn narrow(self, a: Self::Fine) -> Self::Num;
     fn widen(self, a: Self::Num) -> Self::Fine;
 
@@ -141,6 +151,8 @@ operator!(Num, Mul, mul, mul);
 operator!(Num, Div, div, div);
 operator!(Fine, Add, add, fine_add);
 operator!(Fine, Sub, sub, fine_sub);
+operator!(Fine, Mul, mul, fine_mul);
+operator!(Fine, Div, div, fine_div);
 
 impl<L: Lanes> Neg for Num<L> {
     type Output = Self;
@@ -207,29 +219,6 @@ impl<L: Lanes> Num<L> {
     #[inline(always)]
     pub fn widen(self) -> Fine<L> {
         Fine { lanes: self.lanes, value: self.lanes.widen(self.value) }
-    }
-}
-
-impl<L: Lanes> Fine<L> {
-    #[inline(always)]
-    pub fn splat(lanes: L, value: f64) -> Self {
-        Fine { lanes, value: lanes.fine_splat(value) }
-    }
-
-    #[inline(always)]
-    pub fn load(lanes: L, from: &[f64]) -> Self {
-        Fine { lanes, value: lanes.fine_load(from) }
-    }
-
-    /// `self factor + summand`, rounded once.
-    #[inline(always)]
-    pub fn fma(self, factor: Self, summand: Self) -> Self {
-        Fine { lanes: self.lanes, value: self.lanes.fine_fma(self.value, factor.value, summand.value) }
-    }
-
-    #[inline(always)]
-    pub fn narrow(self) -> Num<L> {
-        Num { lanes: self.lanes, value: self.lanes.narrow(self.value) }
     }
 }
 

@@ -151,6 +151,58 @@ impl<R: Real, const W: usize> Lanes for Plain<R, W> {
         out
     }
     #[inline(always)]
+    fn fine_store(self, value: [f64; W], to: &mut [f64]) {
+        to[..W].copy_from_slice(&value);
+    }
+    #[inline(always)]
+    fn fine_mul(self, a: [f64; W], b: [f64; W]) -> [f64; W] {
+        let mut out = [0.0; W];
+        for l in 0..W {
+            out[l] = a[l] * b[l];
+        }
+        out
+    }
+    #[inline(always)]
+    fn fine_div(self, a: [f64; W], b: [f64; W]) -> [f64; W] {
+        let mut out = [0.0; W];
+        for l in 0..W {
+            out[l] = a[l] / b[l];
+        }
+        out
+    }
+    #[inline(always)]
+    fn fine_sqrt(self, a: [f64; W]) -> [f64; W] {
+        let mut out = a;
+        for l in 0..W {
+            out[l] = a[l].sqrt();
+        }
+        out
+    }
+    #[inline(always)]
+    fn fine_abs(self, a: [f64; W]) -> [f64; W] {
+        let mut out = a;
+        for l in 0..W {
+            out[l] = a[l].abs();
+        }
+        out
+    }
+    #[inline(always)]
+    fn fine_where_less(self, a: [f64; W], b: [f64; W], yes: [f64; W], no: [f64; W]) -> [f64; W] {
+        let mut out = no;
+        for l in 0..W {
+            out[l] = if a[l] < b[l] { yes[l] } else { no[l] };
+        }
+        out
+    }
+    #[inline(always)]
+    fn fine_any_less(self, a: [f64; W], b: [f64; W]) -> bool {
+        let mut any = false;
+        for l in 0..W {
+            any |= a[l] < b[l];
+        }
+        any
+    }
+    #[inline(always)]
     fn narrow(self, a: [f64; W]) -> [R; W] {
         let mut out = [R::default(); W];
         for l in 0..W {

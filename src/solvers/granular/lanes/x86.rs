@@ -191,6 +191,45 @@ impl Lanes for Wide {
         [self.0.avx512f._mm512_fmadd_pd(a[0], b[0], c[0]), self.0.avx512f._mm512_fmadd_pd(a[1], b[1], c[1])]
     }
     #[inline(always)]
+    fn fine_store(self, value: [__m512d; 2], to: &mut [f64]) {
+        to[..16].copy_from_slice(cast_ref::<_, [f64; 16]>(&value));
+    }
+    #[inline(always)]
+    fn fine_mul(self, a: [__m512d; 2], b: [__m512d; 2]) -> [__m512d; 2] {
+        [self.0.avx512f._mm512_mul_pd(a[0], b[0]), self.0.avx512f._mm512_mul_pd(a[1], b[1])]
+    }
+    #[inline(always)]
+    fn fine_div(self, a: [__m512d; 2], b: [__m512d; 2]) -> [__m512d; 2] {
+        [self.0.avx512f._mm512_div_pd(a[0], b[0]), self.0.avx512f._mm512_div_pd(a[1], b[1])]
+    }
+    #[inline(always)]
+    fn fine_sqrt(self, a: [__m512d; 2]) -> [__m512d; 2] {
+        [self.0.avx512f._mm512_sqrt_pd(a[0]), self.0.avx512f._mm512_sqrt_pd(a[1])]
+    }
+    #[inline(always)]
+    fn fine_abs(self, a: [__m512d; 2]) -> [__m512d; 2] {
+        [self.0.avx512f._mm512_abs_pd(a[0]), self.0.avx512f._mm512_abs_pd(a[1])]
+    }
+    #[inline(always)]
+    fn fine_where_less(self, a: [__m512d; 2], b: [__m512d; 2], yes: [__m512d; 2], no: [__m512d; 2]) -> [__m512d; 2] {
+        let s = self.0.avx512f;
+        let mut out = no;
+        for half in 0..2 {
+            let mask = s._mm512_cmp_pd_mask::<{ std::arch::x86_64::_CMP_LT_OQ }>(a[half], b[half]);
+            out[half] = s._mm512_mask_blend_pd(mask, no[half], yes[half]);
+        }
+        out
+    }
+    #[inline(always)]
+    fn fine_any_less(self, a: [__m512d; 2], b: [__m512d; 2]) -> bool {
+        let s = self.0.avx512f;
+        let mut any = 0;
+        for half in 0..2 {
+            any |= s._mm512_cmp_pd_mask::<{ std::arch::x86_64::_CMP_LT_OQ }>(a[half], b[half]);
+        }
+        any != 0
+    }
+    #[inline(always)]
     fn narrow(self, a: [__m512d; 2]) -> __m512 {
         let s = self.0.avx512f;
         must_cast([s._mm512_cvtpd_ps(a[0]), s._mm512_cvtpd_ps(a[1])])
@@ -359,6 +398,46 @@ impl Lanes for Middle {
     #[inline(always)]
     fn fine_fma(self, a: [__m256d; 2], b: [__m256d; 2], c: [__m256d; 2]) -> [__m256d; 2] {
         [self.0.fma._mm256_fmadd_pd(a[0], b[0], c[0]), self.0.fma._mm256_fmadd_pd(a[1], b[1], c[1])]
+    }
+    #[inline(always)]
+    fn fine_store(self, value: [__m256d; 2], to: &mut [f64]) {
+        to[..8].copy_from_slice(cast_ref::<_, [f64; 8]>(&value));
+    }
+    #[inline(always)]
+    fn fine_mul(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
+        [self.0.avx._mm256_mul_pd(a[0], b[0]), self.0.avx._mm256_mul_pd(a[1], b[1])]
+    }
+    #[inline(always)]
+    fn fine_div(self, a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
+        [self.0.avx._mm256_div_pd(a[0], b[0]), self.0.avx._mm256_div_pd(a[1], b[1])]
+    }
+    #[inline(always)]
+    fn fine_sqrt(self, a: [__m256d; 2]) -> [__m256d; 2] {
+        [self.0.avx._mm256_sqrt_pd(a[0]), self.0.avx._mm256_sqrt_pd(a[1])]
+    }
+    #[inline(always)]
+    fn fine_abs(self, a: [__m256d; 2]) -> [__m256d; 2] {
+        let (s, sign) = (self.0.avx, self.0.avx._mm256_set1_pd(-0.0));
+        [s._mm256_andnot_pd(sign, a[0]), s._mm256_andnot_pd(sign, a[1])]
+    }
+    #[inline(always)]
+    fn fine_where_less(self, a: [__m256d; 2], b: [__m256d; 2], yes: [__m256d; 2], no: [__m256d; 2]) -> [__m256d; 2] {
+        let s = self.0.avx;
+        let mut out = no;
+        for half in 0..2 {
+            let mask = s._mm256_cmp_pd::<{ std::arch::x86_64::_CMP_LT_OQ }>(a[half], b[half]);
+            out[half] = s._mm256_blendv_pd(no[half], yes[half], mask);
+        }
+        out
+    }
+    #[inline(always)]
+    fn fine_any_less(self, a: [__m256d; 2], b: [__m256d; 2]) -> bool {
+        let s = self.0.avx;
+        let mut any = 0;
+        for half in 0..2 {
+            any |= s._mm256_movemask_pd(s._mm256_cmp_pd::<{ std::arch::x86_64::_CMP_LT_OQ }>(a[half], b[half]));
+        }
+        any != 0
     }
     #[inline(always)]
     fn narrow(self, a: [__m256d; 2]) -> __m256 {

@@ -56,7 +56,7 @@ pub struct GrainLayer {
 pub struct Packing {
     pub friction: f64,
     pub local_damping: f64,
-    /// Share of critical damping of contacts.
+    /// Share of critical damping of contacts, in the normal direction.
     pub viscous_damping: f64,
 }
 
@@ -116,7 +116,7 @@ impl Recipe {
             let Packing { friction, viscous_damping, .. } = layer.packing;
             // without friction nothing holds against sliding, and steps may be longer
             let shear_stiffness = if friction > 0.0 { layer.surface.shear_stiffness } else { 0.0 };
-            let surface = Surface { friction, shear_stiffness, damping: [viscous_damping; 2], ..layer.surface };
+            let surface = Surface { friction, shear_stiffness, damping: [viscous_damping, 0.0], ..layer.surface };
             (surface, friction.min(layer.wall_friction))
         })
     }

@@ -9,7 +9,7 @@
 
 use super::bed::{Bed, BodyState};
 use super::body::{BodyId, SPHERE};
-use super::critical::{Around, Network, Weight, pencil};
+use super::critical::{Around, Link, Network, Roots, Weight, pencil};
 use super::failure::Failure;
 use super::lanes::Real;
 use super::record::Record;
@@ -24,6 +24,39 @@ const TOLERANCE: f64 = 2e-3;
 
 /// Bodies that one task works on. Fixed, so that threads change nothing.
 const CHUNK: usize = 512;
+
+/// How often contacts between bodies count where the longest step is sought, one after the other until the network bears it.
+const WEIGHTS: [f64; 4] = [1.0, 1.25, 1.5, 2.0];
+/// Halvings of the range of steps, and its width as a factor.
+const HALVINGS_OF_STEP: usize = 8;
+const WIDEST: f64 = 8.0;
+
+/// A bed's contacts, and what they hold.
+struct Held<'a> {
+    links: &'a [Link],
+    roots: &'a [Roots],
+    around: &'a Around,
+}
+
+impl Held<'_> {
+    /// Factors of inertia by which each body bears a step \[s\], its contacts with others counted `weight` times.
+    fn factors(&self, step: f64, weight: f64) -> Vec<f64> {
+        // a little more, so that the network's limit is not missed by its tolerance
+        let step = step * (1.0 + TOLERANCE);
+        let of = |body: usize| {
+            let pencil = pencil(body, &self.roots[body], self.around.pick(body, self.links), Weight::Even(weight));
+            if pencil.allows(step) { 1.0 } else { pencil.inertia_factor(step).max(1.0) }
+        };
+        (0..self.roots.len()).into_par_iter().with_min_len(CHUNK).map(of).collect()
+    }
+
+    /// What the network bears with these factors \[s\].
+    fn limit(&self, factors: &[f64]) -> f64 {
+        let scaled: Vec<_> = self.roots.iter().zip(factors).map(|(r, f)| r.heavier(*f)).collect();
+        let bound = super::critical::bound(self.links, &scaled, self.around).0;
+        Network::new(self.links, &scaled).limit(self.around, bound, TOLERANCE).step
+    }
+}
 
 /// What mass scaling did.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -78,6 +111,56 @@ impl<R: Real> Bed<R> {
             }
         }
         Ok(self.weigh_down(&best.1, target, best.0))
+    }
+
+    /// Adds inertia so that steps are as long as can be while no more than `share` of the mass is added: [`Scaling::target`] is that step,
+    /// and [`Scaling::limit`] what the network was found to bear. Contacts of pairs up to `gap` \[m\] apart count. What was added before is
+    /// taken off first. For the bed of a track, whose network takes seconds to ask: it is asked once or a few times.
+    ///
+    /// A bed whose bodies are not held together at all bears any step; its `target` is infinite, and nothing is added.
+    ///
+    /// # Panics
+    /// If `share` is below 0.
+    pub fn hold_longest_step(&mut self, share: f64, gap: f64) -> Result<Scaling, Failure> {
+        assert!(share >= 0.0, "a share of the mass is 0 or more");
+        self.unscale_masses();
+        let links = self.links(gap)?;
+        let roots = self.roots();
+        let around = Around::new(&links, roots.len());
+        let held = Held { links: &links, roots: &roots, around: &around };
+        let bound = super::critical::bound(&links, &roots, &around).0;
+        if !bound.is_finite() {
+            return Ok(self.weigh_down(&[], bound, bound));
+        }
+        let plain = Network::new(&links, &roots).limit(&around, bound, TOLERANCE).step;
+        let masses: Vec<f64> =
+            self.states().map(|state| if self.is_held(state.id) { 0.0 } else { state.mass }).collect();
+        let moving: f64 = masses.iter().sum();
+        let added = |factors: &[f64]| masses.iter().zip(factors).map(|(m, f)| m * (f - 1.0)).sum::<f64>() / moving;
+        // contacts between bodies count as often as it takes: hardly ever twice
+        for weight in WEIGHTS {
+            let (mut low, mut high) = (plain, plain * WIDEST);
+            let mut factors = vec![1.0; roots.len()];
+            for _ in 0..HALVINGS_OF_STEP {
+                let mid = (low * high).sqrt();
+                let trial = held.factors(mid, weight);
+                if added(&trial) <= share {
+                    (low, factors) = (mid, trial);
+                } else {
+                    high = mid;
+                }
+            }
+            let limit = held.limit(&factors);
+            if limit >= low || weight == WEIGHTS[WEIGHTS.len() - 1] {
+                // a network that bears less is told so: what it bears is the step
+                return Ok(self.weigh_down(&factors, low.min(limit), limit));
+            }
+        }
+        unreachable!("the last weight returns")
+    }
+
+    fn is_held(&self, id: BodyId) -> bool {
+        self.bodies[self.index[id.0 as usize] as usize].inverse_mass == 0.0
     }
 
     /// Adds inertia until `target` \[s\] is a stable step for the contacts of now, each body by its own with those between
