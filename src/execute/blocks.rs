@@ -19,15 +19,8 @@ pub(super) fn run(
     from: Option<Checkpoint>,
 ) -> Result<Ending, RunError> {
     let at = |axles: u64| move |cause: NodeError| RunError::node(Clock::Axles(axles), cause);
-    let (mut done, mut axles, mut control, mut state) = (0, 0, Control::default(), None);
-    if let Some(checkpoint) = from {
-        let (Clock::Axles(count), ScheduleState::Blocks { blocks, control: kept, ground }) =
-            (checkpoint.clock, checkpoint.state)
-        else {
-            return Err(RunError::ForeignCheckpoint);
-        };
-        (done, axles, control, state) = (blocks, count, kept, Some(ground));
-    }
+    let (done, axles, control, state) = restored(from)?;
+    let done = done as usize;
     let mut stopped = false;
     let begun = machine.track_on_ground_that(|ground| match &state {
         Some(state) => ground.restore(state),
@@ -46,6 +39,18 @@ pub(super) fn run(
         ControlFlow::Continue(()) => Ending::Finished,
         ControlFlow::Break(()) => Ending::Stopped,
     })
+}
+
+/// Blocks done, axles that have passed, what the next block hangs on and the state of the ground: those of a checkpoint, or of the
+/// beginning.
+pub(super) fn restored(from: Option<Checkpoint>) -> Result<(u64, u64, Control, Option<serde_json::Value>), RunError> {
+    match from.map(|checkpoint| (checkpoint.clock, checkpoint.state)) {
+        None => Ok((0, 0, Control::default(), None)),
+        Some((Clock::Axles(axles), ScheduleState::Blocks { blocks, control, ground })) => {
+            Ok((blocks as u64, axles, control, Some(ground)))
+        }
+        Some(_) => Err(RunError::ForeignCheckpoint),
+    }
 }
 
 /// The first passage of a graph, over the track as the scene starts it; `None` where no train runs, and where grains would have to be

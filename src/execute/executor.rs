@@ -2,7 +2,7 @@
 
 use super::event::{Checkpoint, Listener, ScheduleState};
 use super::machine::{Ending, Machine, RunError};
-use super::{blocks, equilibrium, tests_of_beds};
+use super::{blocks, equilibrium, riding, tests_of_beds};
 use crate::graph::{Graph, Schedule, faults};
 use crate::nodes::Builders;
 use crate::store::Beds;
@@ -53,6 +53,7 @@ impl Executor {
         let machine = Machine { graph, builders: &self.builders, beds: &self.beds };
         match &graph.schedule {
             Schedule::Static { loads } => equilibrium::run(&machine, loads, listener),
+            Schedule::Blocks(plan) if graph.is_ridden() => riding::run(&machine, plan, listener, from),
             Schedule::Blocks(plan) => blocks::run(&machine, plan, listener, from),
             Schedule::Actuators(tests) => tests_of_beds::run(&machine, tests, listener, from),
             Schedule::Custom { kind, parameters } => {

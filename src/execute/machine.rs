@@ -62,7 +62,7 @@ impl<'a> Machine<'a> {
     /// The track of the graph, its name first; `None` where there is none.
     fn track_node(&self) -> Option<(&'a str, &'a TrackNode)> {
         self.graph.nodes.iter().find_map(|node| match &node.model {
-            Model::Track(track) => Some((node.name.as_str(), &**track)),
+            Model::Track(track) | Model::Riding(track) => Some((node.name.as_str(), &**track)),
             _ => None,
         })
     }

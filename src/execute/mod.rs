@@ -12,6 +12,7 @@ mod failure;
 mod machine;
 mod oscillation;
 mod pair;
+mod riding;
 mod step;
 mod tests_of_beds;
 mod timed;

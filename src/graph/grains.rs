@@ -169,6 +169,8 @@ pub struct GrainsNode {
     pub stretches: Vec<GrainStretch>,
     /// Whether soil lies below.
     pub on_soil: bool,
+    /// Whether vehicles ride on the rail over the grains, so that nothing is exchanged between blocks.
+    pub ridden: bool,
     /// Settlement of every seat of the track at the start, m.
     pub settlement: Vec<f64>,
     /// Where the stiffness of supports is taken from.

@@ -68,6 +68,9 @@ impl Graph {
 fn listed(node: &Node) -> ListedNode {
     let ports = node.ports();
     let (model, details) = match &node.model {
+        Model::Riding(track) => {
+            ("2D finite element track with multibody vehicles, in step with the grains".into(), of_track(track))
+        }
         Model::Track(track) => ("2D finite element track with multibody vehicles, one Newton".into(), of_track(track)),
         Model::Springs(_) => ("supports as springs, without settlement".into(), Vec::new()),
         Model::Law(law) => (format!("tier law: {} under each sleeper", law.law.name), of_law(law)),

@@ -63,7 +63,15 @@ impl Graph {
 
     /// The track; `None` in a rig without rails.
     pub fn track(&self) -> Option<&TrackNode> {
-        self.nodes.iter().find_map(|node| if let Model::Track(track) = &node.model { Some(&**track) } else { None })
+        self.nodes.iter().find_map(|node| match &node.model {
+            Model::Track(track) | Model::Riding(track) => Some(&**track),
+            _ => None,
+        })
+    }
+
+    /// Whether vehicles ride on a rail that is advanced step by step with what carries it, so that blocks exchange nothing.
+    pub fn is_ridden(&self) -> bool {
+        self.nodes.iter().any(|node| matches!(node.model, Model::Riding(_)))
     }
 
     /// The laws by which supports settle, the driving one first.

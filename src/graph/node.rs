@@ -17,6 +17,8 @@ pub struct Node {
 pub enum Model {
     /// Rail, pads, sleepers and slab with the vehicles on them.
     Track(Box<TrackNode>),
+    /// The same, step by step with the grains under it.
+    Riding(Box<TrackNode>),
     /// Supports that do not settle.
     Springs(SpringsNode),
     /// Supports that settle by a law.
@@ -57,6 +59,7 @@ impl Node {
                 let forces = vec![WHEEL_FORCES, SLEEPER_FORCE_PEAKS, SLEEPER_FORCES];
                 (forces, vec![SUPPORT_STIFFNESS, SUPPORT_DAMPING, SETTLEMENT])
             }
+            Model::Riding(_) => (vec![SLEEPER_VELOCITY], vec![GRAIN_PUSH]),
             Model::Springs(_) => (vec![SUPPORT_STIFFNESS, SUPPORT_DAMPING, SETTLEMENT], vec![]),
             Model::Law(_) => (vec![SUPPORT_STIFFNESS, SUPPORT_DAMPING, SETTLEMENT], vec![SLEEPER_FORCE_PEAKS]),
             Model::Bed(bed) if bed.is_driven() => (vec![SLEEPER_DISPLACEMENT], vec![ACTUATOR_VELOCITY]),
@@ -64,13 +67,15 @@ impl Node {
             Model::Actuators(actuators) if actuators.drive() => (vec![ACTUATOR_VELOCITY], vec![]),
             Model::Actuators(_) => (vec![ACTUATOR_FORCE], vec![]),
             Model::Grains(grains) => {
-                let below = grains.on_soil;
-                let gives = [SUPPORT_STIFFNESS, SUPPORT_DAMPING, SETTLEMENT].into_iter();
-                let takes = std::iter::once(WHEEL_FORCES);
-                (
-                    gives.chain(below.then_some(GRAIN_FORCE)).collect(),
-                    takes.chain(below.then_some(SOIL_VELOCITY)).collect(),
-                )
+                let (mut gives, mut takes) = match grains.ridden {
+                    true => (vec![GRAIN_PUSH], vec![SLEEPER_VELOCITY]),
+                    false => (vec![SUPPORT_STIFFNESS, SUPPORT_DAMPING, SETTLEMENT], vec![WHEEL_FORCES]),
+                };
+                if grains.on_soil {
+                    gives.push(GRAIN_FORCE);
+                    takes.push(SOIL_VELOCITY);
+                }
+                (gives, takes)
             }
             Model::Soil(_) => (vec![SOIL_VELOCITY], vec![GRAIN_FORCE]),
             Model::Custom(node) => return node.ports.clone(),

@@ -73,6 +73,10 @@ pub const ACTUATOR_FORCE: Quantity = Quantity::new("actuator force", "F", "N", B
 pub const ACTUATOR_VELOCITY: Quantity = Quantity::new("actuator velocity", "v", "m/s", Basis::Sleeper, Rate::Step);
 /// The downward move of a sleeper on grains.
 pub const SLEEPER_DISPLACEMENT: Quantity = Quantity::new("sleeper displacement", "u", "m", Basis::Sleeper, Rate::Step);
+/// The force of grains on a sleeper, upwards.
+pub const GRAIN_PUSH: Quantity = Quantity::new("push of the grains", "R", "N", Basis::Sleeper, Rate::Step);
+/// The velocity of a sleeper on grains, downwards.
+pub const SLEEPER_VELOCITY: Quantity = Quantity::new("sleeper velocity", "v", "m/s", Basis::Sleeper, Rate::Step);
 /// The force of grains on a facet of the soil under them.
 pub const GRAIN_FORCE: Quantity = Quantity::new("forces of grains", "f", "N", Basis::Facet, Rate::Step);
 /// The velocity of the facets of the soil under grains.

@@ -37,7 +37,7 @@ impl Builders {
             Model::Soil(_) => Err(none("soil")),
             Model::Bed(_) => Err(none("bed under actuators")),
             Model::Actuators(_) => Err(none("actuators")),
-            Model::Track(_) => Err(none("track")),
+            Model::Track(_) | Model::Riding(_) => Err(none("track")),
         }
     }
 }

@@ -48,6 +48,8 @@ pub struct UnloadedSeat {
     pub contact_force: f64,
     /// Rail on pad, N.
     pub seat_load: f64,
+    /// Stiffness of the support as the ground answers, N/m; 0 without a sleeper.
+    pub support_stiffness: f64,
 }
 
 /// What one passage did to the track.

@@ -43,16 +43,18 @@ impl<'a> TrackSystem<'a> {
         self.built.as_ref().ok_or(NodeError::NoGround)
     }
 
-    fn at_rest(&self, state: &StaticState, settlement: &[f64], track: &Track) -> Unloaded {
+    fn at_rest(&self, state: &StaticState, settlement: &[f64], Built { track, responses, .. }: &Built) -> Unloaded {
         let nodes = track.nodes().iter().zip(&state.rail_deflection).zip(&state.rail_moment);
         let rail = nodes.map(|((x, deflection), moment)| RailPoint { x: *x, deflection: *deflection, moment: *moment });
         let gap = |i: usize| (settlement[i] - state.foot_displacements[i]).max(0.0);
+        let stiffness = |i: usize| responses.seats.get(i).copied().flatten().map_or(0.0, |spring| spring.stiffness);
         let seats = (0..settlement.len()).map(|i| UnloadedSeat {
             settlement: settlement[i],
             sleeper_level: state.foot_displacements[i],
             void: if self.node.seats[i].is_ballasted() { gap(i) } else { 0.0 },
             contact_force: state.contact_forces[i],
             seat_load: state.seat_loads[i],
+            support_stiffness: stiffness(i),
         });
         Unloaded { rail: rail.collect(), seats: seats.collect(), profile: Vec::new() }
     }
@@ -60,7 +62,8 @@ impl<'a> TrackSystem<'a> {
     fn run(&self, request: Request<'_>) -> Result<(Unloaded, PassageOutcome), NodeError> {
         let Request { axles, settlement, runner, kept, forces } = request;
         let blocks = self.blocks.ok_or(NodeError::NoTrain)?;
-        let Built { responses, track, steps } = self.built()?;
+        let built = self.built()?;
+        let Built { responses, track, steps } = built;
         let Runner { kind, direction } = runner;
         let ((train, plan), steps) = (blocks.kind(kind), &steps[kind]);
         let model = train.model(direction);
@@ -68,7 +71,7 @@ impl<'a> TrackSystem<'a> {
         let level: TrackLevel = self.node.level(settlement, responses);
         let run = Run { train: &model, start, finish, motion: &train.motion };
         let mut passage = steps.begin(&level, run)?;
-        let mut unloaded = self.at_rest(passage.unloaded(), settlement, track);
+        let mut unloaded = self.at_rest(passage.unloaded(), settlement, built);
         let recorded = kept != Kept::Nothing;
         if kept == Kept::Profile {
             let load = train.mean_wheel_mass() * self.node.gravity;
@@ -209,7 +212,8 @@ impl Superstructure for TrackSystem<'_> {
     }
 
     fn equilibrium(&self, settlement: &[f64], loads: &[PointLoad]) -> Result<Unloaded, NodeError> {
-        let Built { responses, track, .. } = self.built()?;
+        let built = self.built()?;
+        let Built { responses, track, .. } = built;
         let (mut rail, mut sleepers) = (Vec::new(), Vec::new());
         for load in loads {
             match load.on {
@@ -219,7 +223,7 @@ impl Superstructure for TrackSystem<'_> {
         }
         let loads = Loads { rail: &rail, sleepers: &sleepers, train: None };
         let state = solve_static(track, &self.node.level(settlement, responses), &loads)?;
-        Ok(self.at_rest(&state, settlement, track))
+        Ok(self.at_rest(&state, settlement, built))
     }
 
     fn passage(&self, request: Request<'_>) -> Result<(Unloaded, PassageOutcome), NodeError> {

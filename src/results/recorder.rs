@@ -235,16 +235,10 @@ impl<'a> RunRecorder<'a> {
         }
     }
 
-    /// Stiffness of the support and the pad under a sleeper, N/m; 0 without one.
-    fn support_stiffness(&self, seat: usize) -> f64 {
-        self.supports.get(seat).and_then(|node| node.spring).map_or(0.0, |spring| spring.stiffness)
-    }
-
     /// Every sleeper after a count, under the leading train.
     fn keep_sleepers(&mut self, axles: u64, unloaded: &Unloaded, passage: &PassageOutcome) {
         let track = self.track();
-        for (index, ((seat, outcome), rest)) in track.seats.iter().zip(&passage.seats).zip(&unloaded.seats).enumerate()
-        {
+        for ((seat, outcome), rest) in track.seats.iter().zip(&passage.seats).zip(&unloaded.seats) {
             self.tables.sleepers.push(SleeperRow {
                 axles,
                 sleeper: track.seat_name(seat),
@@ -255,7 +249,7 @@ impl<'a> RunRecorder<'a> {
                 max_contact_force_N: outcome.max_contact_force,
                 max_rail_seat_load_N: outcome.max_rail_seat_load,
                 max_sleeper_displacement_m: outcome.max_sleeper_displacement,
-                support_stiffness_N_per_m: self.support_stiffness(index),
+                support_stiffness_N_per_m: rest.support_stiffness,
                 contact_loss_s: outcome.contact_loss,
                 trains_passing: self.trains_passing(seat.x),
             });
@@ -475,7 +469,7 @@ impl RunRecorder<'_> {
         self.keep_rail(0, Response::RailLevel, unloaded.rail.iter().map(|p| (p.x, p.deflection)));
         self.keep_rail(0, Response::RailMoment, loaded.rail.iter().map(|p| (p.x, p.moment)));
         let states = loaded.seats.iter().zip(&unloaded.seats);
-        for (index, (seat, (state, rest))) in track.seats.iter().zip(states).enumerate() {
+        for (seat, (state, rest)) in track.seats.iter().zip(states) {
             self.tables.sleepers.push(SleeperRow {
                 axles: 0,
                 sleeper: track.seat_name(seat),
@@ -486,7 +480,7 @@ impl RunRecorder<'_> {
                 max_contact_force_N: state.contact_force,
                 max_rail_seat_load_N: state.seat_load,
                 max_sleeper_displacement_m: state.sleeper_level - rest.sleeper_level,
-                support_stiffness_N_per_m: self.support_stiffness(index),
+                support_stiffness_N_per_m: rest.support_stiffness,
                 contact_loss_s: 0.0,
                 trains_passing: 0,
             });

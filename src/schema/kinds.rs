@@ -603,15 +603,15 @@ pub const KINDS: &[Kind] = &[
                 "auto",
                 "where grains are modelled, at every transition; track and vehicle keep their length",
             ),
-            unread(default(
+            default(
                 "coupling",
                 Form::Words(&[
-                    word("iterated", "track and grains in turn"),
-                    word("monolithic", "track and grains together, step by step"),
+                    word("iterated", "track and grains in turn: wheel forces one way, settlement and stiffness the other"),
+                    word("monolithic", "vehicles ride on the rail over the grains, all in one time step"),
                 ]),
                 "iterated",
                 "of track and grains",
-            )),
+            ),
             default(
                 "support_from",
                 Form::Words(&[
@@ -627,12 +627,12 @@ pub const KINDS: &[Kind] = &[
                 "auto",
                 "time step of grains",
             ),
-            unread(default(
+            default(
                 "zone_size",
                 Form::OneOf(&[number("m", 0.005, 5.0), Form::Words(AUTO)]),
                 "auto",
                 "of the elements of soil",
-            )),
+            ),
             unread(default(
                 "tolerance",
                 number("%", 0.1, 50.0),

@@ -241,9 +241,9 @@ pub(super) const SOIL: Kind = Kind {
         way("poisson_ratio", number("", 0.0, 0.49), ""),
         way("bulk_modulus", number("MPa", 0.3, 1e6), ""),
         way("shear_modulus", number("MPa", 0.3, 25_000.0), ""),
-        unread(required("density", number("kg/m^3", 100.0, 3500.0), "with its pores and water")),
+        required("density", number("kg/m^3", 100.0, 3500.0), "with its pores and water"),
         default("spread", SPREAD, "35 deg", "angle against the vertical at which the layer spreads a load"),
-        unread(default(
+        default(
             "strength",
             Form::Words(&[
                 word("elastic", "it does not yield"),
@@ -261,7 +261,7 @@ pub(super) const SOIL: Kind = Kind {
             ]),
             "elastic",
             "",
-        )),
+        ),
     ],
     alternatives: &[either(&[&["youngs_modulus", "poisson_ratio"], &["bulk_modulus", "shear_modulus"]])],
     planned: &[],

@@ -30,6 +30,7 @@ const READS: Reads = Reads {
         "soil.shear_modulus",
         "soil.density",
         "soil.strength",
+        "solve.coupling",
         "solve.passages",
         "solve.support_from",
         "solve.zone_size",
@@ -126,6 +127,7 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
         window: windows,
         stretches,
         on_soil: !soil.layers.is_empty(),
+        ridden: scenario.solve.grains.monolithic,
         settlement: scenario.track.seats.iter().map(|seat| *seat.initial_settlement).collect(),
         stiffness_from: match scenario.solve.grains.support_from_passage {
             true => StiffnessFrom::Passage,
@@ -137,8 +139,10 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
         time_step: scenario.solve.grains.step.map(|step| *step),
         added_inertia: ADDED,
     };
+    let track = Box::new(track::track(scenario));
+    let ridden = scenario.solve.grains.monolithic;
     let mut nodes = vec![
-        Node::new("track", Model::Track(Box::new(track::track(scenario)))),
+        Node::new("track", if ridden { Model::Riding(track) } else { Model::Track(track) }),
         Node::new("grains", Model::Grains(grains)),
     ];
     if !soil.layers.is_empty() {

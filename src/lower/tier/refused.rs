@@ -23,10 +23,6 @@ pub(super) fn refusals(scenario: &Scenario, stretches: &[GrainStretch]) -> Vec<D
     if !scenario.tampings.is_empty() {
         found.push(waits("grains cannot be tamped in this version".into(), None, "leave the `tamping` out"));
     }
-    if grains.monolithic {
-        let help = "write `coupling = iterated`";
-        found.push(waits("this version runs track and grains in turn, not together".into(), None, help));
-    }
     if grains.both_rails {
         found.push(waits(
             "the bed of both rails cannot carry a track in this version".into(),

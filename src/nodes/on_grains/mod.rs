@@ -5,8 +5,10 @@
 //! median of the outer third of the sleepers on grains.
 
 mod build;
+mod extremes;
 mod passage;
 mod reading;
+mod ride;
 mod soil;
 mod step;
 mod stored;
@@ -14,6 +16,7 @@ mod timed;
 mod wheels;
 
 pub use build::Parts;
+pub use ride::Riders;
 pub use timed::{Parted, TimedSteps};
 
 use crate::graph::{Responses, StiffnessFrom};
@@ -87,6 +90,16 @@ pub(super) struct Books {
     revision: u64,
 }
 
+impl Books {
+    /// Stiffness of the support of a seat, N/m; 0 without a sleeper. `carried` are the seats on grains.
+    fn stiffness_of(&self, seat: usize, carried: &[usize]) -> f64 {
+        match carried.binary_search(&seat) {
+            Ok(foot) => self.stiffness[foot],
+            Err(_) => self.beyond[seat].map_or(0.0, |spring| spring.stiffness),
+        }
+    }
+}
+
 impl<'a> GrainGround<'a> {
     /// A ground that is not built yet: [`Substructure::prepare`] does that, or [`Substructure::restore`].
     pub fn new(parts: Parts<'a>) -> GrainGround<'a> {
@@ -95,11 +108,19 @@ impl<'a> GrainGround<'a> {
 
     /// Times steps under the wheels of a passage, on a copy.
     pub fn time_steps(&self, load: &Load<'_>, steps: u64) -> Result<TimedSteps, NodeError> {
-        self.live.as_ref().ok_or(NodeError::NoGround)?.time_steps(self.parts, load, steps)
+        self.live_at_rest()?.time_steps(self.parts, load, steps)
     }
 
-    fn live(&mut self) -> Result<&mut Live, NodeError> {
+    fn working(&mut self) -> Result<&mut Live, NodeError> {
         self.live.as_mut().ok_or(NodeError::NoGround)
+    }
+
+    fn live_at_rest(&self) -> Result<&Live, NodeError> {
+        self.live.as_ref().ok_or(NodeError::NoGround)
+    }
+
+    fn parts(&self) -> Parts<'a> {
+        self.parts
     }
 
     /// Takes over what the books say of the supports.
@@ -148,7 +169,7 @@ impl Substructure for GrainGround<'_> {
 
     fn advance_and_tell(&mut self, loads: &[Load<'_>], tell: &mut Telling<'_>) -> Result<(), NodeError> {
         let parts = self.parts;
-        let live = self.live()?;
+        let live = self.working()?;
         for load in loads {
             live.pass(parts, load, tell)?;
         }
@@ -171,7 +192,7 @@ impl Substructure for GrainGround<'_> {
     }
 
     fn save(&self) -> Result<serde_json::Value, NodeError> {
-        self.live.as_ref().ok_or(NodeError::NoGround)?.save()
+        self.live_at_rest()?.save()
     }
 
     fn restore(&mut self, state: &serde_json::Value) -> Result<(), NodeError> {

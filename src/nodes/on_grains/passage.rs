@@ -14,7 +14,7 @@ use crate::solvers::track::WheelLoads;
 /// Local damping of grains (Cundall), and drag of the rail (1/s), on the way to rest.
 const DAMPING: f64 = 0.7;
 const DRAG: f64 = 200.0;
-/// Steps between looks at rest and at inertia.
+/// Steps between looks at rest.
 const LOOK: u64 = 200;
 /// At rest forces are in balance to this share of those that act, and no sleeper is faster, m/s: at two looks in a row.
 const UNBALANCE: f64 = 2e-3;
@@ -38,8 +38,9 @@ impl Coupled {
         self.pushes.iter().enumerate().map(of).collect()
     }
 
-    /// Adds the inertia that the contacts of now need for the step.
-    fn hold(&mut self) -> Result<(), NodeError> {
+    /// Adds the inertia that the contacts of now need for the step: at the beginning of a passage and of a rest, as it takes as long as
+    /// hundreds of steps.
+    pub fn hold(&mut self) -> Result<(), NodeError> {
         let stride = Stride::of_step(self.time_step());
         self.added = 0.0;
         for standing in &mut self.beds {
@@ -59,9 +60,6 @@ impl Coupled {
         let steps = (time / self.time_step()).ceil() as u64;
         let mut loads = Vec::new();
         for step in 0..steps {
-            if step.is_multiple_of(LOOK) {
-                self.hold()?;
-            }
             let now = step as f64 * self.time_step();
             wheels(now, &mut loads);
             self.step(&WheelLoads::Given(&loads))?;
@@ -82,7 +80,8 @@ impl Coupled {
     }
 
     /// Runs until all is at rest, or the time is over (s); gives how far from rest it is, over what counts as rest.
-    fn come_to_rest(&mut self, longest: f64, tell: &mut dyn FnMut(f64)) -> Result<f64, NodeError> {
+    pub fn come_to_rest(&mut self, longest: f64, tell: &mut dyn FnMut(f64)) -> Result<f64, NodeError> {
+        self.hold()?;
         self.damped(|coupled| {
             let (mut calm, mut passed) = (0, 0.0);
             loop {
@@ -115,6 +114,7 @@ impl Coupled {
         let seats: Vec<f64> = self.rail.carried().iter().map(|seat| parts.track.seats[*seat].x).collect();
         let [growing, standing] = PRESSING;
         let before = self.readings();
+        self.hold()?;
         self.damped(|coupled| {
             let loads = |time: f64, loads: &mut Vec<(f64, f64)>| {
                 loads.clear();
@@ -180,9 +180,14 @@ impl Live {
         for (number, run) in runs.iter().enumerate() {
             self.pass_once(parts, run, &mut |stage, share| tell(stage, (number as f64 + share) / all))?;
         }
-        let added = self.books.settlement.iter().zip(&before).map(|(now, before)| now - before);
-        self.books.rate = added.map(|added| added / load.trains.max(1) as f64).collect();
+        self.note_rate(&before, load.trains);
         Ok(())
+    }
+
+    /// Notes what each of so many trains has added to the settlement of every seat, m.
+    pub fn note_rate(&mut self, before: &[f64], trains: u64) {
+        let added = self.books.settlement.iter().zip(before).map(|(now, before)| now - before);
+        self.books.rate = added.map(|added| added / trains.max(1) as f64).collect();
     }
 
     fn pass_once(&mut self, parts: Parts<'_>, wheels: &WheelRun<'_>, tell: &mut Telling<'_>) -> Result<(), NodeError> {
@@ -191,6 +196,7 @@ impl Live {
         let mut watched: Vec<Watched> = self.books.rest.iter().map(|rest| Watched::from_rest(*rest)).collect();
         let time_step = self.coupled.time_step();
         let mut shown = 0.0;
+        self.coupled.hold()?;
         self.coupled.run(
             end - begin,
             |time, loads| wheels.at(begin + time, begin, loads),
@@ -210,7 +216,7 @@ impl Live {
     }
 
     /// What a passage has left.
-    fn close_the_books(&mut self, parts: Parts<'_>, watched: &[Watched]) -> Result<(), NodeError> {
+    pub fn close_the_books(&mut self, parts: Parts<'_>, watched: &[Watched]) -> Result<(), NodeError> {
         let Live { coupled, books } = self;
         books.rest = coupled.readings();
         if parts.grains.stiffness_from == StiffnessFrom::Passage {

@@ -1,0 +1,86 @@
+//! The schedule of trains that ride on a rail over grains: nothing is exchanged between blocks, which only say when the state is told.
+
+use super::event::{Checkpoint, Event, Listener, ScheduleState};
+use super::machine::{Ending, Machine, RunError};
+use super::step::BlockMeasures;
+use super::{Between, blocks::restored};
+use crate::graph::{Blocks, Clock, Control};
+use crate::nodes::{GrainGround, NodeError, PassageOutcome, Riders, Stage, Substructure};
+use crate::solvers::granular::packing::Progress;
+
+/// Runs the trains of a graph, from the beginning or from a checkpoint.
+pub(super) fn run(
+    machine: &Machine<'_>,
+    blocks: &Blocks,
+    listener: &mut dyn Listener,
+    from: Option<Checkpoint>,
+) -> Result<Ending, RunError> {
+    let at = |axles: u64| move |cause: NodeError| RunError::node(Clock::Axles(axles), cause);
+    let no_grains = || NodeError::Other { node: "grains".into(), why: "no grains lie under a track".into() };
+    let parts = machine.grain_parts().ok_or_else(no_grains).map_err(at(0))?;
+    let (mut done, mut axles, _, state) = restored(from)?;
+    let mut ground = GrainGround::new(parts);
+    let mut stopped = false;
+    let mut tell = |stage: Stage, share: f64| {
+        let progress = Progress { stage: stage.to_string(), share, bodies: 0, steps: 0 };
+        stopped |= listener.hear(&Event::Packing(&progress)).is_break();
+    };
+    match &state {
+        Some(state) => ground.restore(state),
+        None => ground.prepare(&mut tell),
+    }
+    .map_err(at(axles))?;
+    if stopped {
+        return Ok(Ending::Stopped);
+    }
+    loop {
+        let last = axles >= blocks.total;
+        let trains = blocks.wanted(axles).unwrap_or(1).max(1);
+        let block = blocks.block(axles, trains);
+        let shown = blocks.recorded.binary_search(&axles).is_ok();
+        let unloaded = ground.at_rest().map_err(at(axles))?;
+        if shown && listener.hear(&Event::Rest { axles, state: &unloaded }).is_break() {
+            return Ok(Ending::Stopped);
+        }
+        let before = ground.settlement();
+        let runs = if last { blocks.leading().into_iter().map(|runner| (runner, 1)).collect() } else { block.runs.clone() };
+        let mut passages: Vec<PassageOutcome> = Vec::new();
+        for (runner, trains) in runs {
+            let records = shown.then_some(machine.graph.records.as_slice());
+            let riders = Riders { blocks, runner, trains, axles, records };
+            let mut tell = |stage: Stage, share: f64| {
+                let progress = Progress { stage: stage.to_string(), share, bodies: 0, steps: 0 };
+                // a run ends between two blocks only
+                let _ = listener.hear(&Event::Packing(&progress));
+            };
+            let passage = ground.ride(&riders, &mut tell).map_err(at(axles))?;
+            if shown && passages.is_empty() && listener.hear(&Event::Passage { axles, runner, passage: &passage }).is_break() {
+                return Ok(Ending::Stopped);
+            }
+            passages.push(passage);
+        }
+        let passages: Vec<&PassageOutcome> = passages.iter().collect();
+        let after = if last { before.clone() } else { ground.settlement() };
+        let steps = passages.iter().map(|passage| passage.time_steps).sum();
+        let measured = BlockMeasures { passages: passages.len() as u64, time_steps: steps, ..BlockMeasures::default() };
+        let told = (!last).then_some((&block, &measured));
+        let event = Event::Block { axles, block: told, passages: &passages, before: &before, after: &after };
+        let all = blocks.planned().map_or(done + 1, |planned| planned.len() as u64 + 1);
+        if listener.hear(&event).is_break() || last && listener.hear(&Event::Progress { done: all, all }).is_break() {
+            return Ok(Ending::Stopped);
+        }
+        if last {
+            return Ok(Ending::Finished);
+        }
+        (axles, done) = (axles + block.axles, done + 1);
+        let state = || {
+            let ground = ground.save()?;
+            let state = ScheduleState::Blocks { blocks: done as usize, control: Control::default(), ground };
+            Ok(Checkpoint { clock: Clock::Axles(axles), state })
+        };
+        let between = Event::Between(Between::new(false, &state));
+        if listener.hear(&between).is_break() || listener.hear(&Event::Progress { done, all }).is_break() {
+            return Ok(Ending::Stopped);
+        }
+    }
+}
