@@ -2,8 +2,8 @@
 //!
 //! Nodes stand at every seat, joint, section boundary, end of a slab or auxiliary rail and rail end, with `elements_per_bay` elements between two seats and
 //! proportionally fewer in shorter stretches. Unknowns are numbered node by node - rail deflection and rotation (two
-//! rotations at a joint), sleeper, its underside, slab, auxiliary rails - so the half band is 5 with sleepers on one side and a slab on the
-//! other or with pads under sleepers, 7 where two slabs meet or beside one auxiliary rail.
+//! rotations at a joint), sleeper, its underside, slab, auxiliary rails - so the half band is 5 with sleepers on one side and a
+//! slab on the other or with pads under sleepers, 7 where two slabs meet or beside one auxiliary rail.
 
 use super::beam::Element;
 use super::mesh::{BeamMesh, CarriedSleeper, FootUnknown, RailElement};

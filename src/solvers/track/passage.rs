@@ -389,13 +389,8 @@ impl<'a> Passage<'a> {
     /// Kinetic and potential energy of the track, J, from the track as built without weight.
     pub fn energy(&self) -> f64 {
         let track = &self.stepper.track;
-        let quadratic = |matrix: &crate::linalg::banded::SymmetricBanded, x: &[f64]| {
-            let mut product = vec![0.0; x.len()];
-            matrix.subtract_product(x, &mut product);
-            -0.5 * x.iter().zip(&product).map(|(x, p)| x * p).sum::<f64>()
-        };
         let u = &self.displacement;
-        let mut energy = quadratic(&track.mass, &self.velocity) + quadratic(&track.stiffness, u);
+        let mut energy = 0.5 * (track.mass.quadratic_form(&self.velocity) + track.stiffness.quadratic_form(u));
         energy -= track.weight.iter().zip(u).map(|(w, u)| w * u).sum::<f64>();
         for sleeper in &track.sleepers {
             let (u, k) = (u[sleeper.unknown], sleeper.support_stiffness);

@@ -5,9 +5,9 @@ use serde::{Deserialize, Serialize};
 
 /// Energy of the track half a step before the present time, and work since the account began, J.
 ///
-/// `stored() = begin + pushes + supports + wheels - dissipated` to rounding, while the length of the step and the level stay the
-/// same.
-/// What elastic supports of ordinary sleepers hold counts as work that they have taken.
+/// `stored() = begin + pushes + supports + wheels - dissipated` to rounding, while the length of the step and the level
+/// stay the same. What elastic supports of ordinary sleepers hold counts as work that they have taken. A start from rest
+/// has half a kick: an account that begins there is out by the square of the first acceleration times the step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct EnergyAccount {
     pub kinetic: f64,

@@ -1,45 +1,52 @@
-//! The track in steps that it shares with something explicit, such as grains under its sleepers: central differences in time
-//! whose linear, stiff part is implicit.
+//! The track in steps that it shares with something explicit, such as grains under its sleepers: central differences
+//! in time whose linear, stiff part is implicit.
 //!
-//! Displacements and forces belong to full steps n, velocities to the half steps between them, as a leapfrog of grains has
-//! them:
+//! Displacements and forces belong to full steps n, velocities to the half steps between them, as a leapfrog of
+//! grains has them:
 //!
 //! ```text
 //! M a_n + C (v_{n-1/2} + v_{n+1/2})/2 + K (β u_{n-1} + (1-2β) u_n + β u_{n+1}) = f + F_n
 //! v_{n+1/2} = v_{n-1/2} + Δt a_n,    u_{n+1} = u_n + Δt v_{n+1/2}
 //! ```
 //!
-//! f are gravity and the pull of the track beyond the rail's ends, F_n all forces that are computed from what is known at step n: pushes of the ground on carried
-//! sleepers, supports of ordinary ones, wheels. With `u_{n-1} - 2 u_n + u_{n+1} = Δt² a_n` one system is left, whose matrix is
-//! factored once for a step:
+//! f are gravity and the pull of the track beyond the rail's ends, F_n all forces that are computed from what is
+//! known at step n: pushes of the ground on carried sleepers, supports of ordinary ones, wheels. One system is left,
+//! whose matrix is factored once for a step:
 //!
 //! ```text
+//! u_{n-1} - 2 u_n + u_{n+1} = Δt² a_n
 //! M̂ a_n = f + F_n - C v_{n-1/2} - K u_n,    M̂ = M + ½ Δt C + β Δt² K,    β = ¼
 //! ```
 //!
-//! This is Newmark's method (β = ¼, γ = ½) for the implicit part and central differences for the explicit one, mixed as Hughes
-//! and Liu do (1978, J. Appl. Mech. 45, 371–378). It is symmetric in time and of second order. A track at rest that is let go
-//! begins with half a kick; where the length of a step changes, one kick has the mean of both.
+//! This is Newmark's method (β = ¼, γ = ½) for the implicit part and central differences for the explicit one, mixed
+//! as Hughes and Liu do (1978, J. Appl. Mech. 45, 371–378). It is symmetric in time and of second order. A track at
+//! rest that is let go begins with half a kick; where the length of a step changes, one kick has the mean of both. A
+//! sleeper that comes down on its damper meets a force that jumps, at the next full step: there the error is of first
+//! order, here as in a passage.
 //!
-//! **Energy.** The product with the mean velocity `v̄_n = (v_{n-1/2} + v_{n+1/2})/2` gives, with `ū = (u_n + u_{n+1})/2` at half steps,
+//! **Energy.** The product with the mean velocity v̄ at a full step gives, with the mean displacement ū at half steps,
 //!
 //! ```text
+//! v̄_n = (v_{n-1/2} + v_{n+1/2})/2,    ū_{n+1/2} = (u_n + u_{n+1})/2
 //! E = ½ vᵀ M v + ½ ūᵀ K ū - f ū,    E_{n+1/2} - E_{n-1/2} = Δt v̄_nᵀ (F_n - C v̄_n)
 //! ```
 //!
-//! to rounding. So a force on the interface gives one side the power `F_n v̄_n` that it takes from the other, and without F no
-//! step is too long. [`Leapfrog::watch`] keeps this account.
+//! to rounding. So a force on the interface gives one side the power `F_n v̄_n` that it takes from the other, and
+//! without F no step is too long. [`Leapfrog::watch`] keeps this account.
 //!
-//! **Limit.** A spring k and a damper c in F, the damper with the velocity `v_{n-1/2} + ½ Δt a_{n-1}`, act on the displacement
-//! `e u`. In the fastest motion, `u_n = (-1)ⁿ u`, the implicit elasticity cancels (1 - 4β = 0), whatever its stiffness, and
+//! **Limit.** Let F hold a spring k and a damper c between places that e picks from u, the damper with the velocity
+//! `v_{n-1/2} + ½ Δt a_{n-1}`. In the fastest motion, `u_n = (-1)ⁿ u`, the implicit elasticity cancels (1 - 4β = 0),
+//! whatever its stiffness, and
 //!
 //! ```text
 //! 4/Δt² > (k + 4 c/Δt) eᵀ M⁻¹ e,    so  Δt < 2 m/(c + √(c² + k m)),    1/m = eᵀ M⁻¹ e
 //! ```
 //!
-//! For the support of a sleeper m is the sleeper; for a wheel it is the wheel and the rail mass that an element lends it.
+//! For the support of a sleeper m is the sleeper; for a wheel it is the wheel and the mass that the rail lends it.
 
 mod energy;
+#[cfg(test)]
+mod hooks;
 mod level;
 mod limit;
 mod rider;
@@ -68,6 +75,7 @@ const BETA: f64 = 0.25;
 /// What presses on the rail in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WheelLoads<'a> {
+    /// Nothing; a train that rides has passed, or comes later.
     None,
     /// Forces that are known: chainage (m) and force (N, down) at the present time. Those off the track do nothing.
     Given(&'a [(f64, f64)]),
@@ -159,7 +167,8 @@ impl Leapfrog {
     /// Lets `train` run from now on, its leading wheel at `start` (m), before the track: every vehicle at rest on level ground
     /// at the level that the end of the rail has now, which it leaves for the rail and reaches again beyond it.
     ///
-    /// To be called while the track is at rest. Fails where a wheel stands on the track, and where the step is longer than the
+    /// To be called while the track is at rest. A clamped end lets wheels on and off within a fifth of their static force; an
+    /// absorbing end gives way under the first wheel, which jumps. Fails where a wheel stands on the track, and where the step is longer than the
     /// wheels allow.
     pub fn ride(&mut self, train: &Train, motion: &Motion, start: f64) -> Result<(), TrackError> {
         let mut ride = Ride::new(&self.track, train, motion, start)?;
@@ -169,6 +178,11 @@ impl Leapfrog {
         self.state.ride = ride.standing(&self.track, &self.state)?;
         self.ride = Some(ride);
         Ok(())
+    }
+
+    /// When the last wheel of the train leaves the track, s; none without a train.
+    pub fn ride_ends(&self) -> Option<f64> {
+        self.ride.as_ref().map(|ride| self.state.ride.began + ride.duration())
     }
 
     /// The longest stable step and where it is set; none where no contact is explicit.

@@ -76,6 +76,11 @@ impl Ride {
         Err(TrackError::Parameter { name, value: start, expected: "before the track" })
     }
 
+    /// When the last wheel has left the track, s since the ride began.
+    pub fn duration(&self) -> f64 {
+        self.timetable.duration
+    }
+
     pub fn limit(&self) -> Option<StepLimit> {
         self.limit
     }
@@ -118,7 +123,7 @@ impl Ride {
             }
             let wheels = &mut state.ride.wheels[rider.wheels()];
             rider.begin();
-            for w in 0..wheels.len() {
+            for (w, wheel) in wheels.iter_mut().enumerate() {
                 let x = rider.position(w, leading, self.sign);
                 let under = track.rail_point(x).ok();
                 let surface = match &under {
@@ -127,7 +132,6 @@ impl Ride {
                 };
                 let unevenness = track.model.irregularity.depth_at(x.clamp(left, right));
                 let compliance = under.map_or(0.0, |point| point.local_compliance);
-                let wheel = &mut wheels[w];
                 let approach = rider.place(w, body) - surface - unevenness;
                 let force = rider.press(w, wheel, approach, compliance, state.last_step);
                 if !rider.bears(w, force) {
@@ -142,22 +146,5 @@ impl Ride {
             rider.advance(body, state.last_step);
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-impl Ride {
-    /// The vehicles of a passage as they are.
-    pub fn moving(&self, state: &LeapfrogState, passage: &crate::solvers::track::Passage<'_>) -> RideState {
-        let vector = nalgebra::DVector::from_column_slice;
-        let half = 0.5 * state.last_step;
-        let bodies = passage.vehicles.iter().map(|(running, _)| {
-            let (velocity, acceleration) = (vector(&running.velocity), vector(&running.acceleration));
-            let velocity = velocity - half * &acceleration;
-            BodyState { displacement: vector(&running.displacement), velocity, acceleration }
-        });
-        let wheels =
-            passage.interface.indentations.iter().map(|d| WheelState { indentation: *d, ..Default::default() });
-        RideState { began: state.time, ground: [0.0; 2], bodies: bodies.collect(), wheels: wheels.collect() }
     }
 }

@@ -1,0 +1,105 @@
+//! Trains that come, pass and leave.
+
+use super::*;
+
+/// Three wagons come from outside, pass and leave: every wheel begins and ends with its static force.
+#[test]
+fn a_train_enters_and_leaves() {
+    for direction in [Direction::Forward, Direction::Backward] {
+        let model = ballast(60);
+        let level = TrackLevel::as_built(&model);
+        let vehicles = [0.0, 10.3, 20.6].map(|offset| (Multibody::from(wagon()), offset)).to_vec();
+        let train = Train { vehicles, direction };
+        let mut leapfrog = leapfrog(&model, &level, 25e-6);
+        let rest: Vec<f64> = (0..60).map(|seat| leapfrog.view().seat_load(seat)).collect();
+        let start = if direction == Direction::Forward { -1.0 } else { model.ends[1] + 1.0 };
+        leapfrog.ride(&train, &Motion::Constant(SPEED), start).unwrap();
+        let still = wagon().mass() * 9.81 / 4.0;
+        let (mut most, mut least, mut passed, mut peaks) = (0.0f64, f64::INFINITY, 0, vec![0.0f64; 60]);
+        let mut inside = (f64::INFINITY, 0.0f64);
+        while passed < 12 {
+            leapfrog.step(&[], &WheelLoads::Riding).unwrap();
+            let view = leapfrog.view();
+            for force in view.wheel_forces() {
+                (most, least) = (most.max(force / still), least.min(force / still));
+            }
+            for (_, force) in view.on_rail().iter().filter(|(x, _)| (12.0..24.0).contains(x)) {
+                inside = (inside.0.min(force / still), inside.1.max(force / still));
+            }
+            for (seat, peak) in peaks.iter_mut().enumerate() {
+                *peak = peak.max(view.seat_load(seat));
+            }
+            let past = |x: &f64| if start < 0.0 { *x > model.ends[1] + 0.5 } else { *x < -0.5 };
+            passed = view.wheel_positions().filter(past).count();
+        }
+        let view = leapfrog.view();
+        println!("wheel forces {least:.4} .. {most:.4}, inside {:.4} .. {:.4}", inside.0, inside.1);
+        println!("peaks {:.1} .. {:.1} kN", peaks[20] / 1e3, peaks[30] / 1e3);
+        // The clamped end of the rail is a stiff place that a wheel meets at once.
+        assert!(least > 0.75 && most < 1.25 && inside.0 > 0.95 && inside.1 < 1.05);
+        assert!((peaks[20] / peaks[40] - 1.0).abs() < 0.02 && peaks[30] > 0.3 * still);
+        assert!(view.on_rail().is_empty());
+        for _ in 0..20_000 {
+            leapfrog.step(&[], &WheelLoads::Riding).unwrap();
+        }
+        let view = leapfrog.view();
+        assert!((0..60).all(|seat| (view.seat_load(seat) - rest[seat]).abs() < 1.0));
+        assert!(view.wheel_forces().all(|force| (force / still - 1.0).abs() < 0.1));
+    }
+}
+
+/// A ride that is stopped, written down and read back goes on to the same bits.
+#[test]
+fn a_checkpoint_gives_the_same_bits() {
+    let model = ballast(30);
+    let level = TrackLevel::as_built(&model);
+    let train = Train::single(wagon(), Direction::Forward);
+    let begin = || {
+        let mut leapfrog = leapfrog(&carried(model.clone()), &level, 20e-6);
+        leapfrog.ride(&train, &Motion::Constant(SPEED), -0.5).unwrap();
+        leapfrog.watch();
+        leapfrog
+    };
+    let run = |leapfrog: &mut Leapfrog, steps: usize| {
+        let mut springs = Springs::under(&model, &level);
+        for _ in 0..steps {
+            leapfrog.step(springs.push(leapfrog), &WheelLoads::Riding).unwrap();
+        }
+    };
+    let mut whole = begin();
+    run(&mut whole, 8000);
+    let text = serde_json::to_string(whole.state()).unwrap();
+    run(&mut whole, 4000);
+    let mut resumed = begin();
+    resumed.restore(&serde_json::from_str(&text).unwrap()).unwrap();
+    run(&mut resumed, 4000);
+    assert!(!resumed.view().on_rail().is_empty());
+    assert_eq!(serde_json::to_string(whole.state()).unwrap(), serde_json::to_string(resumed.state()).unwrap());
+    let mut other = self::leapfrog(&carried(model.clone()), &level, 20e-6);
+    assert!(other.restore(whole.state()).is_err(), "the state of a ride in a track without one");
+}
+
+/// A dip of the running surface throws the wheels off the rail; they come back, and are never pulled.
+#[test]
+fn wheels_lift_off() {
+    let mut model = ballast(40);
+    let dip = |i: i32| (12.0 + 0.05 * f64::from(i), 4e-3 * (0.05 * std::f64::consts::PI * f64::from(i)).sin().powi(2));
+    model.irregularity = Irregularity::spline((0..=20).map(dip).collect()).unwrap();
+    let level = TrackLevel::as_built(&model);
+    let mut leapfrog = leapfrog(&model, &level, 20e-6);
+    leapfrog.ride(&Train::single(wagon(), Direction::Forward), &Motion::Constant(SPEED), -0.1).unwrap();
+    let still = wagon().mass() * 9.81 / 4.0;
+    let (mut most, mut off) = (0.0f64, 0);
+    while leapfrog.time() < leapfrog.ride_ends().unwrap() {
+        leapfrog.step(&[], &WheelLoads::Riding).unwrap();
+        for (x, force) in leapfrog.view().on_rail() {
+            assert!(*force >= 0.0);
+            off += usize::from(*force == 0.0 && (12.0..14.0).contains(x));
+            most = most.max(force / still);
+        }
+    }
+    println!("{off} steps without contact, at most {most:.2} of the static force");
+    assert!(off > 100 && most > 1.5);
+    let view = leapfrog.view();
+    assert_eq!((view.on_rail().len(), view.wheel_positions().count()), (1, 4));
+}
