@@ -43,7 +43,8 @@ pub(super) fn run(
             return Ok(Ending::Stopped);
         }
         let before = ground.settlement();
-        let runs = if last { blocks.leading().into_iter().map(|runner| (runner, 1)).collect() } else { block.runs.clone() };
+        let runs =
+            if last { blocks.leading().into_iter().map(|runner| (runner, 1)).collect() } else { block.runs.clone() };
         let mut passages: Vec<PassageOutcome> = Vec::new();
         for (runner, trains) in runs {
             let records = shown.then_some(machine.graph.records.as_slice());
@@ -54,7 +55,10 @@ pub(super) fn run(
                 let _ = listener.hear(&Event::Packing(&progress));
             };
             let passage = ground.ride(&riders, &mut tell).map_err(at(axles))?;
-            if shown && passages.is_empty() && listener.hear(&Event::Passage { axles, runner, passage: &passage }).is_break() {
+            if shown
+                && passages.is_empty()
+                && listener.hear(&Event::Passage { axles, runner, passage: &passage }).is_break()
+            {
                 return Ok(Ending::Stopped);
             }
             passages.push(passage);

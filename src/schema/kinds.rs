@@ -606,7 +606,10 @@ pub const KINDS: &[Kind] = &[
             default(
                 "coupling",
                 Form::Words(&[
-                    word("iterated", "track and grains in turn: wheel forces one way, settlement and stiffness the other"),
+                    word(
+                        "iterated",
+                        "track and grains in turn: wheel forces one way, settlement and stiffness the other",
+                    ),
                     word("monolithic", "vehicles ride on the rail over the grains, all in one time step"),
                 ]),
                 "iterated",

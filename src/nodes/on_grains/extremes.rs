@@ -137,7 +137,8 @@ impl<'a> Extremes<'a> {
             let places = ranges.iter().zip(&self.unloaded.rail).filter(|(_, point)| self.passed.contains(&point.x));
             places.map(|(range, _)| range.1).fold(0.0, f64::max)
         };
-        let seen = || self.wheels.iter().zip(self.train.static_wheel_loads(gravity)).filter(|(range, _)| range.1 >= range.0);
+        let seen =
+            || self.wheels.iter().zip(self.train.static_wheel_loads(gravity)).filter(|(range, _)| range.1 >= range.0);
         let shares = seen().map(|(range, load)| (range.0 / load, range.1 / load));
         let shares = shares.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).filter(|_| gravity > 0.0);
         PassageOutcome {

@@ -1,7 +1,7 @@
 //! What may be asked of a track in motion: its feet at the present time, and all of it at the time of the last forces.
 
 use super::Leapfrog;
-use crate::solvers::track::mesh::{CarriedSleeper, FootUnknown};
+use crate::solvers::track::mesh::{CarriedSleeper, FootUnknown, Track};
 
 /// How a carried sleeper or its underside moves; positive down.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,6 +52,10 @@ impl Leapfrog {
 }
 
 impl<'a> LeapfrogView<'a> {
+    pub fn track(&self) -> &'a Track {
+        &self.leapfrog.track
+    }
+
     /// s.
     pub fn time(&self) -> f64 {
         self.leapfrog.state.time - self.leapfrog.state.last_step
