@@ -88,7 +88,8 @@ impl Soil {
 
     /// Nodes of the faces of elements on a side, each once.
     pub fn side_nodes(&self, side: Side) -> Vec<usize> {
-        let mut nodes: Vec<usize> = self.faces(side).iter().flat_map(|(_, corners)| corners.map(|n| n as usize)).collect();
+        let mut nodes: Vec<usize> =
+            self.faces(side).iter().flat_map(|(_, corners)| corners.map(|n| n as usize)).collect();
         nodes.sort_unstable();
         nodes.dedup();
         nodes

@@ -3,6 +3,7 @@
 //! The leapfrog is stable below 2/ω of the fastest vibration. No vibration of a mesh is faster than the fastest of its elements
 //! alone (Fried 1972), which bounds ω from above; iterations of Lanczos on the mesh with its supports find ω itself, from below.
 
+use super::chunk::Answer;
 use super::error::SoilError;
 use super::soil::Soil;
 use super::step::pull;
@@ -54,18 +55,24 @@ impl Soil {
             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             now[node][axis] = if free(node, axis) { (random >> 33) as f64 / 2f64.powi(31) - 0.5 } else { 0.0 };
         }
-        let dot = |a: &[[f64; 3]], b: &[[f64; 3]]| a.iter().zip(b).map(|(a, b)| a[0] * b[0] + a[1] * b[1] + a[2] * b[2]).sum::<f64>();
+        let dot = |a: &[[f64; 3]], b: &[[f64; 3]]| {
+            a.iter().zip(b).map(|(a, b)| a[0] * b[0] + a[1] * b[1] + a[2] * b[2]).sum::<f64>()
+        };
         let scale = |a: &mut [[f64; 3]], factor: f64| a.iter_mut().flatten().for_each(|x| *x *= factor);
         let size = dot(&now, &now).sqrt();
         if size == 0.0 {
-            return Err(SoilError::Value { what: "the number of free nodes", value: 0.0, expected: "a number above 0" });
+            return Err(SoilError::Value {
+                what: "the number of free nodes",
+                value: 0.0,
+                expected: "a number above 0",
+            });
         }
         scale(&mut now, 1.0 / size);
         let mut before = vec![[0.0; 3]; root.len()];
         let (mut diagonal, mut beside): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
         for _ in 0..iterations {
             let moved: Vec<[f64; 3]> = now.iter().zip(&root).map(|(x, root)| x.map(|x| x / root)).collect();
-            pull(&mut chunks, &self.shapes, &moved);
+            pull(&mut chunks, &self.shapes, &moved, Answer::Linear);
             let last = beside.last().copied().unwrap_or(0.0);
             let mut next: Vec<[f64; 3]> = (0..root.len()).map(|node| {
                 let force = self.nodes.pull(&chunks, node);

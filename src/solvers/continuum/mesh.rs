@@ -99,7 +99,9 @@ impl Mesh {
             }
         }
         let corners = |[i, j, k]: [usize; 3]| {
-            CORNERS.map(|c| grid_node(i + usize::from(c[0] > 0.0), j + usize::from(c[1] > 0.0), k + usize::from(c[2] > 0.0)))
+            CORNERS.map(|c| {
+                grid_node(i + usize::from(c[0] > 0.0), j + usize::from(c[1] > 0.0), k + usize::from(c[2] > 0.0))
+            })
         };
         let mut number = vec![u32::MAX; count[0] * count[1] * count[2]];
         for (cell, _) in &found {
@@ -111,8 +113,10 @@ impl Mesh {
             *number = nodes.len() as u32;
             nodes.push([lines[0][i], lines[1][j], lines[2][k]]);
         }
-        let element =
-            |&(cell, material): &([usize; 3], usize)| Element { nodes: corners(cell).map(|n| number[n]), material: material as u32 };
+        let element = |&(cell, material): &([usize; 3], usize)| Element {
+            nodes: corners(cell).map(|n| number[n]),
+            material: material as u32,
+        };
         let elements: Vec<Element> = found.iter().map(element).collect();
         let mut tops = vec![None; (count[0] - 1) * (count[1] - 1)];
         for (([i, j, _], _), element) in found.iter().zip(&elements) {

@@ -7,9 +7,10 @@
 //! of a block with the edges of the element, which the whole element would have without locking.
 
 use super::lanes::Lanes;
-use super::material::{Material, Strength};
+use super::material::Material;
 use super::mesh::CORNERS;
 use super::tetra::Tetrahedra;
+use super::yields::Yield;
 
 /// Values at the corners of eight elements: axis by axis, corner by corner.
 pub type Corners = [[Lanes; 8]; 3];
@@ -40,7 +41,7 @@ pub struct Shape {
     /// Lamé's constants \[Pa\].
     pub lambda: f64,
     pub mu: f64,
-    pub strength: Option<Strength>,
+    pub yields: Option<Yield>,
     /// In place of the mean strain.
     pub tetrahedra: Option<Box<Tetrahedra>>,
 }
@@ -56,7 +57,7 @@ impl Shape {
             masses: [0.0; 8],
             lambda: material.lame().0,
             mu: material.lame().1,
-            strength: material.strength,
+            yields: material.strength.map(|strength| Yield::new(&strength, material.lame().0, material.lame().1)),
             tetrahedra: None,
         };
         let point = 1.0 / 3f64.sqrt();
@@ -116,10 +117,10 @@ fn at_point(corners: &[[f64; 3]; 8], at: [f64; 3]) -> (f64, [[f64; 3]; 3], [f64;
     let slope = |c: &[f64; 3], k: usize| 0.5 * c[k] * factor(c, (k + 1) % 3) * factor(c, (k + 2) % 3);
     let slopes = CORNERS.map(|c| [0, 1, 2].map(|k| slope(&c, k)));
     // rows: derivative of the place along ξ, η, ζ
-    let jacobian = [0, 1, 2].map(|k| [0, 1, 2].map(|axis| (0..8).map(|c| slopes[c][k] * corners[c][axis]).sum::<f64>()));
-    let cross = |a: [f64; 3], b: [f64; 3]| {
-        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-    };
+    let jacobian =
+        [0, 1, 2].map(|k| [0, 1, 2].map(|axis| (0..8).map(|c| slopes[c][k] * corners[c][axis]).sum::<f64>()));
+    let cross =
+        |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     let [x, y, z] = jacobian;
     let cofactors = [cross(y, z), cross(z, x), cross(x, y)];
     let determinant = (0..3).map(|axis| x[axis] * cofactors[0][axis]).sum();

@@ -1,9 +1,10 @@
 //! One step of the leapfrog: `v += F/m dt`, `x += v dt`.
 
-use super::chunk::{Chunk, Held};
+use super::chunk::{Answer, Chunk, Held};
 use super::energy::Tally;
 use super::error::{SoilError, within};
 use super::nodes::Nodes;
+use super::shape::Shape;
 use super::soil::{Damping, Soil};
 use rayon::prelude::*;
 
@@ -39,11 +40,11 @@ impl Soil {
     pub(super) fn advance(&mut self, dt: f64) -> Result<(), SoilError> {
         let Damping { stiffness, local } = self.settings.damping;
         if stiffness > 0.0 {
-            pull(&mut self.chunks, &self.shapes, &self.nodes.velocity);
+            pull(&mut self.chunks, &self.shapes, &self.nodes.velocity, Answer::Linear);
             let viscous = |node| self.nodes.pull(&self.chunks, node).map(|force| stiffness * force);
             self.nodes.viscous = (0..self.nodes.mass.len()).map(viscous).collect();
         }
-        let held = pull(&mut self.chunks, &self.shapes, &self.nodes.displacement);
+        let held = pull(&mut self.chunks, &self.shapes, &self.nodes.displacement, Answer::Remembered);
         let (gravity, watched) = (self.settings.gravity, self.ledger.watched);
         let kick = Kick { dt, last: self.clock.last, gravity, local, watched };
         let tally = advance(&mut self.nodes, &self.chunks, self.mesh.nodes(), kick);
@@ -64,8 +65,8 @@ impl Soil {
 }
 
 /// Computes the forces of all elements under displacements.
-pub(super) fn pull(chunks: &mut [Chunk], shapes: &[super::shape::Shape], displacement: &[[f64; 3]]) -> Held {
-    let held: Vec<Held> = chunks.par_iter_mut().map(|chunk| chunk.pull(shapes, displacement)).collect();
+pub(super) fn pull(chunks: &mut [Chunk], shapes: &[Shape], displacement: &[[f64; 3]], answer: Answer) -> Held {
+    let held: Vec<Held> = chunks.par_iter_mut().map(|chunk| chunk.pull(shapes, displacement, answer)).collect();
     let join = |a: Held, b: &Held| Held { strain: a.strain + b.strain, plastic: a.plastic + b.plastic };
     held.iter().fold(Held::default(), join)
 }
@@ -76,21 +77,25 @@ fn advance(nodes: &mut Nodes, chunks: &[Chunk], made: &[[f64; 3]], kick: Kick) -
     let (mut displacement, mut velocity, mut position) =
         (take(&mut nodes.displacement), take(&mut nodes.velocity), take(&mut nodes.position));
     let still = &*nodes;
-    let parts = displacement.par_chunks_mut(NODES).zip(velocity.par_chunks_mut(NODES)).zip(position.par_chunks_mut(NODES));
-    let tallies: Vec<Tally> = parts.enumerate().map(|(part, ((displacement, velocity), position))| {
-        let mut tally = Tally::default();
-        for (i, ((u, v), x)) in displacement.iter_mut().zip(velocity).zip(position).enumerate() {
-            let node = part * NODES + i;
-            let after = still.kick(chunks, node, *v, kick, &mut tally);
-            for axis in 0..3 {
-                u[axis] += after[axis] * kick.dt;
-                x[axis] = made[node][axis] + u[axis];
+    let parts =
+        displacement.par_chunks_mut(NODES).zip(velocity.par_chunks_mut(NODES)).zip(position.par_chunks_mut(NODES));
+    let tallies: Vec<Tally> = parts
+        .enumerate()
+        .map(|(part, ((displacement, velocity), position))| {
+            let mut tally = Tally::default();
+            for (i, ((u, v), x)) in displacement.iter_mut().zip(velocity).zip(position).enumerate() {
+                let node = part * NODES + i;
+                let after = still.kick(chunks, node, *v, kick, &mut tally);
+                for axis in 0..3 {
+                    u[axis] += after[axis] * kick.dt;
+                    x[axis] = made[node][axis] + u[axis];
+                }
+                *v = after;
+                tally.speed += after[0] * after[0] + after[1] * after[1] + after[2] * after[2];
             }
-            *v = after;
-            tally.speed += after[0] * after[0] + after[1] * after[1] + after[2] * after[2];
-        }
-        tally
-    }).collect();
+            tally
+        })
+        .collect();
     (nodes.displacement, nodes.velocity, nodes.position) = (displacement, velocity, position);
     tallies.into_iter().fold(Tally::default(), Tally::join)
 }
@@ -111,7 +116,8 @@ impl Nodes {
             let damper = self.dashpot[node][axis];
             // against the velocity in the middle of the kick, so that a node that turns round every step is damped too
             let local = kick.local * total.abs() * sign(before[axis] + 0.5 * total / mass * time);
-            let free = ((mass - 0.5 * damper * time) * before[axis] + (total - local) * time) / (mass + 0.5 * damper * time);
+            let free =
+                ((mass - 0.5 * damper * time) * before[axis] + (total - local) * time) / (mass + 0.5 * damper * time);
             after[axis] = self.driven[node][axis].unwrap_or(free);
             if kick.watched {
                 let now = before[axis] + (after[axis] - before[axis]) * kick.last / (kick.dt + kick.last);
@@ -139,5 +145,11 @@ impl Nodes {
 /// 0 at 0, unlike `signum`.
 #[inline(always)]
 fn sign(x: f64) -> f64 {
-    if x > 0.0 { 1.0 } else if x < 0.0 { -1.0 } else { 0.0 }
+    if x > 0.0 {
+        1.0
+    } else if x < 0.0 {
+        -1.0
+    } else {
+        0.0
+    }
 }

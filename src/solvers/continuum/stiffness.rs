@@ -17,7 +17,8 @@ pub fn stiffness(shape: &Shape) -> DMatrix<f64> {
         (0..LANES).for_each(|l| u[axis][l].0[l] = 1.0);
         let mut force: Corners = [[Lanes::ZERO; 8]; 3];
         kernel::elastic(shape, &u, &mut force);
-        for (moved, corner, along) in (0..LANES).flat_map(|m| (0..8).flat_map(move |c| (0..3).map(move |a| (m, c, a)))) {
+        for (moved, corner, along) in (0..LANES).flat_map(|m| (0..8).flat_map(move |c| (0..3).map(move |a| (m, c, a))))
+        {
             matrix[(3 * corner + along, 3 * moved + axis)] = -force[along][corner].0[moved];
         }
     }

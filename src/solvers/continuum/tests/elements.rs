@@ -29,7 +29,8 @@ fn a_linear_field_is_exact_in_distorted_elements() {
         }
         let (lambda, mu) = SUBGRADE.lame();
         let trace: f64 = (0..3).map(|axis| GRADIENT[axis][axis]).sum();
-        let exact = |i: usize, j: usize| mu * (GRADIENT[i][j] + GRADIENT[j][i]) + if i == j { lambda * trace } else { 0.0 };
+        let exact =
+            |i: usize, j: usize| mu * (GRADIENT[i][j] + GRADIENT[j][i]) + if i == j { lambda * trace } else { 0.0 };
         for element in 0..soil.mesh().elements().len() {
             for (found, (i, j)) in soil.stress(element).iter().zip([(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0)]) {
                 assert!((found - exact(i, j)).abs() < 1e-12 * 1e6, "{found} {}", exact(i, j));
@@ -62,7 +63,8 @@ fn the_limit_of_a_cube() {
     assert!((cube.limit() / theory - 1.0).abs() < 1e-12, "{} {theory}", cube.limit());
     assert!((2.0 / cube.lanczos(24).unwrap().sqrt() / theory - 1.0).abs() < 1e-9);
     assert!(matches!(cube.step(1.001 * theory), Err(SoilError::Step { .. })));
-    let springs: Vec<(usize, f64)> = (0..8).map(|node| (node, cube.masses()[node] * 3.0 * 4.0 / theory.powi(2))).collect();
+    let springs: Vec<(usize, f64)> =
+        (0..8).map(|node| (node, cube.masses()[node] * 3.0 * 4.0 / theory.powi(2))).collect();
     assert!((cube.limit_with(&springs) / theory - 0.5).abs() < 1e-12);
 }
 
@@ -72,7 +74,8 @@ fn motion_is_stable_up_to_the_limit() {
     for formulation in FORMULATIONS {
         let start = |soil: &mut Soil| {
             let mut numbers = Numbers(3);
-            (0..soil.masses().len()).for_each(|node| soil.set_motion(node, [(); 3].map(|()| 1e-6 * numbers.next()), [0.0; 3]));
+            (0..soil.masses().len())
+                .for_each(|node| soil.set_motion(node, [(); 3].map(|()| 1e-6 * numbers.next()), [0.0; 3]));
         };
         let mut block = soil(block([0.4, 0.3, 0.3], [4, 3, 3], SUBGRADE), formulation, 0.0);
         support(&mut block, &[Side::Bottom], Support::Fixed);

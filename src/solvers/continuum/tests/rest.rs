@@ -17,7 +17,8 @@ fn a_column_settles_under_its_weight() {
         let mut soil = column(formulation);
         soil.rest(&[]).unwrap();
         for (place, u) in soil.mesh().nodes().iter().zip(soil.displacements()) {
-            let exact = -SUBGRADE.density * 9.81 * (2.0 * place[2] - 0.5 * place[2].powi(2)) / SUBGRADE.constrained_modulus();
+            let exact =
+                -SUBGRADE.density * 9.81 * (2.0 * place[2] - 0.5 * place[2].powi(2)) / SUBGRADE.constrained_modulus();
             assert!((u[2] - exact).abs() < 1e-11 * 1e-4, "{} {exact}", u[2]);
             assert!(u[0].abs() < 1e-15 && u[1].abs() < 1e-15);
         }

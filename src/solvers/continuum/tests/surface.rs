@@ -43,7 +43,8 @@ fn shares_keep_force_moment_and_power() {
     let Spot { facet, local } = surface.locate(0.41, 0.87).unwrap();
     let weights = Spot::weights(local);
     let corners = surface.facets()[facet].map(|node| mesh.nodes()[node as usize]);
-    let cross = |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let cross =
+        |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
     let whole = cross([0.41, 0.87, 1.0], force);
     for axis in 0..3 {
