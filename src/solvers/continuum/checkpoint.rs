@@ -1,7 +1,9 @@
 //! The state of a soil as data, and back, bit by bit.
 
+use super::chunk::Chunk;
 use super::energy::Ledger;
 use super::error::SoilError;
+use super::flow::Memory;
 use super::soil::{Clock, Soil};
 use serde::{Deserialize, Serialize};
 
@@ -14,6 +16,7 @@ pub struct State {
     velocity: Vec<[f64; 3]>,
     external: Vec<[f64; 3]>,
     borne: Vec<[f64; 3]>,
+    memories: Vec<Memory>,
     ledger: Ledger,
 }
 
@@ -26,6 +29,7 @@ impl Soil {
             velocity: self.nodes.velocity.clone(),
             external: self.nodes.external.clone(),
             borne: self.nodes.borne.clone(),
+            memories: self.chunks.iter().flat_map(Chunk::memories).cloned().collect(),
             ledger: self.ledger,
         }
     }
@@ -35,12 +39,20 @@ impl Soil {
     /// # Errors
     /// It is of another soil; this one is left as it was then.
     pub fn restore(&mut self, state: State) -> Result<(), SoilError> {
-        let State { clock, displacement, velocity, external, borne, ledger } = state;
+        let State { clock, displacement, velocity, external, borne, memories, ledger } = state;
         let expected = self.nodes.mass.len();
         for nodes in [&displacement, &velocity, &external, &borne] {
             if nodes.len() != expected {
                 return Err(SoilError::OtherSoil { what: "nodes", expected, found: nodes.len() });
             }
+        }
+        let own = self.chunks.iter().flat_map(Chunk::memories).map(|memory| memory.points.len());
+        let (expected, found) = (own.sum(), memories.iter().map(|memory| memory.points.len()).sum());
+        if expected != found || memories.len() != self.chunks.iter().flat_map(Chunk::memories).count() {
+            return Err(SoilError::OtherSoil { what: "points that can yield", expected, found });
+        }
+        for (own, memory) in self.chunks.iter_mut().flat_map(Chunk::memories_mut).zip(memories) {
+            *own = memory;
         }
         for ((x, made), u) in self.nodes.position.iter_mut().zip(self.mesh.nodes()).zip(&displacement) {
             *x = [0, 1, 2].map(|axis| made[axis] + u[axis]);

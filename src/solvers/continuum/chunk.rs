@@ -3,6 +3,7 @@
 //! A chunk holds the nodes of its elements and sums their forces there, so that nothing is shared while threads work. Chunks are
 //! cut by the number of elements alone and their forces are added in their order: any number of threads gives the same bits.
 
+use super::flow::Memory;
 use super::kernel;
 use super::lanes::{LANES, Lanes};
 use super::mesh::Mesh;
@@ -10,7 +11,7 @@ use super::shape::{Corners, Shape};
 use pulp::NullaryFnOnce;
 
 /// Elements of a chunk: their nodes fit into the first caches of a core.
-const ELEMENTS: usize = 480;
+pub const ELEMENTS: usize = 480;
 
 /// Up to eight elements of one shape.
 #[derive(Debug, Clone)]
@@ -20,6 +21,8 @@ struct Batch {
     elements: [u32; LANES],
     /// Nodes of the chunk: corner, lane. Lanes without an element repeat the first.
     corners: [[u16; LANES]; 8],
+    /// What elements with a strength remember.
+    memory: Option<Box<Memory>>,
 }
 
 #[derive(Debug, Clone)]
@@ -41,20 +44,25 @@ pub struct Held {
 
 impl Chunk {
     /// All elements of a mesh in chunks; `shapes` says the shape of each element.
-    pub fn cut(mesh: &Mesh, shapes: &[u32]) -> Vec<Chunk> {
+    pub fn cut(mesh: &Mesh, known: &[Shape], shapes: &[u32]) -> Vec<Chunk> {
         let mut local = vec![u16::MAX; mesh.nodes().len()];
         (0..shapes.len())
             .step_by(ELEMENTS)
             .map(|from| {
                 let to = (from + ELEMENTS).min(shapes.len());
-                let chunk = Chunk::new(mesh, from..to, shapes, &mut local);
+                let chunk = Chunk::new(mesh, from..to, (known, shapes), &mut local);
                 chunk.nodes.iter().for_each(|&node| local[node as usize] = u16::MAX);
                 chunk
             })
             .collect()
     }
 
-    fn new(mesh: &Mesh, elements: std::ops::Range<usize>, shapes: &[u32], local: &mut [u16]) -> Chunk {
+    fn new(
+        mesh: &Mesh,
+        elements: std::ops::Range<usize>,
+        (known, shapes): (&[Shape], &[u32]),
+        local: &mut [u16],
+    ) -> Chunk {
         let mut nodes: Vec<u32> = Vec::new();
         for element in elements.clone() {
             for node in mesh.elements()[element].nodes {
@@ -70,7 +78,10 @@ impl Chunk {
         for alike in sorted.chunk_by(|&a, &b| shapes[a] == shapes[b]) {
             for group in alike.chunks(LANES) {
                 let lane = |l: usize| group[l.min(group.len()) % group.len()];
+                let shape = &known[shapes[group[0]] as usize];
+                let memory = shape.yields.as_ref().map(|_| Box::new(Memory::new(shape)));
                 let mut batch = Batch {
+                    memory,
                     shape: shapes[group[0]],
                     count: group.len(),
                     elements: [0; LANES],
@@ -89,10 +100,36 @@ impl Chunk {
         Chunk { force: zeros.clone(), place: zeros, nodes, batches }
     }
 
-    /// Computes the forces of the elements as if they were linear.
-    pub fn pull(&mut self, shapes: &[Shape], displacement: &[[f64; 3]]) -> Held {
-        pulp::Arch::new().dispatch(Pull { chunk: self, shapes, displacement })
+    /// Computes the forces of the elements.
+    pub fn pull(&mut self, shapes: &[Shape], displacement: &[[f64; 3]], answer: Answer) -> Held {
+        pulp::Arch::new().dispatch(Pull { chunk: self, shapes, displacement, answer })
     }
+
+    /// What the elements remember, batch by batch.
+    pub fn memories(&self) -> impl Iterator<Item = &Memory> {
+        self.batches.iter().filter_map(|batch| batch.memory.as_deref())
+    }
+
+    pub fn memories_mut(&mut self) -> impl Iterator<Item = &mut Memory> {
+        self.batches.iter_mut().filter_map(|batch| batch.memory.as_deref_mut())
+    }
+
+    /// Memory and lane of an element that can yield.
+    pub fn memory(&self, element: usize) -> Option<(&Memory, usize)> {
+        let lane = |batch: &Batch| batch.elements[..batch.count].iter().position(|&e| e as usize == element);
+        self.batches.iter().find_map(|batch| Some((batch.memory.as_deref()?, lane(batch)?)))
+    }
+}
+
+/// How elements answer to displacements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Answer {
+    /// As if they had no strength and no past.
+    Linear,
+    /// As they would, without remembering it.
+    Tried,
+    /// As they do.
+    Remembered,
 }
 
 /// Work for the widest instructions of the machine. A closure would not do: its body might be compiled without them.
@@ -100,6 +137,7 @@ struct Pull<'a> {
     chunk: &'a mut Chunk,
     shapes: &'a [Shape],
     displacement: &'a [[f64; 3]],
+    answer: Answer,
 }
 
 impl NullaryFnOnce for Pull<'_> {
@@ -116,9 +154,25 @@ impl NullaryFnOnce for Pull<'_> {
         for batch in batches {
             let u = gather(batch, place);
             let mut f: Corners = [[Lanes::ZERO; 8]; 3];
-            let energy = kernel::elastic(&self.shapes[batch.shape as usize], &u, &mut f);
-            for l in 0..batch.count {
-                held.strain += energy.0[l];
+            let shape = &self.shapes[batch.shape as usize];
+            match (&shape.yields, &mut batch.memory) {
+                (Some(yields), Some(memory)) if self.answer != Answer::Linear => {
+                    let work = if self.answer == Answer::Remembered {
+                        memory.pull(shape, yields, &u, &mut f)
+                    } else {
+                        memory.clone().pull(shape, yields, &u, &mut f)
+                    };
+                    for l in 0..batch.count {
+                        held.strain += work.strain.0[l];
+                        held.plastic += work.lost.0[l];
+                    }
+                }
+                _ => {
+                    let energy = kernel::elastic(shape, &u, &mut f);
+                    for l in 0..batch.count {
+                        held.strain += energy.0[l];
+                    }
+                }
             }
             scatter(batch, &f, force);
         }

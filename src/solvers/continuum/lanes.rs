@@ -3,12 +3,13 @@
 //! Plain loops over plain arrays, which the compiler turns into the vector instructions of the function around them. No
 //! closures: their bodies might stay outside of it. No fused operations either, so that every machine gives the same bits.
 
+use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign, Mul, Sub};
 
 /// Elements that are computed together.
 pub const LANES: usize = 8;
 
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[repr(align(64))]
 pub struct Lanes(pub [f64; LANES]);
 

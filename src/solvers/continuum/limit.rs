@@ -3,6 +3,7 @@
 //! The leapfrog is stable below 2/ω of the fastest vibration. No vibration of a mesh is faster than the fastest of its elements
 //! alone (Fried 1972), which bounds ω from above; iterations of Lanczos on the mesh with its supports find ω itself, from below.
 
+use super::chunk::Answer;
 use super::error::SoilError;
 use super::soil::Soil;
 use super::step::pull;
@@ -71,7 +72,7 @@ impl Soil {
         let (mut diagonal, mut beside): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
         for _ in 0..iterations {
             let moved: Vec<[f64; 3]> = now.iter().zip(&root).map(|(x, root)| x.map(|x| x / root)).collect();
-            pull(&mut chunks, &self.shapes, &moved);
+            pull(&mut chunks, &self.shapes, &moved, Answer::Linear);
             let last = beside.last().copied().unwrap_or(0.0);
             let mut next: Vec<[f64; 3]> = (0..root.len()).map(|node| {
                 let force = self.nodes.pull(&chunks, node);

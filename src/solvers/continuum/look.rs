@@ -1,18 +1,51 @@
-//! Stresses of elements, for those who look.
+//! Stresses of elements and forces of supports, for those who look.
 
-use super::kernel::{mean_strain, stress};
+use super::chunk::ELEMENTS;
+use super::flow::Memory;
+use super::kernel::{COMPONENT, elastic};
 use super::lanes::Lanes;
 use super::shape::Corners;
 use super::soil::Soil;
 
 impl Soil {
-    /// Mean stress of an element \[Pa\], tension positive: xx, yy, zz, xy, yz, zx.
+    /// Mean stress of an element \[Pa\] at the present displacements, tension positive: xx, yy, zz, xy, yz, zx.
     pub fn stress(&self, element: usize) -> [f64; 6] {
         let mut u: Corners = [[Lanes::ZERO; 8]; 3];
         for (corner, &node) in self.mesh.elements()[element].nodes.iter().enumerate() {
             (0..3).for_each(|axis| u[axis][corner].0[0] = self.nodes.displacement[node as usize][axis]);
         }
         let shape = &self.shapes[self.kinds[element] as usize];
-        stress(shape, &mean_strain(shape, &u)).map(|component| component.0[0])
+        let mut force: Corners = [[Lanes::ZERO; 8]; 3];
+        match (&shape.yields, self.chunks[element / ELEMENTS].memory(element)) {
+            (Some(yields), Some((memory, lane))) => {
+                let mut memory: Memory = memory.clone();
+                for corner in 0..8 {
+                    (0..3).for_each(|axis| u[axis][corner].0[lane] = u[axis][corner].0[0]);
+                }
+                memory.pull(shape, yields, &u, &mut force);
+                memory.mean_stress(shape).map(|component| component.0[lane])
+            }
+            _ => {
+                elastic(shape, &u, &mut force);
+                let corners = self.mesh.corners(element);
+                mean_stress(&force, &corners, shape.volume)
+            }
+        }
     }
+
+    /// The force of the elements on a node at the displacements of the last step \[N\]. At a held node at rest its support bears
+    /// the opposite less gravity and the caller's forces.
+    pub fn internal_force(&self, node: usize) -> [f64; 3] {
+        self.nodes.pull(&self.chunks, node)
+    }
+}
+
+/// Mean stress of a body by the forces that it exerts on its corners: `σ = -Σ f x / V`.
+fn mean_stress(force: &Corners, corners: &[[f64; 3]; 8], volume: f64) -> [f64; 6] {
+    let mut stress = [0.0; 6];
+    for (i, j) in (0..3).flat_map(|i| (0..=i).map(move |j| (i, j))) {
+        let sum = |i: usize, j: usize| (0..8).map(|c| force[i][c].0[0] * (corners[c][j] - corners[0][j])).sum::<f64>();
+        stress[COMPONENT[i][j]] = -0.5 * (sum(i, j) + sum(j, i)) / volume;
+    }
+    stress
 }

@@ -23,6 +23,7 @@ mod checkpoint;
 mod chunk;
 mod energy;
 mod error;
+mod flow;
 mod kernel;
 mod lanes;
 mod limit;
@@ -40,6 +41,7 @@ mod surface;
 #[cfg(test)]
 mod tests;
 mod tetra;
+mod yields;
 
 pub use boundary::{Side, Support};
 pub use checkpoint::State;

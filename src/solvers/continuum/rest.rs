@@ -1,5 +1,7 @@
-//! States of rest: `K u = f` by a sparse factorisation.
+//! States of rest: `K u = f` by a sparse factorisation. Soil that yields gets there by steps of the elastic stiffness (Newton's method
+//! with one matrix), each as long as a secant along it says.
 
+use super::chunk::Answer;
 use super::error::SoilError;
 use super::shape::Shape;
 use super::soil::Soil;
@@ -7,6 +9,9 @@ use super::step::pull;
 use super::stiffness::{FREEDOMS, stiffness};
 use crate::linalg::sparse::{Analysis, Cholesky, FactorError, SparseSymmetric};
 use nalgebra::DMatrix;
+
+/// Iterations of a search for the rest of soil that yields.
+const ITERATIONS: usize = 400;
 
 /// The factored stiffness of a soil with its supports.
 #[derive(Debug, Clone)]
@@ -34,45 +39,82 @@ impl Factor {
 }
 
 impl Soil {
-    /// Puts the soil at rest under gravity and the forces added so far, which are spent by it; nodes may stand on springs to the
+    /// Puts the soil at rest, from where it is, under gravity and the forces added so far, which are spent by it; nodes may stand on springs to the
     /// ground \[N/m\]. Quiet faces are rollers meanwhile, and go on bearing what they bore then. Driven nodes stand still where they are.
     ///
     /// # Errors
-    /// Nothing holds the soil, or the factor does not fit into memory.
+    /// Nothing holds the soil, it yields without end, or the factor does not fit into memory. The soil is then left as it was.
     pub fn rest(&mut self, springs: &[(usize, [f64; 3])]) -> Result<(), SoilError> {
+        let before = self.nodes.displacement.clone();
+        let found = self.seek_rest(springs);
+        if found.is_err() {
+            self.nodes.displacement = before;
+        }
+        found
+    }
+
+    fn seek_rest(&mut self, springs: &[(usize, [f64; 3])]) -> Result<(), SoilError> {
         let factor = self.factor(springs)?;
         let load = self.load();
-        for node in 0..load.len() {
-            // what is held keeps its place
-            for axis in 0..3 {
-                if factor.unknowns[node][axis].is_some() {
-                    self.nodes.displacement[node][axis] = 0.0;
-                }
+        let largest = |forces: &[[f64; 3]], unknowns: &[[Option<usize>; 3]]| {
+            let free =
+                forces.iter().zip(unknowns).flat_map(|(force, unknowns)| (0..3).map(|i| (force[i], unknowns[i])));
+            // what is no number is larger than any number
+            free.filter(|(_, unknown)| unknown.is_some())
+                .fold(0.0, |size: f64, (f, _)| if f.abs() <= size { size } else { f.abs() })
+        };
+        let mut size = largest(&load, &factor.unknowns);
+        let mut left = self.unbalanced(&load, springs);
+        size = size.max(largest(&left, &factor.unknowns));
+        let plastic = self.shapes.iter().any(|shape| shape.yields.is_some());
+        let (most, fine) = if plastic { (ITERATIONS, 1e-7) } else { (2, 0.0) };
+        for _ in 0..most {
+            if largest(&left, &factor.unknowns) <= fine * size {
+                break;
             }
+            let way = factor.solve(&left);
+            left = self.go(&load, springs, &way, &left, plastic);
         }
-        let largest = |forces: &[[f64; 3]]| forces.iter().flatten().fold(0.0, |size: f64, f| size.max(f.abs()));
-        let mut size = largest(&load);
-        // the second time mends what rounding left
-        for _ in 0..2 {
-            let left = self.unbalanced(&load, springs);
-            size = size.max(largest(&left));
-            let step = factor.solve(&left);
-            for (u, step) in self.nodes.displacement.iter_mut().zip(&step) {
-                (0..3).for_each(|axis| u[axis] += step[axis]);
-            }
-        }
-        let left = self.unbalanced(&load, springs);
-        let mut worst = 0.0f64;
-        for (unknowns, left) in factor.unknowns.iter().zip(&left) {
-            worst =
-                (0..3).filter(|&axis| unknowns[axis].is_some()).fold(worst, |worst, axis| worst.max(left[axis].abs()));
-        }
+        let worst = largest(&left, &factor.unknowns) / size.max(f64::MIN_POSITIVE);
         // written so that what is no number fails; a soil that is free but for rounding balances nothing
-        if !(worst <= 1e-6 * size) {
-            return Err(SoilError::NotHeld);
+        match worst <= 1e-6 {
+            true => {}
+            false if plastic => return Err(SoilError::NoRest { iterations: most, left: worst }),
+            false => return Err(SoilError::NotHeld),
         }
+        pull(&mut self.chunks, &self.shapes, &self.nodes.displacement, Answer::Remembered);
         self.settle(&left);
         Ok(())
+    }
+
+    /// Goes along a way by as much as it takes to have no force along it, as a secant says, and returns what is unbalanced then.
+    fn go(
+        &mut self,
+        load: &[[f64; 3]],
+        springs: &[(usize, [f64; 3])],
+        way: &[[f64; 3]],
+        left: &[[f64; 3]],
+        search: bool,
+    ) -> Vec<[f64; 3]> {
+        let along =
+            |left: &[[f64; 3]]| left.iter().flatten().zip(way.iter().flatten()).map(|(f, w)| f * w).sum::<f64>();
+        let forward = |soil: &mut Soil, part: f64| {
+            for (u, way) in soil.nodes.displacement.iter_mut().zip(way) {
+                (0..3).for_each(|axis| u[axis] += part * way[axis]);
+            }
+        };
+        forward(self, 1.0);
+        let after = self.unbalanced(load, springs);
+        if !search {
+            return after;
+        }
+        let (from, to) = (along(left), along(&after));
+        let part = if from > to { (from / (from - to)).clamp(0.2, 8.0) } else { 1.0 };
+        if (part - 1.0).abs() < 0.05 {
+            return after;
+        }
+        forward(self, part - 1.0);
+        self.unbalanced(load, springs)
     }
 
     /// Ends a search for rest: what quiet faces bear is kept, forces are spent, nothing moves.
@@ -146,7 +188,7 @@ impl Soil {
 
     /// What is left of a load at the present displacements \[N\].
     fn unbalanced(&mut self, load: &[[f64; 3]], springs: &[(usize, [f64; 3])]) -> Vec<[f64; 3]> {
-        pull(&mut self.chunks, &self.shapes, &self.nodes.displacement);
+        pull(&mut self.chunks, &self.shapes, &self.nodes.displacement, Answer::Tried);
         let mut left: Vec<[f64; 3]> = (0..load.len())
             .map(|node| {
                 let pull = self.nodes.pull(&self.chunks, node);

@@ -7,9 +7,10 @@
 //! of a block with the edges of the element, which the whole element would have without locking.
 
 use super::lanes::Lanes;
-use super::material::{Material, Strength};
+use super::material::Material;
 use super::mesh::CORNERS;
 use super::tetra::Tetrahedra;
+use super::yields::Yield;
 
 /// Values at the corners of eight elements: axis by axis, corner by corner.
 pub type Corners = [[Lanes; 8]; 3];
@@ -40,7 +41,7 @@ pub struct Shape {
     /// Lamé's constants \[Pa\].
     pub lambda: f64,
     pub mu: f64,
-    pub strength: Option<Strength>,
+    pub yields: Option<Yield>,
     /// In place of the mean strain.
     pub tetrahedra: Option<Box<Tetrahedra>>,
 }
@@ -56,7 +57,7 @@ impl Shape {
             masses: [0.0; 8],
             lambda: material.lame().0,
             mu: material.lame().1,
-            strength: material.strength,
+            yields: material.strength.map(|strength| Yield::new(&strength, material.lame().0, material.lame().1)),
             tetrahedra: None,
         };
         let point = 1.0 / 3f64.sqrt();

@@ -70,7 +70,7 @@ impl Soil {
         within("the stiffness damping of the soil", stiffness, stiffness >= 0.0, "a time from 0")?;
         within("the local damping of the soil", local, (0.0..1.0).contains(&local), "from 0 to below 1")?;
         let (shapes, kinds) = shapes(&mesh, settings.formulation)?;
-        let chunks = Chunk::cut(&mesh, &kinds);
+        let chunks = Chunk::cut(&mesh, &shapes, &kinds);
         let nodes = Nodes::new(&mesh, &shapes, &kinds, &chunks);
         let fastest: Vec<f64> = shapes.iter().map(fastest).collect();
         let mut rates = vec![0.0; mesh.nodes().len()];

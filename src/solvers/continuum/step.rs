@@ -1,9 +1,10 @@
 //! One step of the leapfrog: `v += F/m dt`, `x += v dt`.
 
-use super::chunk::{Chunk, Held};
+use super::chunk::{Answer, Chunk, Held};
 use super::energy::Tally;
 use super::error::{SoilError, within};
 use super::nodes::Nodes;
+use super::shape::Shape;
 use super::soil::{Damping, Soil};
 use rayon::prelude::*;
 
@@ -39,11 +40,11 @@ impl Soil {
     pub(super) fn advance(&mut self, dt: f64) -> Result<(), SoilError> {
         let Damping { stiffness, local } = self.settings.damping;
         if stiffness > 0.0 {
-            pull(&mut self.chunks, &self.shapes, &self.nodes.velocity);
+            pull(&mut self.chunks, &self.shapes, &self.nodes.velocity, Answer::Linear);
             let viscous = |node| self.nodes.pull(&self.chunks, node).map(|force| stiffness * force);
             self.nodes.viscous = (0..self.nodes.mass.len()).map(viscous).collect();
         }
-        let held = pull(&mut self.chunks, &self.shapes, &self.nodes.displacement);
+        let held = pull(&mut self.chunks, &self.shapes, &self.nodes.displacement, Answer::Remembered);
         let (gravity, watched) = (self.settings.gravity, self.ledger.watched);
         let kick = Kick { dt, last: self.clock.last, gravity, local, watched };
         let tally = advance(&mut self.nodes, &self.chunks, self.mesh.nodes(), kick);
@@ -64,8 +65,8 @@ impl Soil {
 }
 
 /// Computes the forces of all elements under displacements.
-pub(super) fn pull(chunks: &mut [Chunk], shapes: &[super::shape::Shape], displacement: &[[f64; 3]]) -> Held {
-    let held: Vec<Held> = chunks.par_iter_mut().map(|chunk| chunk.pull(shapes, displacement)).collect();
+pub(super) fn pull(chunks: &mut [Chunk], shapes: &[Shape], displacement: &[[f64; 3]], answer: Answer) -> Held {
+    let held: Vec<Held> = chunks.par_iter_mut().map(|chunk| chunk.pull(shapes, displacement, answer)).collect();
     let join = |a: Held, b: &Held| Held { strain: a.strain + b.strain, plastic: a.plastic + b.plastic };
     held.iter().fold(Held::default(), join)
 }

@@ -2,6 +2,7 @@
 
 mod elements;
 mod motion;
+mod plastic;
 mod rest;
 mod scenes;
 mod surface;
