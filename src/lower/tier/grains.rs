@@ -102,12 +102,13 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
         true => beds(scenario, BedUse::Track),
         false => beds_of_spheres(scenario, BedUse::Track),
     };
-    let severity = if runs { Severity::Error } else { Severity::Warning };
+    // hours of grains are for who asks for them by name
+    let runs = runs && scenario.solve.grains.tier.has_grains();
     let (beds, mut refusals): (_, Vec<Diagnostic>) = match found {
         Ok(beds) if beds.is_empty() => return Err("no section has a layer of grains".into()),
         Ok(beds) => (beds, Vec::new()),
         // what cannot be packed stands against a run only, as E0604 does
-        Err(refusals) => (Vec::new(), refusals.into_iter().map(|refusal| refusal.severity(severity)).collect()),
+        Err(refusals) => (Vec::new(), refusals.into_iter().map(|refusal| refusal.severity(Severity::Warning)).collect()),
     };
     let schedule = match (&scenario.loading, &draft.blocks) {
         (Some(Loading::Traffic(_)), Some(blocks)) => Schedule::Blocks(Box::new(train_by_train(blocks))),
@@ -156,7 +157,7 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
         what: what.into(),
         why: "the scene asks for grains".into(),
         error: ExpectedError { share: None, evidence: "its error is not measured yet".into() },
-        runs,
+        runs: runs && refusals.is_empty(),
         refusals,
     })
 }

@@ -1,9 +1,10 @@
-//! What only a model of grains can run, which this version does not have: told at what asks for it.
+//! What only a model of grains can run, and runs only where it is asked for by name, or not in this version: told at what asks for it.
 
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Loading, Scenario, Section, Tier, Track};
 
-/// What runs today in the place of grains.
+/// What runs today in the place of cells, and of grains.
+const ZONE: &str = "`--set solve.substructure=zone` runs the scene with grains beside the transition";
 const INSTEAD: &str = "`--set solve.substructure=law` runs the scene with a settlement law under each sleeper";
 
 /// Why a scene waits for grains; `None` where nothing of it asks for them.
@@ -14,24 +15,23 @@ pub(super) fn refusal(scenario: &Scenario) -> Option<Diagnostic> {
     let on_grains = (0..track.sections.len()).find(|section| stands_on_grains(track, *section));
     let on_grains = on_grains.map(|section| &track.sections[section]);
     match *tier {
-        Tier::Cells | Tier::Zone | Tier::Full => Some(asks_for_grains(scenario, changing, on_grains)),
+        Tier::Cells => Some(asks_for_cells(scenario, changing, on_grains)),
+        Tier::Zone | Tier::Full if changing.is_none() => None,
         _ if changing.is_some() => changing.map(changes),
         Tier::Auto => on_grains.map(unknown_stiffness),
         Tier::Law => None,
     }
 }
 
-fn asks_for_grains(scenario: &Scenario, changing: Option<Span>, on_grains: Option<&Section>) -> Diagnostic {
+fn asks_for_cells(scenario: &Scenario, changing: Option<Span>, on_grains: Option<&Section>) -> Diagnostic {
     let tier = scenario.solve.grains.tier;
     let help = match (changing, on_grains) {
         (Some(_), _) => "nothing else runs such a load; a constant one gives the equilibrium".to_owned(),
         _ if scenario.track.sections.iter().any(|section| section.rail.is_none()) => {
             "give the trackforms a `rail`, a `pad` and a `support` to run them with `law`".to_owned()
         }
-        (None, Some(section)) => {
-            format!("give trackform `{}` a `support`, or its grains a `youngs_modulus`; then {INSTEAD}", section.name)
-        }
-        (None, None) => INSTEAD.to_owned(),
+        (None, Some(_)) => ZONE.to_owned(),
+        (None, None) => format!("{ZONE}; {INSTEAD}"),
     };
     let name = super::asked(*tier).unwrap_or_default();
     let message = format!("this version checks the tier `{name}` and cannot run it yet");
@@ -46,8 +46,8 @@ fn changes(at: Span) -> Diagnostic {
 
 fn unknown_stiffness(section: &Section) -> Diagnostic {
     let message = format!("trackform `{}` has no `support`, and grains without a modulus in its layers", section.name);
-    let text = "only a model of grains finds their stiffness, and this version cannot run it yet";
-    let help = "add `support = { stiffness = 50 MN/m per seat }`, or give each granular its `youngs_modulus`, to run it with a settlement law";
+    let text = "only a model of grains finds their stiffness, which takes hours and is asked for by name";
+    let help = "write `substructure = zone` to run grains; or add `support = { stiffness = 50 MN/m per seat }`, or give each granular its `youngs_modulus`, to run it with a settlement law";
     waits(message, section.layers_span, text, help.to_owned())
 }
 
