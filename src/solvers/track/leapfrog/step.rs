@@ -72,7 +72,7 @@ impl Leapfrog {
             let (name, expected) = (TrackParameter::Train("vehicles"), "of 1 or more: `Leapfrog::ride` begins a ride");
             return Err(TrackError::Parameter { name, value: 0.0, expected });
         };
-        ride.step(&self.track, &mut self.state, &mut self.forces)
+        ride.step(&self.track, &self.beyond, &mut self.state, &mut self.forces)
     }
 
     /// `M̂ a = F - C v - K u`, then the kick and the drift.
