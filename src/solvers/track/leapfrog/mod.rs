@@ -84,7 +84,8 @@ const BETA: f64 = 0.25;
 pub enum WheelLoads<'a> {
     /// Nothing; a train that rides has passed, or comes later.
     None,
-    /// Forces that are known: chainage (m) and force (N, down) at the present time. Those off the track do nothing.
+    /// Forces that are known: chainage (m) and force (N, down) at the present time. Those beyond an absorbing end act on it
+    /// through the track that goes on there; others off the track do nothing.
     Given(&'a [(f64, f64)]),
     /// The train of [`Leapfrog::ride`].
     Riding,

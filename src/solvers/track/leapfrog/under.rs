@@ -33,7 +33,9 @@ impl Under {
         let unknowns = [w, w + 1, w, w + 1];
         match &beyond[end] {
             Some(continuation) => {
-                let ([by_deflection, by_rotation], compliance) = continuation.at((x - track.model.ends[end]).abs());
+                let distance = (x - track.model.ends[end]).abs();
+                let (shape, compliance) = continuation.at(distance);
+                let [by_deflection, by_rotation] = if distance <= continuation.reach() { shape } else { [0.0; 2] };
                 let rest = (1.0 - by_deflection) * level.ends[end];
                 Self { unknowns, shape: [by_deflection, by_rotation, 0.0, 0.0], rest, compliance }
             }

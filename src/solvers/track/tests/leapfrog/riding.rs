@@ -110,6 +110,28 @@ fn a_wagon_comes_along_the_track_that_goes_on() {
     }
 }
 
+/// The forces of a ride, given as histories, move the track to the same bits: what rides and what is iterated are one model.
+#[test]
+fn histories_of_a_ride_repeat_it() {
+    let mut model = ballast(30);
+    model.rail_ends = RailEnds::Absorbing;
+    let level = TrackLevel::as_built(&model);
+    let [mut ridden, mut given] = [(); 2].map(|()| leapfrog(&carried(model.clone()), &level, 25e-6));
+    let [mut springs, mut others] = [(); 2].map(|()| Springs::under(&model, &level));
+    let train = Train::single(wagon(), Direction::Backward);
+    ridden.ride(&train, &Motion::Constant(SPEED), ridden.approach(Direction::Backward)).unwrap();
+    let mut most = 0;
+    while ridden.time() < ridden.ride_ends().unwrap() {
+        ridden.step(springs.push(&ridden), &WheelLoads::Riding).unwrap();
+        let wheels = ridden.view().on_rail().to_vec();
+        given.step(others.push(&given), &WheelLoads::Given(&wheels)).unwrap();
+        most = most.max(wheels.len());
+    }
+    assert_eq!(most, 4);
+    assert!((0..30).all(|seat| ridden.view().seat_load(seat) == given.view().seat_load(seat)));
+    assert!((0..30).all(|foot| ridden.underside(foot) == given.underside(foot)));
+}
+
 /// A dip of the running surface throws the wheels off the rail; they come back, and are never pulled.
 #[test]
 fn wheels_lift_off() {
