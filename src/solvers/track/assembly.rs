@@ -55,9 +55,7 @@ impl Track {
         self.assemble_slabs();
         self.assemble_auxiliary_rails();
         self.assemble_seats();
-        if self.model.rail_ends == RailEnds::Absorbing {
-            ends::assemble(self);
-        }
+        ends::assemble(self);
     }
 
     /// Gravity on the nodes, and what pulls the rail ends to `level` where the track goes on beyond them.

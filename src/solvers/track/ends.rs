@@ -7,20 +7,32 @@
 //! F = 4EIλ³ w ± 2EIλ² θ,   M = ±2EIλ² w + 2EIλ θ      (+ at the right end, - at the left)
 //! ```
 //!
+//! A wheel at distance d beyond an end acts on it through that beam, as the beam's shape says, and sinks by more than the shape
+//! as if the end were clamped:
+//!
+//! ```text
+//! φ_w = e^{-λd} (cos λd + sin λd),   φ_θ = ±e^{-λd} sin λd/λ,   c = λ/2k (1 - φ_w² - 2 e^{-2λd} sin² λd)
+//! ```
+//!
 //! Waves are met by dampers along the rail before the end, `c(x) = c_end ξ²` with ξ from 0 at the layer's inner end to 1 at the
 //! rail's end: damping that starts at once would reflect them.
 
 use super::beam::add_element;
 use super::mesh::Track;
 use super::model::{Foot, RailEnds, TrackLevel};
+use crate::linalg::banded::SymmetricBanded;
 
 /// Length of the damped layer, m, where the track is at least four times as long.
 const LAYER: f64 = 5.0;
 /// Damping at the very end in units of √(k m), k the foundation and m the rail, both per metre.
 const DAMPING: f64 = 3.0;
 
+/// A wheel may stand so far beyond an end, in units of 1/λ, and not be felt there.
+const FELT: f64 = 10.0;
+
 /// What continues a rail beyond one of its ends.
-struct Continuation {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Continuation {
     /// EI, N m^2.
     bending_stiffness: f64,
     /// kg/m.
@@ -32,8 +44,12 @@ struct Continuation {
 }
 
 impl Continuation {
-    fn new(track: &Track, end: usize) -> Option<Self> {
+    /// None where the track ends with its rail.
+    pub fn new(track: &Track, end: usize) -> Option<Self> {
         let model = &track.model;
+        if model.rail_ends != RailEnds::Absorbing {
+            return None;
+        }
         let (section, seat) = match end {
             0 => (model.rail.first()?, model.seats.first()?),
             _ => (model.rail.last()?, model.seats.last()?),
@@ -53,10 +69,37 @@ impl Continuation {
         })
     }
 
+    /// λ, 1/m.
+    fn decay(&self) -> f64 {
+        (self.foundation / (4.0 * self.bending_stiffness)).powf(0.25)
+    }
+
+    /// Distance from which a wheel beyond the end is felt there, m.
+    pub fn reach(&self) -> f64 {
+        FELT / self.decay()
+    }
+
+    /// φ_w, φ_θ and c (m/N) at a distance beyond the end, m.
+    pub fn at(&self, distance: f64) -> ([f64; 2], f64) {
+        let decay = self.decay();
+        let (sin, cos) = (decay * distance).sin_cos();
+        let fade = (-decay * distance).exp();
+        let shape = fade * (cos + sin);
+        let compliance = 0.5 * decay / self.foundation * (1.0 - shape * shape - 2.0 * (fade * sin).powi(2));
+        ([shape, self.side * fade * sin / decay], compliance)
+    }
+
+    /// Mass that moves with deflection and rotation of the end in the shapes φ: kg, kg m, kg m^2.
+    fn mass(&self) -> [[f64; 2]; 2] {
+        let decay = self.decay();
+        let coupling = self.side * self.mass / (4.0 * decay * decay);
+        [[0.75 * self.mass / decay, coupling], [coupling, self.mass / (8.0 * decay.powi(3))]]
+    }
+
     /// Over deflection and rotation of the end.
     fn stiffness(&self) -> [[f64; 2]; 2] {
         let ei = self.bending_stiffness;
-        let decay = (self.foundation / (4.0 * ei)).powf(0.25);
+        let decay = self.decay();
         let coupling = self.side * 2.0 * ei * decay * decay;
         [[4.0 * ei * decay.powi(3), coupling], [coupling, 2.0 * ei * decay]]
     }
@@ -84,14 +127,21 @@ pub(super) fn assemble(track: &mut Track) {
     }
 }
 
+/// Adds the mass of the rails beyond both ends.
+pub(super) fn add_mass(track: &Track, matrix: &mut SymmetricBanded) {
+    for end in [0, 1] {
+        let Some(beyond) = Continuation::new(track, end) else { continue };
+        let (w, mass) = (end_unknown(track, end), beyond.mass());
+        matrix.add(w, w, mass[0][0]);
+        matrix.add(w + 1, w, mass[1][0]);
+        matrix.add(w + 1, w + 1, mass[1][1]);
+    }
+}
+
 /// The forces by which the settled track beyond the ends pulls them to its level: end, unknown and N or N m per metre of level.
 pub(super) fn pulls(track: &Track) -> impl Iterator<Item = (usize, usize, f64)> + '_ {
-    let continued = track.model.rail_ends == RailEnds::Absorbing;
-    let of_end = move |end: usize| {
-        Continuation::new(track, end)
-            .filter(|_| continued)
-            .map(|beyond| (end, end_unknown(track, end), beyond.stiffness()))
-    };
+    let of_end =
+        |end: usize| Continuation::new(track, end).map(|beyond| (end, end_unknown(track, end), beyond.stiffness()));
     [0, 1].into_iter().filter_map(of_end).flat_map(|(end, w, k)| [(end, w, k[0][0]), (end, w + 1, k[1][0])])
 }
 
@@ -106,6 +156,7 @@ pub(super) fn carried(track: &Track, level: &TrackLevel, u: &[f64]) -> f64 {
     of_end(0) + of_end(1)
 }
 
-fn end_unknown(track: &Track, end: usize) -> usize {
+/// Unknown of the deflection of an end of the rail; its rotation is the next one.
+pub(super) fn end_unknown(track: &Track, end: usize) -> usize {
     if end == 0 { track.rail[0] } else { track.rail[track.rail.len() - 1] }
 }

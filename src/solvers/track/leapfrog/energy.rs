@@ -1,6 +1,7 @@
 //! The energy account of a track: what is in it, what the forces brought and what is lost.
 
 use super::Leapfrog;
+use super::under::Under;
 use serde::{Deserialize, Serialize};
 
 /// Energy of the track half a step before the present time, and work since the account began, J.
@@ -55,7 +56,7 @@ impl Leapfrog {
         let middle: Vec<f64> = self.state.displacement.iter().zip(v).map(|(u, v)| u - half * v).collect();
         let pulled: f64 = self.pulls.iter().map(|(end, i, pull)| pull * self.state.level.ends[*end] * middle[*i]).sum();
         EnergyAccount {
-            kinetic: 0.5 * self.track.mass.quadratic_form(v),
+            kinetic: 0.5 * self.mass.quadratic_form(v),
             strain: 0.5 * self.stiffness.quadratic_form(&middle),
             potential: -self.track.weight.iter().zip(&middle).map(|(f, u)| f * u).sum::<f64>() - pulled,
             ..account
@@ -77,9 +78,7 @@ impl Leapfrog {
             account.supports -= support * way(sleeper.unknown);
         }
         for (x, force) in &state.on_rail {
-            let Ok(point) = track.rail_point(*x) else { continue };
-            let unknowns = track.element_unknowns(point.element);
-            account.wheels += force * (0..4).map(|k| point.shape[k] * way(unknowns[k])).sum::<f64>();
+            account.wheels += force * Under::at(track, &self.beyond, &state.level, state.ride.ground, *x).moved(way);
         }
         for ((mean, v), a) in self.mean_velocity.iter_mut().zip(v).zip(a) {
             *mean = v - 0.5 * kick * a;

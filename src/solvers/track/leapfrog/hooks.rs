@@ -9,7 +9,7 @@ use nalgebra::DVector;
 impl Leapfrog {
     /// Goes on in steps that may be too long, as if the last one had been of this length.
     pub(in super::super) fn force_time_step(&mut self, time_step: f64) {
-        self.factor = super::factor(&self.track, &self.stiffness, &self.damping, time_step).unwrap();
+        self.factor = super::factor(&self.track, &self.mass, &self.stiffness, &self.damping, time_step).unwrap();
         if let Some(ride) = &mut self.ride {
             ride.set_time_step(time_step).unwrap();
         }
@@ -32,7 +32,7 @@ impl Leapfrog {
             *before = v - half * a;
         }
         let Some((run, _)) = &passage.train else { return };
-        let mut ride = Ride::new(&self.track, train, run.motion, start).unwrap();
+        let mut ride = Ride::new(&self.track, &self.mass, &self.beyond, train, run.motion, start).unwrap();
         ride.set_time_step(self.time_step).unwrap();
         let vector = |values: &Vec<f64>| DVector::from_column_slice(values);
         let bodies = passage.vehicles.iter().map(|(running, _)| {

@@ -1,5 +1,6 @@
 //! The longest step that contacts bear whose force is explicit in time.
 
+use crate::linalg::banded::SymmetricBanded;
 use crate::solvers::track::Multibody;
 use crate::solvers::track::contact::WheelLaw;
 use crate::solvers::track::error::Explicit;
@@ -54,8 +55,8 @@ pub(super) struct LightestRail {
 
 impl LightestRail {
     /// Between nodes an element lends more. A rail without mass lends none.
-    pub fn new(track: &Track) -> Self {
-        let mut mass = track.mass.clone();
+    pub fn new(track: &Track, mass: &SymmetricBanded) -> Self {
+        let mut mass = mass.clone();
         let held = track.held.iter().map(|(unknown, _)| *unknown);
         let others = (0..track.order()).filter(|i| track.rail_unknowns.binary_search(i).is_err());
         held.chain(others).for_each(|unknown| mass.pin(unknown));

@@ -43,6 +43,10 @@
 //! ```
 //!
 //! For the support of a sleeper m is the sleeper; for a wheel it is the wheel and the mass that the rail lends it.
+//!
+//! **Wheels** that ride press by their law on the rail of the present time, which yields under them within its element.
+//! Beyond an absorbing end they press on the beam that goes on there, whose shape moves with the end: mass and stiffness
+//! of that shape belong to the end.
 
 mod energy;
 #[cfg(test)]
@@ -53,6 +57,7 @@ mod rider;
 mod riding;
 mod state;
 mod step;
+mod under;
 mod view;
 
 pub use energy::EnergyAccount;
@@ -63,11 +68,13 @@ pub use view::{FootMotion, LeapfrogView};
 use super::ends;
 use super::error::{TrackError, TrackParameter};
 use super::mesh::Track;
-use super::{Loads, Motion, TrackLevel, Train, solve_static};
+use super::model::SAME_PLACE;
+use super::{Direction, Loads, Motion, TrackLevel, Train, solve_static};
 use crate::linalg::banded::{NotPositiveDefinite, SymmetricBanded};
 use crate::linalg::twisted::TwistedFactor;
 use riding::Ride;
 use std::sync::Arc;
+use under::Beyond;
 
 /// β of the implicit part: the least that is stable for every stiffness.
 const BETA: f64 = 0.25;
@@ -77,7 +84,8 @@ const BETA: f64 = 0.25;
 pub enum WheelLoads<'a> {
     /// Nothing; a train that rides has passed, or comes later.
     None,
-    /// Forces that are known: chainage (m) and force (N, down) at the present time. Those off the track do nothing.
+    /// Forces that are known: chainage (m) and force (N, down) at the present time. Those beyond an absorbing end act on it
+    /// through the track that goes on there; others off the track do nothing.
     Given(&'a [(f64, f64)]),
     /// The train of [`Leapfrog::ride`].
     Riding,
@@ -91,6 +99,8 @@ pub struct Leapfrog {
     time_step: f64,
     /// 1/s.
     drag: f64,
+    /// M, with the rails beyond absorbing ends: a wheel there would find nothing but the end of an element.
+    mass: SymmetricBanded,
     /// K and C, without the supports of ordinary sleepers.
     stiffness: SymmetricBanded,
     damping: SymmetricBanded,
@@ -98,6 +108,7 @@ pub struct Leapfrog {
     factor: TwistedFactor,
     /// What continues the rail pulls its ends to their level: end, unknown and N or N m per metre.
     pulls: Vec<(usize, usize, f64)>,
+    beyond: Beyond,
     ride: Option<Ride>,
     /// Seats of the carried feet.
     carried: Vec<usize>,
@@ -117,12 +128,15 @@ impl Leapfrog {
         for sleeper in &track.sleepers {
             stiffness.add(sleeper.unknown, sleeper.unknown, -sleeper.support_stiffness);
         }
-        let damping = damping(&track, 0.0);
+        let mut mass = track.mass.clone();
+        ends::add_mass(&track, &mut mass);
+        let damping = damping(&track, &mass, 0.0);
         let order = track.order();
         check_step(&track, None, time_step)?;
         Ok(Self {
-            factor: factor(&track, &stiffness, &damping, time_step)?,
+            factor: factor(&track, &mass, &stiffness, &damping, time_step)?,
             pulls: ends::pulls(&track).collect(),
+            beyond: under::beyond(&track),
             time_step,
             drag: 0.0,
             ride: None,
@@ -130,6 +144,7 @@ impl Leapfrog {
             state: LeapfrogState::at_rest(&track, level, rest.unknowns),
             forces: vec![0.0; order],
             mean_velocity: vec![0.0; order],
+            mass,
             stiffness,
             damping,
             track,
@@ -140,7 +155,7 @@ impl Leapfrog {
     pub fn set_time_step(&mut self, time_step: f64) -> Result<(), TrackError> {
         check_step(&self.track, self.ride.as_ref(), time_step)?;
         if time_step != self.time_step {
-            self.factor = factor(&self.track, &self.stiffness, &self.damping, time_step)?;
+            self.factor = factor(&self.track, &self.mass, &self.stiffness, &self.damping, time_step)?;
             if let Some(ride) = &mut self.ride {
                 ride.set_time_step(time_step)?;
             }
@@ -157,30 +172,37 @@ impl Leapfrog {
             return Err(TrackError::Parameter { name, value: drag, expected: "of 0 or more" });
         }
         if drag != self.drag {
-            self.damping = damping(&self.track, drag);
-            self.factor = factor(&self.track, &self.stiffness, &self.damping, self.time_step)?;
+            self.damping = damping(&self.track, &self.mass, drag);
+            self.factor = factor(&self.track, &self.mass, &self.stiffness, &self.damping, self.time_step)?;
             self.drag = drag;
         }
         Ok(())
     }
 
-    /// Lets `train` run from now on, its leading wheel at `start` (m), before the track: every vehicle at rest on level ground
-    /// at the level that the end of the rail has now, which it leaves for the rail and reaches again beyond it.
+    /// Lets `train` run from now on, its leading wheel at `start` (m), before the track, with every vehicle at rest there.
     ///
-    /// To be called while the track is at rest. A clamped end lets wheels on and off within a fifth of their static force; an
-    /// absorbing end gives way under the first wheel, which jumps. Fails where a wheel stands on the track, and where the step is longer than the
-    /// wheels allow.
+    /// Wheels stand on the track that goes on beyond an absorbing end, on level ground beyond others, at the level that the end
+    /// of the rail has now. So it is to be called while the track is at rest, and begins best at [`Leapfrog::approach`]. Fails
+    /// where a wheel stands on the track, and where the step is longer than the wheels allow.
     pub fn ride(&mut self, train: &Train, motion: &Motion, start: f64) -> Result<(), TrackError> {
-        let mut ride = Ride::new(&self.track, train, motion, start)?;
+        let mut ride = Ride::new(&self.track, &self.mass, &self.beyond, train, motion, start)?;
         ride.check_start(&self.track, start)?;
         check_step(&self.track, Some(&ride), self.time_step)?;
         ride.set_time_step(self.time_step)?;
-        self.state.ride = ride.standing(&self.track, &self.state)?;
+        self.state.ride = ride.standing(&self.track, &self.beyond, &self.state)?;
+        self.state.on_rail.reserve(train.wheels());
         self.ride = Some(ride);
         Ok(())
     }
 
-    /// When the last wheel of the train leaves the track, s; none without a train.
+    /// Where the leading wheel of a train is not yet felt by the track that it comes to, m.
+    pub fn approach(&self, direction: Direction) -> f64 {
+        let (sign, entry) = (direction.sign(), usize::from(direction == Direction::Backward));
+        let reach = self.beyond[entry].map_or(SAME_PLACE, |continuation| continuation.reach());
+        self.track.model.ends[entry] - sign * (reach + SAME_PLACE)
+    }
+
+    /// When the last wheel of the train is no longer felt by the track, s; none without a train.
     pub fn ride_ends(&self) -> Option<f64> {
         self.ride.as_ref().map(|ride| self.state.ride.began + ride.duration())
     }
@@ -233,23 +255,24 @@ fn check_step(track: &Track, ride: Option<&Ride>, time_step: f64) -> Result<(), 
 }
 
 /// C without the supports of ordinary sleepers, with a drag (1/s).
-fn damping(track: &Track, drag: f64) -> SymmetricBanded {
+fn damping(track: &Track, mass: &SymmetricBanded, drag: f64) -> SymmetricBanded {
     let mut damping = track.damping.clone();
     for sleeper in &track.sleepers {
         damping.add(sleeper.unknown, sleeper.unknown, -sleeper.support_damping);
     }
-    damping.add_scaled(drag, &track.mass);
+    damping.add_scaled(drag, mass);
     damping
 }
 
 /// Factors M̂; fails where the track is a mechanism without mass.
 fn factor(
     track: &Track,
+    mass: &SymmetricBanded,
     stiffness: &SymmetricBanded,
     damping: &SymmetricBanded,
     time_step: f64,
 ) -> Result<TwistedFactor, TrackError> {
-    let mut matrix = track.mass.clone();
+    let mut matrix = mass.clone();
     matrix.add_scaled(0.5 * time_step, damping);
     matrix.add_scaled(BETA * time_step * time_step, stiffness);
     track.held.iter().for_each(|(unknown, _)| matrix.pin(*unknown));

@@ -1,18 +1,18 @@
 //! A vehicle of a train that rides: the scheme of the track for its own few unknowns, `M̂` dense.
 
 use super::BETA;
+use crate::solvers::track::Multibody;
 use crate::solvers::track::contact::WheelLaw;
 use crate::solvers::track::error::{TrackError, TrackParameter};
 use crate::solvers::track::passage::{WILD_FORCE, within};
-use crate::solvers::track::{Multibody, WheelContact};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Newton steps after which a vehicle on level ground has no rest.
 const NEWTON_LIMIT: usize = 60;
-/// Indentations are at rest when they change by less than this part of themselves.
-const ROUNDING: f64 = 1e-15;
+/// Wheels are at rest when they move by less than this part of themselves.
+const ROUNDING: f64 = 1e-14;
 
 /// A vehicle. Lists run over its unknowns or its wheels.
 #[derive(Debug, Clone)]
@@ -108,49 +108,47 @@ impl Rider {
         Ok(())
     }
 
-    /// Its rest on ground at `level` (m): `K y + Σ F(y_w - level) e_w = weight` by Newton's method; `x` (m) is where it stands.
-    pub fn standing(&self, level: f64, x: f64) -> Result<(BodyState, Vec<WheelState>), TrackError> {
+    /// Its rest on ground at `level` (m) that yields by `compliance` (m/N), at x (m): `K y + Σ F(y_w - level) e_w = weight` by
+    /// Newton's method.
+    pub fn standing(&self, level: f64, compliance: f64, x: f64) -> Result<(BodyState, Vec<WheelState>), TrackError> {
         let (vehicle, order) = (&self.vehicle, self.vehicle.order());
         let mean_load = self.force_limit / WILD_FORCE;
-        let law = |contact: WheelContact| WheelLaw::at_rest(contact);
-        let indented = |contact| law(contact).indentation(mean_load);
-        let mut indentations: Vec<f64> = vehicle.wheels.iter().map(|wheel| indented(wheel.contact)).collect();
+        let laws: Vec<WheelLaw> = vehicle.wheels.iter().map(|wheel| WheelLaw::at_rest(wheel.contact)).collect();
+        let carrying = || vehicle.wheels.iter().enumerate().filter_map(|(w, wheel)| Some((w, wheel.unknown?)));
+        let mut approach: Vec<f64> =
+            laws.iter().map(|law| law.indentation(mean_load) + compliance * mean_load).collect();
         let mut displacement = DVector::zeros(order);
-        let mut settled = order == 0;
-        for _ in 0..NEWTON_LIMIT {
-            if settled {
-                break;
+        let (mut settled, mut iterations) = (order == 0, 0);
+        while !settled {
+            if iterations == NEWTON_LIMIT {
+                return Err(TrackError::NoEquilibrium { x, iterations });
             }
             let mut stiffness = vehicle.stiffness.clone();
             let mut forces = DVector::from_column_slice(&self.weight);
-            for (wheel, indentation) in vehicle.wheels.iter().zip(&indentations) {
-                let Some(unknown) = wheel.unknown else { continue };
-                let (force, slope) =
-                    (law(wheel.contact).force(*indentation), law(wheel.contact).stiffness(*indentation));
+            for (w, unknown) in carrying() {
+                let indentation = laws[w].behind(approach[w], compliance);
+                let slope = laws[w].stiffness(indentation);
+                let slope = slope / (1.0 + compliance * slope);
                 stiffness[(unknown, unknown)] += slope;
-                forces[unknown] -= force - slope * (indentation + level);
+                forces[unknown] -= laws[w].force(indentation) - slope * (approach[w] + level);
             }
             let factor = stiffness.cholesky().ok_or(TrackError::Mechanism { x })?;
             displacement = factor.solve(&forces);
             settled = true;
-            for (wheel, indentation) in vehicle.wheels.iter().zip(&mut indentations) {
-                let Some(unknown) = wheel.unknown else { continue };
+            for (w, unknown) in carrying() {
                 let next = displacement[unknown] - level;
-                settled &= within(next - *indentation, ROUNDING * (next.abs() + displacement[unknown].abs()));
-                *indentation = next;
+                settled &= within(next - approach[w], ROUNDING * (next.abs() + displacement[unknown].abs()));
+                approach[w] = next;
             }
+            iterations += 1;
         }
-        if !settled {
-            return Err(TrackError::NoEquilibrium { x, iterations: NEWTON_LIMIT });
-        }
+        let standing = |(law, approach): (&WheelLaw, f64)| {
+            let indentation = law.behind(approach, compliance);
+            WheelState { force: law.force(indentation), indentation, rate: 0.0 }
+        };
+        let wheels = laws.iter().zip(approach).map(standing).collect();
         let zeros = DVector::zeros(order);
-        let wheels = vehicle.wheels.iter().zip(indentations);
-        let standing = wheels.map(|(wheel, indentation)| WheelState {
-            force: law(wheel.contact).force(indentation),
-            indentation,
-            rate: 0.0,
-        });
-        Ok((BodyState { displacement, velocity: zeros.clone(), acceleration: zeros }, standing.collect()))
+        Ok((BodyState { displacement, velocity: zeros.clone(), acceleration: zeros }, wheels))
     }
 
     /// Begins a step with the constant forces.

@@ -1,11 +1,14 @@
 //! The train that rides: any number of vehicles, of which those move that are on the track or partly so.
 //!
-//! Level ground carries the wheels before and behind the track, at the level of the rail's unloaded ends. A vehicle whose wheels
-//! are all off the track keeps its motion: before the track that is its rest.
+//! Wheels before and behind the track stand on what goes on there ([`Under`]). A vehicle of which the track feels nothing keeps
+//! its motion: before the track that is its rest.
 
 use super::limit::{LightestRail, StepLimit};
 use super::rider::{BodyState, Rider, WheelState};
 use super::state::LeapfrogState;
+use super::under::{Beyond, Under};
+use crate::linalg::banded::SymmetricBanded;
+use crate::solvers::track::ends::end_unknown;
 use crate::solvers::track::error::{TrackError, TrackParameter, Wild};
 use crate::solvers::track::mesh::Track;
 use crate::solvers::track::motion::Timetable;
@@ -20,6 +23,8 @@ pub(super) struct Ride {
     sign: f64,
     riders: Vec<Rider>,
     limit: Option<StepLimit>,
+    /// Chainages between which the track feels a wheel, m.
+    felt: [f64; 2],
 }
 
 /// The motion of a train. Lists run over vehicles or wheels.
@@ -27,7 +32,7 @@ pub(super) struct Ride {
 pub(super) struct RideState {
     /// When it began, s.
     pub began: f64,
-    /// Levels of the ground before the left and behind the right end, m.
+    /// Levels of the ground before the left and behind the right end, m, where nothing goes on there.
     pub ground: [f64; 2],
     pub bodies: Vec<BodyState>,
     pub wheels: Vec<WheelState>,
@@ -47,14 +52,23 @@ impl RideState {
 
 impl Ride {
     /// A train whose leading wheel is at `start` (m) when it begins.
-    pub fn new(track: &Track, train: &Train, motion: &Motion, start: f64) -> Result<Self, TrackError> {
+    pub fn new(
+        track: &Track,
+        mass: &SymmetricBanded,
+        beyond: &Beyond,
+        train: &Train,
+        motion: &Motion,
+        start: f64,
+    ) -> Result<Self, TrackError> {
         train.check()?;
         let sign = train.direction.sign();
-        let exit = track.model.ends[usize::from(sign > 0.0)] + sign * train.wheel_base();
+        let reach = |end: usize| beyond[end].map_or(0.0, |continuation| continuation.reach());
+        let felt = [track.model.ends[0] - reach(0), track.model.ends[1] + reach(1)];
+        let exit = felt[usize::from(sign > 0.0)] + sign * train.wheel_base();
         // A train that has left goes on at its last speed.
         let timetable = motion.timetable(start, exit, sign)?;
         let gravity = track.model.gravity;
-        let rail = LightestRail::new(track);
+        let rail = LightestRail::new(track, mass);
         let vehicles = train.vehicles.iter();
         let limit = vehicles.filter_map(|(vehicle, _)| rail.limit(vehicle, gravity)).min_by(StepLimit::shorter);
         let mut first_wheel = 0;
@@ -63,7 +77,7 @@ impl Ride {
             riders.push(Rider::new(vehicle, *offset, first_wheel, gravity)?);
             first_wheel += vehicle.wheels.len();
         }
-        Ok(Self { timetable, sign, riders, limit })
+        Ok(Self { timetable, sign, riders, limit, felt })
     }
 
     /// Fails where a wheel stands on the track, or has passed it, when the ride begins.
@@ -76,7 +90,7 @@ impl Ride {
         Err(TrackError::Parameter { name, value: start, expected: "before the track" })
     }
 
-    /// When the last wheel has left the track, s since the ride began.
+    /// When the last wheel is no longer felt by the track, s since the ride began.
     pub fn duration(&self) -> f64 {
         self.timetable.duration
     }
@@ -89,16 +103,16 @@ impl Ride {
         self.riders.iter_mut().try_for_each(|rider| rider.set_time_step(time_step))
     }
 
-    /// All vehicles at rest on level ground.
-    pub fn standing(&self, track: &Track, state: &LeapfrogState) -> Result<RideState, TrackError> {
-        let ends = [track.rail[0], track.rail[track.rail.len() - 1]];
-        let ground = ends.map(|unknown| state.displacement[unknown]);
+    /// All vehicles at rest far before the track.
+    pub fn standing(&self, track: &Track, beyond: &Beyond, state: &LeapfrogState) -> Result<RideState, TrackError> {
+        let ground = [0, 1].map(|end| state.displacement[end_unknown(track, end)]);
         let entry = usize::from(self.sign < 0.0);
-        let level = ground[entry] + track.model.irregularity.depth_at(track.model.ends[entry]);
+        let far = Under::at(track, beyond, &state.level, ground, self.felt[entry] - self.sign);
+        let level = far.surface(&state.displacement) + track.model.irregularity.depth_at(track.model.ends[entry]);
         let mut ride = RideState { began: state.time, ground, ..RideState::default() };
         for rider in &self.riders {
             let x = rider.position(0, self.timetable.position(0.0), self.sign);
-            let (body, wheels) = rider.standing(level, x)?;
+            let (body, wheels) = rider.standing(level, far.compliance, x)?;
             ride.bodies.push(body);
             ride.wheels.extend(wheels);
         }
@@ -113,33 +127,34 @@ impl Ride {
 
     /// Presses the wheels on the rail as it lies at the present time, adds their forces to `nodal`, and moves the vehicles on
     /// by a step of the length that was set.
-    pub fn step(&mut self, track: &Track, state: &mut LeapfrogState, nodal: &mut [f64]) -> Result<(), TrackError> {
+    pub fn step(
+        &mut self,
+        track: &Track,
+        beyond: &Beyond,
+        state: &mut LeapfrogState,
+        nodal: &mut [f64],
+    ) -> Result<(), TrackError> {
         let leading = self.timetable.position(state.time - state.ride.began);
         let [left, right] = track.model.ends;
         for (rider, body) in self.riders.iter_mut().zip(&mut state.ride.bodies) {
             let [first, last] = rider.reach(leading, self.sign);
-            if last < left || first > right {
+            if last < self.felt[0] || first > self.felt[1] {
                 continue;
             }
             let wheels = &mut state.ride.wheels[rider.wheels()];
             rider.begin();
             for (w, wheel) in wheels.iter_mut().enumerate() {
                 let x = rider.position(w, leading, self.sign);
-                let under = track.rail_point(x).ok();
-                let surface = match &under {
-                    Some(point) => track.deflection_at(point, &state.displacement),
-                    None => state.ride.ground[usize::from(x > left)],
-                };
+                let under = Under::at(track, beyond, &state.level, state.ride.ground, x);
                 let unevenness = track.model.irregularity.depth_at(x.clamp(left, right));
-                let compliance = under.map_or(0.0, |point| point.local_compliance);
-                let approach = rider.place(w, body) - surface - unevenness;
-                let force = rider.press(w, wheel, approach, compliance, state.last_step);
+                let approach = rider.place(w, body) - under.surface(&state.displacement) - unevenness;
+                let force = rider.press(w, wheel, approach, under.compliance, state.last_step);
                 if !rider.bears(w, force) {
                     let (step, time, what) = (state.steps as usize, state.time, Wild::WheelForce(force));
                     return Err(TrackError::Unstable { step, time, x, what });
                 }
-                if let Some(point) = &under {
-                    track.add_force(point, force, nodal);
+                if under.is_felt() {
+                    under.press(force, nodal);
                     state.on_rail.push((x, force));
                 }
             }

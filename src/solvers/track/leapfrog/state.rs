@@ -25,8 +25,8 @@ pub struct LeapfrogState {
     pub(super) velocity: Vec<f64>,
     /// A step before.
     pub(super) acceleration: Vec<f64>,
-    /// Forces of the last step: pushes on carried feet and of the supports of ordinary sleepers, N up; wheels on the rail, m
-    /// and N down.
+    /// Forces of the last step: pushes on carried feet and of the supports of ordinary sleepers, N up; wheels that the track
+    /// feels, m and N down.
     pub(super) pushes: Vec<f64>,
     pub(super) supports: Vec<f64>,
     pub(super) on_rail: Vec<(f64, f64)>,

@@ -1,5 +1,6 @@
 //! One step: the forces at its beginning, the kick, the drift.
 
+use super::under::Under;
 use super::{Leapfrog, WheelLoads};
 use crate::solvers::track::error::{TrackError, TrackParameter, Wild};
 use crate::solvers::track::passage::{WILD_DISPLACEMENT, within};
@@ -58,9 +59,11 @@ impl Leapfrog {
                 let name = TrackParameter::Load("place and force of a wheel");
                 return Err(TrackError::Parameter { name, value: x + force, expected: "finite numbers" });
             }
-            if let Ok(point) = self.track.rail_point(x) {
-                self.track.add_force(&point, force, &mut self.forces);
-                self.state.on_rail.push((x, force));
+            let state = &mut self.state;
+            let under = Under::at(&self.track, &self.beyond, &state.level, state.ride.ground, x);
+            if under.is_felt() {
+                under.press(force, &mut self.forces);
+                state.on_rail.push((x, force));
             }
         }
         Ok(())
@@ -72,7 +75,7 @@ impl Leapfrog {
             let (name, expected) = (TrackParameter::Train("vehicles"), "of 1 or more: `Leapfrog::ride` begins a ride");
             return Err(TrackError::Parameter { name, value: 0.0, expected });
         };
-        ride.step(&self.track, &mut self.state, &mut self.forces)
+        ride.step(&self.track, &self.beyond, &mut self.state, &mut self.forces)
     }
 
     /// `M̂ a = F - C v - K u`, then the kick and the drift.

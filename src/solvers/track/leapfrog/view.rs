@@ -140,7 +140,8 @@ impl<'a> LeapfrogView<'a> {
         }
     }
 
-    /// Chainage (m) and force (N, down) of every wheel on the rail.
+    /// Chainage (m) and force (N, down) of every wheel that the track feels: those on the rail, and near an absorbing end those
+    /// beyond it.
     pub fn on_rail(&self) -> &'a [(f64, f64)] {
         &self.leapfrog.state.on_rail
     }
@@ -151,7 +152,7 @@ impl<'a> LeapfrogView<'a> {
         leapfrog.ride.iter().flat_map(move |ride| ride.positions(time - leapfrog.state.ride.began))
     }
 
-    /// Force of each wheel of the train on the rail or on level ground, vehicle by vehicle, N.
+    /// Force of each wheel of the train on the rail or what goes on beyond it, vehicle by vehicle, N.
     pub fn wheel_forces(&self) -> impl Iterator<Item = f64> + 'a {
         self.leapfrog.state.ride.forces()
     }

@@ -49,7 +49,7 @@ pub(in super::super) fn solve_with_inertia(
                 return Err(TrackError::Parameter {
                     name: TrackParameter::Load("loaded seat"),
                     value: seat as f64,
-                    expected: "with a sleeper",
+                    expected: "with a sleeper on a support",
                 });
             }
         }

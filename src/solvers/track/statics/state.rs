@@ -3,7 +3,7 @@
 use super::standing::StandingTrain;
 use crate::solvers::track::ends;
 use crate::solvers::track::mesh::{FootUnknown, RailPoint, Track};
-use crate::solvers::track::{RailEnds, SupportPhase, TrackError, TrackLevel};
+use crate::solvers::track::{SupportPhase, TrackError, TrackLevel};
 
 /// An equilibrium of the track. Lists run over nodes, seats or wheels as the fields say; all positive down.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,7 +108,7 @@ pub(super) fn describe(
             .filter(|(_, end)| end.is_some())
             .map(|(unknown, _)| reactions[*unknown])
             .sum::<f64>()
-            + if model.rail_ends == RailEnds::Absorbing { ends::carried(track, level, u) } else { 0.0 },
+            + ends::carried(track, level, u),
     };
     StaticState {
         rail_slope: track.rail.iter().map(|w| u[*w + 1]).collect(),

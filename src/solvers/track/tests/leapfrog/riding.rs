@@ -79,6 +79,59 @@ fn a_checkpoint_gives_the_same_bits() {
     assert!(other.restore(whole.state()).is_err(), "the state of a ride in a track without one");
 }
 
+/// Beyond absorbing ends the track goes on: a wagon comes to it and leaves it without a blow, whatever the level there.
+#[test]
+fn a_wagon_comes_along_the_track_that_goes_on() {
+    let mut model = ballast(60);
+    model.rail_ends = RailEnds::Absorbing;
+    let level = TrackLevel { settlements: vec![3e-3; 60], ends: [3e-3; 2] };
+    for direction in [Direction::Forward, Direction::Backward] {
+        let mut leapfrog = leapfrog(&model, &level, 20e-6);
+        let train = Train::single(wagon(), direction);
+        leapfrog.ride(&train, &Motion::Constant(SPEED), leapfrog.approach(direction)).unwrap();
+        leapfrog.watch();
+        let still = wagon().mass() * 9.81 / 4.0;
+        let (mut all, mut inside) = ([f64::INFINITY, 0.0f64], [f64::INFINITY, 0.0f64]);
+        while leapfrog.time() < leapfrog.ride_ends().unwrap() {
+            leapfrog.step(&[], &WheelLoads::Riding).unwrap();
+            let view = leapfrog.view();
+            for (x, force) in view.wheel_positions().zip(view.wheel_forces()) {
+                let share = force / still;
+                all = [all[0].min(share), all[1].max(share)];
+                if (8.0..28.0).contains(&x) {
+                    inside = [inside[0].min(share), inside[1].max(share)];
+                }
+            }
+        }
+        let account = leapfrog.energy().unwrap();
+        println!("wheel forces {all:.3?}, inside {inside:.4?}, residual {:.1e} J", account.residual());
+        assert!(all[0] > 0.8 && all[1] < 1.2 && inside[0] > 0.98 && inside[1] < 1.02);
+        assert!(account.residual().abs() < 1e-9 * account.dissipated);
+    }
+}
+
+/// The forces of a ride, given as histories, move the track to the same bits: what rides and what is iterated are one model.
+#[test]
+fn histories_of_a_ride_repeat_it() {
+    let mut model = ballast(30);
+    model.rail_ends = RailEnds::Absorbing;
+    let level = TrackLevel::as_built(&model);
+    let [mut ridden, mut given] = [(); 2].map(|()| leapfrog(&carried(model.clone()), &level, 25e-6));
+    let [mut springs, mut others] = [(); 2].map(|()| Springs::under(&model, &level));
+    let train = Train::single(wagon(), Direction::Backward);
+    ridden.ride(&train, &Motion::Constant(SPEED), ridden.approach(Direction::Backward)).unwrap();
+    let mut most = 0;
+    while ridden.time() < ridden.ride_ends().unwrap() {
+        ridden.step(springs.push(&ridden), &WheelLoads::Riding).unwrap();
+        let wheels = ridden.view().on_rail().to_vec();
+        given.step(others.push(&given), &WheelLoads::Given(&wheels)).unwrap();
+        most = most.max(wheels.len());
+    }
+    assert_eq!(most, 4);
+    assert!((0..30).all(|seat| ridden.view().seat_load(seat) == given.view().seat_load(seat)));
+    assert!((0..30).all(|foot| ridden.underside(foot) == given.underside(foot)));
+}
+
 /// A dip of the running surface throws the wheels off the rail; they come back, and are never pulled.
 #[test]
 fn wheels_lift_off() {
