@@ -22,7 +22,7 @@ pub enum Formulation {
     #[default]
     MeanStrain,
     /// Two overlays of five tetrahedra of constant strain, whose volumetric strain is averaged over the overlay
-    /// (Marti and Cundall 1982). Steps are about a quarter as long.
+    /// (Marti and Cundall 1982). A step costs about twice as much.
     MixedDiscretisation,
 }
 
