@@ -98,9 +98,9 @@ impl Soil {
         Ok(nalgebra::DMatrix::from_fn(order, order, entry).symmetric_eigenvalues().max())
     }
 
-    /// 2/ω, or less where stiffness damping lags by half a step.
+    /// 2/ω, or less where stiffness damping lags by half a step, or where local damping adds to forces that turn a node round.
     fn step_of(&self, rate: f64) -> f64 {
-        let frequency = rate.sqrt();
+        let frequency = (rate * (1.0 + self.settings.damping.local)).sqrt();
         let ratio = 0.5 * self.settings.damping.stiffness * frequency;
         2.0 / (frequency * (ratio + (1.0 + ratio * ratio).sqrt()))
     }

@@ -19,9 +19,7 @@ impl Soil {
         match (&shape.yields, self.chunks[element / ELEMENTS].memory(element)) {
             (Some(yields), Some((memory, lane))) => {
                 let mut memory: Memory = memory.clone();
-                for corner in 0..8 {
-                    (0..3).for_each(|axis| u[axis][corner].0[lane] = u[axis][corner].0[0]);
-                }
+                u.iter_mut().flatten().for_each(|values| values.0[lane] = values.0[0]);
                 memory.pull(shape, yields, &u, &mut force);
                 memory.mean_stress(shape).map(|component| component.0[lane])
             }

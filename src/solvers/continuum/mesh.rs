@@ -80,8 +80,10 @@ impl Mesh {
         material_of: impl Fn(usize, usize, usize) -> Option<usize>,
     ) -> Result<Mesh, SoilError> {
         for (axis, lines) in lines.iter().enumerate() {
-            // written so that a line that is no number fails
-            if let Some(at) = (1..lines.len()).find(|&i| !(lines[i] > lines[i - 1])) {
+            // a line that is no number does not grow
+            if let Some(at) =
+                (1..lines.len()).find(|&i| lines[i].is_nan() || lines[i] <= lines[i - 1] || lines[0].is_nan())
+            {
                 return Err(SoilError::Lines { axis, at });
             }
             if lines.len() < 2 {

@@ -21,6 +21,7 @@
 mod boundary;
 mod checkpoint;
 mod chunk;
+mod condensed;
 mod energy;
 mod error;
 mod flow;
@@ -45,6 +46,7 @@ mod yields;
 
 pub use boundary::{Side, Support};
 pub use checkpoint::State;
+pub use condensed::Condensed;
 pub use energy::Energy;
 pub use error::SoilError;
 pub use material::{Material, Strength};

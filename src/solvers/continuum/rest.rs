@@ -119,11 +119,12 @@ impl Soil {
 
     /// Ends a search for rest: what quiet faces bear is kept, forces are spent, nothing moves.
     fn settle(&mut self, left: &[[f64; 3]]) {
-        for node in 0..left.len() {
-            for axis in 0..3 {
-                let quiet = self.nodes.quiet[node][axis] && self.nodes.driven[node][axis].is_none();
-                self.nodes.borne[node][axis] = if quiet { -left[node][axis] } else { 0.0 };
-                self.nodes.position[node][axis] = self.mesh.nodes()[node][axis] + self.nodes.displacement[node][axis];
+        let nodes = &mut self.nodes;
+        for (node, left) in left.iter().enumerate() {
+            for (axis, left) in left.iter().enumerate() {
+                let quiet = nodes.quiet[node][axis] && nodes.driven[node][axis].is_none();
+                nodes.borne[node][axis] = if quiet { -left } else { 0.0 };
+                nodes.position[node][axis] = self.mesh.nodes()[node][axis] + nodes.displacement[node][axis];
             }
         }
         self.nodes.velocity.fill([0.0; 3]);
@@ -137,10 +138,10 @@ impl Soil {
     /// Nothing holds the soil, or the factor does not fit into memory.
     pub fn factor(&self, springs: &[(usize, [f64; 3])]) -> Result<Factor, SoilError> {
         let (mut order, mut unknowns) = (0, vec![[None; 3]; self.nodes.mass.len()]);
-        for node in 0..unknowns.len() {
-            for axis in 0..3 {
+        for (node, unknowns) in unknowns.iter_mut().enumerate() {
+            for (axis, unknown) in unknowns.iter_mut().enumerate() {
                 if self.nodes.driven[node][axis].is_none() && !self.nodes.quiet[node][axis] {
-                    unknowns[node][axis] = Some(order);
+                    *unknown = Some(order);
                     order += 1;
                 }
             }

@@ -9,7 +9,7 @@
 use super::lanes::Lanes;
 use super::material::Material;
 use super::mesh::CORNERS;
-use super::tetra::Tetrahedra;
+use super::tetra::{Tetrahedra, cross};
 use super::yields::Yield;
 
 /// Values at the corners of eight elements: axis by axis, corner by corner.
@@ -22,7 +22,7 @@ pub enum Formulation {
     #[default]
     MeanStrain,
     /// Two overlays of five tetrahedra of constant strain, whose volumetric strain is averaged over the overlay
-    /// (Marti and Cundall 1982). Steps are about a quarter as long.
+    /// (Marti and Cundall 1982). A step costs about twice as much.
     MixedDiscretisation,
 }
 
@@ -62,17 +62,14 @@ impl Shape {
         };
         let point = 1.0 / 3f64.sqrt();
         for at in CORNERS.map(|c| c.map(|x| x * point)) {
-            let (jacobian, cofactors, shares, slopes) = at_point(corners, at);
-            if !(jacobian > 0.0) {
+            let Point { jacobian, shares, slopes } = Point::new(corners, at);
+            if jacobian.is_nan() || jacobian <= 0.0 {
                 return Err(jacobian * 8.0);
             }
             shape.volume += jacobian;
             for corner in 0..8 {
                 shape.masses[corner] += material.density * shares[corner] * jacobian;
-                for axis in 0..3 {
-                    let slope: f64 = (0..3).map(|k| cofactors[k][axis] * slopes[corner][k]).sum();
-                    shape.gradient[axis][corner] += slope;
-                }
+                (0..3).for_each(|axis| shape.gradient[axis][corner] += slopes[corner][axis]);
             }
         }
         let volume = shape.volume;
@@ -86,12 +83,12 @@ impl Shape {
 
     fn add_patterns(&mut self, corners: &[[f64; 3]; 8]) {
         let products = |c: &[f64; 3]| [c[1] * c[2], c[2] * c[0], c[0] * c[1], c[0] * c[1] * c[2]];
-        for pattern in 0..4 {
+        for (pattern, values) in self.patterns.iter_mut().enumerate() {
             let h = CORNERS.map(|c| products(&c)[pattern]);
             let along = [0, 1, 2].map(|axis| (0..8).map(|c| h[c] * corners[c][axis]).sum::<f64>());
-            for corner in 0..8 {
+            for (corner, value) in values.iter_mut().enumerate() {
                 let linear: f64 = (0..3).map(|axis| along[axis] * self.gradient[axis][corner]).sum();
-                self.patterns[pattern][corner] = (h[corner] - linear) / 8.0;
+                *value = (h[corner] - linear) / 8.0;
             }
         }
         // 4 / h² of a block with edges h: Σ b² = 1 / (2 h²)
@@ -110,19 +107,27 @@ impl Shape {
     }
 }
 
-/// Determinant and cofactors of the Jacobian at a point of the unit cube, shape functions and their slopes there.
-fn at_point(corners: &[[f64; 3]; 8], at: [f64; 3]) -> (f64, [[f64; 3]; 3], [f64; 8], [[f64; 3]; 8]) {
-    let factor = |c: &[f64; 3], axis: usize| 0.5 * (1.0 + c[axis] * at[axis]);
-    let shares = CORNERS.map(|c| factor(&c, 0) * factor(&c, 1) * factor(&c, 2));
-    let slope = |c: &[f64; 3], k: usize| 0.5 * c[k] * factor(c, (k + 1) % 3) * factor(c, (k + 2) % 3);
-    let slopes = CORNERS.map(|c| [0, 1, 2].map(|k| slope(&c, k)));
-    // rows: derivative of the place along ξ, η, ζ
-    let jacobian =
-        [0, 1, 2].map(|k| [0, 1, 2].map(|axis| (0..8).map(|c| slopes[c][k] * corners[c][axis]).sum::<f64>()));
-    let cross =
-        |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-    let [x, y, z] = jacobian;
-    let cofactors = [cross(y, z), cross(z, x), cross(x, y)];
-    let determinant = (0..3).map(|axis| x[axis] * cofactors[0][axis]).sum();
-    (determinant, cofactors, shares, slopes)
+/// A point of an element: its Jacobian's determinant, the shape functions there, and the determinant times their gradients.
+struct Point {
+    jacobian: f64,
+    shares: [f64; 8],
+    slopes: [[f64; 3]; 8],
+}
+
+impl Point {
+    fn new(corners: &[[f64; 3]; 8], place: [f64; 3]) -> Point {
+        let factor = |c: &[f64; 3], axis: usize| 0.5 * (1.0 + c[axis] * place[axis]);
+        let slope = |c: &[f64; 3], k: usize| 0.5 * c[k] * factor(c, (k + 1) % 3) * factor(c, (k + 2) % 3);
+        let local = CORNERS.map(|c| [0, 1, 2].map(|k| slope(&c, k)));
+        // derivatives of the place along ξ, η, ζ
+        let along = |k: usize| [0, 1, 2].map(|axis| (0..8).map(|c| local[c][k] * corners[c][axis]).sum::<f64>());
+        let [x, y, z] = [0, 1, 2].map(along);
+        let cofactors = [cross(y, z), cross(z, x), cross(x, y)];
+        let global = |local: [f64; 3]| [0, 1, 2].map(|axis| (0..3).map(|k| cofactors[k][axis] * local[k]).sum());
+        Point {
+            jacobian: (0..3).map(|axis| x[axis] * cofactors[0][axis]).sum(),
+            shares: CORNERS.map(|c| factor(&c, 0) * factor(&c, 1) * factor(&c, 2)),
+            slopes: local.map(global),
+        }
+    }
 }

@@ -124,9 +124,8 @@ impl Soil {
     /// Adds to the force on a node \[N\] in the next step, or in the next state of rest.
     #[inline]
     pub fn add_force(&mut self, node: usize, force: [f64; 3]) {
-        for axis in 0..3 {
-            self.nodes.external[node][axis] += force[axis];
-        }
+        let sum = &mut self.nodes.external[node];
+        (0..3).for_each(|axis| sum[axis] += force[axis]);
     }
 
     /// Puts a node at another displacement \[m\] and velocity \[m/s\]; its motion begins there.

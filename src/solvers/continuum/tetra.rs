@@ -33,12 +33,9 @@ impl Tetrahedra {
         for (at, tetrahedron) in TETRAHEDRA.iter().enumerate() {
             let [origin, ends @ ..] = tetrahedron.map(|corner| corners[corner]);
             let edges = ends.map(|end| [end[0] - origin[0], end[1] - origin[1], end[2] - origin[2]]);
-            let cross = |a: [f64; 3], b: [f64; 3]| {
-                [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-            };
             let normals = [cross(edges[1], edges[2]), cross(edges[2], edges[0]), cross(edges[0], edges[1])];
             let sixfold: f64 = (0..3).map(|axis| edges[0][axis] * normals[0][axis]).sum();
-            if !(sixfold > 0.0) {
+            if sixfold.is_nan() || sixfold <= 0.0 {
                 return Err(sixfold / 6.0);
             }
             made.volumes[at] = sixfold / 6.0;
@@ -49,4 +46,8 @@ impl Tetrahedra {
         }
         Ok(made)
     }
+}
+
+pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }

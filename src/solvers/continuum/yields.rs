@@ -32,7 +32,7 @@ pub struct Yield {
 const PAIRS: [[usize; 2]; 3] = [[0, 2], [1, 2], [0, 1]];
 
 /// Sets of planes that can act together, those that are met most first. Shear is numbered as the pairs, tension 3, 4, 5.
-const SETS: [&[usize]; 17] = [
+const SETS: [&[usize]; 16] = [
     &[0],
     &[3],
     &[0, 1],
@@ -49,7 +49,6 @@ const SETS: [&[usize]; 17] = [
     &[1, 3],
     &[2, 3],
     &[1, 3, 4],
-    &[0, 1, 2],
 ];
 
 impl Yield {
@@ -181,9 +180,8 @@ fn solve(matrix: &mut [[f64; 4]; 3], count: usize) -> Option<[f64; 3]> {
         }
         for row in column + 1..count {
             let factor = matrix[row][column] / matrix[column][column];
-            for k in column..4 {
-                matrix[row][k] -= factor * matrix[column][k];
-            }
+            let above = matrix[column];
+            matrix[row].iter_mut().zip(above).for_each(|(a, above)| *a -= factor * above);
         }
     }
     let mut found = [0.0; 3];
@@ -220,11 +218,9 @@ pub fn principal(tensor: &[f64; 6]) -> ([f64; 3], [[f64; 3]; 3]) {
             a[third][p] = cosine * to_p - sine * to_q;
             a[third][q] = sine * to_p + cosine * to_q;
             (a[p][third], a[q][third]) = (a[third][p], a[third][q]);
-            for i in 0..3 {
-                let (at_p, at_q) = (axes[p][i], axes[q][i]);
-                axes[p][i] = cosine * at_p - sine * at_q;
-                axes[q][i] = sine * at_p + cosine * at_q;
-            }
+            let (to_p, to_q) = (axes[p], axes[q]);
+            axes[p] = [0, 1, 2].map(|i| cosine * to_p[i] - sine * to_q[i]);
+            axes[q] = [0, 1, 2].map(|i| sine * to_p[i] + cosine * to_q[i]);
         }
     }
     let mut order = [0, 1, 2];

@@ -92,3 +92,35 @@ fn motion_is_stable_up_to_the_limit() {
         }
     }
 }
+
+/// A box on rollers all round under the body forces that make `u_x = A sin(kx) cos(qz)`, `u_z = A cos(kx) sin(qz)`: the error
+/// falls with the square of the size of the elements.
+#[test]
+fn the_error_is_of_second_order_in_the_size() {
+    let (lambda, mu) = SUBGRADE.lame();
+    let (k, q) = (std::f64::consts::PI / 2.0, std::f64::consts::PI);
+    let stiff = (lambda + mu) * (k + q);
+    for formulation in FORMULATIONS {
+        let error = |spaces: usize| {
+            let mut soil = soil(block([2.0, 0.5, 1.0], [2 * spaces, 2, spaces], SUBGRADE), formulation, 0.0);
+            support(&mut soil, &Side::ALL, Support::Roller);
+            let field = |[x, _, z]: [f64; 3]| [(k * x).sin() * (q * z).cos(), 0.0, (k * x).cos() * (q * z).sin()];
+            for (node, place) in soil.mesh().nodes().to_vec().into_iter().enumerate() {
+                let volume = soil.masses()[node] / SUBGRADE.density;
+                let factors = [k, 0.0, q].map(|along| volume * (stiff * along + mu * (k * k + q * q)));
+                let u = field(place);
+                soil.add_force(node, [0, 1, 2].map(|axis| 1e-3 * factors[axis] * u[axis]));
+            }
+            soil.rest(&[]).unwrap();
+            let nodes = soil.mesh().nodes().iter().zip(soil.displacements()).zip(soil.masses());
+            let squares = nodes.map(|((place, u), mass)| {
+                let exact = field(*place);
+                mass * (0..3).map(|axis| (u[axis] / 1e-3 - exact[axis]).powi(2)).sum::<f64>()
+            });
+            (squares.sum::<f64>() / 2100.0).sqrt()
+        };
+        let [coarse, fine] = [6, 12].map(error);
+        assert!(fine < 0.01, "{formulation:?} {fine}");
+        assert!((coarse / fine).log2() > 1.9, "{formulation:?} {coarse} {fine} {}", (coarse / fine).log2());
+    }
+}

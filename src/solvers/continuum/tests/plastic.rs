@@ -40,20 +40,20 @@ fn triaxial(formulation: Formulation, pressure: f64, speed: f64) -> [[f64; 3]; 2
 fn triaxial_paths_of_one_element() {
     let n = 3.0;
     for formulation in FORMULATIONS {
-        let [first, last] = triaxial(formulation, CONFINED, -1e-3);
+        let [first, last] = triaxial(formulation, CONFINED, -3e-4);
         let exact = -(CONFINED * n + 2.0 * 10e3 * f64::sqrt(n));
         assert!((last[0] / exact - 1.0).abs() < 1e-3, "{formulation:?} {} {exact}", last[0]);
         let dilates = -(last[2] - first[2]) / (last[1] - first[1]);
         let sine = STRENGTH.dilation_angle.sin();
         assert!((dilates / (2.0 * sine / (1.0 - sine)) - 1.0).abs() < 1e-2, "{formulation:?} {dilates}");
 
-        let [first, last] = triaxial(formulation, CONFINED, 1e-3);
+        let [first, last] = triaxial(formulation, CONFINED, 3e-4);
         let exact = -(CONFINED - 2.0 * 10e3 * f64::sqrt(n)) / n;
         assert!((last[0] / exact - 1.0).abs() < 1e-3, "{formulation:?} {} {exact}", last[0]);
         let dilates = (last[2] - first[2]) / (last[1] - first[1]);
         assert!((dilates / (2.0 * sine / (1.0 + sine)) - 1.0).abs() < 1e-2, "{formulation:?} {dilates}");
 
-        let [_, last] = triaxial(formulation, 0.0, 1e-3);
+        let [_, last] = triaxial(formulation, 0.0, 3e-4);
         assert!((last[0] / STRENGTH.tension - 1.0).abs() < 1e-3, "{formulation:?} {}", last[0]);
     }
 }
@@ -90,5 +90,48 @@ fn the_return_ends_on_the_strength() {
             let again = yields.correct(&stress).unwrap_or(stress);
             assert!((0..6).all(|i| (again[i] - stress[i]).abs() < 1e-6));
         }
+    }
+}
+
+/// Half of a strip footing on clay, pushed down by 30 mm until it flows: its pressure over the cohesion. Nodes under the footing are
+/// driven; its edge lies in the middle of the next element.
+fn footing(formulation: Formulation, half: usize, steps: u64) -> f64 {
+    let clay = Strength { cohesion: 10e3, friction_angle: 0.0, dilation_angle: 0.0, tension: f64::INFINITY };
+    let material = Material { density: 2000.0, youngs_modulus: 20e6, poisson_ratio: 0.3, strength: Some(clay) };
+    let size = 1.0 / (half as f64 + 0.5);
+    let [wide, deep] = [4 * half, 2 * half].map(|count| count as f64 * size);
+    let mesh = block([wide, size, deep], [4 * half, 1, 2 * half], material);
+    let settings = Settings { formulation, damping: Damping { local: 0.8, stiffness: 0.0 }, ..Settings::default() };
+    let mut soil = Soil::new(mesh, settings).unwrap();
+    support(&mut soil, &WALLS, Support::Roller);
+    support(&mut soil, &[Side::Bottom], Support::Fixed);
+    let below = |node: &usize| soil.mesh().nodes()[*node][0] < 1.0 - 0.1 * size;
+    let below: Vec<usize> = soil.side_nodes(Side::Top).into_iter().filter(below).collect();
+    let dt = 0.9 * soil.measure_limit(40).unwrap();
+    let speed = 0.03 / (steps as f64 * dt);
+    below.iter().for_each(|&node| soil.drive(node, 2, -speed).unwrap());
+    soil.watch(true);
+    (0..steps).for_each(|_| soil.step(dt).unwrap());
+    let energy = soil.energy();
+    assert!(energy.plastic > 0.8 * energy.driven && energy.residual().abs() < 1e-4 * energy.driven, "{energy:?}");
+    below.iter().map(|&node| soil.internal_force(node)[2]).sum::<f64>() / size / 10e3
+}
+
+/// Prandtl: `q = (2 + π) c`.
+#[test]
+fn a_strip_footing_fails_as_prandtl_says() {
+    for (formulation, half) in [(Formulation::MeanStrain, 6), (Formulation::MixedDiscretisation, 4)] {
+        let found = footing(formulation, half, 2000);
+        assert!((found / (2.0 + std::f64::consts::PI) - 1.0).abs() < 0.01, "{formulation:?} {found}");
+    }
+}
+
+/// Two meshes twice as fine: 5.130 and 5.14.
+#[test]
+#[ignore = "a minute"]
+fn a_finer_footing_comes_nearer() {
+    for (formulation, half) in [(Formulation::MeanStrain, 12), (Formulation::MixedDiscretisation, 8)] {
+        let found = footing(formulation, half, 4000);
+        assert!((found / (2.0 + std::f64::consts::PI) - 1.0).abs() < 0.004, "{formulation:?} {found}");
     }
 }

@@ -47,9 +47,9 @@ fn shares_keep_force_moment_and_power() {
         |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
     assert!((weights.iter().sum::<f64>() - 1.0).abs() < 1e-15);
     let whole = cross([0.41, 0.87, 1.0], force);
-    for axis in 0..3 {
+    for (axis, whole) in whole.into_iter().enumerate() {
         let moment: f64 = (0..4).map(|c| cross(corners[c], force.map(|f| f * weights[c]))[axis]).sum();
-        assert!((moment - whole[axis]).abs() < 1e-14);
+        assert!((moment - whole).abs() < 1e-14);
     }
 }
 
