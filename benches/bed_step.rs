@@ -2,12 +2,13 @@
 //!
 //! ```text
 //! cargo bench --bench bed_step -- --cells DIR [--scene FILE] [--bays 40] [--steps 40] [--rounds 5] [--threads 1,2]
-//!     [--step 15] [--shear RATIO] [--share 0.02] [--limits] [--no-sleepers]
+//!     [--warm 60] [--step 7] [--shear RATIO] [--limits] [--no-sleepers]
 //! ```
 //!
 //! `DIR` keeps the packed cell, which takes minutes to make. Rounds of so many steps go from one number of threads to the next in turn; told are
 //! the least and the median of each part, in ms a step, as JSON. `--step` is in us. `--shear` is the ratio of the shear dashpots, that of the scene
-//! where it is not given. `--limits` adds how long a step may be, which takes a minute.
+//! where it is not given. `--limits` adds how long a step
+//! may be, as it is and with inertia added, which takes minutes.
 
 use serde_json::{Value, json};
 use std::time::{Duration, Instant};
@@ -23,6 +24,8 @@ const SLEEPER: [f64; 3] = [0.3, 1.2, 0.2];
 const MASS: f64 = 150.0;
 const LOAD: f64 = 40e3;
 const FREQUENCY: f64 = 20.0;
+/// Shares of the mass that may be added as inertia where limits are told.
+const SHARES: [f64; 3] = [0.001, 0.005, 0.02];
 
 fn main() {
     let options = Options::read();
@@ -138,11 +141,28 @@ fn set_shear(law: &mut ContactLaw, ratio: f64) {
 fn limits(bed: &mut Bed) -> Value {
     let found = bed.critical_step(0.0).expect("limits");
     let us = |limit: f64| 1e6 * limit;
+    let held: Vec<Value> = SHARES.iter().map(|share| held(bed, *share)).collect();
     json!({
+        "held": held,
         "estimate_us": us(found.estimate.step),
         "bound_us": us(found.bound.step),
         "network_us": us(found.network.step),
         "contacts": found.contacts,
+    })
+}
+
+/// The longest step for a share of the mass added as inertia.
+fn held(bed: &mut Bed, share: f64) -> Value {
+    let start = Instant::now();
+    let held = bed.hold_longest_step(share, 0.0).expect("inertia");
+    bed.unscale_masses();
+    json!({
+        "share": share,
+        "network_us": 1e6 * held.limit,
+        "added_share": held.added_share,
+        "bodies": held.bodies,
+        "largest_factor": held.largest.map(|(_, factor)| factor),
+        "seconds": start.elapsed().as_secs_f64(),
     })
 }
 

@@ -10,7 +10,7 @@ use super::lanes::Real;
 use super::motion::{Felt, WallMotion};
 use super::sheet::Sheet;
 use super::timings::Timings;
-use super::walls::{Pebbles, Wall, WallId, approach};
+use super::walls::{Wall, WallId, approach};
 use std::time::Instant;
 
 /// Tasks that one thread does before it moves their bodies: what fits into its own cache.
@@ -132,10 +132,9 @@ impl<R: Real> Bed<R> {
         }
         let start = Instant::now();
         let around = Surroundings { records: &self.records, laws, shifts, dt: self.dt };
-        let pebbles = Pebbles { domain: &self.domain, owner: &self.owner, bodies: &self.bodies };
         let outcomes = &mut self.contacts.outcomes[self.contacts.first.len()..];
         let (walls, watched) = (&mut self.walls, self.ledger.watched);
-        let energy = self.wall_contacts.evaluate(walls, &self.laws, pebbles, around, outcomes, watched);
+        let energy = self.wall_contacts.evaluate(walls, &self.laws, &self.domain, around, outcomes, watched);
         self.timings.walls += start.elapsed();
         energy
     }

@@ -1,6 +1,5 @@
 //! Contacts of pebbles with walls: one evaluation a pebble and wall, as many contacts as the shape has there.
 
-use super::body::Body;
 use super::contacts::{ContactEnergy, Surroundings};
 use super::domain::Domain;
 use super::force::{ContactForces, Meeting, Outcome, Tangent, force_of, outcome};
@@ -127,6 +126,8 @@ impl Wall {
 pub(super) struct Entry {
     pub wall: u32,
     pub pebble: u32,
+    /// Of the pebble: where one changes, lists are made anew.
+    cell: [i32; 3],
     pub law: u16,
     pub facets: (u32, u32),
     pub slots: (u32, u32),
@@ -186,15 +187,6 @@ pub(super) struct Near<'a> {
     pub skin: f64,
 }
 
-/// The pebbles, as walls need to know them.
-#[derive(Clone, Copy)]
-pub(super) struct Pebbles<'a> {
-    pub domain: &'a Domain,
-    /// Body of each pebble.
-    pub owner: &'a [u32],
-    pub bodies: &'a [Body],
-}
-
 impl<R: Real> WallContacts<R> {
     /// Lists what is within `skin` of a wall; `name` gives body and pebble, and `surface` what a pebble is made of.
     pub fn find(
@@ -225,6 +217,7 @@ impl<R: Real> WallContacts<R> {
                 all.entries.push(Entry {
                     wall: number as u32,
                     pebble,
+                    cell: me.cell,
                     law: laws.class(surface, wall.surface),
                     facets: (facet, all.facets.len() as u32),
                     slots: (slot, slot + room),
@@ -264,12 +257,12 @@ impl<R: Real> WallContacts<R> {
         &mut self,
         walls: &mut [Wall],
         laws: &ContactLaws,
-        pebbles: Pebbles,
+        domain: &Domain,
         around: Surroundings<R>,
         outcomes: &mut [Outcome<R>],
         watched: bool,
     ) -> ContactEnergy {
-        let shared = Shared { walls, laws, pebbles, around, facets: &self.facets, watched };
+        let shared = Shared { walls, laws, domain, around, facets: &self.facets, watched };
         let mut passes = Vec::with_capacity(self.entries.len().div_ceil(CHUNK));
         let (mut slots, mut places) = (&mut self.slots[..], &mut *outcomes);
         for entries in self.entries.chunks(CHUNK) {
@@ -394,7 +387,7 @@ impl Wall {
 struct Shared<'a, R: Real> {
     walls: &'a [Wall],
     laws: &'a ContactLaws,
-    pebbles: Pebbles<'a>,
+    domain: &'a Domain,
     around: Surroundings<'a, R>,
     facets: &'a [u32],
     watched: bool,
@@ -433,10 +426,8 @@ impl<R: Real> Pass<'_, R> {
     /// Asks for all pebbles: in the order of their names, they are anywhere in memory.
     #[inline(always)]
     fn ask_for(&self) {
-        let Shared { pebbles, around, .. } = self.shared;
         for entry in self.entries {
-            prefetch(&around.records[entry.pebble as usize]);
-            prefetch(&pebbles.bodies[pebbles.owner[entry.pebble as usize] as usize].cell);
+            prefetch(&self.shared.around.records[entry.pebble as usize]);
         }
     }
 }
@@ -454,8 +445,7 @@ impl<R: Real> Shared<'_, R> {
     ) {
         let wall = &self.walls[entry.wall as usize];
         let record = &self.around.records[entry.pebble as usize];
-        let cell = self.pebbles.bodies[self.pebbles.owner[entry.pebble as usize] as usize].cell;
-        let away = wall.to(self.pebbles.domain, cell, record.position());
+        let away = wall.to(self.domain, entry.cell, record.position());
         let facets = &self.facets[entry.facets.0 as usize..entry.facets.1 as usize];
         wall.touches(away, record.radius(), facets, &mut scratch.touches);
         let touched = slots.iter().any(Slot::touches);

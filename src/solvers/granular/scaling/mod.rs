@@ -25,11 +25,11 @@ const TOLERANCE: f64 = 2e-3;
 /// Bodies that one task works on. Fixed, so that threads change nothing.
 const CHUNK: usize = 512;
 
-/// How often contacts between bodies count where the longest step is sought, one after the other until the network bears it.
-const WEIGHTS: [f64; 4] = [1.0, 1.25, 1.5, 2.0];
-/// Halvings of the range of steps, and its width as a factor.
-const HALVINGS_OF_STEP: usize = 8;
-const WIDEST: f64 = 8.0;
+/// How often contacts between bodies count where the longest step is sought.
+const WEIGHTS: [f64; 2] = [1.0, 1.5];
+/// Halvings of the range in which the step is sought, and its width as a factor.
+const HALVINGS_OF_STEP: usize = 9;
+const WIDEST: f64 = 16.0;
 
 /// A bed's contacts, and what they hold.
 struct Held<'a> {
@@ -48,6 +48,23 @@ impl Held<'_> {
             if pencil.allows(step) { 1.0 } else { pencil.inertia_factor(step).max(1.0) }
         };
         (0..self.roots.len()).into_par_iter().with_min_len(CHUNK).map(of).collect()
+    }
+
+    /// Factors for the longest step from `shortest` \[s\] on for which they add no more than a share of these masses.
+    fn longest(&self, weight: f64, shortest: f64, masses: &[f64], share: f64) -> Vec<f64> {
+        let most = share * masses.iter().sum::<f64>();
+        let (mut low, mut high) = (shortest, shortest * WIDEST);
+        let mut best = vec![1.0; masses.len()];
+        for _ in 0..HALVINGS_OF_STEP {
+            let mid = (low * high).sqrt();
+            let factors = self.factors(mid, weight);
+            if masses.iter().zip(&factors).map(|(mass, factor)| mass * (factor - 1.0)).sum::<f64>() <= most {
+                (low, best) = (mid, factors);
+            } else {
+                high = mid;
+            }
+        }
+        best
     }
 
     /// What the network bears with these factors \[s\].
@@ -113,11 +130,12 @@ impl<R: Real> Bed<R> {
         Ok(self.weigh_down(&best.1, target, best.0))
     }
 
-    /// Adds inertia so that steps are as long as can be while no more than `share` of the mass is added: [`Scaling::target`] is that step,
-    /// and [`Scaling::limit`] what the network was found to bear. Contacts of pairs up to `gap` \[m\] apart count. What was added before is
-    /// taken off first. For the bed of a track, whose network takes seconds to ask: it is asked once or a few times.
+    /// Adds inertia so that steps may be as long as can be while no more than `share` of the mass is added, and tells what the whole network
+    /// bears then: [`Scaling::limit`]. Contacts of pairs up to `gap` \[m\] apart count. What was added before is taken off first.
     ///
-    /// A bed whose bodies are not held together at all bears any step; its `target` is infinite, and nothing is added.
+    /// Inertia goes where a body alone needs it for some step, the longest for which the share suffices. How often contacts between bodies
+    /// count in this is tried out, by asking the network: the bed of a track takes some ten seconds. Bodies that nothing touches bear any
+    /// step: then the limit is infinite, and nothing is added.
     ///
     /// # Panics
     /// If `share` is below 0.
@@ -132,31 +150,17 @@ impl<R: Real> Bed<R> {
         if !bound.is_finite() {
             return Ok(self.weigh_down(&[], bound, bound));
         }
-        let plain = Network::new(&links, &roots).limit(&around, bound, TOLERANCE).step;
         let masses: Vec<f64> =
             self.states().map(|state| if self.is_held(state.id) { 0.0 } else { state.mass }).collect();
-        let moving: f64 = masses.iter().sum();
-        let added = |factors: &[f64]| masses.iter().zip(factors).map(|(m, f)| m * (f - 1.0)).sum::<f64>() / moving;
-        // contacts between bodies count as often as it takes: hardly ever twice
+        let mut best = (held.limit(&vec![1.0; roots.len()]), vec![1.0; roots.len()]);
         for weight in WEIGHTS {
-            let (mut low, mut high) = (plain, plain * WIDEST);
-            let mut factors = vec![1.0; roots.len()];
-            for _ in 0..HALVINGS_OF_STEP {
-                let mid = (low * high).sqrt();
-                let trial = held.factors(mid, weight);
-                if added(&trial) <= share {
-                    (low, factors) = (mid, trial);
-                } else {
-                    high = mid;
-                }
-            }
+            let factors = held.longest(weight, bound, &masses, share);
             let limit = held.limit(&factors);
-            if limit >= low || weight == WEIGHTS[WEIGHTS.len() - 1] {
-                // a network that bears less is told so: what it bears is the step
-                return Ok(self.weigh_down(&factors, low.min(limit), limit));
+            if limit > best.0 {
+                best = (limit, factors);
             }
         }
-        unreachable!("the last weight returns")
+        Ok(self.weigh_down(&best.1, best.0, best.0))
     }
 
     fn is_held(&self, id: BodyId) -> bool {
