@@ -16,10 +16,9 @@ pub(super) fn refusal(scenario: &Scenario) -> Option<Diagnostic> {
     let on_grains = on_grains.map(|section| &track.sections[section]);
     match *tier {
         Tier::Cells => Some(asks_for_cells(scenario, changing, on_grains)),
-        Tier::Zone | Tier::Full if changing.is_none() => None,
         _ if changing.is_some() => changing.map(changes),
         Tier::Auto => on_grains.map(unknown_stiffness),
-        Tier::Law => None,
+        Tier::Law | Tier::Zone | Tier::Full => None,
     }
 }
 

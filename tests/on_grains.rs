@@ -1,0 +1,154 @@
+//! A track on grains: packed, laid, loaded by trains, stopped and resumed.
+
+use std::ops::ControlFlow;
+use trackbed::check::NoModules;
+use trackbed::compile;
+use trackbed::diag::Code;
+use trackbed::execute::{Checkpoint, Event, Executor, Listener};
+use trackbed::graph::{Graph, Model};
+use trackbed::store::Beds;
+
+/// Coarse spheres on soft soil under three sleepers before a slab, one wagon after the other: seconds to pack and minutes for nobody.
+const SCENE: &str = "use std
+grading coarse { passing = [50 mm: 0 %, 65 mm: 100 %] }
+granular stone {
+  grading = coarse, density = 2700 kg/m^3, contact_stiffness = 13 MN/m per contact, friction = 0.7, viscous_damping = 0.3
+  packing = { lifts = 1, pressure = 200 kPa, friction = 0.2 }
+}
+soil clay { youngs_modulus = 60 MPa, poisson_ratio = 0.3, density = 2000 kg/m^3 }
+trackform open {
+  rail = rails.UIC60, pad = { stiffness = 40 MN/m, damping = 5 kN s/m }
+  sleeper = sleepers.concrete { mass = 150 kg per seat, length = 1.2 m }, spacing = 0.6 m
+  layers = [stone: 200 mm, clay: 0.5 m], support = { stiffness = 50 MN/m per seat, damping_time = 1 ms }
+}
+trackform stiff : open { sleeper = none, slab = slabs.half_width_1600 }
+track line { sections = [open: 18 m, stiff: 15 m], transitions = [edge: soft_to_stiff] }
+vehicle wagon : vehicles.ore_wagon_20t { length = 12 m }
+train ore { vehicles = wagon, speed = 200 km/h, direction = forward }
+traffic { trains = ore, total = 8 axles }
+solve { substructure = full, window = -1.8 .. 1.2 m, support_from = passage }
+record { at = [-2, -1, +1] sleepers, after = [0, 8] axles, quantities = rail_seat_load }
+";
+
+fn graph(text: &str) -> Graph {
+    let compiled = compile("scene.track", text, &NoModules, &[]);
+    let said = trackbed::diag::render::human(&compiled.diagnostics, &compiled.sources, false, 120);
+    compiled.runnable().cloned().unwrap_or_else(|| panic!("{said}"))
+}
+
+/// What a run tells that the tests look at.
+#[derive(Default)]
+struct Heard {
+    /// After each block: axles before it, and the settlement of every seat after it, m.
+    settlements: Vec<(u64, Vec<f64>)>,
+    /// Forces of the sleepers on the ground without a train, N, and voids, m, at recorded counts.
+    at_rest: Vec<(u64, Vec<f64>, Vec<f64>)>,
+    /// Largest seat load of every seat at recorded counts, N.
+    seat_loads: Vec<Vec<f64>>,
+    /// Where to stop: after so many blocks.
+    stop_after: Option<usize>,
+    kept: Option<Checkpoint>,
+}
+
+impl Listener for Heard {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Rest { axles, state } => {
+                let forces = state.seats.iter().map(|seat| seat.contact_force).collect();
+                self.at_rest.push((*axles, forces, state.seats.iter().map(|seat| seat.void).collect()));
+            }
+            Event::Passage { passage, .. } => {
+                self.seat_loads.push(passage.seats.iter().map(|seat| seat.max_rail_seat_load).collect());
+            }
+            Event::Block { axles, block: Some(_), after, .. } => self.settlements.push((*axles, after.to_vec())),
+            Event::Between(between) if self.stop_after == Some(self.settlements.len()) => {
+                self.kept = Some(between.checkpoint().unwrap());
+                return ControlFlow::Break(());
+            }
+            _ => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+fn run(graph: &Graph, beds: &std::path::Path, threads: usize, heard: &mut Heard, from: Option<Checkpoint>) {
+    let executor = Executor::default().with_beds(Beds::kept_in(beds));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| executor.run(graph, heard, from)).unwrap();
+}
+
+/// The seats on grains, from left to right.
+fn carried(graph: &Graph) -> Vec<usize> {
+    let grains = graph.nodes.iter().find_map(|node| if let Model::Grains(grains) = &node.model { Some(grains) } else { None });
+    grains.unwrap().stretches.iter().flat_map(|stretch| stretch.sleepers.iter().map(|sleeper| sleeper.seat)).collect()
+}
+
+#[test]
+fn a_track_on_grains_settles_and_a_run_that_was_stopped_ends_with_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let graph = graph(SCENE);
+    let mut whole = Heard::default();
+    run(&graph, folder.path(), 2, &mut whole, None);
+    assert_eq!(whole.settlements.len(), 2);
+    let on_grains = carried(&graph);
+    let [first, second] = [&whole.settlements[0].1, &whole.settlements[1].1];
+    for seat in &on_grains {
+        assert!(first[*seat] > 1e-6 && first[*seat] < 20e-3, "seat {seat} settles: {} m", first[*seat]);
+    }
+    // a sleeper beyond the grains goes with the median of the nearest third of those on them
+    assert_eq!(first[0], first[on_grains[0]]);
+    assert!(second[on_grains[0]] - first[on_grains[0]] < first[on_grains[0]], "the first train settles most");
+    let (structure, _) = graph.track().unwrap().seats.iter().enumerate().find(|(_, seat)| seat.x >= 0.0).unwrap();
+    assert_eq!(second[structure], 0.0, "a slab does not settle");
+
+    // the other number of threads, and a stop between the trains
+    let mut begun = Heard { stop_after: Some(1), ..Heard::default() };
+    run(&graph, folder.path(), 1, &mut begun, None);
+    let kept = serde_json::to_string(&begun.kept.unwrap()).unwrap();
+    let mut resumed = Heard::default();
+    run(&graph, folder.path(), 1, &mut resumed, Some(serde_json::from_str(&kept).unwrap()));
+    assert_eq!(begun.settlements[0], whole.settlements[0]);
+    assert_eq!(resumed.settlements[0], whole.settlements[1]);
+    assert_eq!(resumed.seat_loads.last(), whole.seat_loads.last());
+}
+
+#[test]
+fn vehicles_ride_on_the_rail_over_the_grains() {
+    let folder = tempfile::tempdir().unwrap();
+    let graph = graph(&SCENE.replace("support_from = passage", "coupling = monolithic").replace("total = 8", "total = 4"));
+    assert!(graph.is_ridden());
+    let mut ridden = Heard::default();
+    run(&graph, folder.path(), 2, &mut ridden, None);
+    let on_grains = carried(&graph);
+    let track = graph.track().unwrap();
+    // the forces of the feet are the weight of the track
+    let (_, forces, voids) = &ridden.at_rest[0];
+    let ballasted: Vec<usize> = (0..track.seats.len()).filter(|seat| track.seats[*seat].is_ballasted()).collect();
+    let weight: f64 = ballasted.iter().map(|seat| 9.81 * (track.seats[*seat].foot.mass() + 0.6 * track.rail[0].mass)).sum();
+    let carried: f64 = ballasted.iter().map(|seat| forces[*seat]).sum();
+    assert!((carried / weight - 1.0).abs() < 0.01, "{carried} of {weight} N");
+    assert!(voids.iter().all(|void| *void < 50e-6), "{voids:?}");
+    let loads = &ridden.seat_loads[0];
+    for seat in &on_grains {
+        assert!((15e3..80e3).contains(&loads[*seat]), "seat {seat}: {} N", loads[*seat]);
+        let settled = ridden.settlements[0].1[*seat];
+        assert!(settled > 1e-6 && settled < 20e-3, "seat {seat}: {settled} m");
+    }
+}
+
+#[test]
+fn what_grains_under_a_track_cannot_run_is_told() {
+    let told = |from: &str, to: &str| -> Vec<(Code, String)> {
+        assert!(SCENE.contains(from), "{from}");
+        let compiled = compile("scene.track", &SCENE.replace(from, to), &NoModules, &[]);
+        assert!(compiled.runnable().is_none(), "{to}");
+        compiled.diagnostics.iter().filter(|d| d.code == Code::E0604).map(|d| (d.code, d.message.clone())).collect()
+    };
+    let one = |from: &str, to: &str, part: &str| {
+        let told = told(from, to);
+        assert!(told.len() == 1 && told[0].1.contains(part), "{to}: {told:?}");
+    };
+    one("support_from = passage", "symmetry = full", "both rails");
+    one("window = -1.8 .. 1.2 m", "window = 3 .. 6 m", "fewer than 2 sleepers");
+    one("substructure = full", "substructure = cells", "`cells`");
+}
