@@ -305,8 +305,9 @@ impl<const N: usize> Table<N> {
 
     #[inline(always)]
     fn put(&mut self, lane: usize, row: [f64; N]) {
+        let columns = &mut self.0;
         for c in 0..N {
-            self.0[c][lane] = row[c];
+            columns[c][lane] = row[c];
         }
     }
 
@@ -332,10 +333,10 @@ fn damp<L: Lanes>(
     let zero = per_inertia.alike(0.0);
     // the velocity of the time of the force, by its own acceleration
     let half = per_inertia.alike(0.5 * drive.kick) * per_inertia;
-    let mut lost = [zero; 3];
+    let (velocity, acting, mut lost) = (velocity.0, acting.0, [zero; 3]);
     for c in 0..3 {
-        let mid = velocity.0[c] + half * acting.0[c];
-        let most = zero.alike(drive.damping) * acting.0[c].abs();
+        let mid = velocity[c] + half * acting[c];
+        let most = zero.alike(drive.damping) * acting[c].abs();
         lost[c] = (-most).where_less(zero, mid, most.where_less(mid, zero, zero));
     }
     FineVector(lost)
