@@ -70,7 +70,7 @@ const UNDER_A_TRACK: &str = "where grains lie under a track: `substructure = cel
 #[test]
 fn with_a_law_fields_of_grains_are_told_once_for_each_reason() {
     let text = solve(
-        "substructure = law, coupling = monolithic, support_from = passage, zone_size = 0.2 m, tolerance = 2 %, \
+        "substructure = law, coupling = monolithic, support_from = passage, soil_element = 0.2 m, tolerance = 2 %, \
          window = 0 .. 20 m, repeats = 3, symmetry = full",
     );
     let compiled = compiled(&text, &[]);
@@ -83,7 +83,7 @@ fn with_a_law_fields_of_grains_are_told_once_for_each_reason() {
                 .to_owned(),
             1,
         ),
-        (format!("`window`, `coupling`, `support_from` and `zone_size` act only {UNDER_A_TRACK}"), 4),
+        (format!("`window`, `coupling`, `support_from` and `soil_element` act only {UNDER_A_TRACK}"), 4),
         ("no run of this version reads `tolerance` yet".to_owned(), 1),
     ];
     assert_eq!(found, expected, "{}", shown(&compiled));
@@ -212,4 +212,13 @@ fn nobody_reads_a_field_that_there_is_not() {
         let (of, field) = path.split_once('.').unwrap();
         assert!(kind(of).is_some_and(|kind| kind.fields.iter().any(|known| known.name == field)), "`{path}`");
     }
+}
+
+#[test]
+fn the_former_name_of_the_size_of_soil_elements_is_told() {
+    let text = solve("zone_size = 0.2 m");
+    let compiled = compile("main.track", &text, &NoModules, &[]);
+    let told = compiled.diagnostics.iter().find(|d| d.code == Code::E0402).expect("an unknown field");
+    assert!(told.message.contains("zone_size"), "{}", told.message);
+    assert!(shown(&compiled).contains("soil_element"), "{}", shown(&compiled));
 }

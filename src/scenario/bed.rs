@@ -71,7 +71,7 @@ pub struct Grains {
     /// Time step, s; `None` is chosen by the planner.
     pub step: Option<Given>,
     /// Size of the elements of soil, m; `None` is chosen by the planner.
-    pub zone_size: Option<Given>,
+    pub soil_element: Option<Given>,
     /// Error that the planner may make, as share of the largest settlement.
     pub tolerance: f64,
     /// Time that the run may take, s.
@@ -93,7 +93,7 @@ impl Default for Grains {
             continuous: Given { value: false, origin: Origin::Default },
             support_from_passage: false,
             step: None,
-            zone_size: None,
+            soil_element: None,
             tolerance: 0.05,
             budget: None,
             memory: None,

@@ -75,6 +75,7 @@ const KINDS: Called = &[
 
 /// Fields, and arguments of words.
 const FIELDS: Called = &[
+    ("zone_size", "soil_element"),
     ("velocity", "speed"),
     ("v", "speed"),
     ("vmax", "speed"),

@@ -631,7 +631,7 @@ pub const KINDS: &[Kind] = &[
                 "time step of grains",
             ),
             default(
-                "zone_size",
+                "soil_element",
                 Form::OneOf(&[number("m", 0.005, 5.0), Form::Words(AUTO)]),
                 "auto",
                 "of the elements of soil",

@@ -113,7 +113,7 @@ pub fn grains(record: &Record, places: Option<&Places>, findings: &mut Findings)
         continuous: Given { value: record.word("passages")? == "continuous", origin: record.get("passages")?.origin },
         support_from_passage: record.word("support_from")? == "passage",
         step: optional("grain_step")?,
-        zone_size: optional("zone_size")?,
+        soil_element: optional("soil_element")?,
         tolerance: record.number("tolerance")?.value,
         budget: optional("budget")?,
         memory: optional("memory")?,

@@ -33,7 +33,7 @@ const READS: Reads = Reads {
         "solve.coupling",
         "solve.passages",
         "solve.support_from",
-        "solve.zone_size",
+        "solve.soil_element",
         "solve.grain_step",
         "track.base",
         "usp.bedding_modulus",
@@ -269,7 +269,7 @@ fn soil(scenario: &Scenario) -> SoilNode {
     let grains = &scenario.solve.grains;
     SoilNode {
         layers: layers.into_iter().find(|layers| !layers.is_empty()).unwrap_or_default(),
-        element: grains.zone_size.map_or(ELEMENT, |size| *size),
+        element: grains.soil_element.map_or(ELEMENT, |size| *size),
         quiet_base: scenario.track.bed.base == Base::Quiet,
         gravity: *scenario.solve.gravity,
     }

@@ -124,11 +124,11 @@ impl Chunk {
 /// How elements answer to displacements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Answer {
-    /// As if they had no strength and no past.
+    /// Elastic, whatever their strength and their past.
     Linear,
-    /// As they would, without remembering it.
+    /// With their strength, without remembering the answer.
     Tried,
-    /// As they do.
+    /// With their strength, remembering the answer.
     Remembered,
 }
 

@@ -70,8 +70,11 @@ fn the_energy_balance_closes_with_order_two() {
     }
 }
 
+/// A block of 1440 weak elements, more than a chunk.
 fn struck(formulation: Formulation) -> Soil {
-    let mut soil = soil(block([2.0, 0.9, 0.8], [20, 9, 8], SUBGRADE), formulation, 9.81);
+    let strength = Strength { cohesion: 5e3, friction_angle: 0.5, dilation_angle: 0.1, tension: 1e3 };
+    let weak = Material { strength: Some(strength), ..SUBGRADE };
+    let mut soil = soil(block([2.0, 0.9, 0.8], [20, 9, 8], weak), formulation, 9.81);
     support(&mut soil, &[Side::Bottom], Support::Fixed);
     support(&mut soil, &[Side::XMin, Side::XMax], Support::Quiet);
     support(&mut soil, &[Side::YMin], Support::Roller);
@@ -96,6 +99,7 @@ fn threads_change_no_bit() {
             pool.install(|| {
                 let mut soil = struck(formulation);
                 strike(&mut soil, 50);
+                assert!(soil.energy().plastic > 0.0);
                 soil.state()
             })
         });

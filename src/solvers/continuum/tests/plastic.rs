@@ -126,7 +126,7 @@ fn a_strip_footing_fails_as_prandtl_says() {
     }
 }
 
-/// Two meshes twice as fine: 5.130 and 5.14.
+/// Meshes twice as fine: 5.130 and 5.141.
 #[test]
 #[ignore = "a minute"]
 fn a_finer_footing_comes_nearer() {

@@ -7,7 +7,7 @@ pub const FORMULATIONS: [Formulation; 2] = [Formulation::MeanStrain, Formulation
 /// The subgrade of the paper, 519 m/s and 300 m/s.
 pub const SUBGRADE: Material = Material { density: 2100.0, youngs_modulus: 472e6, poisson_ratio: 0.25, strength: None };
 
-/// As many equal spaces between 0 and a length \[m\].
+/// Lines with equal spaces between 0 and a length \[m\].
 pub fn lines(length: f64, spaces: usize) -> Vec<f64> {
     (0..=spaces).map(|i| length * i as f64 / spaces as f64).collect()
 }
