@@ -79,7 +79,8 @@ fn run(graph: &Graph, beds: &std::path::Path, threads: usize, heard: &mut Heard,
 
 /// The seats on grains, from left to right.
 fn carried(graph: &Graph) -> Vec<usize> {
-    let grains = graph.nodes.iter().find_map(|node| if let Model::Grains(grains) = &node.model { Some(grains) } else { None });
+    let grains =
+        graph.nodes.iter().find_map(|node| if let Model::Grains(grains) = &node.model { Some(grains) } else { None });
     grains.unwrap().stretches.iter().flat_map(|stretch| stretch.sleepers.iter().map(|sleeper| sleeper.seat)).collect()
 }
 
@@ -115,7 +116,8 @@ fn a_track_on_grains_settles_and_a_run_that_was_stopped_ends_with_the_same_bits(
 #[test]
 fn vehicles_ride_on_the_rail_over_the_grains() {
     let folder = tempfile::tempdir().unwrap();
-    let graph = graph(&SCENE.replace("support_from = passage", "coupling = monolithic").replace("total = 8", "total = 4"));
+    let graph =
+        graph(&SCENE.replace("support_from = passage", "coupling = monolithic").replace("total = 8", "total = 4"));
     assert!(graph.is_ridden());
     let mut ridden = Heard::default();
     run(&graph, folder.path(), 2, &mut ridden, None);
@@ -124,7 +126,8 @@ fn vehicles_ride_on_the_rail_over_the_grains() {
     // the forces of the feet are the weight of the track
     let (_, forces, voids) = &ridden.at_rest[0];
     let ballasted: Vec<usize> = (0..track.seats.len()).filter(|seat| track.seats[*seat].is_ballasted()).collect();
-    let weight: f64 = ballasted.iter().map(|seat| 9.81 * (track.seats[*seat].foot.mass() + 0.6 * track.rail[0].mass)).sum();
+    let weight: f64 =
+        ballasted.iter().map(|seat| 9.81 * (track.seats[*seat].foot.mass() + 0.6 * track.rail[0].mass)).sum();
     let carried: f64 = ballasted.iter().map(|seat| forces[*seat]).sum();
     assert!((carried / weight - 1.0).abs() < 0.01, "{carried} of {weight} N");
     assert!(voids.iter().all(|void| *void < 50e-6), "{voids:?}");

@@ -108,7 +108,9 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
         Ok(beds) if beds.is_empty() => return Err("no section has a layer of grains".into()),
         Ok(beds) => (beds, Vec::new()),
         // what cannot be packed stands against a run only, as E0604 does
-        Err(refusals) => (Vec::new(), refusals.into_iter().map(|refusal| refusal.severity(Severity::Warning)).collect()),
+        Err(refusals) => {
+            (Vec::new(), refusals.into_iter().map(|refusal| refusal.severity(Severity::Warning)).collect())
+        }
     };
     let schedule = match (&scenario.loading, &draft.blocks) {
         (Some(Loading::Traffic(_)), Some(blocks)) => Schedule::Blocks(Box::new(train_by_train(blocks))),
