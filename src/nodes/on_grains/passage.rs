@@ -1,6 +1,6 @@
 //! What is done to a track on grains: it comes to rest, it is pressed, trains pass.
 
-use super::build::Parts;
+use super::build::{OF_STRIDE, Parts};
 use super::reading::{Reading, Watched};
 use super::step::Coupled;
 use super::wheels::WheelRun;
@@ -41,7 +41,7 @@ impl Coupled {
     /// Adds the inertia that the contacts of now need for the step: at the beginning of a passage and of a rest, as it takes as long as
     /// hundreds of steps.
     pub fn hold(&mut self) -> Result<(), NodeError> {
-        let stride = Stride::of_step(self.time_step());
+        let stride = Stride(self.time_step() / OF_STRIDE);
         self.added = 0.0;
         for standing in &mut self.beds {
             self.added = stride.hold(&mut standing.bed)?.max(self.added);

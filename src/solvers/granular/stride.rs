@@ -48,16 +48,6 @@ impl Stride {
         Ok(bed.hold_time_step(self.0, least)?.added_share)
     }
 
-    /// The one that takes such steps, s.
-    pub fn of_step(step: f64) -> Stride {
-        Stride(step / SAFE)
-    }
-
-    /// The step to take, s: what it is held at, with a margin for contacts still to come.
-    pub fn step(&self) -> f64 {
-        SAFE * self.0
-    }
-
     /// Runs for a time, s, and gives the steps that it took.
     pub(super) fn run<R: Real>(&self, bed: &mut Bed<R>, sleepers: &[WallId], time: f64) -> Result<u64, Failure> {
         let (mut left, mut steps) = (time, 0);
