@@ -219,9 +219,9 @@ pub struct SleeperOnGrains {
     pub place: [f64; 2],
     /// Along, across, height, m.
     pub size: [f64; 3],
-    /// Of half of it, kg.
+    /// Mass of half of it, kg.
     pub mass: f64,
-    /// Of the rails that it carries, kg.
+    /// Mass of the rail that it carries, kg.
     pub rail_mass: f64,
     pub pad: Option<UnderPad>,
 }

@@ -282,7 +282,7 @@ pub const KINDS: &[Kind] = &[
             default: Some(("slab", "none")),
             exclusive: false,
         }],
-        planned: &[],
+        planned: &["crib", "shoulder"],
     },
     Kind {
         name: "auxiliary_rails",

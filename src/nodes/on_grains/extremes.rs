@@ -16,7 +16,7 @@ pub struct Extremes<'a> {
     moments: Vec<f64>,
     rail_moments: Vec<(f64, f64)>,
     rail_displacements: Vec<(f64, f64)>,
-    /// Of each wheel, N.
+    /// Least and largest force of each wheel, N.
     wheels: Vec<(f64, f64)>,
     wanted: Vec<(usize, History)>,
     samples: Vec<Sample>,

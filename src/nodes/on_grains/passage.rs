@@ -199,7 +199,7 @@ impl Live {
         self.coupled.hold()?;
         self.coupled.run(
             end - begin,
-            |time, loads| wheels.at(begin + time, begin, loads),
+            |time, loads| wheels.loads_at(begin + time, begin, loads),
             |time, coupled| {
                 for (foot, watched) in watched.iter_mut().enumerate() {
                     watched.see(Reading { level: coupled.level(foot), force: coupled.pushes[foot] }, time_step);

@@ -64,7 +64,7 @@ impl Live {
             let start = Instant::now();
             let shift = begin + all as f64 * coupled.time_step();
             let time = (count as f64 - 0.5) * coupled.time_step();
-            coupled.run(time, |now, loads| run.at(shift + now, begin - 1.0, loads), |_, _| {})?;
+            coupled.run(time, |now, loads| run.loads_at(shift + now, begin - 1.0, loads), |_, _| {})?;
             times.push(1e3 * start.elapsed().as_secs_f64() / count as f64);
             all += count;
         }

@@ -30,7 +30,7 @@ impl<'a> WheelRun<'a> {
 
     /// Chainage (m) and force (N) of every wheel at a time (s), into `out`, which is emptied first; straight between two instants. The
     /// first forces grow from the time `begin` on.
-    pub fn at(&self, time: f64, begin: f64, out: &mut Vec<(f64, f64)>) {
+    pub fn loads_at(&self, time: f64, begin: f64, out: &mut Vec<(f64, f64)>) {
         out.clear();
         for start in &self.starts {
             let place = (time - start) / self.histories.interval;

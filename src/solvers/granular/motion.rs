@@ -44,7 +44,7 @@ pub struct Felt {
 pub enum WallMotion {
     #[default]
     Fixed,
-    /// As a guide says in every step, see [`super::Bed::guided_step`].
+    /// Moves as a guide says in every step, see [`super::Bed::guided_step`].
     Guided,
     /// Constant velocity (m/s) of the frame's origin and angular velocity (rad/s) about it, in the axes of space.
     Velocity { linear: Vector3<f64>, angular: Vector3<f64> },

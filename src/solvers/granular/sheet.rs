@@ -27,7 +27,7 @@ pub struct Sheet {
 pub struct Corner {
     /// From its place at the start, m.
     pub displacement: Vec3,
-    /// Of the step in which it moves on, m/s.
+    /// Velocity in the step in which it moves on, m/s.
     pub velocity: Vec3,
 }
 

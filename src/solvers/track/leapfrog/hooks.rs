@@ -1,8 +1,9 @@
 //! What tests set that nobody else may: starts of passages, steps that are too long, kicks.
 
 use super::Leapfrog;
+use super::ride_state::RideState;
 use super::rider::{BodyState, WheelState};
-use super::riding::{Ride, RideState};
+use super::riding::Ride;
 use crate::solvers::track::{Passage, Train};
 use nalgebra::DVector;
 

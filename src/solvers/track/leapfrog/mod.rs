@@ -53,6 +53,7 @@ mod energy;
 mod hooks;
 mod level;
 mod limit;
+mod ride_state;
 mod rider;
 mod riding;
 mod state;

@@ -4,7 +4,8 @@
 //! its motion: before the track that is its rest.
 
 use super::limit::{LightestRail, StepLimit};
-use super::rider::{BodyState, Rider, WheelState};
+use super::ride_state::RideState;
+use super::rider::Rider;
 use super::state::LeapfrogState;
 use super::under::{Beyond, Under};
 use crate::linalg::banded::SymmetricBanded;
@@ -13,7 +14,6 @@ use crate::solvers::track::error::{TrackError, TrackParameter, Wild};
 use crate::solvers::track::mesh::Track;
 use crate::solvers::track::motion::Timetable;
 use crate::solvers::track::{Motion, Train};
-use serde::{Deserialize, Serialize};
 
 /// A train on its way.
 #[derive(Debug, Clone)]
@@ -25,29 +25,6 @@ pub(super) struct Ride {
     limit: Option<StepLimit>,
     /// Chainages between which the track feels a wheel, m.
     felt: [f64; 2],
-}
-
-/// The motion of a train. Lists run over vehicles or wheels.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub(super) struct RideState {
-    /// When it began, s.
-    pub began: f64,
-    /// Levels of the ground before the left and behind the right end, m, where nothing goes on there.
-    pub ground: [f64; 2],
-    pub bodies: Vec<BodyState>,
-    pub wheels: Vec<WheelState>,
-}
-
-impl RideState {
-    /// Numbers of vehicles and wheels.
-    pub fn shape(&self) -> [usize; 2] {
-        [self.bodies.len(), self.wheels.len()]
-    }
-
-    /// Per wheel, N.
-    pub fn forces(&self) -> impl Iterator<Item = f64> + '_ {
-        self.wheels.iter().map(|wheel| wheel.force)
-    }
 }
 
 impl Ride {

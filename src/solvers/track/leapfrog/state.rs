@@ -3,7 +3,7 @@
 use super::Leapfrog;
 use super::energy::EnergyAccount;
 use super::level::LevelMove;
-use super::riding::RideState;
+use super::ride_state::RideState;
 use crate::solvers::track::error::{TrackError, TrackParameter};
 use crate::solvers::track::mesh::Track;
 use crate::solvers::track::model::TrackLevel;
