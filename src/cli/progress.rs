@@ -2,6 +2,7 @@
 
 use super::terminal;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use std::borrow::Cow;
 use std::fmt::Write;
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -49,7 +50,7 @@ const LINE: Duration = Duration::from_secs(60);
 
 /// A bar that waits until the work has taken two seconds; what is quick needs none. Without a terminal a line from time to time.
 pub(super) struct Patient {
-    message: &'static str,
+    message: Cow<'static, str>,
     start: Instant,
     told: Instant,
     bar: Option<ProgressBar>,
@@ -58,8 +59,8 @@ pub(super) struct Patient {
 }
 
 impl Patient {
-    pub(super) fn new(message: &'static str) -> Patient {
-        Patient { message, start: Instant::now(), told: Instant::now(), bar: None, begun: None }
+    pub(super) fn new(message: impl Into<Cow<'static, str>>) -> Patient {
+        Patient { message: message.into(), start: Instant::now(), told: Instant::now(), bar: None, begun: None }
     }
 
     /// One that is seen at once: the first word of the work may be minutes away.
@@ -89,7 +90,7 @@ impl Patient {
     fn shown(&mut self) -> &ProgressBar {
         self.bar.get_or_insert_with(|| {
             let bar = share();
-            bar.set_message(self.message);
+            bar.set_message(self.message.clone());
             bar
         })
     }

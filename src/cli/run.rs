@@ -10,6 +10,7 @@ use crate::lower::Parameter;
 use crate::results::{self, BedTestsView, BlockRow, NamedBytes, ResultsError, Run, RunRecorder, Scalar, Verdict};
 use crate::scenario::Scenario;
 use crate::solvers::granular::Bed;
+use crate::solvers::granular::packing::Progress;
 use crate::store::{Directory, Mode, Work};
 use crate::units::number;
 use std::collections::BTreeMap;
@@ -159,25 +160,44 @@ fn again(out: &Path, compiled: &Compiled) -> Outcome {
 struct Shown {
     bar: progress::Patient,
     tests: bool,
+    /// What a track on grains is busy with, and blocks done of all.
+    stage: String,
+    blocks: Option<(u64, u64)>,
 }
 
 impl Shown {
     fn new(graph: &Graph) -> Shown {
         let tests = matches!(graph.schedule, Schedule::Actuators(_));
-        Shown { bar: progress::Patient::new(if tests { "the bed" } else { "the run" }), tests }
+        let bar = progress::Patient::new(if tests { "the bed" } else { "the run" });
+        Shown { bar, tests, stage: String::new(), blocks: None }
+    }
+
+    /// Shows a stage of a track on grains: each has a bar of its own.
+    fn stage(&mut self, progress: &Progress) {
+        if self.stage != progress.stage {
+            self.stage.clone_from(&progress.stage);
+            let block =
+                self.blocks.map_or(String::new(), |(done, all)| format!(", block {} of {all}", (done + 1).min(all)));
+            self.bar = progress::Patient::new(format!("{}{block}", self.stage));
+        }
+        pack::show_packing(&mut self.bar, progress);
     }
 }
 
 impl Listener for Shown {
     fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
         match event {
-            Event::Packing(progress) => pack::show_packing(&mut self.bar, progress),
+            Event::Packing(progress) if self.tests => pack::show_packing(&mut self.bar, progress),
+            Event::Packing(progress) => self.stage(progress),
             Event::Packed { found, .. } => {
                 pack::tell_loss(found);
                 self.bar = progress::Patient::new("the test");
             }
             Event::Tested { .. } if self.tests => self.bar = progress::Patient::new("the bed"),
-            Event::Progress { done, all } => self.bar.show(*done, *all),
+            Event::Progress { done, all } if self.stage.is_empty() => self.bar.show(*done, *all),
+            Event::Progress { done, all } => {
+                (self.blocks, self.stage) = (Some((*done, *all)), " ".into());
+            }
             _ => {}
         }
         ControlFlow::Continue(())

@@ -13,9 +13,9 @@ use crate::solvers::track::{Foot, Leapfrog, Spring, Track, TrackLevel};
 use crate::store::Beds;
 use std::sync::Arc;
 
-/// Share that is taken of the step that each grain bears by itself, for contacts still to come. The network as a whole bears a fifth more
-/// than that (`docs/validation.md`).
-pub const OF_STRIDE: f64 = 0.95;
+/// Share that is taken of the step that each grain bears by itself, for contacts that come between two looks at inertia. Without such looks
+/// 0.95 of it was above what the network bears once sleepers are loaded, and the run stopped there.
+pub const OF_STRIDE: f64 = 0.9;
 
 /// What a track on grains is made of.
 #[derive(Clone, Copy)]

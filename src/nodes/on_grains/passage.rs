@@ -14,6 +14,8 @@ use crate::solvers::track::WheelLoads;
 /// Local damping of grains (Cundall), and drag of the rail (1/s), on the way to rest.
 const DAMPING: f64 = 0.7;
 const DRAG: f64 = 200.0;
+/// Steps between looks at inertia: loads form contacts.
+pub(super) const HOLD: u64 = 200;
 /// Steps between looks at rest.
 const LOOK: u64 = 200;
 /// At rest forces are in balance to this share of those that act, and no sleeper is faster, m/s: at two looks in a row.
@@ -38,8 +40,7 @@ impl Coupled {
         self.pushes.iter().enumerate().map(of).collect()
     }
 
-    /// Adds the inertia that the contacts of now need for the step: at the beginning of a passage and of a rest, as it takes as long as
-    /// hundreds of steps.
+    /// Adds the inertia that the contacts of now need for the step.
     pub fn hold(&mut self) -> Result<(), NodeError> {
         let stride = Stride(self.time_step() / OF_STRIDE);
         self.added = 0.0;
@@ -60,6 +61,9 @@ impl Coupled {
         let steps = (time / self.time_step()).ceil() as u64;
         let mut loads = Vec::new();
         for step in 0..steps {
+            if step.is_multiple_of(HOLD) {
+                self.hold()?;
+            }
             let now = step as f64 * self.time_step();
             wheels(now, &mut loads);
             self.step(&WheelLoads::Given(&loads))?;
@@ -81,7 +85,6 @@ impl Coupled {
 
     /// Runs until all is at rest, or the time is over (s); gives how far from rest it is, over what counts as rest.
     pub fn come_to_rest(&mut self, longest: f64, tell: &mut dyn FnMut(f64)) -> Result<f64, NodeError> {
-        self.hold()?;
         self.damped(|coupled| {
             let (mut calm, mut passed) = (0, 0.0);
             loop {
@@ -114,7 +117,6 @@ impl Coupled {
         let seats: Vec<f64> = self.rail.carried().iter().map(|seat| parts.track.seats[*seat].x).collect();
         let [growing, standing] = PRESSING;
         let before = self.readings();
-        self.hold()?;
         self.damped(|coupled| {
             let loads = |time: f64, loads: &mut Vec<(f64, f64)>| {
                 loads.clear();
@@ -196,7 +198,6 @@ impl Live {
         let mut watched: Vec<Watched> = self.books.rest.iter().map(|rest| Watched::from_rest(*rest)).collect();
         let time_step = self.coupled.time_step();
         let mut shown = 0.0;
-        self.coupled.hold()?;
         self.coupled.run(
             end - begin,
             |time, loads| wheels.loads_at(begin + time, begin, loads),

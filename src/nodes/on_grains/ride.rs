@@ -2,7 +2,7 @@
 
 use super::build::Parts;
 use super::extremes::{Extremes, Recorded};
-use super::passage::{AFTER, REACH};
+use super::passage::{AFTER, HOLD, REACH};
 use super::reading::{Reading, Watched};
 use super::{GrainGround, Live, Stage, Telling};
 use crate::graph::{Blocks, Record, Runner, Train};
@@ -115,10 +115,12 @@ impl Live {
         let recorded = riders.records.map(|records| Recorded { records, axles: riders.axles, interval });
         let mut extremes = Extremes::new(parts.track, unloaded, (kind, plan), recorded, time_step);
         let mut watched: Vec<Watched> = self.books.rest.iter().map(|rest| Watched::from_rest(*rest)).collect();
-        self.coupled.hold()?;
         self.coupled.rail.ride(&model, &train.motion, from)?;
         let (began, steps) = (self.coupled.rail.time(), (way / train.speed / time_step).ceil() as u64);
         for step in 0..steps {
+            if step.is_multiple_of(HOLD) {
+                self.coupled.hold()?;
+            }
             self.coupled.step(&WheelLoads::Riding)?;
             for (foot, watched) in watched.iter_mut().enumerate() {
                 watched.see(Reading { level: self.coupled.level(foot), force: self.coupled.pushes[foot] }, time_step);

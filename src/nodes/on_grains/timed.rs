@@ -56,7 +56,6 @@ impl Live {
         let [left, right] = parts.ends();
         let Some([begin, _]) = run.within([left, right]) else { return Err(none()) };
         let Some([first, last]) = run.within([left - REACH, right + REACH]) else { return Err(none()) };
-        coupled.hold()?;
         let before = coupled.parted();
         let (mut times, mut all) = (Vec::new(), 0);
         for part in 0..TIMED.min(steps) {

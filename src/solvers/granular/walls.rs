@@ -126,7 +126,7 @@ impl Wall {
 pub(super) struct Entry {
     pub wall: u32,
     pub pebble: u32,
-    /// Of the pebble: where one changes, lists are made anew.
+    /// Cell of the pebble: where one changes, lists are made anew.
     cell: [i32; 3],
     pub law: u16,
     pub facets: (u32, u32),
@@ -143,7 +143,7 @@ pub(super) struct Slot<R> {
     /// From the wall's origin to the contact point \[m\].
     point: Vec3,
     pub overlap: f64,
-    /// Of the normal spring \[N/m\] and its dashpot \[N s/m\].
+    /// Tangents of the normal spring \[N/m\] and its dashpot \[N s/m\].
     stiffness: [f64; 2],
 }
 
