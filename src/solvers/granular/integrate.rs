@@ -505,7 +505,7 @@ impl<R: Real> Share<'_, R> {
         }
         // a maximum forgets what is no number
         let of_centre = velocity.dot(velocity);
-        told.speeds(batch, fastest + (of_centre - of_centre));
+        told.speeds(batch, fastest + of_centre * zero);
         let (velocity, spin, centre, turning) = (columns(velocity), columns(spin), columns(centre), columns(turning));
         let [a, b, c, d] = attitude;
         let attitude = [column(a), column(b), column(c), column(d)];

@@ -198,10 +198,10 @@ mod tests {
             let sheet = guided.sheet(floor).expect("a floor that moves");
             let forces = sheet.forces().to_vec();
             for (corner, force) in sheet.corners_mut().iter_mut().zip(forces) {
-                for axis in 0..3 {
-                    let all = force[axis] - spring * corner.displacement[axis];
-                    corner.velocity[axis] += dt * all / mass;
-                    corner.displacement[axis] += dt * corner.velocity[axis];
+                let Corner { displacement, velocity } = corner;
+                for ((u, v), f) in displacement.iter_mut().zip(velocity).zip(force) {
+                    *v += dt * (f - spring * *u) / mass;
+                    *u += dt * *v;
                 }
             }
             Ok(())
