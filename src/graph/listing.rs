@@ -239,6 +239,9 @@ fn block_line(blocks: &Blocks, cost: &Cost) -> String {
             let cap = cap.map_or(String::new(), |cap| format!(" and {} mm of settlement", number(cap * 1e3)));
             format!("{total} axles in blocks that err by at most {} mm{cap}", number(tolerance * 1e3))
         }
+        Update::Fixed { axles } if matches!(cost.work, Work::Tests(_)) => {
+            format!("{total} axles in blocks of {} at most", axles.min(total))
+        }
         Update::Fixed { .. } | Update::Geometric { .. } => {
             let [shortest, longest] = cost.passages().block_axles;
             let range = match shortest == longest {

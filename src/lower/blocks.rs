@@ -200,7 +200,8 @@ impl Pass for Shared {
     fn run(&self, draft: &mut Draft<'_>) {
         let (Some(Schedule::Blocks(blocks)), Some(cost)) = (&draft.schedule, &draft.cost) else { return };
         let trains = blocks.sequence.trains();
-        if trains < 2 {
+        // over grains every train runs
+        if trains < 2 || !matches!(cost.work, Work::Passages(_)) {
             return;
         }
         let why =

@@ -2,7 +2,7 @@
 
 use super::{RunTables, Scalar};
 use crate::diag::{Code, Diagnostic, Severity, Sources, and_list};
-use crate::graph::Graph;
+use crate::graph::{GrainStretch, Graph, Model};
 use crate::scenario::{Evidence, Loading, Material, Scenario, SettlementLaw, Track};
 use crate::units::number;
 use serde::{Deserialize, Serialize};
@@ -185,6 +185,21 @@ fn assumptions(scenario: &Scenario, graph: &Graph, tables: &RunTables) -> Vec<St
 
 /// The stiffness of the supports, and that it stays.
 fn supports(graph: &Graph) -> Option<String> {
+    let grains =
+        graph.nodes.iter().find_map(|node| if let Model::Grains(grains) = &node.model { Some(grains) } else { None });
+    if let Some(grains) = grains {
+        let end = |stretch: &GrainStretch| {
+            stretch.start + grains.beds[stretch.bed].numbers().plan[0] * f64::from(stretch.copies)
+        };
+        let metre = |x: f64| number((x * 1e3).round() / 1e3);
+        let spans =
+            grains.stretches.iter().map(|stretch| format!("{} to {} m", metre(stretch.start), metre(end(stretch))));
+        let spans: Vec<String> = spans.collect();
+        return Some(format!(
+            "grains carry the sleepers from {}; springs beyond answer and settle as the nearest third of these sleepers",
+            spans.join(" and ")
+        ));
+    }
     let of_springs = |find: fn(f64, f64) -> f64, from: f64| {
         graph.supports.iter().filter_map(|node| node.support).map(|support| support.stiffness).fold(from, find)
     };
