@@ -80,7 +80,7 @@ impl Continuation {
     }
 
     /// φ_w, φ_θ and c (m/N) at a distance beyond the end, m.
-    pub fn at(&self, distance: f64) -> ([f64; 2], f64) {
+    pub fn shape_at(&self, distance: f64) -> ([f64; 2], f64) {
         let decay = self.decay();
         let (sin, cos) = (decay * distance).sin_cos();
         let fade = (-decay * distance).exp();

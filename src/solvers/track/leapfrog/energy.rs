@@ -78,7 +78,8 @@ impl Leapfrog {
             account.supports -= support * way(sleeper.unknown);
         }
         for (x, force) in &state.on_rail {
-            account.wheels += force * Under::at(track, &self.beyond, &state.level, state.ride.ground, *x).moved(way);
+            account.wheels +=
+                force * Under::wheel_at(track, &self.beyond, &state.level, state.ride.ground, *x).moved(way);
         }
         for ((mean, v), a) in self.mean_velocity.iter_mut().zip(v).zip(a) {
             *mean = v - 0.5 * kick * a;

@@ -84,7 +84,7 @@ impl Ride {
     pub fn standing(&self, track: &Track, beyond: &Beyond, state: &LeapfrogState) -> Result<RideState, TrackError> {
         let ground = [0, 1].map(|end| state.displacement[end_unknown(track, end)]);
         let entry = usize::from(self.sign < 0.0);
-        let far = Under::at(track, beyond, &state.level, ground, self.felt[entry] - self.sign);
+        let far = Under::wheel_at(track, beyond, &state.level, ground, self.felt[entry] - self.sign);
         let level = far.surface(&state.displacement) + track.model.irregularity.depth_at(track.model.ends[entry]);
         let mut ride = RideState { began: state.time, ground, ..RideState::default() };
         for rider in &self.riders {
@@ -122,7 +122,7 @@ impl Ride {
             rider.begin();
             for (w, wheel) in wheels.iter_mut().enumerate() {
                 let x = rider.position(w, leading, self.sign);
-                let under = Under::at(track, beyond, &state.level, state.ride.ground, x);
+                let under = Under::wheel_at(track, beyond, &state.level, state.ride.ground, x);
                 let unevenness = track.model.irregularity.depth_at(x.clamp(left, right));
                 let approach = rider.place(w, body) - under.surface(&state.displacement) - unevenness;
                 let force = rider.press(w, wheel, approach, under.compliance, state.last_step);

@@ -60,7 +60,7 @@ impl Leapfrog {
                 return Err(TrackError::Parameter { name, value: x + force, expected: "finite numbers" });
             }
             let state = &mut self.state;
-            let under = Under::at(&self.track, &self.beyond, &state.level, state.ride.ground, x);
+            let under = Under::wheel_at(&self.track, &self.beyond, &state.level, state.ride.ground, x);
             if under.is_felt() {
                 under.press(force, &mut self.forces);
                 state.on_rail.push((x, force));

@@ -23,7 +23,7 @@ pub(super) fn beyond(track: &Track) -> Beyond {
 
 impl Under {
     /// At a chainage, m; `ground` are the levels (m) before the left and behind the right end where nothing goes on there.
-    pub fn at(track: &Track, beyond: &Beyond, level: &TrackLevel, ground: [f64; 2], x: f64) -> Self {
+    pub fn wheel_at(track: &Track, beyond: &Beyond, level: &TrackLevel, ground: [f64; 2], x: f64) -> Self {
         if let Ok(point) = track.rail_point(x) {
             let unknowns = track.element_unknowns(point.element);
             return Self { unknowns, shape: point.shape, rest: 0.0, compliance: point.local_compliance };
@@ -34,7 +34,7 @@ impl Under {
         match &beyond[end] {
             Some(continuation) => {
                 let distance = (x - track.model.ends[end]).abs();
-                let (shape, compliance) = continuation.at(distance);
+                let (shape, compliance) = continuation.shape_at(distance);
                 let [by_deflection, by_rotation] = if distance <= continuation.reach() { shape } else { [0.0; 2] };
                 let rest = (1.0 - by_deflection) * level.ends[end];
                 Self { unknowns, shape: [by_deflection, by_rotation, 0.0, 0.0], rest, compliance }
