@@ -14,7 +14,7 @@ pub struct EnergyAccount {
     pub kinetic: f64,
     /// In rails, slabs, pads and what continues the rail.
     pub strain: f64,
-    /// Of gravity and of the level of what continues the rail, from the track as built.
+    /// Energy of gravity and of the level of what continues the rail, from the track as built.
     pub potential: f64,
     /// What was stored when the account began.
     pub begin: f64,

@@ -105,7 +105,7 @@ pub struct Leapfrog {
     /// K and C, without the supports of ordinary sleepers.
     stiffness: SymmetricBanded,
     damping: SymmetricBanded,
-    /// Of M̂.
+    /// Factor of M̂.
     factor: TwistedFactor,
     /// What continues the rail pulls its ends to their level: end, unknown and N or N m per metre.
     pulls: Vec<(usize, usize, f64)>,
