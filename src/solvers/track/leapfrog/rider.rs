@@ -82,7 +82,7 @@ impl Rider {
         leading - sign * self.offsets[wheel]
     }
 
-    /// Number of the first of all its wheels.
+    /// Places of all its wheels, m.
     pub fn positions(&self, leading: f64, sign: f64) -> impl Iterator<Item = f64> + use<'_> {
         self.offsets.iter().map(move |offset| leading - sign * offset)
     }
