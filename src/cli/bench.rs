@@ -5,7 +5,7 @@ use super::{Format, Outcome, pack, progress, subject, terminal};
 use crate::execute;
 use crate::graph::Graph;
 use crate::lower::Origins;
-use crate::nodes::TimedSteps;
+use crate::nodes::{PassageEnergy, TimedSteps};
 use crate::report::{self, BedView, Colour, Side};
 use crate::results;
 use crate::solvers::granular::Real;
@@ -38,6 +38,9 @@ struct SceneSteps {
     /// Steps that are timed.
     #[arg(long, value_name = "N", default_value_t = 400, value_parser = clap::value_parser!(u64).range(1..=1_000_000_000))]
     steps: u64,
+    /// Also runs the first passage whole, with an account of its energy: what rail, grains and soil lose, and what no part explains
+    #[arg(long)]
+    energy: bool,
     /// Threads; all cores where it is not given. The motion does not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -149,9 +152,15 @@ impl SceneSteps {
     }
 
     fn measure(&self, graph: &Graph, origins: &Origins) -> Outcome {
-        let mut bar = progress::Patient::seen("building the track on grains");
+        let measured = execute::Measured { steps: self.steps, energy: self.energy };
+        let (mut bar, mut shown) = (progress::Patient::seen("building the track on grains"), None);
         let beds = pack::beds(self.cache.as_deref());
-        let timed = execute::time_steps(graph, &beds, self.steps, &mut |_, share| bar.show((1e3 * share) as u64, 1000));
+        let timed = execute::time_steps(graph, &beds, measured, &mut |stage, share| {
+            if shown.replace(stage) != Some(stage) {
+                bar = progress::Patient::new(stage.to_string());
+            }
+            bar.show((1e3 * share) as u64, 1000);
+        });
         drop(bar);
         match timed {
             Ok(timed) if self.format == Format::Json => subject::json(&timed),
@@ -170,10 +179,7 @@ impl SceneSteps {
 fn text_of_steps(m: &TimedSteps) -> String {
     let mut out = format!("{} grains of {} pebbles under {} sleepers\n", m.grains, m.pebbles, m.sleepers);
     let added = 100.0 * m.added_inertia;
-    out += &format!(
-        "steps of {:.2} us, {added:.2} % of the mass added as inertia; soil: one step in {}\n",
-        m.time_step_us, m.soil_ratio
-    );
+    out += &format!("steps of {:.2} us, {added:.2} % of the mass added as inertia\n", m.time_step_us);
     out += &format!("{:.2} ms a step (median of {} steps)\n\n", m.milliseconds_per_step, m.steps);
     let p = &m.parts_ms;
     for (label, ms) in [
@@ -191,6 +197,25 @@ fn text_of_steps(m: &TimedSteps) -> String {
         "\n{:.0} s of computing a simulated second, {:.0} s an axle\n",
         m.seconds_a_simulated_second, m.seconds_an_axle
     );
+    if let Some(energy) = &m.energy {
+        out += &text_of_energy(energy);
+    }
+    out
+}
+
+fn text_of_energy(e: &PassageEnergy) -> String {
+    let mut out = format!("\nthe wheels of a passage do {:.1} J of work\n", e.wheels);
+    for (label, joules) in [
+        ("lost in the track", e.lost_in_track),
+        ("slip", e.slip),
+        ("dashpots", e.dashpots),
+        ("local damping", e.local_damping),
+        ("lost in the soil", e.lost_in_soil),
+        ("at interfaces", e.interfaces),
+        ("unaccounted", e.unaccounted),
+    ] {
+        out += &format!("  {label:<18}{joules:>12.4} J, {:>8.4} %\n", 100.0 * joules / e.wheels);
+    }
     out
 }
 

@@ -165,6 +165,7 @@ codes! {
     L1032 Warning "stretch that softens towards the stiffer side"
     L1033 Warning "softer side that is the stiffer one"
     L1034 Warning "ballast on a structure under a law of force"
+    L1035 Warning "speed near the speed of surface waves"
 }
 
 impl Code {
@@ -210,6 +211,7 @@ impl Code {
             Code::L1032 => "reversed_wedge",
             Code::L1033 => "transition_sides",
             Code::L1034 => "ballast_on_structure",
+            Code::L1035 => "surface_waves",
             _ => return None,
         })
     }

@@ -1,13 +1,12 @@
 //! The schedule of blocks: static state, passage, settlement, block by block, until the axles are done (paper, Fig. 3).
 
-use super::event::{Between, Checkpoint, Event, Listener, ScheduleState};
+use super::event::{Between, Checkpoint, Event, Listener, ScheduleState, tell_stage};
 use super::exchange::{Exchange, Work};
 use super::machine::{Ending, Machine, RunError};
 use super::pair::{Pair, settling};
 use super::step::{BlockMeasures, Done};
 use crate::graph::{Blocks, Clock, Control, Graph, Model, Runner, Update};
 use crate::nodes::{Builders, Forces, Kept, NodeError, PassageOutcome, Request, Stage, Superstructure};
-use crate::solvers::granular::packing::Progress;
 use crate::store::Beds;
 use std::ops::ControlFlow;
 
@@ -24,10 +23,7 @@ pub(super) fn run(
     let mut stopped = false;
     let begun = machine.track_on_ground_that(|ground| match &state {
         Some(state) => ground.restore(state),
-        None => ground.prepare(&mut |stage, share| {
-            let progress = Progress { stage: stage.to_string(), share, bodies: 0, steps: 0 };
-            stopped |= listener.hear(&Event::Packing(&progress)).is_break();
-        }),
+        None => ground.prepare(&mut |stage, share| stopped |= tell_stage(listener, stage, share).is_break()),
     });
     let (track, ground) = begun.map_err(at(axles))?;
     if stopped {
@@ -140,9 +136,8 @@ impl Run<'_, '_> {
         let revision = self.pair.ground.responses().revision;
         let listener = &mut *self.listener;
         let tell = &mut |stage: Stage, share: f64| {
-            let progress = Progress { stage: stage.to_string(), share, bodies: 0, steps: 0 };
             // a run ends between two blocks only
-            let _ = listener.hear(&Event::Packing(&progress));
+            let _ = tell_stage(listener, stage, share);
         };
         let Done { block, measured, next } = match self.pair.blocks.adaptive() {
             Some((tolerance, cap)) => self.pair.adaptive(&mut here, tolerance, cap, tell)?,

@@ -2,7 +2,7 @@
 
 use super::BlockMeasures;
 use crate::graph::{BedRecipe, Block, Clock, Control, Runner};
-use crate::nodes::{NodeError, PassageOutcome, TestState, Tested, Unloaded};
+use crate::nodes::{NodeError, PassageOutcome, Stage, TestState, Tested, Unloaded};
 use crate::solvers::granular::Bed;
 use crate::solvers::granular::packing::Progress;
 use crate::store::FoundBed;
@@ -43,6 +43,12 @@ pub enum Event<'a> {
     Between(Between<'a>),
     /// Steps of the schedule done, and to be done in all; the latter is an estimate that changes while the run goes on.
     Progress { done: u64, all: u64 },
+}
+
+/// Tells what a track on grains is busy with, and how far it is.
+pub(super) fn tell_stage(listener: &mut dyn Listener, stage: Stage, share: f64) -> ControlFlow<()> {
+    let progress = Progress { stage: stage.to_string(), share, bodies: 0, steps: 0 };
+    listener.hear(&Event::Packing(&progress))
 }
 
 /// A moment at which a run can be interrupted and taken up again.

@@ -23,7 +23,7 @@ pub use executor::{Custom, Executor};
 pub use failure::diagnose;
 pub use machine::{Ending, Machine, RunError};
 pub use step::BlockMeasures;
-pub use timed::time_steps;
+pub use timed::{Measured, time_steps};
 
 pub use blocks::passage_as_built;
 

@@ -1,12 +1,11 @@
 //! The schedule of trains that ride on a rail over grains: nothing is exchanged between blocks, which only say when the state is told.
 
-use super::event::{Checkpoint, Event, Listener, ScheduleState};
+use super::event::{Checkpoint, Event, Listener, ScheduleState, tell_stage};
 use super::machine::{Ending, Machine, RunError};
 use super::step::BlockMeasures;
 use super::{Between, blocks::restored};
 use crate::graph::{Blocks, Clock, Control};
 use crate::nodes::{GrainGround, NodeError, PassageOutcome, Riders, Stage, Substructure};
-use crate::solvers::granular::packing::Progress;
 
 /// Runs the trains of a graph, from the beginning or from a checkpoint.
 pub(super) fn run(
@@ -21,10 +20,7 @@ pub(super) fn run(
     let (mut done, mut axles, _, state) = restored(from)?;
     let mut ground = GrainGround::new(parts);
     let mut stopped = false;
-    let mut tell = |stage: Stage, share: f64| {
-        let progress = Progress { stage: stage.to_string(), share, bodies: 0, steps: 0 };
-        stopped |= listener.hear(&Event::Packing(&progress)).is_break();
-    };
+    let mut tell = |stage: Stage, share: f64| stopped |= tell_stage(listener, stage, share).is_break();
     match &state {
         Some(state) => ground.restore(state),
         None => ground.prepare(&mut tell),
@@ -50,9 +46,8 @@ pub(super) fn run(
             let records = shown.then_some(machine.graph.records.as_slice());
             let riders = Riders { blocks, runner, trains, axles, records };
             let mut tell = |stage: Stage, share: f64| {
-                let progress = Progress { stage: stage.to_string(), share, bodies: 0, steps: 0 };
                 // a run ends between two blocks only
-                let _ = listener.hear(&Event::Packing(&progress));
+                let _ = tell_stage(listener, stage, share);
             };
             let passage = ground.ride(&riders, &mut tell).map_err(at(axles))?;
             if shown

@@ -8,14 +8,28 @@ use crate::nodes::{
 };
 use crate::store::Beds;
 
-/// Builds a track on grains, lets its first train come and times so many steps under its wheels. Fails where no grains lie under a track
-/// with trains.
-pub fn time_steps(graph: &Graph, beds: &Beds, steps: u64, tell: &mut Telling<'_>) -> Result<TimedSteps, RunError> {
-    let machine = Machine { graph, builders: &Builders::default(), beds };
-    timed(&machine, steps, tell).map_err(|cause| RunError::node(Clock::Axles(0), cause))
+/// What is measured of a track on grains under its first train.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Measured {
+    /// Steps that are timed.
+    pub steps: u64,
+    /// Whether a whole passage is run too, with an account of its energy.
+    pub energy: bool,
 }
 
-fn timed(machine: &Machine<'_>, steps: u64, tell: &mut Telling<'_>) -> Result<TimedSteps, NodeError> {
+/// Builds a track on grains, lets its first train come and times steps under its wheels. Fails where no grains lie under a track with
+/// trains.
+pub fn time_steps(
+    graph: &Graph,
+    beds: &Beds,
+    measured: Measured,
+    tell: &mut Telling<'_>,
+) -> Result<TimedSteps, RunError> {
+    let machine = Machine { graph, builders: &Builders::default(), beds };
+    timed(&machine, measured, tell).map_err(|cause| RunError::node(Clock::Axles(0), cause))
+}
+
+fn timed(machine: &Machine<'_>, measured: Measured, tell: &mut Telling<'_>) -> Result<TimedSteps, NodeError> {
     let no_grains = NodeError::Other { node: "grains".into(), why: "no grains lie under a track".into() };
     let parts = machine.grain_parts().ok_or(no_grains)?;
     let blocks = machine.graph.blocks().ok_or(NodeError::NoTrain)?;
@@ -27,5 +41,8 @@ fn timed(machine: &Machine<'_>, steps: u64, tell: &mut Telling<'_>) -> Result<Ti
     let settlement = ground.settlement();
     let request = Request { axles: 0, settlement: &settlement, runner, kept: Kept::Nothing, forces: Forces::Wheels };
     let (_, passage) = track.passage(request)?;
-    ground.time_steps(&Load { passage: &passage, trains: 1 }, steps)
+    let load = Load { passage: &passage, trains: 1 };
+    let mut timed = ground.time_steps(&load, measured.steps)?;
+    timed.energy = if measured.energy { Some(ground.energy_of(&load, tell)?) } else { None };
+    Ok(timed)
 }

@@ -231,12 +231,26 @@ pub struct SleeperOnGrains {
 pub struct SoilNode {
     /// From the top downwards.
     pub layers: Vec<SoilLayer>,
+    /// Parts along the track where other layers lie, from left to right.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub blocks: Vec<SoilBlock>,
     /// About the size of its elements, m.
     pub element: f64,
     /// Whether waves leave through its base, which does not move otherwise.
     pub quiet_base: bool,
     /// m/s^2.
     pub gravity: f64,
+}
+
+/// Layers over a part of the track: a wedge, an embankment that is made stronger, the slab of an approach. They reach as deep as those beside
+/// them; the lowest goes on where they end before.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SoilBlock {
+    /// Chainage of its ends, m.
+    pub start: f64,
+    pub end: f64,
+    /// From the top downwards.
+    pub layers: Vec<SoilLayer>,
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -251,6 +265,14 @@ pub struct SoilLayer {
     pub density: f64,
     /// `None` does not yield.
     pub strength: Option<Strength>,
+}
+
+impl SoilNode {
+    /// The layers at a chainage, m.
+    pub fn layers_at(&self, x: f64) -> &[SoilLayer] {
+        let block = self.blocks.iter().find(|block| (block.start..block.end).contains(&x));
+        block.map_or(&self.layers, |block| &block.layers)
+    }
 }
 
 impl BedNode {

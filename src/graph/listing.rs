@@ -184,6 +184,17 @@ fn of_soil(soil: &SoilNode) -> Vec<String> {
         format!("{}: {thickness} mm, {modulus} MPa{strength}", layer.name)
     };
     let mut lines: Vec<String> = soil.layers.iter().map(line).collect();
+    if let (Some(first), Some(last)) = (soil.blocks.first(), soil.blocks.last()) {
+        let [start, end] = [first.start, last.end].map(|x| number(rounded_to_mm(x)));
+        let mut names: Vec<&str> = soil.blocks.iter().flat_map(|b| &b.layers).map(|l| l.name.as_str()).collect();
+        names.sort_unstable();
+        names.dedup();
+        lines.push(format!(
+            "other layers between {start} and {end} m, in {} blocks: {}",
+            soil.blocks.len(),
+            names.join(", ")
+        ));
+    }
     let base = if soil.quiet_base { "waves leave through its base" } else { "its base does not move" };
     lines.push(format!("elements of about {} mm; {base}", number(rounded_to_mm(soil.element) * 1e3)));
     lines

@@ -23,7 +23,7 @@ pub use control::Control;
 pub use decision::{Cost, Decision, PassageWork, Rejected, TestWork, Work};
 pub use grains::{
     ActuatorsNode, BedError, BedNode, BedPlan, BedRecipe, GrainStretch, GrainsNode, SensorNode, SensorVolume,
-    SleeperOnGrains, SoilLayer, SoilNode, StandingBody, StiffnessFrom,
+    SleeperOnGrains, SoilBlock, SoilLayer, SoilNode, StandingBody, StiffnessFrom,
 };
 pub use ground::{LawNode, NamedLaw, SpringsNode, SupportNode};
 pub use listing::Listing;

@@ -31,6 +31,7 @@ mod small_volume;
 mod stiffness_jump;
 mod strata;
 mod support_stiffness;
+mod surface_waves;
 mod thin_layer;
 mod track_level;
 mod track_too_short;
@@ -54,7 +55,7 @@ use std::borrow::Cow;
 
 type Rule = fn(&Scenario, &Graph) -> Vec<Diagnostic>;
 
-const RULES: [Rule; 33] = [
+const RULES: [Rule; 34] = [
     transition_sides::check,
     stiffness_jump::check,
     ballast_on_structure::check,
@@ -88,6 +89,7 @@ const RULES: [Rule; 33] = [
     wide_void::check,
     track_level::check,
     reversed_wedge::check,
+    surface_waves::check,
 ];
 
 /// Applies every rule, at the level that the scene gives it. A rule speaks where the plan has what it is about. Rules know one

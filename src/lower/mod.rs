@@ -1,6 +1,7 @@
 //! From the scenario to the solver graph: passes that choose models, places, steps and blocks, and say why.
 
 mod answers;
+mod bays;
 mod bed;
 mod blocks;
 mod clumps;
@@ -106,6 +107,8 @@ impl Planner {
             Box::new(blocks::Cut),
             // every tier stands on the same supports
             Box::new(supports::Supports),
+            // grains go where the track differs
+            Box::new(bays::Bays),
             // a tier makes the nodes and knows what they cost
             Box::new(ChooseTier(&self.tiers)),
             // what follows changes a plan that has a cost
@@ -118,8 +121,13 @@ impl Planner {
 
     /// Lowers a scene.
     pub fn lower(&self, scenario: &Scenario) -> Lowered {
+        self.lower_with(scenario, None)
+    }
+
+    /// Lowers a scene of which the settlement of every seat by its law is known, m: a tier with grains asks it where they are needed.
+    pub fn lower_with(&self, scenario: &Scenario, by_law: Option<&[f64]>) -> Lowered {
         let origins = Origins::new(scenario);
-        let mut draft = Draft::new(scenario, &origins);
+        let mut draft = Draft::new(scenario, &origins, by_law);
         if scenario.loading.is_none() {
             draft.diagnostics.push(nothing_acts(scenario));
         }

@@ -39,6 +39,10 @@ pub struct Draft<'a> {
     pub passages: Vec<PassagePlan>,
     /// The loop over axles, before a tier takes it.
     pub blocks: Option<Blocks>,
+    /// Settlement of every seat after all axles by the law of the scene, m; `None` where no tier asks for it or the law cannot run.
+    pub by_law: Option<&'a [f64]>,
+    /// Chainages between which the tier `zone` has grains, m.
+    pub bays: Vec<[f64; 2]>,
     /// The name of the tier that was taken.
     pub tier: Option<&'static str>,
     /// What carries every seat of a track, as far as the scene or its layers say.
@@ -57,12 +61,14 @@ pub struct Draft<'a> {
 }
 
 impl<'a> Draft<'a> {
-    pub(super) fn new(scenario: &'a Scenario, origins: &'a Origins) -> Draft<'a> {
+    pub(super) fn new(scenario: &'a Scenario, origins: &'a Origins, by_law: Option<&'a [f64]>) -> Draft<'a> {
         Draft {
             scenario,
             origins,
             passages: Vec::new(),
             blocks: None,
+            by_law,
+            bays: Vec::new(),
             tier: None,
             supports: Vec::new(),
             nodes: Vec::new(),

@@ -18,7 +18,7 @@ pub use build::Builders;
 pub use error::NodeError;
 pub use grains::{BedUnderActuators, TestState, Tested};
 pub use law::LawGround;
-pub use on_grains::{GrainGround, Parted, Parts as GrainParts, Riders, Stage, Telling, TimedSteps};
+pub use on_grains::{GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling, TimedSteps};
 pub use outcome::{
     PassageOutcome, RailPlace, RailPoint, Sample, SampledPart, SeatForces, SeatOutcome, Unloaded, UnloadedSeat,
     WheelHistories,

@@ -1,6 +1,6 @@
 //! What several laws make of the same forces: the table `laws.csv`, their scalars and their spread.
 
-use super::summarise::{far_field_of, largest};
+use super::summarise::largest;
 use super::{BlockRow, Row, Scalar};
 use crate::scenario::{Loading, Scenario, Seat, SettlementLaw};
 use crate::units::number;
@@ -62,7 +62,7 @@ pub fn summarise_laws(scenario: &Scenario, rows: &[LawRow]) -> BTreeMap<String, 
     for law in laws(scenario) {
         let of_law: Vec<&LawRow> = rows.iter().filter(|r| Some(r.axles) == last && r.law == law.name).collect();
         let Some(deepest) = largest(of_law.iter().map(|row| row.settlement_m)) else { continue };
-        let far_field = far_field_of(scenario, of_law.iter().map(|row| (row.x_m, row.settlement_m)).collect());
+        let far_field = scenario.track.far_field(of_law.iter().map(|row| (row.x_m, row.settlement_m)).collect());
         most.push(deepest);
         scalars.insert(format!("laws.{}.max_settlement", law.name), Scalar::new(deepest, "m"));
         if let Some(far_field) = far_field {

@@ -10,9 +10,6 @@ use std::collections::{BTreeMap, HashMap};
 /// A gap below this is round-off, not a void, m.
 pub const VOID_THRESHOLD: f64 = 1e-6;
 
-/// Beyond this distance from every transition a seat is in the far field, m.
-const FAR_FIELD_DISTANCE: f64 = 10.0;
-
 /// Largest responses along the rail after the last axle count, which no table holds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RailMaxima {
@@ -200,30 +197,7 @@ fn ballasted<'a>(scenario: &'a Scenario, rows: &[&'a SleeperRow]) -> Vec<(&'a Se
 
 /// Median settlement of the seats far from every transition; of the far half where none is far enough.
 fn far_field(scenario: &Scenario, ballasted: &[(&Seat, &SleeperRow)]) -> Option<f64> {
-    far_field_of(scenario, ballasted.iter().map(|(seat, row)| (seat.x, row.settlement_m)).collect())
-}
-
-/// The same of settlements (m) by chainage (m).
-pub(super) fn far_field_of(scenario: &Scenario, settlements: Vec<(f64, f64)>) -> Option<f64> {
-    let distance = |x: f64| {
-        let distances = scenario.track.transitions.iter().map(|transition| (x - transition.x).abs());
-        distances.fold(f64::INFINITY, f64::min)
-    };
-    let mut by_distance: Vec<(f64, f64)> = settlements.into_iter().map(|(x, s)| (distance(x), s)).collect();
-    by_distance.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let far = by_distance.iter().take_while(|(distance, _)| *distance > FAR_FIELD_DISTANCE).count();
-    let far = if far == 0 { by_distance.len().div_ceil(2) } else { far };
-    median(by_distance[..far].iter().map(|(_, settlement)| *settlement).collect())
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    match values.len() {
-        0 => None,
-        n if n % 2 == 1 => Some(values[middle]),
-        _ => Some((values[middle - 1] + values[middle]) / 2.0),
-    }
+    scenario.track.far_field(ballasted.iter().map(|(seat, row)| (seat.x, row.settlement_m)).collect())
 }
 
 pub(super) fn largest(values: impl Iterator<Item = f64>) -> Option<f64> {
@@ -257,12 +231,5 @@ mod tests {
         // seats at -2.4, -1.8, -1.2 and -0.6: the far half is the first two
         let at = |x: f64| run.sleepers.iter().rfind(|r| (r.x_m - x).abs() < 1e-6).unwrap().settlement_m;
         assert!((scalars["far_field_settlement"].value - (at(-2.4) + at(-1.8)) / 2.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn medians() {
-        assert_eq!(median(vec![]), None);
-        assert_eq!(median(vec![3.0, 1.0, 2.0]), Some(2.0));
-        assert_eq!(median(vec![4.0, 1.0, 2.0, 3.0]), Some(2.5));
     }
 }

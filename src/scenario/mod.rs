@@ -5,6 +5,7 @@
 //! settlement and force are positive; every number a person may have written carries its [`Origin`].
 
 mod bed;
+mod far_field;
 mod given;
 mod grading;
 mod law;

@@ -636,12 +636,12 @@ pub const KINDS: &[Kind] = &[
                 "auto",
                 "of the elements of soil",
             ),
-            unread(default(
+            default(
                 "tolerance",
                 number("%", 0.1, 50.0),
                 "5 %",
-                "of the largest settlement: the error that `auto` plans for",
-            )),
+                "of the largest settlement: the change for which `zone` leaves a bay to springs",
+            ),
             default(
                 "budget",
                 Form::OneOf(&[number("min", 0.01, 1e6), Form::Words(NONE)]),

@@ -8,6 +8,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 /// Values of one kind in a folder, which is made with the first of them.
 #[derive(Debug, Clone)]
@@ -42,6 +43,23 @@ impl Shelf {
         self.make()?;
         let path = self.path(key);
         write_atomically(&path, &self.seal(key).close_json(&path, value)?)
+    }
+
+    /// Removes all but the newest values.
+    pub(super) fn keep_newest(&self, count: usize) -> Result<(), StoreError> {
+        let io = |cause| StoreError::io(&self.folder, "read", cause);
+        let mut found: Vec<(SystemTime, PathBuf)> = Vec::new();
+        for entry in fs::read_dir(&self.folder).map_err(io)? {
+            let path = entry.map_err(io)?.path();
+            if path.extension().is_some_and(|kind| kind == self.kind) {
+                found.push((fs::metadata(&path).and_then(|data| data.modified()).map_err(io)?, path));
+            }
+        }
+        found.sort();
+        let old = found.len().saturating_sub(count);
+        found[..old]
+            .iter()
+            .try_for_each(|(_, path)| fs::remove_file(path).map_err(|cause| StoreError::io(path, "remove", cause)))
     }
 
     /// The file of a key.

@@ -1,18 +1,18 @@
 //! Tiers `cells`, `zone` and `full`: grains under the sleepers of a track, one cell for each distinct sleeper, under the bays that
 //! differ, or under all of the window. `cells` is planned and not run.
 
+use super::soil::{self, soil};
 use super::{ExpectedError, Proposal, Tier, edges, refused, waiting};
 use crate::diag::{Diagnostic, Severity};
 use crate::graph::{
-    BedPlan, Blocks, GrainStretch, GrainsNode, Model, Node, PointLoad, Schedule, SleeperOnGrains, SoilLayer, SoilNode,
-    StiffnessFrom, Update,
+    BedPlan, Blocks, GrainStretch, GrainsNode, Model, Node, PointLoad, Schedule, SleeperOnGrains, StiffnessFrom, Update,
 };
+use crate::lower::bays::wanted;
 use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
 use crate::lower::tier::rig::cost::grains_under_track;
 use crate::lower::{Draft, track};
-use crate::scenario::{self, Base, Foot, Loading, Material, Scenario, Seat, Section, SleeperBody};
+use crate::scenario::{Foot, Loading, Scenario, Seat, SleeperBody};
 use crate::schema::Reads;
-use crate::solvers::continuum::Strength;
 use crate::solvers::track::UnderPad;
 
 pub struct Cells;
@@ -69,9 +69,9 @@ impl Tier for Zone {
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
-        let near = |[left, right]: [f64; 2]| [left.max(-ZONE), right.min(ZONE)];
-        let windows = window(draft.scenario).into_iter().map(near).collect();
-        propose(draft, "grains under the bays next to the transition", windows, true)
+        // a scene that does not ask for this tier has chosen no bays
+        let windows = if draft.bays.is_empty() { wanted(draft.scenario) } else { draft.bays.clone() };
+        propose(draft, "grains under the bays that differ from the far field", windows, true)
     }
 }
 
@@ -85,12 +85,9 @@ impl Tier for Full {
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
-        propose(draft, "grains under all of the window", window(draft.scenario), true)
+        propose(draft, "grains under all of the window", wanted(draft.scenario), true)
     }
 }
-
-/// Length of track beside a transition that differs from the far field, m, until a pass chooses it.
-const ZONE: f64 = 10.0;
 
 fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) -> Result<Proposal, String> {
     let scenario = draft.scenario;
@@ -122,6 +119,7 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
     let stretches = if beds.is_empty() { Vec::new() } else { stretches(scenario, &beds, &windows) };
     if runs {
         refusals.extend(refused::refusals(scenario, &stretches));
+        refusals.extend(soil::refusals(scenario, &windows));
     } else {
         refusals.extend(waiting::refusal(scenario));
     }
@@ -179,8 +177,6 @@ fn train_by_train(blocks: &Blocks) -> Blocks {
 const ADDED: f64 = 0.02;
 /// Damping of a support over its stiffness where grains are the support, s (methods 2; Nielsen 2008).
 const DAMPING_TIME: f64 = 1e-3;
-/// Size of the elements of soil over the width of a sleeper's base, where the scene says none.
-const ELEMENT: f64 = 0.1;
 /// Density of the rubber of an under sleeper pad whose lower half moves with the ballast, kg/m3.
 const PAD_DENSITY: f64 = 1100.0;
 
@@ -244,47 +240,3 @@ fn standing(scenario: &Scenario, number: usize, seat: &Seat, start: f64) -> Opti
 
 /// Thickness of a pad that a scene does not say, m.
 const THIN: f64 = 0.007;
-
-/// Chainages between which grains are modelled: those of the scene, else all of it.
-fn window(scenario: &Scenario) -> Vec<[f64; 2]> {
-    let all = || vec![[scenario.track.start(), scenario.track.end()]];
-    scenario.solve.grains.window.clone().unwrap_or_else(all)
-}
-
-/// The layers of soil below the grains of the first section that has some.
-fn soil(scenario: &Scenario) -> SoilNode {
-    let middle = |section: &Section| 0.5 * (section.start + section.end);
-    let layers = scenario.track.sections.iter().map(|section| {
-        let of_soil = section.layers.iter().filter_map(|layer| match &layer.material {
-            Material::Soil(soil) => Some(SoilLayer {
-                name: layer.name.clone(),
-                thickness: layer.thickness.value_at(middle(section)),
-                youngs_modulus: soil.youngs_modulus.value_at(middle(section)),
-                poisson_ratio: *soil.poisson_ratio,
-                density: *soil.density,
-                strength: strength(&soil.strength),
-            }),
-            Material::Granular(_) => None,
-        });
-        of_soil.collect::<Vec<_>>()
-    });
-    let grains = &scenario.solve.grains;
-    SoilNode {
-        layers: layers.into_iter().find(|layers| !layers.is_empty()).unwrap_or_default(),
-        element: grains.soil_element.map_or(ELEMENT, |size| *size),
-        quiet_base: scenario.track.bed.base == Base::Quiet,
-        gravity: *scenario.solve.gravity,
-    }
-}
-
-fn strength(strength: &scenario::Strength) -> Option<Strength> {
-    match strength {
-        scenario::Strength::Elastic => None,
-        scenario::Strength::MohrCoulomb { cohesion, friction_angle, dilation, tension } => Some(Strength {
-            cohesion: **cohesion,
-            friction_angle: **friction_angle,
-            dilation_angle: **dilation,
-            tension: **tension,
-        }),
-    }
-}

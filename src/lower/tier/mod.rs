@@ -9,6 +9,7 @@ mod law;
 mod loads;
 mod refused;
 mod rig;
+mod soil;
 mod waiting;
 
 pub use equilibrium::Equilibrium;

@@ -1,7 +1,7 @@
 //! How a track comes to stand on grains, as in the paper (sections 2.1.3, 2.3 and 2.4): cells are packed, laid side by side, sleepers set
 //! down, the soil put below, the rail laid on. Each stage is at rest before the next one begins.
 
-use super::soil::SoilBelow;
+use super::soil::{Plan, SoilBelow};
 use super::step::{Coupled, Spent, StandingBed};
 use super::{Stage, Telling};
 use crate::graph::{GrainStretch, GrainsNode, Responses, SleeperOnGrains, SoilNode, TrackNode};
@@ -10,12 +10,15 @@ use crate::solvers::granular::packing::{Order, lay};
 use crate::solvers::granular::rig::{Load, Sleeper, stand};
 use crate::solvers::granular::{Bed, Stride, WallId, WallMotion};
 use crate::solvers::track::{Foot, Leapfrog, Spring, Track, TrackLevel};
-use crate::store::Beds;
+use crate::store::{Beds, recipe_hash};
 use std::sync::Arc;
 
 /// Share that is taken of the step that each grain bears by itself, for contacts that come between two looks at inertia. Without such looks
 /// 0.95 of it was above what the network bears once sleepers are loaded, and the run stopped there.
 pub const OF_STRIDE: f64 = 0.9;
+
+/// Grows whenever the same parts are built otherwise than before, or kept in another form.
+const METHOD: &str = "track on grains 2";
 
 /// What a track on grains is made of.
 #[derive(Clone, Copy)]
@@ -27,6 +30,14 @@ pub struct Parts<'a> {
 }
 
 impl Parts<'_> {
+    /// Names what is built of these parts, whatever runs over it later.
+    pub fn hash(&self) -> String {
+        let GrainsNode { beds, stretches, settlement, damping_time, gravity, time_step, added_inertia, .. } =
+            self.grains;
+        let grains = (beds, stretches, settlement, damping_time, gravity, time_step, added_inertia);
+        recipe_hash(&(METHOD, grains, self.soil, self.track))
+    }
+
     /// Builds all of it; `beyond` says what lies under the seats that do not stand on grains.
     pub fn build(&self, beyond: &[Option<Spring>], tell: &mut Telling<'_>) -> Result<Coupled, NodeError> {
         let mut beds = Vec::with_capacity(self.grains.stretches.len());
@@ -39,9 +50,6 @@ impl Parts<'_> {
         }
         for standing in &mut beds {
             standing.bed.set_time_step(time_step);
-            if let Some(soil) = &mut standing.soil {
-                soil.adapt(&standing.bed, time_step);
-            }
         }
         let rail = self.rail(beyond, time_step)?;
         Ok(Coupled { pushes: vec![0.0; rail.carried().len()], rail, beds, added: 0.0, spent: Spent::default() })
@@ -63,8 +71,10 @@ impl Parts<'_> {
         let time_step = self.time_step(&mut bed)?;
         bed.set_time_step(time_step);
         tell(Stage::Soil, 0.0);
-        let below = |soil| SoilBelow::new(&mut bed, recipe.floor(), self.plan(number), soil);
+        let below = |soil| SoilBelow::new(&mut bed, recipe.floor(), self.lies(number), soil);
         let soil = self.soil.map(below).transpose()?;
+        // stiff soil in small elements may need shorter steps than the grains
+        let time_step = soil.iter().map(|soil| soil.longest_step(&bed)).fold(time_step, f64::min);
         let sleepers = walls.into_iter().zip(feet..).collect();
         Ok((StandingBed { bed, sleepers, soil }, time_step))
     }
@@ -121,6 +131,11 @@ impl Parts<'_> {
         let GrainStretch { bed, copies, .. } = &self.grains.stretches[stretch];
         let [length, width] = self.grains.beds[*bed].numbers().plan;
         [length * f64::from(*copies), width]
+    }
+
+    /// Where a bed lies.
+    pub fn lies(&self, stretch: usize) -> Plan {
+        Plan { start: self.grains.stretches[stretch].start, sides: self.plan(stretch) }
     }
 
     /// Chainages between which grains lie, m.

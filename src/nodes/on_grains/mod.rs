@@ -5,6 +5,7 @@
 //! median of the outer third of the sleepers on grains.
 
 mod build;
+mod energy;
 mod extremes;
 mod passage;
 mod reading;
@@ -12,10 +13,13 @@ mod ride;
 mod soil;
 mod step;
 mod stored;
+#[cfg(test)]
+mod tests;
 mod timed;
 mod wheels;
 
 pub use build::Parts;
+pub use energy::PassageEnergy;
 pub use ride::Riders;
 pub use timed::{Parted, TimedSteps};
 
@@ -138,9 +142,10 @@ impl<'a> GrainGround<'a> {
 
 impl Substructure for GrainGround<'_> {
     fn prepare(&mut self, tell: &mut Telling<'_>) -> Result<(), NodeError> {
-        self.live = Some(Live::build(self.parts, tell)?);
-        self.answer();
-        Ok(())
+        let parts = self.parts;
+        // what comes later must not know whether it was built before: it goes on from what is stored in both cases
+        let state = parts.beds.built(&parts.hash(), || Live::build(parts, tell)?.save())?;
+        self.restore(&state)
     }
 
     fn responses(&self) -> &Responses {

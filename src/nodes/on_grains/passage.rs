@@ -7,8 +7,8 @@ use super::wheels::WheelRun;
 use super::{Books, Live, Stage, Telling};
 use crate::graph::StiffnessFrom;
 use crate::nodes::{Load, NodeError};
-use crate::solvers::granular::Stride;
 use crate::solvers::granular::measure::unbalance;
+use crate::solvers::granular::{Fading, Stride};
 use crate::solvers::track::WheelLoads;
 
 /// Local damping of grains (Cundall), and drag of the rail (1/s), on the way to rest.
@@ -25,8 +25,9 @@ const CALM: u32 = 2;
 /// Time after which a track that is built counts as restless, and time that it has to rest after a passage, s.
 const LONGEST: f64 = 2.0;
 pub(super) const AFTER: f64 = 0.25;
-/// Wheels act on the rail from so far before the grains on to so far behind them, m: wheels beyond do not reach them.
-pub(super) const REACH: f64 = 10.0;
+/// Wheels act on the rail from so far before the grains on to so far behind them, m: three times the length in which a rail's deflection
+/// fades.
+pub(super) const REACH: f64 = 6.0;
 /// Stiffness of supports before the grains are asked, N/m.
 const GUESS: f64 = 80e6;
 /// Static load on every sleeper, N, about what bears on one under a wheel of 20 t an axle; time in which it grows and stands, s.
@@ -86,14 +87,14 @@ impl Coupled {
     /// Runs until all is at rest, or the time is over (s); gives how far from rest it is, over what counts as rest.
     pub fn come_to_rest(&mut self, longest: f64, tell: &mut dyn FnMut(f64)) -> Result<f64, NodeError> {
         self.damped(|coupled| {
-            let (mut calm, mut passed) = (0, 0.0);
+            let (mut calm, mut passed, mut fading) = (0, 0.0, Fading::default());
             loop {
                 let part = LOOK as f64 * coupled.time_step();
                 coupled.run(part, |_, loads| loads.clear(), |_, _| {})?;
                 passed += part;
                 let away = coupled.restlessness()?;
                 calm = if away <= 1.0 { calm + 1 } else { 0 };
-                tell((passed / longest).min(1.0));
+                tell(fading.share(away));
                 if calm >= CALM || passed >= longest {
                     return Ok(away);
                 }

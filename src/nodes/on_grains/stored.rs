@@ -3,7 +3,7 @@
 //! Beds are large: what is kept are bytes, which stand in the checkpoint as text.
 
 use super::build::Parts;
-use super::soil::{SinceStep, SoilBelow};
+use super::soil::SoilBelow;
 use super::step::{Coupled, Spent, StandingBed};
 use super::{Books, Live};
 use crate::nodes::NodeError;
@@ -30,7 +30,7 @@ struct Stored {
 struct StoredBed {
     bed: Checkpoint<f32>,
     sleepers: Vec<(WallId, usize)>,
-    soil: Option<(State, SinceStep)>,
+    soil: Option<State>,
 }
 
 impl Live {
@@ -75,8 +75,8 @@ impl Live {
         let standing = |(number, stored): (usize, StoredBed)| -> Result<StandingBed, NodeError> {
             let bed = Bed::restore(stored.bed).map_err(foreign)?;
             let soil = match (stored.soil, parts.soil) {
-                (Some((state, since)), Some(node)) => {
-                    Some(SoilBelow::restore(&bed, parts.floor(number), parts.plan(number), node, (state, since))?)
+                (Some(state), Some(node)) => {
+                    Some(SoilBelow::restore(&bed, parts.floor(number), parts.lies(number), node, state)?)
                 }
                 (None, None) => None,
                 _ => return Err(foreign("it holds soil that is not there, or none")),

@@ -2,7 +2,8 @@
 
 use super::Live;
 use super::build::Parts;
-use super::passage::{AFTER, REACH, median};
+use super::energy::PassageEnergy;
+use super::passage::{AFTER, HOLD, REACH, median};
 use super::step::{Coupled, StandingBed};
 use super::wheels::WheelRun;
 use crate::nodes::{Load, NodeError};
@@ -18,16 +19,17 @@ pub struct TimedSteps {
     pub time_step_us: f64,
     /// Share of the mass of the beds that is added as inertia.
     pub added_inertia: f64,
-    /// Steps of the grains in one of the soil.
-    pub soil_ratio: u32,
     pub steps: u64,
-    /// Median of parts of the steps.
+    /// Median of parts of the steps, each as long as from one look at inertia to the next.
     pub milliseconds_per_step: f64,
     /// Mean over all steps, by part.
     pub parts_ms: Parted,
     /// Computing a simulated second, s, and an axle of the traffic of the scene.
     pub seconds_a_simulated_second: f64,
     pub seconds_an_axle: f64,
+    /// The account of a whole passage, where it is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy: Option<PassageEnergy>,
 }
 
 /// Milliseconds of a step by part.
@@ -42,9 +44,6 @@ pub struct Parted {
     pub inertia: f64,
 }
 
-/// Parts of the steps that are timed.
-const TIMED: u64 = 20;
-
 impl Live {
     /// Times steps on a copy, from where the first wheel of a passage reaches the grains.
     pub fn time_steps(&self, parts: Parts<'_>, load: &Load<'_>, steps: u64) -> Result<TimedSteps, NodeError> {
@@ -58,8 +57,8 @@ impl Live {
         let Some([first, last]) = run.within([left - REACH, right + REACH]) else { return Err(none()) };
         let before = coupled.parted();
         let (mut times, mut all) = (Vec::new(), 0);
-        for part in 0..TIMED.min(steps) {
-            let count = (steps * (part + 1) / TIMED.min(steps)) - all;
+        for _ in 0..steps.div_ceil(HOLD) {
+            let count = HOLD.min(steps - all);
             let start = Instant::now();
             let shift = begin + all as f64 * coupled.time_step();
             let time = (count as f64 - 0.5) * coupled.time_step();
@@ -86,17 +85,12 @@ impl Live {
             sleepers: coupled.pushes.len(),
             time_step_us: 1e6 * coupled.time_step(),
             added_inertia: coupled.added,
-            soil_ratio: coupled
-                .beds
-                .iter()
-                .filter_map(|standing| Some(standing.soil.as_ref()?.ratio()))
-                .min()
-                .unwrap_or(1),
             steps: all,
             milliseconds_per_step,
             parts_ms: Parted { lists, forces, walls, motion, rail, soil, inertia },
             seconds_a_simulated_second,
             seconds_an_axle: seconds_a_simulated_second * time_an_axle,
+            energy: None,
         })
     }
 }

@@ -88,6 +88,7 @@ pub use law::{
     ContactLaw, ContactLaws, Dashpot, DashpotMode, FrictionLimit, HertzMindlin, LawError, Linear, Surface, in_series,
 };
 pub use motion::{Felt, Pose, WallMotion};
+pub use rest::Fading;
 pub use scaling::Scaling;
 pub use shape::Shape;
 pub use sheet::{Corner, Sheet};

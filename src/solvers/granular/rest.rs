@@ -39,6 +39,21 @@ pub(super) struct Look {
     pub time: f64,
 }
 
+/// How far on its way to rest something is: what is out of balance fades about as exp(-t).
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Fading {
+    /// Logarithm of how far from rest the first look found it.
+    first: Option<f64>,
+}
+
+impl Fading {
+    /// The share of the way that is done where it is so many times as restless as what counts as rest.
+    pub fn share(&mut self, times: f64) -> f64 {
+        let far = times.ln().max(0.0);
+        1.0 - (far / *self.first.get_or_insert(far.max(1.0))).min(1.0)
+    }
+}
+
 /// A bed that somebody waits for, with what presses on it.
 pub(super) trait Waiting<R: Real> {
     type Error;

@@ -10,6 +10,10 @@ use super::super::record::Record;
 use super::super::rotation;
 use super::super::vector::{Vec3, add, cross, dot, norm, scale, sub};
 use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
+
+/// Pairs that one task works on, at least.
+const CHUNK: usize = 4096;
 
 /// Instead of a second body: a wall.
 pub const GROUND: u32 = u32::MAX;
@@ -101,14 +105,17 @@ impl<R: Real> Bed<R> {
     /// them are the same, bit by bit, however the bodies lie in memory.
     pub(in super::super) fn links(&mut self, gap: f64) -> Result<Vec<Link>, Failure> {
         self.reach(gap)?;
-        let pairs = (0..self.contacts.len()).filter(|&place| (self.contacts.first[place] as usize) < self.owner.len());
-        let mut pairs: Vec<usize> = pairs.collect();
-        pairs.sort_by_cached_key(|&place| {
+        let named = |place: usize| {
             let [a, b] = [self.contacts.first[place], self.contacts.second[place]].map(|pebble| self.name(pebble));
             let image = self.contacts.image[place];
-            (a.min(b), a.max(b), if a < b { image } else { mirrored(image) })
-        });
-        let mut links: Vec<Link> = pairs.into_iter().filter_map(|place| self.pair(place, gap)).collect();
+            ((a.min(b), a.max(b), if a < b { image } else { mirrored(image) }), place)
+        };
+        // one in four of the listed pairs touches: those alone are sorted, and computed twice rather than moved
+        let all = || (0..self.contacts.len()).into_par_iter().with_min_len(CHUNK);
+        let mut pairs: Vec<_> = all().filter(|place| self.pair(*place, gap).is_some()).map(named).collect();
+        pairs.par_sort_unstable();
+        let of_pairs = pairs.into_par_iter().with_min_len(CHUNK).filter_map(|(_, place)| self.pair(place, gap));
+        let mut links: Vec<Link> = of_pairs.collect();
         let mut entries: Vec<usize> = (0..self.wall_contacts.entries.len()).collect();
         entries.sort_by_cached_key(|&entry| {
             let entry = &self.wall_contacts.entries[entry];

@@ -12,7 +12,7 @@ use super::super::body::BodyId;
 use super::super::failure::Failure;
 use super::super::grains::Random;
 use super::super::lanes::Real;
-use super::super::rest::{Criterion, Look, Waiting, until_rest};
+use super::super::rest::{Criterion, Fading, Look, Waiting, until_rest};
 use super::describe::StageKind;
 use super::error::PackingError;
 use super::pace::Pace;
@@ -245,7 +245,8 @@ fn settle<R: Real>(
     if unlike {
         push_apart(bed, &pace).map_err(failed)?;
     }
-    let look = until_rest(&mut Settling { bed, pace, limit: unbalance, first: None, tell }, &criterion, start)?;
+    let look =
+        until_rest(&mut Settling { bed, pace, limit: unbalance, fading: Fading::default(), tell }, &criterion, start)?;
     bed.unscale_masses();
     bed.set_laws(recipe.laws());
     bed.set_damping(recipe.local_damping);
@@ -257,8 +258,7 @@ struct Settling<'s, R: Real, T> {
     bed: &'s mut Bed<R>,
     pace: Pace,
     limit: f64,
-    /// How far from rest the first look found the bed.
-    first: Option<f64>,
+    fading: Fading,
     tell: &'s mut T,
 }
 
@@ -274,9 +274,7 @@ impl<R: Real, T: FnMut(&Progress)> Waiting<R> for Settling<'_, R, T> {
     }
 
     fn hear(&mut self, look: &Look) {
-        // forces out of balance fade about as exp(-t)
-        let far = (look.unbalance / self.limit).ln().max(0.0);
-        let share = 1.0 - (far / *self.first.get_or_insert(far.max(1.0))).min(1.0);
+        let share = self.fading.share(look.unbalance / self.limit);
         let (bodies, steps) = (self.bed.len(), self.bed.steps());
         (self.tell)(&Progress { stage: StageKind::SideBySide.to_string(), share, bodies, steps });
     }

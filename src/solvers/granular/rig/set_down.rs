@@ -4,7 +4,7 @@ use super::super::bed::Bed;
 use super::super::failure::Failure;
 use super::super::lanes::Real;
 use super::super::motion::{Pose, Push, WallMotion};
-use super::super::rest::{self, Look, Waiting};
+use super::super::rest::{self, Fading, Look, Waiting};
 use super::super::shape::Shape;
 use super::super::stride::Stride;
 use super::super::walls::WallId;
@@ -61,11 +61,12 @@ fn highest<R: Real>(bed: &Bed<R>, sleeper: &Sleeper) -> f64 {
     bed.pebbles().filter(|p| under(p.place, p.radius)).map(|p| p.place[2] + p.radius).fold(0.0, f64::max)
 }
 
-/// Runs until forces are in balance and the bed carries the sleepers. `tell` hears the share of the longest time.
+/// Runs until forces are in balance and the bed carries the sleepers. `tell` hears how far it is.
 pub(super) fn until_rest<R: Real>(bed: &mut Bed<R>, walls: &[WallId], tell: impl FnMut(f64)) -> Result<(), RigError> {
     calmed(bed, |bed, stride| {
         let start = bed.time();
-        rest::until_rest(&mut Standing { bed, walls, stride, tell }, &AT_REST, start).map(|_| ())
+        rest::until_rest(&mut Standing { bed, walls, stride, fading: Fading::default(), tell }, &AT_REST, start)
+            .map(|_| ())
     })
 }
 
@@ -74,6 +75,7 @@ struct Standing<'s, R: Real, T> {
     bed: &'s mut Bed<R>,
     walls: &'s [WallId],
     stride: Stride,
+    fading: Fading,
     tell: T,
 }
 
@@ -93,7 +95,8 @@ impl<R: Real, T: FnMut(f64)> Waiting<R> for Standing<'_, R, T> {
     }
 
     fn hear(&mut self, look: &Look) {
-        (self.tell)((look.time / AT_REST.longest).min(1.0));
+        let times = (look.unbalance / AT_REST.unbalance).max(look.missed / AT_REST.missed);
+        (self.tell)(self.fading.share(times));
     }
 
     fn restless(&self, look: &Look) -> RigError {

@@ -1,0 +1,41 @@
+//! What the law tier says of a scene before its grains are placed.
+
+use crate::diag::has_errors;
+use crate::execute::{Event, Executor, Listener};
+use crate::lower::Planner;
+use crate::scenario::{Given, Scenario, Tier, Update};
+use std::ops::ControlFlow;
+
+/// Blocks by which the law runs: six passages for five hundred axles, as long as only the shape of the answer counts.
+const FIRST: u64 = 4;
+const RATIO: f64 = 3.0;
+
+/// Settlement of every seat after all axles by the law of a scene that asks for `zone`, m; `None` of any other scene, and where the law
+/// cannot run.
+pub fn settlement(planner: &Planner, scenario: &Scenario) -> Option<Vec<f64>> {
+    let grains = &scenario.solve.grains;
+    if *grains.tier != Tier::Zone {
+        return None;
+    }
+    let mut by_law = scenario.clone();
+    by_law.solve.grains.tier = Given { value: Tier::Law, origin: grains.tier.origin };
+    by_law.solve.update = Update::Geometric { first: FIRST, ratio: RATIO };
+    by_law.records.clear();
+    let lowered = planner.lower(&by_law);
+    let graph = lowered.graph.filter(|graph| graph.runs && !has_errors(&lowered.diagnostics))?;
+    let mut last = Last(None);
+    Executor::default().run(&graph, &mut last, None).ok()?;
+    last.0
+}
+
+/// The settlement after the last block.
+struct Last(Option<Vec<f64>>);
+
+impl Listener for Last {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        if let Event::Block { after, .. } = event {
+            self.0 = Some(after.to_vec());
+        }
+        ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,126 @@
+//! Which bays of a window get grains in the tier `zone`: those in which the track differs from the far field, and an edge beside them that
+//! tells springs beyond how to settle.
+
+use super::{Draft, Pass};
+use crate::scenario::{Scenario, Tier};
+use crate::schema::Reads;
+use crate::units::number;
+
+/// Sleepers on grains beyond the last that differs: those beyond the grains settle as these do.
+const EDGE: usize = 3;
+/// Length of track beside a transition that gets grains where no law can tell, m.
+const NEAR: f64 = 10.0;
+
+const READS: Reads = Reads { fields: &["solve.tolerance"], acts_where: "with `substructure = zone`" };
+
+/// Chooses the bays.
+pub(super) struct Bays;
+
+impl Pass for Bays {
+    fn name(&self) -> &'static str {
+        "bays"
+    }
+
+    fn reads(&self) -> &'static [&'static Reads] {
+        &[&READS]
+    }
+
+    fn acts(&self, scenario: &Scenario) -> bool {
+        *scenario.solve.grains.tier == Tier::Zone
+    }
+
+    fn run(&self, draft: &mut Draft<'_>) {
+        let scenario = draft.scenario;
+        if !self.acts(scenario) {
+            return;
+        }
+        let windows = wanted(scenario);
+        let Some(settlement) = draft.by_law.filter(|settlement| settlement.len() == scenario.track.seats.len()) else {
+            draft.bays = windows.iter().map(|window| near(scenario, *window)).collect();
+            let what = format!("grains within {NEAR} m of a transition");
+            draft.decide(self.name(), what, "no settlement law runs this scene, so nothing tells where it differs");
+            return;
+        };
+        let tolerance = scenario.solve.grains.tolerance;
+        let changes = changes(scenario, settlement);
+        draft.bays = windows.iter().map(|window| chosen(scenario, &changes, tolerance, *window)).collect();
+        let count = |windows: &[[f64; 2]]| (0..changes.len()).filter(|seat| on_any(scenario, windows, *seat)).count();
+        let beyond = |seat: &usize| on_any(scenario, &windows, *seat) && !on_any(scenario, &draft.bays, *seat);
+        let most = (0..changes.len()).filter(beyond).map(|seat| changes[seat]).fold(0.0, f64::max);
+        let what = format!("grains under {} of the {} sleepers of the window", count(&draft.bays), count(&windows));
+        let why = format!(
+            "by law `{}` no sleeper beyond settles otherwise than the far field by more than {} % of the largest settlement (`tolerance`), \
+             {} % at most; the outermost {EDGE} on grains tell how springs beyond settle",
+            scenario.solve.law.name,
+            number(100.0 * tolerance),
+            number(100.0 * most),
+        );
+        draft.decide(self.name(), what, why);
+    }
+
+    /// Leaves grains in all of the window.
+    fn without(&self) -> Option<fn(&mut Draft<'_>)> {
+        Some(|draft| draft.bays = wanted(draft.scenario))
+    }
+}
+
+/// Chainages between which the scene wants grains, m: all of the track where it says none.
+pub(super) fn wanted(scenario: &Scenario) -> Vec<[f64; 2]> {
+    let all = || vec![[scenario.track.start(), scenario.track.end()]];
+    scenario.solve.grains.window.clone().unwrap_or_else(all)
+}
+
+/// By how much each seat settles otherwise than the far field of its section, over the largest settlement of all.
+fn changes(scenario: &Scenario, settlement: &[f64]) -> Vec<f64> {
+    let track = &scenario.track;
+    let largest = settlement.iter().fold(0.0, |most: f64, settlement| most.max(settlement.abs()));
+    let mut changes = vec![0.0; settlement.len()];
+    for section in 0..track.sections.len() {
+        let seats = || track.seats_of(section).filter(|seat| track.seats[*seat].is_ballasted());
+        let far = track.far_field(seats().map(|seat| (track.seats[seat].x, settlement[seat])).collect());
+        for seat in seats() {
+            let change = far.map_or(0.0, |far| (settlement[seat] - far).abs());
+            changes[seat] = if largest > 0.0 { change / largest } else { 0.0 };
+        }
+    }
+    changes
+}
+
+fn is_inside([left, right]: [f64; 2], x: f64) -> bool {
+    (left..=right).contains(&x)
+}
+
+/// Whether a sleeper stands in one of these windows.
+fn on_any(scenario: &Scenario, windows: &[[f64; 2]], seat: usize) -> bool {
+    let seat = &scenario.track.seats[seat];
+    seat.is_ballasted() && windows.iter().any(|window| is_inside(*window, seat.x))
+}
+
+/// The part of a window around its transitions beyond which no sleeper changes by more than the tolerance, with an edge of a few bays.
+fn chosen(scenario: &Scenario, changes: &[f64], tolerance: f64, [left, right]: [f64; 2]) -> [f64; 2] {
+    let track = &scenario.track;
+    let inside: Vec<usize> = (0..changes.len()).filter(|seat| on_any(scenario, &[[left, right]], *seat)).collect();
+    let transitions = || track.transitions.iter().map(|t| t.x).filter(|x| is_inside([left, right], *x));
+    let differs = || inside.iter().copied().filter(|seat| changes[*seat] > tolerance);
+    let places = || transitions().chain(differs().map(|seat| track.seats[seat].x));
+    let (Some(first), Some(last)) = (places().reduce(f64::min), places().reduce(f64::max)) else {
+        return [left, right];
+    };
+    // half a bay beyond the outermost sleeper
+    let reach = |beside: Vec<usize>| beside.last().map(|seat| (track.seats[*seat].x, 0.5 * track.bay(*seat)));
+    let before: Vec<usize> =
+        inside.iter().rev().copied().filter(|seat| track.seats[*seat].x < first).take(EDGE).collect();
+    let behind: Vec<usize> = inside.iter().copied().filter(|seat| track.seats[*seat].x > last).take(EDGE).collect();
+    [
+        reach(before).map_or(left, |(x, half)| left.max(x - half)),
+        reach(behind).map_or(right, |(x, half)| right.min(x + half)),
+    ]
+}
+
+fn near(scenario: &Scenario, [left, right]: [f64; 2]) -> [f64; 2] {
+    let mut inside = scenario.track.transitions.iter().map(|t| t.x).filter(|x| is_inside([left, right], *x));
+    match (inside.next(), inside.last()) {
+        (Some(first), last) => [left.max(first - NEAR), right.min(last.unwrap_or(first) + NEAR)],
+        (None, _) => [left, right],
+    }
+}

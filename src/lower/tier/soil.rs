@@ -1,0 +1,169 @@
+//! The soil below the grains of a track: the layers of its section, and along it what stretches and approach slabs put in their place.
+
+use crate::diag::{Code, Diagnostic};
+use crate::graph::{SoilBlock, SoilLayer, SoilNode};
+use crate::scenario::{self, ApproachSlab, Base, Groundwork, Layer, Material, Scenario};
+use crate::solvers::continuum::Strength;
+use crate::units::number;
+
+/// Size of the elements where the scene says none, m: the width of a sleeper's base has two or three of them.
+const ELEMENT: f64 = 0.1;
+/// Poisson's ratio of the concrete of an approach slab.
+const CONCRETE: f64 = 0.2;
+/// Lengths closer than this are one, m.
+const TINY: f64 = 1e-6;
+
+/// The soil of a scene. Of a layer that varies along the track each element has the value at its middle.
+pub(super) fn soil(scenario: &Scenario) -> SoilNode {
+    let grains = &scenario.solve.grains;
+    let element = grains.soil_element.map_or(ELEMENT, |size| *size);
+    let parts: Vec<Groundwork> = parts(scenario);
+    let all: Vec<SoilBlock> = parts.iter().flat_map(|part| blocks(part, element)).collect();
+    let layers = all.first().map(|block| block.layers.clone()).unwrap_or_default();
+    let mut blocks: Vec<SoilBlock> = Vec::new();
+    for block in all.into_iter().filter(|block| block.layers != layers) {
+        match blocks.last_mut() {
+            Some(last) if last.layers == block.layers && (last.end - block.start).abs() < TINY => last.end = block.end,
+            _ => blocks.push(block),
+        }
+    }
+    SoilNode {
+        layers,
+        blocks,
+        element,
+        quiet_base: scenario.track.bed.base == Base::Quiet,
+        gravity: *scenario.solve.gravity,
+    }
+}
+
+/// Why the layers along a track cannot lie under its grains: the bed is one all along a window, and a slab needs soil around it.
+pub(super) fn refusals(scenario: &Scenario, windows: &[[f64; 2]]) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for (number_of, section) in scenario.track.sections.iter().enumerate() {
+        let grains = granular(&section.layers, 0.5 * (section.start + section.end));
+        for part in scenario.track.ground(number_of) {
+            let inside = windows.iter().any(|[left, right]| part.start < *right && part.end > *left);
+            if !inside || grains.is_empty() {
+                continue;
+            }
+            let over = format!("from {} to {} m", number(part.start), number(part.end));
+            let changed = [part.start + TINY, part.end - TINY].iter().any(|x| granular(&part.layers, *x) != grains);
+            if changed {
+                let message =
+                    format!("{over} other layers of grains lie than in the rest of section `{}`", section.name);
+                let help =
+                    "let the grains be the same there, and change the soil below them; or run `substructure = law`";
+                found.push(Diagnostic::new(Code::E0604, message).help(help));
+            }
+            let thickness: f64 = grains.iter().map(|(_, thickness)| thickness).sum();
+            if let Some(slab) = part.approach_slab.filter(|slab| *slab.depth < thickness - TINY) {
+                let message = format!(
+                    "{over} an approach slab lies {} m below the sleepers, among grains that are {} m thick",
+                    number(*slab.depth),
+                    number(thickness)
+                );
+                let help = format!("give the slab a `depth` of {} m at least", number(thickness));
+                found.push(Diagnostic::new(Code::E0604, message).help(help));
+            }
+        }
+    }
+    found
+}
+
+/// Names and thicknesses (m) of the layers of grains at a chainage, m.
+fn granular(layers: &[Layer], x: f64) -> Vec<(&str, f64)> {
+    let of_grains = layers.iter().filter(|layer| layer.granular().is_some());
+    of_grains.map(|layer| (layer.name.as_str(), (layer.thickness.value_at(x) / TINY).round() * TINY)).collect()
+}
+
+/// What lies along the track, from left to right; the ground of sections with grains on soil alone.
+fn parts(scenario: &Scenario) -> Vec<Groundwork> {
+    let track = &scenario.track;
+    let on_soil = |section: &usize| {
+        let layers = &track.sections[*section].layers;
+        layers.iter().any(|layer| layer.soil().is_some()) && layers.iter().any(|layer| layer.granular().is_some())
+    };
+    let mut sections: Vec<usize> = (0..track.sections.len()).filter(on_soil).collect();
+    // without grains anywhere the plan still says what the soil is
+    if sections.is_empty() {
+        sections = (0..track.sections.len()).collect();
+    }
+    let mut parts: Vec<Groundwork> = sections.into_iter().flat_map(|section| track.ground(section)).collect();
+    parts.retain(|part| part.layers.iter().any(|layer| layer.soil().is_some()));
+    parts
+}
+
+/// A part as blocks of even layers: one, or one an element where a layer varies.
+fn blocks(part: &Groundwork, element: f64) -> Vec<SoilBlock> {
+    let [start, end] = [part.start, part.end];
+    let count = ((end - start) / element).ceil().max(1.0) as usize;
+    let line = |i: usize| start + (end - start) * i as f64 / count as f64;
+    let pieces = (0..count).map(|i| [line(i), line(i + 1)]);
+    let pieces = pieces.map(|[a, b]| SoilBlock { start: a, end: b, layers: layers(part, 0.5 * (a + b)) });
+    let mut found: Vec<SoilBlock> = Vec::new();
+    for piece in pieces {
+        match found.last_mut() {
+            Some(last) if last.layers == piece.layers => last.end = piece.end,
+            _ => found.push(piece),
+        }
+    }
+    found
+}
+
+/// The layers of soil at a chainage (m), downwards from the grains.
+fn layers(part: &Groundwork, x: f64) -> Vec<SoilLayer> {
+    let of_soil = part.layers.iter().filter_map(|layer| match &layer.material {
+        Material::Soil(soil) => Some(SoilLayer {
+            name: layer.name.clone(),
+            thickness: layer.thickness.value_at(x),
+            youngs_modulus: soil.youngs_modulus.value_at(x),
+            poisson_ratio: *soil.poisson_ratio,
+            density: *soil.density,
+            strength: strength(&soil.strength),
+        }),
+        Material::Granular(_) => None,
+    });
+    let soil: Vec<SoilLayer> = of_soil.filter(|layer| layer.thickness > TINY).collect();
+    let grains: f64 = granular(&part.layers, x).iter().map(|(_, thickness)| thickness).sum();
+    match part
+        .approach_slab
+        .filter(|slab| (slab.ends[0].min(slab.ends[1])..slab.ends[0].max(slab.ends[1])).contains(&x))
+    {
+        Some(slab) => with_slab(&soil, &slab, *slab.depth - grains),
+        None => soil,
+    }
+}
+
+/// Layers with a slab in them whose top is at a depth below the grains, m: it displaces what is there.
+fn with_slab(soil: &[SoilLayer], slab: &ApproachSlab, top: f64) -> Vec<SoilLayer> {
+    let plate = SoilLayer {
+        name: "approach slab".into(),
+        thickness: *slab.thickness,
+        youngs_modulus: *slab.youngs_modulus,
+        poisson_ratio: CONCRETE,
+        density: *slab.density,
+        strength: None,
+    };
+    let [top, base] = [top.max(0.0), top.max(0.0) + *slab.thickness];
+    let (mut above, mut below, mut level) = (Vec::new(), Vec::new(), 0.0);
+    for layer in soil {
+        let (from, to) = (level, level + layer.thickness);
+        let part = |thickness: f64| SoilLayer { thickness, ..layer.clone() };
+        above.extend((to.min(top) - from > TINY).then(|| part(to.min(top) - from)));
+        below.extend((to - from.max(base) > TINY).then(|| part(to - from.max(base))));
+        level = to;
+    }
+    [above, vec![plate], below].concat()
+}
+
+fn strength(strength: &scenario::Strength) -> Option<Strength> {
+    match strength {
+        scenario::Strength::Elastic => None,
+        scenario::Strength::MohrCoulomb { cohesion, friction_angle, dilation, tension } => Some(Strength {
+            cohesion: **cohesion,
+            friction_angle: **friction_angle,
+            dilation_angle: **dilation,
+            tension: **tension,
+        }),
+    }
+}

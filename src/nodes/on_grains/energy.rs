@@ -1,0 +1,85 @@
+//! Where the work of wheels goes in a passage: an account of rail, grains and soil, and of what is lost between them.
+
+use super::passage::REACH;
+use super::step::Coupled;
+use super::wheels::WheelRun;
+use super::{GrainGround, Stage, Telling};
+use crate::nodes::{Load, NodeError};
+use serde::Serialize;
+
+/// Energies of one passage, J.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct PassageEnergy {
+    /// Work of the wheels on the rail, as far as the rail moved under them.
+    pub wheels: f64,
+    /// Lost in rail, pads and springs beyond the grains.
+    pub lost_in_track: f64,
+    /// Lost by slip, by dashpots and by local damping of grains.
+    pub slip: f64,
+    pub dashpots: f64,
+    pub local_damping: f64,
+    /// Lost in the soil: by plastic flow, damping and through quiet faces.
+    pub lost_in_soil: f64,
+    /// What one part gave to another and the other did not take.
+    pub interfaces: f64,
+    /// What the accounts of the parts do not explain, interfaces not counted.
+    pub unaccounted: f64,
+}
+
+impl Coupled {
+    /// Begins an account.
+    pub fn watch_energy(&mut self) {
+        self.rail.watch();
+        for standing in &mut self.beds {
+            standing.bed.watch_energy(true);
+            if let Some(soil) = &mut standing.soil {
+                soil.soil.watch(true);
+            }
+        }
+    }
+
+    /// The account so far.
+    pub fn energy(&self) -> PassageEnergy {
+        let rail = self.rail.energy().unwrap_or_default();
+        let mut sum = PassageEnergy {
+            wheels: rail.wheels,
+            lost_in_track: rail.dissipated - rail.supports,
+            interfaces: rail.pushes,
+            unaccounted: rail.residual(),
+            ..PassageEnergy::default()
+        };
+        for standing in &self.beds {
+            let grains = standing.bed.energy();
+            sum.slip += grains.slip;
+            sum.dashpots += grains.dashpot;
+            sum.local_damping += grains.damping;
+            sum.interfaces += grains.walls;
+            sum.unaccounted += grains.residual();
+            if let Some(soil) = &standing.soil {
+                let soil = soil.soil.energy();
+                sum.lost_in_soil += soil.plastic + soil.damping + soil.quiet;
+                sum.interfaces += soil.external;
+                sum.unaccounted += soil.residual();
+            }
+        }
+        sum
+    }
+}
+
+impl GrainGround<'_> {
+    /// The account of a passage with these wheel forces, on a copy. `tell` hears how far it is.
+    pub fn energy_of(&self, load: &Load<'_>, tell: &mut Telling<'_>) -> Result<PassageEnergy, NodeError> {
+        let mut coupled = self.live_at_rest()?.coupled.clone();
+        let none = || NodeError::Other { node: "grains".into(), why: "a passage brings no wheel forces".into() };
+        let wheels = WheelRun::new(load.passage.wheels.as_ref().ok_or_else(none)?, 1, 0.0);
+        let [left, right] = self.parts().ends();
+        let [begin, end] = wheels.within([left - REACH, right + REACH]).ok_or_else(none)?;
+        coupled.watch_energy();
+        coupled.run(
+            end - begin,
+            |time, loads| wheels.loads_at(begin + time, begin, loads),
+            |time, _| tell(Stage::Passage, time / (end - begin)),
+        )?;
+        Ok(coupled.energy())
+    }
+}

@@ -1,0 +1,288 @@
+//! The coupled step against closed forms: columns of spheres as springs, a ball on an elastic block, energy under a moving force.
+
+use super::soil::{Plan, SoilBelow};
+use super::step::{Coupled, Spent, StandingBed};
+use crate::graph::{SoilLayer, SoilNode};
+use crate::nodes::NodeError;
+use crate::solvers::granular::{
+    Bed, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Linear, Pose, Shape, Sphere,
+    WallId, WallMotion,
+};
+use crate::solvers::track::{
+    Foot, Irregularity, Leapfrog, Loads, RailEnds, RailSection, Seat, Track, TrackLevel, TrackModel, WheelLoads,
+    solve_static,
+};
+use nalgebra::Vector3;
+use std::sync::Arc;
+
+const SPACING: f64 = 0.6;
+const SLEEPERS: usize = 9;
+const RADIUS: f64 = 0.1;
+const HALF_HEIGHT: f64 = 0.1;
+const GRAVITY: f64 = 9.81;
+const WHEEL: f64 = 98.1e3;
+
+fn laws(stiffness: f64, dashpot: f64) -> ContactLaws {
+    ContactLaws::single(ContactLaw::Linear(Linear {
+        normal_stiffness: stiffness,
+        shear_stiffness: stiffness,
+        friction: 0.5,
+        dashpot: Dashpot::Ratio { normal: dashpot, shear: 0.0 },
+        mode: DashpotMode::default(),
+        limit: FrictionLimit::default(),
+    }))
+}
+
+fn soil(youngs_modulus: f64, thickness: f64, element: f64) -> SoilNode {
+    let layer = SoilLayer {
+        name: "clay".into(),
+        thickness,
+        youngs_modulus,
+        poisson_ratio: 0.25,
+        density: 2000.0,
+        strength: None,
+    };
+    SoilNode { layers: vec![layer], blocks: Vec::new(), element, quiet_base: false, gravity: GRAVITY }
+}
+
+/// A rail over sleepers 0.6 m apart; `foot` says what is under each.
+fn rail(foot: impl Fn(usize) -> Foot) -> TrackModel {
+    let ends = [0.0, SPACING * SLEEPERS as f64];
+    let seat = |i: usize| Seat { x: SPACING * (i as f64 + 0.5), pad_stiffness: 40e6, pad_damping: 5e3, foot: foot(i) };
+    TrackModel {
+        ends,
+        rail: vec![RailSection { start: ends[0], end: ends[1], mass: 60.0, bending_stiffness: 6.4e6, shear: None }],
+        seats: (0..SLEEPERS).map(seat).collect(),
+        slabs: Vec::new(),
+        auxiliary_rails: Vec::new(),
+        joints: Vec::new(),
+        rail_ends: RailEnds::Free,
+        elements_per_bay: 4,
+        irregularity: Irregularity::default(),
+        gravity: GRAVITY,
+    }
+}
+
+/// Each sleeper on a column of spheres, `lowered` so far below the level of the others (m), on a rigid floor or on soil.
+struct Columns {
+    spheres: usize,
+    stiffness: f64,
+    dashpot: f64,
+    soil: Option<SoilNode>,
+    lowered: fn(usize) -> f64,
+    time_step: f64,
+}
+
+impl Columns {
+    fn plain(spheres: usize) -> Columns {
+        let stiffness = 50e6 * (spheres + 1) as f64;
+        Columns { spheres, stiffness, dashpot: 0.0, soil: None, lowered: |_| 0.0, time_step: 20e-6 }
+    }
+
+    fn build(&self) -> Result<Coupled, NodeError> {
+        let mut bed: Bed<f32> = Bed::new(Domain::open(), laws(self.stiffness, self.dashpot));
+        let floor = bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
+        bed.set_gravity(Gravity::EARTH);
+        let top = 2.0 * RADIUS * self.spheres as f64;
+        let plan = Plan { start: 0.0, sides: [SPACING * SLEEPERS as f64, SPACING] };
+        let mut sleepers: Vec<(WallId, usize)> = Vec::new();
+        for number in 0..SLEEPERS {
+            let (x, y) = (SPACING * (number as f64 + 0.5), 0.5 * SPACING);
+            // a column that is lower lacks the top of its uppermost sphere
+            let radius = RADIUS - 0.5 * (self.lowered)(number) / self.spheres as f64;
+            for sphere in 0..self.spheres {
+                let centre = [x, y, radius * (2 * sphere + 1) as f64];
+                bed.add_sphere(&Sphere { centre, radius, density: 2700.0, surface: 0 });
+            }
+            let half = Vector3::new(0.12, 0.25, HALF_HEIGHT);
+            let pose = Pose { position: Vector3::new(x, y, top + HALF_HEIGHT), ..Pose::default() };
+            sleepers.push((bed.add_wall(Shape::Block { half }, pose, 0, WallMotion::Guided), number));
+        }
+        bed.set_time_step(self.time_step);
+        let soil = match &self.soil {
+            Some(node) => Some(SoilBelow::new(&mut bed, floor, plan, node)?),
+            None => None,
+        };
+        let model = rail(|_| Foot::Carried { mass: 150.0, pad: None });
+        let level = TrackLevel::as_built(&model);
+        let rail = Leapfrog::new(Arc::new(Track::new(model)?), &level, self.time_step)?;
+        let standing = StandingBed { bed, sleepers, soil };
+        let pushes = vec![0.0; SLEEPERS];
+        Ok(Coupled { rail, beds: vec![standing], pushes, added: 0.0, spent: Spent::default() })
+    }
+}
+
+fn middle() -> f64 {
+    SPACING * (0.5 * SLEEPERS as f64)
+}
+
+/// A column of equal contacts is a spring of one of them over their number: seat loads and levels under a wheel that stands are those of the
+/// track on springs.
+#[test]
+fn columns_of_spheres_are_springs() {
+    for spheres in [1, 3] {
+        let mut coupled = Columns::plain(spheres).build().unwrap();
+        coupled.come_to_rest(2.0, &mut |_| {}).unwrap();
+        let [before, forces] = [levels(&coupled), coupled.pushes.clone()];
+        stand_under(&mut coupled, (middle(), WHEEL));
+        let model =
+            rail(|_| Foot::Sleeper { mass: 150.0, support_stiffness: 50e6, support_damping: 0.0, seating: None });
+        let track = Track::new(model.clone()).unwrap();
+        let level = TrackLevel::as_built(&model);
+        let rest = solve_static(&track, &level, &Loads::default()).unwrap();
+        let loaded = solve_static(&track, &level, &Loads { rail: &[(middle(), WHEEL)], ..Loads::default() }).unwrap();
+        for seat in 0..SLEEPERS {
+            let force = coupled.pushes[seat] - forces[seat];
+            let expected = loaded.contact_forces[seat] - rest.contact_forces[seat];
+            assert!((force - expected).abs() < 2e-4 * 40e3, "{spheres} spheres, seat {seat}: {force} and {expected} N");
+            let level = levels(&coupled)[seat] - before[seat];
+            let expected = loaded.foot_displacements[seat] - rest.foot_displacements[seat];
+            assert!(
+                (level - expected).abs() < 2e-4 * 0.8e-3,
+                "{spheres} spheres, seat {seat}: {level} and {expected} m"
+            );
+        }
+    }
+}
+
+fn levels(coupled: &Coupled) -> Vec<f64> {
+    (0..SLEEPERS).map(|foot| coupled.level(foot)).collect()
+}
+
+/// A wheel's force that runs over the middle of the rail at 200 km/h and grows and goes smoothly on the way, N.
+fn passing(time: f64, loads: &mut Vec<(f64, f64)>) {
+    let (speed, way) = (200.0 / 3.6, [0.9, 4.5]);
+    let share = speed * time / (way[1] - way[0]);
+    loads.clear();
+    if share < 1.0 {
+        loads.push((way[0] + share * (way[1] - way[0]), WHEEL * (std::f64::consts::PI * share).sin().powi(2)));
+    }
+}
+
+/// Lets that force pass and a little time more, with inertia as it is.
+fn pass(coupled: &mut Coupled, mut see: impl FnMut(&Coupled)) {
+    let (mut loads, dt) = (Vec::new(), coupled.time_step());
+    for step in 0..(0.08 / dt) as u64 {
+        passing(step as f64 * dt, &mut loads);
+        coupled.step(&WheelLoads::Given(&loads)).unwrap();
+        see(coupled);
+    }
+}
+
+/// Everything comes to rest under a wheel that stands, damped.
+fn stand_under(coupled: &mut Coupled, (x, force): (f64, f64)) {
+    coupled.beds[0].bed.set_damping(0.7);
+    coupled.rail.set_drag(200.0).unwrap();
+    let steps = (0.6 / coupled.time_step()) as u64;
+    for step in 0..steps {
+        let grown = (4.0 * step as f64 / steps as f64).min(1.0);
+        coupled.step(&WheelLoads::Given(&[(x, grown * force)])).unwrap();
+    }
+}
+
+/// Energy of rail, spheres and soil under a force that passes: what one part gives the other takes, and what is left unexplained falls with
+/// the square of the step.
+#[test]
+fn energy_is_kept_from_the_wheel_to_the_soil() {
+    let run = |time_step: f64, youngs_modulus: f64| {
+        // what rings on would be counted half a step earlier on one side than on the other
+        let soil = Some(SoilNode { quiet_base: true, ..soil(youngs_modulus, 0.4, 0.2) });
+        let mut coupled = Columns { soil, dashpot: 0.1, time_step, ..Columns::plain(1) }.build().unwrap();
+        coupled.come_to_rest(2.0, &mut |_| {}).unwrap();
+        coupled.watch_energy();
+        pass(&mut coupled, |_| {});
+        coupled.energy()
+    };
+    for youngs_modulus in [50e6, 500e6] {
+        let (coarse, fine) = (run(20e-6, youngs_modulus), run(10e-6, youngs_modulus));
+        let work = coarse.wheels;
+        assert!(work > 5.0 && coarse.lost_in_soil > 0.0, "{work} J");
+        assert!(coarse.interfaces.abs() < 1e-4 * work, "{} of {work} J", coarse.interfaces);
+        assert!(coarse.unaccounted.abs() < 1e-3 * work, "{} of {work} J", coarse.unaccounted);
+        assert!(
+            fine.unaccounted.abs() < 0.5 * coarse.unaccounted.abs(),
+            "{} J, then {} J",
+            coarse.unaccounted,
+            fine.unaccounted
+        );
+    }
+}
+
+/// A sphere on an elastic block, a thousand times: nothing is lost or won.
+#[test]
+fn a_ball_bounces_on_an_elastic_block_a_thousand_times() {
+    let mut bed: Bed<f32> = Bed::new(Domain::open(), laws(5e6, 0.0));
+    let floor = bed.add_plane([0.0; 3], [0.0, 0.0, 1.0], 0);
+    bed.set_gravity(Gravity::Constant([0.0, 0.0, -100.0]));
+    let ball = Sphere { centre: [0.2, 0.2, 0.05], radius: 0.05, density: 2700.0, surface: 0 };
+    let id = bed.add_sphere(&ball);
+    bed.set_velocity(id, [0.0, 0.0, 0.3], [0.0; 3]);
+    let node = SoilNode { gravity: 0.0, ..soil(50e6, 0.2, 0.2) };
+    bed.set_time_step(20e-6);
+    let mut below = SoilBelow::new(&mut bed, floor, Plan { start: 0.0, sides: [0.4, 0.4] }, &node).unwrap();
+    bed.watch_energy(true);
+    below.soil.watch(true);
+    let mass = 2700.0 * 4.0 / 3.0 * std::f64::consts::PI * 0.05_f64.powi(3);
+    let start = 0.5 * mass * 0.3 * 0.3;
+    let (mut bounces, mut touched, mut worst) = (0, false, 0.0_f64);
+    while bounces < 1000 {
+        bed.guided_step::<NodeError>(|walls| below.step(walls)).unwrap();
+        let sheet = bed.wall(floor).sheet().unwrap();
+        let touches = sheet.forces().iter().any(|force| force[2] < 0.0);
+        bounces += u32::from(touches && !touched);
+        touched = touches;
+        let (grains, soil) = (bed.energy(), below.soil.energy());
+        worst = worst.max((grains.residual() + soil.residual() + grains.walls + soil.external).abs() / start);
+    }
+    let soil = below.soil.energy();
+    println!("{bounces} bounces, {} s: {worst}", bed.time());
+    assert!(soil.kinetic + soil.strain > 1e-3 * start, "the block takes part: {} J", soil.kinetic + soil.strain);
+    assert!(worst < 0.01, "{worst} of the ball's energy");
+}
+
+/// A sleeper 20 mm above its column hangs on the rail under every wheel, and its neighbours carry.
+#[test]
+fn a_sleeper_over_a_void_of_20_mm_hangs() {
+    let lowered = |number: usize| if number == SLEEPERS / 2 { 0.02 } else { 0.0 };
+    let mut coupled = Columns { lowered, dashpot: 0.1, ..Columns::plain(1) }.build().unwrap();
+    coupled.come_to_rest(2.0, &mut |_| {}).unwrap();
+    let mut most = [0.0_f64; SLEEPERS];
+    pass(&mut coupled, |coupled| {
+        for (most, push) in most.iter_mut().zip(&coupled.pushes) {
+            assert!(push.is_finite());
+            *most = most.max(*push);
+        }
+    });
+    assert_eq!(most[SLEEPERS / 2], 0.0);
+    assert!(most[SLEEPERS / 2 - 1] > 40e3 && most[SLEEPERS / 2 - 1] < 80e3, "{most:?}");
+}
+
+/// Soil a hundred times softer or stiffer than the contacts, and as good as rigid: the step of the soil goes with it, and the answer stays
+/// finite.
+#[test]
+fn soft_and_stiff_soil_run() {
+    let sink = |youngs_modulus: f64| {
+        let soil = Some(soil(youngs_modulus, 0.4, 0.2));
+        let mut columns = Columns { soil, dashpot: 0.1, ..Columns::plain(1) };
+        let built = columns.build().unwrap();
+        let longest = built.beds[0].soil.as_ref().unwrap().longest_step(&built.beds[0].bed);
+        columns.time_step = columns.time_step.min(longest);
+        let mut coupled = columns.build().unwrap();
+        coupled.come_to_rest(2.0, &mut |_| {}).unwrap();
+        let before = levels(&coupled)[SLEEPERS / 2];
+        let mut most: f64 = 0.0;
+        pass(&mut coupled, |coupled| most = most.max(coupled.level(SLEEPERS / 2) - before));
+        [1e3 * most, 1e6 * coupled.time_step()]
+    };
+    let found = [5e6, 50e6, 500e6, 50e9, 5e12].map(sink);
+    println!("{found:?}");
+    assert!(found.windows(2).all(|pair| pair[0][0] > pair[1][0]), "stiffer soil sinks less: {found:?}");
+    assert!(found[4][1] < 20.0, "what is as good as rigid takes shorter steps: {found:?}");
+    // a rigid floor
+    let mut coupled = Columns { dashpot: 0.1, ..Columns::plain(1) }.build().unwrap();
+    coupled.come_to_rest(2.0, &mut |_| {}).unwrap();
+    let before = levels(&coupled)[SLEEPERS / 2];
+    let mut most: f64 = 0.0;
+    pass(&mut coupled, |coupled| most = most.max(coupled.level(SLEEPERS / 2) - before));
+    assert!((found[4][0] / (1e3 * most) - 1.0).abs() < 0.01, "{} and {} mm", found[4][0], 1e3 * most);
+}
