@@ -2,10 +2,11 @@
 
 use std::ops::ControlFlow;
 use trackbed::check::NoModules;
-use trackbed::compile;
+use trackbed::compile::{compile, compile_with};
 use trackbed::diag::Code;
 use trackbed::execute::{Checkpoint, Event, Executor, Listener};
-use trackbed::graph::{Graph, Model};
+use trackbed::graph::{GrainsNode, Graph, Model};
+use trackbed::lower::Planner;
 use trackbed::store::Beds;
 
 /// Coarse spheres on soft soil under three sleepers before a slab, one wagon after the other: seconds to pack and minutes for nobody.
@@ -141,6 +142,66 @@ fn vehicles_ride_on_the_rail_over_the_grains() {
         let settled = ridden.settlements[0].1[*seat];
         assert!(settled > 1e-6 && settled < 20e-3, "seat {seat}: {settled} m");
     }
+}
+
+/// The decision of a pass in words, and the node of grains.
+fn planned(text: &str, without: &[&str]) -> (Option<String>, GrainsNode) {
+    let planner = without.iter().fold(Planner::default(), |planner, pass| planner.without(pass).unwrap());
+    let compiled = compile_with(&planner, "scene.track", text, &NoModules, &[]);
+    let graph = compiled.graph.expect("a plan");
+    let said = graph.decisions.iter().find(|decision| decision.pass == "bays").map(|decision| decision.what.clone());
+    let grains =
+        graph.nodes.iter().find_map(|node| if let Model::Grains(grains) = &node.model { Some(grains) } else { None });
+    (said, grains.unwrap().clone())
+}
+
+#[test]
+fn zone_has_grains_where_the_law_differs_from_the_far_field() {
+    let wide = SCENE.replace("open: 18 m", "open: 30 m").replace("window = -1.8 .. 1.2 m", "window = -15 .. 1.2 m");
+    let sleepers = |tolerance: &str, without: &[&str]| {
+        let text = wide.replace("substructure = full", &format!("substructure = zone, tolerance = {tolerance}"));
+        let (said, grains) = planned(&text, without);
+        (said.unwrap(), grains.stretches[0].sleepers.len())
+    };
+    let (_, full) = planned(&wide, &[]);
+    let full = full.stretches[0].sleepers.len();
+    assert_eq!(full, 24);
+    let found = ["20 %", "2 %", "0.2 %"].map(|tolerance| sleepers(tolerance, &[]));
+    assert!(found.windows(2).all(|pair| pair[0].1 <= pair[1].1), "less tolerance needs more bays: {found:?}");
+    assert!(found[0].1 >= 4 && found[0].1 < found[2].1 && found[2].1 < full, "{found:?}");
+    assert!(found[1].0.starts_with("grains under "), "{found:?}");
+    // the pass left out: all of the window
+    assert_eq!(sleepers("5 %", &["bays"]).1, full);
+}
+
+#[test]
+fn layers_along_the_track_lie_in_the_soil_below_the_grains() {
+    let wedge =
+        "stretch wedge { over = -6 .. 0 m, layers = [stone: 200 mm, mortar: ramp(0.1 .. 0.4 m), clay: rest] }\n";
+    let text = SCENE
+        .replace("track line {", &format!("soil mortar {{ youngs_modulus = 900 MPa, poisson_ratio = 0.2, density = 2200 kg/m^3 }}\n{wedge}track line {{"))
+        .replace("transitions =", "stretches = [wedge], transitions =");
+    let compiled = compile("scene.track", &text, &NoModules, &[]);
+    let said = trackbed::diag::render::human(&compiled.diagnostics, &compiled.sources, false, 120);
+    let graph = compiled.graph.as_ref().unwrap_or_else(|| panic!("{said}"));
+    let soil = graph
+        .nodes
+        .iter()
+        .find_map(|node| if let Model::Soil(soil) = &node.model { Some(soil) } else { None })
+        .unwrap();
+    let thickness = |x: f64| {
+        let layers = soil.layers_at(x);
+        assert_eq!(layers.last().unwrap().name, "clay");
+        layers.iter().find(|layer| layer.name == "mortar").map_or(0.0, |layer| layer.thickness)
+    };
+    assert_eq!(thickness(-7.0), 0.0);
+    assert!((thickness(-3.0) - 0.25).abs() < 0.005 && (thickness(-0.02) - 0.4).abs() < 0.005, "{}", thickness(-3.0));
+    assert!(graph.runs, "{said}");
+    // other grains are not what the bed is packed of
+    let other = text.replace("layers = [stone: 200 mm, mortar", "layers = [stone: 150 mm, mortar");
+    let compiled = compile("scene.track", &other, &NoModules, &[]);
+    let told = compiled.diagnostics.iter().find(|d| d.code == Code::E0604).expect("told");
+    assert!(told.message.contains("other layers of grains"), "{}", told.message);
 }
 
 #[test]

