@@ -144,6 +144,27 @@ fn vehicles_ride_on_the_rail_over_the_grains() {
 }
 
 #[test]
+fn a_track_whose_cribs_are_filled_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = SCENE
+        .replace("200 mm, clay: 0.5 m]", "200 mm, clay: 0.5 m], crib = 150 mm, shoulder = 0.2 m")
+        .replace("slab = slabs.half_width_1600", "slab = slabs.half_width_1600, crib = none, shoulder = none")
+        .replace("8 axles", "4 axles")
+        .replace("[0, 8]", "[0, 4]");
+    let graph = graph(&scene);
+    let mut filled = Heard::default();
+    run(&graph, folder.path(), 2, &mut filled, None);
+    for seat in carried(&graph) {
+        let settled = filled.settlements[0].1[seat];
+        assert!(settled > 1e-6 && settled < 20e-3, "seat {seat} settles: {settled} m");
+    }
+    // the same bits on one thread
+    let mut alone = Heard::default();
+    run(&graph, folder.path(), 1, &mut alone, None);
+    assert_eq!((alone.settlements, alone.at_rest), (filled.settlements, filled.at_rest));
+}
+
+#[test]
 fn what_grains_under_a_track_cannot_run_is_told() {
     let told = |from: &str, to: &str| -> Vec<(Code, String)> {
         assert!(SCENE.contains(from), "{from}");

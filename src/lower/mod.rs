@@ -5,6 +5,7 @@ mod bed;
 mod blocks;
 mod clumps;
 mod cost;
+mod crib;
 mod dry_run;
 mod foundation;
 mod origins;

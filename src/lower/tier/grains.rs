@@ -9,7 +9,7 @@ use crate::graph::{
 };
 use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
 use crate::lower::tier::rig::cost::grains_under_track;
-use crate::lower::{Draft, track};
+use crate::lower::{Draft, crib, track};
 use crate::scenario::{self, Base, Foot, Loading, Material, Scenario, Seat, Section, SleeperBody};
 use crate::schema::Reads;
 use crate::solvers::continuum::Strength;
@@ -213,7 +213,8 @@ fn stretches(scenario: &Scenario, beds: &[BedPlan], windows: &[[f64; 2]]) -> Vec
             seat.1.x - half >= start && seat.1.x + half.min(END) <= start + copies * cell + 1e-6
         };
         let sleepers = seats.iter().filter(fits).filter_map(|(number, seat)| standing(scenario, *number, seat, start));
-        Some(GrainStretch { bed, start, copies: copies as u32, sleepers: sleepers.collect() })
+        let crib = crib::planned(section);
+        Some(GrainStretch { bed, start, copies: copies as u32, sleepers: sleepers.collect(), crib })
     };
     windows.iter().filter_map(of).collect()
 }

@@ -22,7 +22,7 @@ pub fn stand<R: Real>(
     tell: impl FnMut(f64),
 ) -> Result<Vec<WallId>, RigError> {
     let walls = place(bed, sleepers, gravity);
-    until_rest(bed, &walls, tell)?;
+    until_rest(bed, &walls, Resting::Sleepers, tell)?;
     Ok(walls)
 }
 
@@ -62,10 +62,15 @@ fn highest<R: Real>(bed: &Bed<R>, sleeper: &Sleeper) -> f64 {
 }
 
 /// Runs until forces are in balance and the bed carries the sleepers. `tell` hears the share of the longest time.
-pub(super) fn until_rest<R: Real>(bed: &mut Bed<R>, walls: &[WallId], tell: impl FnMut(f64)) -> Result<(), RigError> {
+pub(super) fn until_rest<R: Real>(
+    bed: &mut Bed<R>,
+    walls: &[WallId],
+    stage: Resting,
+    tell: impl FnMut(f64),
+) -> Result<(), RigError> {
     calmed(bed, |bed, stride| {
         let start = bed.time();
-        rest::until_rest(&mut Standing { bed, walls, stride, tell }, &AT_REST, start).map(|_| ())
+        rest::until_rest(&mut Standing { bed, walls, stage, stride, tell }, &AT_REST, start).map(|_| ())
     })
 }
 
@@ -73,6 +78,7 @@ pub(super) fn until_rest<R: Real>(bed: &mut Bed<R>, walls: &[WallId], tell: impl
 struct Standing<'s, R: Real, T> {
     bed: &'s mut Bed<R>,
     walls: &'s [WallId],
+    stage: Resting,
     stride: Stride,
     tell: T,
 }
@@ -97,7 +103,7 @@ impl<R: Real, T: FnMut(f64)> Waiting<R> for Standing<'_, R, T> {
     }
 
     fn restless(&self, look: &Look) -> RigError {
-        restless(Resting::Sleepers, look)
+        restless(self.stage, look)
     }
 
     fn failed(&self, failure: Failure) -> RigError {
