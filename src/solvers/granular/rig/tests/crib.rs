@@ -31,8 +31,9 @@ fn grains_fill_the_crib_to_its_height_and_rest_beside_the_sleeper() {
     let poured: Vec<_> = bed.states().skip(alone).collect();
     let highest = poured.iter().map(|grain| grain.place[2]).fold(0.0, f64::max);
     assert!(highest < level + 1e-3 && highest > level - 0.02, "{highest} {level}");
+    // on the flat bed coarse spheres lie in layers 0.8 of their size apart, and the last one fits or does not
     let open = pocket.empty(&bed, CRIB.height) / (pocket.area * CRIB.height);
-    assert!(open < 0.25, "{open} of the space lies above the grains");
+    assert!(open * CRIB.height < 0.8 * 0.06, "{open} of the space lies above the grains");
     // all but a few that roll off the edge of the shoulder or under the sleeper lie in the pocket
     let outside = poured.iter().filter(|grain| !pocket.holds([grain.place[0], grain.place[1]], 0.0)).count();
     assert!(outside * 50 < poured.len(), "{outside} of {}", poured.len());
