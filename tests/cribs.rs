@@ -95,8 +95,8 @@ fn what_cannot_be_is_told_with_a_way_out() {
     );
     refused(&rig(", crib = 250 mm", ""), Code::E0407, "to 250 mm, but its sleepers are 200 mm high", "`crib = 200 mm`");
     refused(&rig(shoulder, ", bed_width = 2.8 m per track"), Code::E0420, "with shoulders of 0.3 m", "3.2 m per track");
-    refused(&rig(", crib = 5 mm", ""), Code::E0405, "crib", "");
-    refused(&rig(", crib = 5 kN", ""), Code::E0302, "crib", "");
+    refused(&rig(", crib = 5 mm", ""), Code::E0405, "10 .. 500 mm", "");
+    refused(&rig(", crib = 5 kN", ""), Code::E0302, "kN", "");
     let tight = rig(", crib = 150 mm", "").replace("spacing = 0.6 m", "spacing = 0.35 m");
     refused(&tight, Code::E0610, "up to 65 mm wide, and the sleepers leave 50 mm", "wider `spacing`");
     let pressed = rig(", crib = 150 mm", "").replace(
@@ -134,25 +134,20 @@ fn on_a_track_a_crib_needs_sleepers_and_grains_and_is_that_of_a_whole_section() 
     let ballast = "layers = [ballasts.granite_31_63: 300 mm, soils.sandy_gravel: 1 m], crib = 150 mm";
     refused(&track(ballast, usps), Code::E0407, "stands on a slab and has a `crib`", "write `crib = none`");
     refused(&dropped(track(ballast, "crib = 100 mm")), Code::E0411, "`crib` in a stretch", "section");
-    // a law knows nothing of it, and says so
-    let idle = compiled(&dropped(track(ballast, usps)));
-    let told: Vec<&str> =
-        idle.diagnostics.iter().filter(|d| d.code == Code::E0429).map(|d| d.message.as_str()).collect();
-    assert!(
-        idle.runnable().is_some() && told.len() == 1 && told[0].contains("`crib` acts only where grains"),
-        "{told:?}"
-    );
+    // a law knows nothing of it
+    let law = compiled(&dropped(track(ballast, usps)));
+    assert!(law.runnable().is_some(), "{}", shown(&law));
 }
 
 #[test]
 fn a_rig_with_cribs_runs_and_ends_with_the_same_bits_on_any_number_of_threads() {
     // one bed for both
     let beds = tempfile::tempdir().unwrap();
-    let scene = Scene::from_text(rig(", crib = 150 mm, shoulder = 0.2 m", ""));
+    let text = rig(", crib = 150 mm, shoulder = 0.2 m", "");
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let executor = Executor::default().with_beds(Beds::kept_in(beds.path()));
-        pool.install(|| scene.run_with(&executor, &mut ()).unwrap())
+        pool.install(|| Scene::from_text(&text).run_with(&executor, &mut ()).unwrap())
     };
     let (one, two) = (run(1), run(2));
     let settlement = one.scalar("max_settlement").unwrap();

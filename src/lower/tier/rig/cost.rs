@@ -7,7 +7,7 @@ use crate::lower::{Draft, crib};
 use crate::scenario::{Contact, Granular, Loading, Scenario, Section, Shape};
 use crate::solvers::granular::grains::Curve;
 use crate::solvers::granular::packing::lifts_that_fit;
-use crate::solvers::granular::rig::POURED;
+use crate::solvers::granular::rig::SOLID as POURED;
 use std::f64::consts::PI;
 
 /// Share of the volume that grains fill in a packed bed.

@@ -4,7 +4,7 @@ use super::super::packing::{GrainLayer, Recipe};
 use serde::{Deserialize, Serialize};
 
 /// Share of the space that poured grains are thought to fill. What they lack the next pour makes up for.
-pub const POURED: f64 = 0.55;
+pub const SOLID: f64 = 0.55;
 
 /// How high grains lie between sleepers and beside their ends.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

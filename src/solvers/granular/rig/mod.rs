@@ -30,7 +30,7 @@ pub use answer::{Cycle, CycleSample};
 pub use crib::fill;
 pub use description::{ADDED, Load, Rig, Sleeper};
 pub use error::{Resting, RigError};
-pub use filling::{Crib, Filling, POURED};
+pub use filling::{Crib, Filling, SOLID};
 pub use sensor::{Sensor, SensorReading};
 pub use set_down::stand;
 pub use specimen::{Specimen, SpecimenState};

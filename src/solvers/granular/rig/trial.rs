@@ -6,7 +6,7 @@ use super::super::motion::{Push, WallMotion};
 use super::super::stride::Stride;
 use super::super::walls::WallId;
 use super::answer::{Cycle, CycleSample};
-use super::calm::DAMPING;
+use super::calm::{AT_REST, DAMPING};
 use super::crib::fill;
 use super::description::{Load, Rig};
 use super::error::{Resting, RigError, in_cycle};
@@ -69,7 +69,7 @@ impl<'a, R: Real> Trial<'a, R> {
     pub fn new(mut bed: Bed<R>, rig: &'a Rig, mut tell: impl FnMut(f64)) -> Result<Self, RigError> {
         let before = bed.steps();
         let walls = place(&mut bed, &rig.sleepers, rig.gravity);
-        until_rest(&mut bed, &walls, Resting::Sleepers, &mut tell)?;
+        until_rest(&mut bed, &walls, (Resting::Sleepers, &AT_REST), &mut tell)?;
         if let Some(filling) = &rig.filling {
             fill(&mut bed, (&rig.sleepers, &walls), filling, &mut tell)?;
         }
