@@ -32,7 +32,7 @@ pub fn bed(track: &Record, forms: &[Built], findings: &mut Findings) -> Option<B
 /// Sleepers with their shoulders, as the bed has to hold them.
 struct Footing<'a> {
     trackform: &'a str,
-    /// Of the sleepers, m, and where it is given.
+    /// Length of the sleepers, m, and where it is given.
     length: f64,
     length_span: Option<Span>,
     shoulder: Option<Given>,
