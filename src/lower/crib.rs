@@ -16,12 +16,12 @@ pub(super) fn note(section: &Section) -> Option<String> {
     let crib = planned(section)?;
     let grains = section.layers.iter().find(|layer| layer.granular().is_some())?;
     let shoulder = match crib.shoulder {
-        0.0 => "nothing lies beyond their ends".to_owned(),
-        width => format!("and {} mm beyond their ends", mm(width)),
+        0.0 => "; nothing lies beyond their ends".to_owned(),
+        width => format!(", and {} mm beyond their ends", mm(width)),
     };
     let height = mm(crib.height);
     Some(format!(
-        "Grains of `{}` lie between the sleepers up to {height} mm above their underside, {shoulder}.",
+        "Grains of `{}` lie between the sleepers up to {height} mm above their underside{shoulder}.",
         grains.name
     ))
 }

@@ -19,6 +19,8 @@ const PACKING_STEP: f64 = 0.25;
 const STAGE: f64 = 0.45;
 const LAST_STAGES: u32 = 3;
 const SET_DOWN: f64 = 0.15;
+/// Time, s, in which the grains of cribs are poured and come to rest, at the step of a test.
+const POURING: f64 = 1.0;
 /// Steps of a pebble a second on two cores, of clumps of three, while it is packed and tested (`docs/validation.md`).
 const PEBBLE_STEPS: [f64; 2] = [10e6, 20e6];
 /// Time on one core over that on two.
@@ -83,7 +85,8 @@ pub(super) fn of_rig(scenario: &Scenario, bed: Option<&BedNode>) -> Cost {
     let step = STEP * light;
     let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
     let loads = loads(scenario);
-    let test_steps = (SET_DOWN + (0.5 + cycles(&loads) as f64) * period(&loads, rest)) / step;
+    let pouring = if bed.crib.is_some() { POURING } else { 0.0 };
+    let test_steps = (SET_DOWN + pouring + (0.5 + cycles(&loads) as f64) * period(&loads, rest)) / step;
     let packings = scenario.solve.grains.repeats;
     // while a bed is packed half of it is there on average
     let [packing, testing] = [0.5 * packing_steps, copies * test_steps];
@@ -127,7 +130,8 @@ pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, length: f64)
     let (grains, pebbles) = (grains + beside_grains, pebbles + beside_pebbles);
     let time_step = TRACK_STEP * light;
     let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
-    let time = BUILDING + draft.blocks.as_ref().map_or(0.0, |blocks| passing(draft, blocks, length));
+    let building = BUILDING + if section.crib.is_some() { POURING } else { 0.0 };
+    let time = building + draft.blocks.as_ref().map_or(0.0, |blocks| passing(draft, blocks, length));
     let test_steps = time / time_step;
     let seconds = 0.5 * cell * packing_steps / PEBBLE_STEPS[0] + pebbles * test_steps / TRACK_PEBBLE_STEPS;
     cost(seconds, TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings: 1 })
