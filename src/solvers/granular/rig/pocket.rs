@@ -93,8 +93,9 @@ struct Columns {
 impl Columns {
     /// Middles of all columns in their order, m.
     fn places(&self) -> impl Iterator<Item = [f64; 2]> + use<> {
-        let (&Columns { count: [along, _], sides: [dx, dy], .. }, all) = (self, self.count[0] * self.count[1]);
-        (0..all).map(move |column| [((column % along) as f64 + 0.5) * dx, ((column / along) as f64 + 0.5) * dy])
+        let ([along, across], [dx, dy]) = (self.count, self.sides);
+        (0..along * across)
+            .map(move |column| [((column % along) as f64 + 0.5) * dx, ((column / along) as f64 + 0.5) * dy])
     }
 
     /// Tells each column that a ball covers, and the square of its distance from the middle of the ball, m2.
