@@ -205,6 +205,23 @@ fn layers_along_the_track_lie_in_the_soil_below_the_grains() {
 }
 
 #[test]
+fn a_track_whose_cribs_are_filled_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = SCENE
+        .replace("200 mm, clay: 0.5 m]", "200 mm, clay: 0.5 m], crib = 100 mm")
+        .replace("slab = slabs.half_width_1600", "slab = slabs.half_width_1600, crib = none")
+        .replace("8 axles", "4 axles")
+        .replace("[0, 8]", "[0, 4]");
+    let graph = graph(&scene);
+    let mut filled = Heard::default();
+    run(&graph, folder.path(), 2, &mut filled, None);
+    for seat in carried(&graph) {
+        let settled = filled.settlements[0].1[seat];
+        assert!(settled > 1e-6 && settled < 20e-3, "seat {seat} settles: {settled} m");
+    }
+}
+
+#[test]
 fn what_grains_under_a_track_cannot_run_is_told() {
     let told = |from: &str, to: &str| -> Vec<(Code, String)> {
         assert!(SCENE.contains(from), "{from}");

@@ -31,6 +31,7 @@ fn of_node(clock: Clock, cause: &NodeError, graph: &Graph, origins: &Origins) ->
         NodeError::Rig(RigError::Restless { .. }) => {
             said(Code::E0811).help("give the `packing` of the material more `pressure`, or its grains more `friction`")
         }
+        NodeError::Rig(RigError::NoRoom { .. } | RigError::Grading(_)) => said(Code::E0610),
         NodeError::Rig(_) => said(Code::E0812).help("is the `force` meant `per sleeper` or `per seat`?"),
         NodeError::Grains(_) => said(Code::E0801).help("write a shorter `grain_step`"),
         NodeError::Soil(_) => said(Code::E0801).help("give the soil more strength, or less load"),

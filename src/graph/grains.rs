@@ -5,7 +5,7 @@ use crate::solvers::granular::grains::{ClumpShape, TemplatesError};
 use crate::solvers::granular::measure::Region;
 use crate::solvers::granular::packing::{PackingError, Recipe};
 use crate::solvers::granular::probe::Plate;
-use crate::solvers::granular::rig::{Load, Rig, Sensor, Sleeper, Specimen};
+use crate::solvers::granular::rig::{Crib, Load, Rig, Sensor, Sleeper, Specimen};
 use crate::solvers::track::UnderPad;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -102,6 +102,9 @@ pub struct BedNode {
     pub bodies: Vec<StandingBody>,
     /// Area of a plate over the whole bed in the place of sleepers, m2.
     pub plate: Option<f64>,
+    /// Grains between and beside the sleepers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crib: Option<Crib>,
     /// Pressure on the sides of a specimen, Pa.
     pub confinement: Option<f64>,
     /// Whether an actuator gives the velocity of the plate instead of a force.
@@ -208,6 +211,9 @@ pub struct GrainStretch {
     /// Cells of the bed side by side.
     pub copies: u32,
     pub sleepers: Vec<SleeperOnGrains>,
+    /// Grains between and beside the sleepers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crib: Option<Crib>,
 }
 
 /// A sleeper, or half of it, on grains.
@@ -294,6 +300,7 @@ impl BedNode {
         Rig {
             sleepers: self.bodies.iter().zip(&actuators.loads).map(body).collect(),
             specimen: specimen.map(|(pressure, sides)| Specimen { floor: recipe.floor(), sides, pressure }),
+            filling: self.crib.and_then(|crib| crib.filling(recipe, self.copies)),
             period: actuators.period,
             cycles: actuators.cycles,
             gravity: self.gravity,

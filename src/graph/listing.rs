@@ -4,7 +4,7 @@ use super::{
     ActuatorsNode, BedNode, Blocks, Cost, Decision, Edge, GrainsNode, Graph, LawNode, Model, Node, Quantity, Schedule,
     SoilNode, StiffnessFrom, TestWork, Tests, TrackNode, Update, Work,
 };
-use crate::solvers::granular::rig::Load;
+use crate::solvers::granular::rig::{Crib, Load};
 use crate::solvers::track::Integrator;
 use crate::units::number;
 use serde::Serialize;
@@ -158,6 +158,7 @@ fn of_grains(grains: &GrainsNode) -> Vec<String> {
             number(width),
             stretch.sleepers.len()
         ));
+        lines.extend(stretch.crib.map(of_crib));
     }
     let stiffness = match grains.stiffness_from {
         StiffnessFrom::StaticLoad => "static loads on a copy of the grains",
@@ -171,6 +172,13 @@ fn of_grains(grains: &GrainsNode) -> Vec<String> {
         None => "trains run one by one, and the track comes to rest between them".into(),
     });
     lines
+}
+
+fn of_crib(crib: Crib) -> String {
+    let mm = |length: f64| number(rounded_to_mm(length) * 1e3);
+    let beyond =
+        if crib.shoulder > 0.0 { format!(", and {} mm beyond their ends", mm(crib.shoulder)) } else { String::new() };
+    format!("grains between the sleepers up to {} mm above their underside{beyond}", mm(crib.height))
 }
 
 fn rounded_to_mm(length: f64) -> f64 {

@@ -54,8 +54,9 @@ fn said(side: &Side, bed: &GrainLayer<'_>) -> Diagnostic {
 
 fn across(scenario: &Scenario) -> Option<Side> {
     let track = &scenario.track;
-    let longest = track.seats.iter().filter_map(|seat| seat.sleeper).map(|body| body.length).reduce(f64::max);
-    let half = track.bed.half_width.map(|width| *width).or(longest.map(|length| length / 2.0))?;
+    let shoulder = |section: usize| track.sections[section].crib.map_or(0.0, |crib| crib.beyond());
+    let reach = track.seats.iter().filter_map(|seat| Some(seat.sleeper?.length / 2.0 + shoulder(seat.section)));
+    let half = track.bed.half_width.map(|width| *width).or(reach.reduce(f64::max))?;
     let span = track.bed.half_width.and_then(|width| width.origin.span());
     let sides = if scenario.solve.grains.both_rails { 2.0 } else { 1.0 };
     Some(Side { what: "wide", length: sides * half, span })

@@ -1,6 +1,7 @@
 //! The beds of grains that a scene has, as plans for the packer: one for each section with other layers.
 
 use super::clumps::Clumps;
+use super::crib;
 use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::BedPlan;
 use crate::scenario::{BedEnds, Contact, Granular, Layer, Loading, Scenario, Section, Shape};
@@ -45,6 +46,8 @@ pub(super) const READS: Reads = Reads {
         "packing.local_damping",
         "packing.viscous_damping",
         "track.bed_width",
+        "trackform.crib",
+        "trackform.shoulder",
         "solve.gravity",
         "solve.symmetry",
     ],
@@ -150,6 +153,7 @@ fn bed(
         seed,
     };
     recipe.check().map_err(|error| unpackable(&error, scenario, section))?;
+    crib::holds_grains(scenario, number, &recipe)?;
     let recipe = recipe.with_spheres();
     if use_of_it == BedUse::Track && scenario.track.bed.ends == BedEnds::Walls && !boxed {
         notes.push("The cell is periodic along the track; held grains close the ends of the whole bed.".to_owned());
@@ -222,7 +226,8 @@ pub(super) fn confinement(scenario: &Scenario) -> Option<f64> {
 pub(super) fn width(scenario: &Scenario, section: usize) -> f64 {
     let track = &scenario.track;
     let sleeper = track.seats[track.seats_of(section)].iter().find_map(|seat| seat.sleeper);
-    let least = sleeper.map(|sleeper| 0.5 * sleeper.length);
+    let shoulder = track.sections[section].crib.map_or(0.0, |crib| crib.beyond());
+    let least = sleeper.map(|sleeper| 0.5 * sleeper.length + shoulder);
     let stated = track.bed.half_width.map(|half| half.max(least.unwrap_or(0.0)));
     let half = stated.or(least).unwrap_or(HALF_WIDTH);
     if scenario.solve.grains.both_rails { 2.0 * half } else { half }

@@ -6,6 +6,7 @@ mod bed;
 mod blocks;
 mod clumps;
 mod cost;
+mod crib;
 mod dry_run;
 mod foundation;
 mod origins;

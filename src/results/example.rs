@@ -82,6 +82,7 @@ pub(crate) fn transition() -> Run {
         slab,
         layers: vec![],
         layers_span: None,
+        crib: None,
         length_origin: Origin::Default,
     };
     let slab = Slab {
@@ -345,6 +346,7 @@ pub(crate) fn bench() -> Run {
                 slab: None,
                 layers: vec![],
                 layers_span: None,
+                crib: None,
                 length_origin: Origin::Default,
             }],
             transitions: vec![],

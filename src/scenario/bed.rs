@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 /// The box that holds the layers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Bed {
-    /// Half its width, from the centre line of the track to the side wall, m; `None` is that of the longest sleeper.
+    /// Half its width, from the centre line of the track to the side wall, m; `None` is that of the longest sleeper
+    /// and its shoulder.
     pub half_width: Option<Given>,
     pub ends: BedEnds,
     pub base: Base,

@@ -28,8 +28,8 @@ pub use material::{Bond, Contact, Granular, Layer, Material, Packing, Shape, Soi
 pub use profile::{Cubic, Curve, Piece, Profile, Varying};
 pub use study::{Axis, Choice, Goal, Measured, Objective, Sampling, Setting, Spread, Study, Values, Written};
 pub use track::{
-    ApproachSlab, AuxiliaryRailSpan, AuxiliaryRails, Foot, Groundwork, Pad, Rail, RailEnds, Seat, Seating, Section,
-    Side, Slab, SleeperBody, Stack, Stretch, Support, Track, Transition, Usp, point_stiffness, seat_stiffness,
+    ApproachSlab, AuxiliaryRailSpan, AuxiliaryRails, Crib, Foot, Groundwork, Pad, Rail, RailEnds, Seat, Seating,
+    Section, Side, Slab, SleeperBody, Stack, Stretch, Support, Track, Transition, Usp, point_stiffness, seat_stiffness,
 };
 pub use traffic::{Direction, Force, RigLoad, StaticLoad, Target, Traffic, Train, Vehicle, Wave};
 

@@ -101,6 +101,25 @@ pub struct Section {
     pub layers: Vec<Layer>,
     /// Where they are given; where they are not, its trackform.
     pub layers_span: Option<Span>,
+    /// Grains between and beside its sleepers.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crib: Option<Crib>,
+}
+
+/// Grains of the top layer between the sleepers and beyond their ends.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Crib {
+    /// Above the underside of the sleepers, m.
+    pub height: Given,
+    /// Width beyond the ends of the sleepers, m; `None` fills no more than the space between them.
+    pub shoulder: Option<Given>,
+}
+
+impl Crib {
+    /// Width beyond the ends of the sleepers, m.
+    pub fn beyond(&self) -> f64 {
+        self.shoulder.map_or(0.0, |shoulder| *shoulder)
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

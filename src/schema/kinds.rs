@@ -52,6 +52,8 @@ const SUPPORT: Form = Form::OneOf(&[
     Form::Object("support"),
     Form::Words(&[word("rigid", "a seat that does not move"), word("none", "absent")]),
 ]);
+const CRIB: Form = Form::OneOf(&[number("mm", 10.0, 500.0), Form::Words(NONE)]);
+const SHOULDER: Form = Form::OneOf(&[number("m", 0.01, 3.0), Form::Words(NONE)]);
 const TRACK_OR_RAIL: Basis = Basis { names: &[("track", 0.5), ("rail", 1.0)], assumed: Some("track") };
 const LAYERS: Form = Form::Pairs {
     key: &Form::OneOf(&[Form::Object("granular"), Form::Object("soil")]),
@@ -275,6 +277,18 @@ pub const KINDS: &[Kind] = &[
                 "none",
                 "rails beside the running rails, from one end of the section to the other: they spread the load",
             ),
+            default(
+                "crib",
+                CRIB,
+                "none",
+                "height of the grains of the top granular layer between the sleepers, above their underside; up to their height",
+            ),
+            default(
+                "shoulder",
+                SHOULDER,
+                "none",
+                "width of such grains beyond the ends of the sleepers, as high as the `crib`, which it needs",
+            ),
         ],
         // layers and support stand beside each other, a slab alone
         alternatives: &[Alternative {
@@ -282,7 +296,7 @@ pub const KINDS: &[Kind] = &[
             default: Some(("slab", "none")),
             exclusive: false,
         }],
-        planned: &["crib", "shoulder"],
+        planned: &[],
     },
     Kind {
         name: "auxiliary_rails",
@@ -353,7 +367,7 @@ pub const KINDS: &[Kind] = &[
             optional(
                 "bed_width",
                 per("m", 0.5, 20.0, &TRACK_OR_RAIL),
-                "of the layers between their side walls; the length of the longest sleeper where absent",
+                "of the layers between their side walls; the length of the longest sleeper, and its shoulders, where absent",
             ),
             default(
                 "bed_ends",

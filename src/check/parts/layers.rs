@@ -1,18 +1,14 @@
-//! The layers under the sleepers of a trackform, laid along its section, and the bed that holds them.
+//! The layers under the sleepers of a trackform, laid along its section.
 
-use super::given::given;
 use super::material::Ground;
 use super::strata::Thickness;
 use super::trackform::Built;
-use crate::check::evaluate::value::Record;
 use crate::check::findings::Findings;
 use crate::check::places::along::{Along, lay};
 use crate::check::places::chainage::Places;
 use crate::check::places::cover::Cover;
 use crate::diag::{Code, Diagnostic, Span};
-use crate::scenario::{
-    Base, Bed, BedEnds, Curve, Given, Granular, Layer, Material, Origin, Piece, Profile, Soil, Varying,
-};
+use crate::scenario::{Curve, Given, Granular, Layer, Material, Origin, Piece, Profile, Soil, Varying};
 use crate::units::number;
 use std::ops::Range;
 
@@ -176,41 +172,4 @@ fn holds_its_grains(layer: &Layer, span: Span, findings: &mut Findings) -> bool 
             .help(format!("make it {} mm or more, or cut the grading with a smaller `cut_above`{smaller}", mm(needed))),
     );
     false
-}
-
-/// The bed, whose side walls leave room for the longest sleeper.
-pub fn bed(track: &Record, forms: &[Built], findings: &mut Findings) -> Option<Bed> {
-    let half_width = match track.get("bed_width") {
-        Some(_) => Some(given(track, "bed_width")?),
-        None => None,
-    };
-    let length = |built: &Built| {
-        let sleeper = built.sleeper.as_ref()?;
-        Some((sleeper.number("length")?.value, sleeper.get("length")?.origin.span(), built.name.clone()))
-    };
-    let longest = forms.iter().filter_map(length).max_by(|a, b| a.0.total_cmp(&b.0));
-    if let (Some(half), Some((length, origin, name))) = (half_width, longest)
-        && 2.0 * *half < length * (1.0 - 1e-9)
-    {
-        let span = track.get("bed_width").map_or(track.span, |slot| slot.span);
-        let message = format!(
-            "the bed is {} m wide, but the sleepers of trackform `{name}` are {} m long",
-            number(2.0 * *half),
-            number(length)
-        );
-        let mut mistake = Diagnostic::new(Code::E0420, message).label(span, "between its side walls");
-        if let Some(origin) = origin {
-            mistake = mistake.label(origin, "length of a sleeper");
-        }
-        findings.report(mistake.help(format!(
-            "write `bed_width = {} m per track` or more, or leave it out: the bed is then as wide as the sleepers",
-            number(length)
-        )));
-        return None;
-    }
-    Some(Bed {
-        half_width,
-        ends: if track.word("bed_ends")? == "periodic" { BedEnds::Periodic } else { BedEnds::Walls },
-        base: if track.word("base")? == "quiet" { Base::Quiet } else { Base::Rigid },
-    })
 }

@@ -2,6 +2,8 @@
 //! are.
 
 pub mod asked;
+mod bed;
+mod crib;
 mod force;
 mod given;
 mod grading;

@@ -16,7 +16,7 @@ use std::ops::Range;
 use std::rc::Rc;
 
 /// Parts that make a section what it is from end to end.
-const WHOLE_SECTION: [&str; 2] = ["rail", "slab"];
+const WHOLE_SECTION: [&str; 4] = ["rail", "slab", "crib", "shoulder"];
 /// A stretch at one of its transitions.
 pub struct Instance {
     pub stretch: Rc<Record>,

@@ -1,9 +1,10 @@
 //! From the objects of a track to the track of the scenario: sections, seats and what each stands on.
 
 use super::asked::Asked;
+use super::bed::bed;
 use super::ground::{Carrying, Under};
 use super::groundwork::groundworks;
-use super::layers::{bed, lay_layers};
+use super::layers::lay_layers;
 use super::layout::Layout;
 use super::seats::{lay_seats, usual_damping_time};
 use super::stretch::{Instance, described, stand};
@@ -136,5 +137,6 @@ fn whole_section(
         slab: built.slab.clone(),
         layers,
         layers_span: Some(built.layers_span),
+        crib: built.crib,
     })
 }

@@ -1,6 +1,7 @@
 //! What a trackform is made of: its parts as far as they are understood, each checked against the others.
 
 use super::asked::{Asked, stands_on_layers};
+use super::crib::crib;
 use super::given::given;
 use super::rails::{auxiliary_rails, rail};
 use super::spring::{Damped, damped};
@@ -10,7 +11,7 @@ use crate::check::findings::Findings;
 use crate::check::places::along::{Along, along};
 use crate::check::text::files::Files;
 use crate::diag::{Code, Diagnostic, Span};
-use crate::scenario::{AuxiliaryRails, Given, Rail, Seating, Slab, SleeperBody};
+use crate::scenario::{AuxiliaryRails, Crib, Given, Rail, Seating, Slab, SleeperBody};
 use crate::units::number;
 use std::rc::Rc;
 
@@ -30,6 +31,7 @@ pub struct Built {
     pub layers: Option<Vec<Stratum>>,
     /// Where its layers stand, or the trackform itself.
     pub layers_span: Span,
+    pub crib: Option<Crib>,
 }
 
 /// What the pads stand on.
@@ -105,8 +107,9 @@ pub fn trackform(
     let sleeper = sleeper.filter(|_| slab.is_none());
     let layers = strata(form, of_stretch, files, findings);
     let layers_span = form.get("layers").map_or(form.span, |slot| slot.span);
+    let crib = crib(form, layers.as_deref(), findings);
     let name = form.name.clone();
-    Built { name, rail, spacing, slab, sleeper, auxiliary_rails, pad, foot, settlement, layers, layers_span }
+    Built { name, rail, spacing, slab, sleeper, auxiliary_rails, pad, foot, settlement, layers, layers_span, crib }
 }
 
 fn under_the_pads(
@@ -168,7 +171,8 @@ fn without_support(form: &Record, field: &str, stands: &str, findings: &mut Find
     };
     let layered = |slot: &Slot| field == "slab" && matches!(&slot.value, Val::Pairs(pairs) if !pairs.is_empty());
     let has = |slot: &Slot| has(slot) || layered(slot);
-    for (name, nothing) in [("usp", "none"), ("settlement", "0 mm"), ("layers", "[]")] {
+    let fields = [("usp", "none"), ("settlement", "0 mm"), ("layers", "[]"), ("crib", "none"), ("shoulder", "none")];
+    for (name, nothing) in fields {
         if let Some(slot) = form.get(name).filter(|slot| has(slot)) {
             let message =
                 format!("trackform `{}` {stands} and has a `{name}`, which only sleepers on a support have", form.name);

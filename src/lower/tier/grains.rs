@@ -10,7 +10,7 @@ use crate::graph::{
 use crate::lower::bays::wanted;
 use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
 use crate::lower::tier::rig::cost::grains_under_track;
-use crate::lower::{Draft, track};
+use crate::lower::{Draft, crib, track};
 use crate::scenario::{Foot, Loading, Scenario, Seat, SleeperBody};
 use crate::schema::Reads;
 use crate::solvers::track::UnderPad;
@@ -209,7 +209,8 @@ fn stretches(scenario: &Scenario, beds: &[BedPlan], windows: &[[f64; 2]]) -> Vec
             seat.1.x - half >= start && seat.1.x + half.min(END) <= start + copies * cell + 1e-6
         };
         let sleepers = seats.iter().filter(fits).filter_map(|(number, seat)| standing(scenario, *number, seat, start));
-        Some(GrainStretch { bed, start, copies: copies as u32, sleepers: sleepers.collect() })
+        let crib = crib::planned(section);
+        Some(GrainStretch { bed, start, copies: copies as u32, sleepers: sleepers.collect(), crib })
     };
     windows.iter().filter_map(of).collect()
 }

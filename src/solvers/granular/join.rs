@@ -1,7 +1,7 @@
 //! Cells side by side along an open x: copies of one, or of several that were packed from other seeds (methods 1.7).
 
 use super::bed::Bed;
-use super::body::{BodyId, SPHERE};
+use super::body::{Body, BodyId, SPHERE};
 use super::build::Carried;
 use super::failure::Failure;
 use super::lanes::Real;
@@ -36,12 +36,7 @@ impl<R: Real> Bed<R> {
         cells.iter_mut().try_for_each(|cell| cell.refresh())?;
         let mut bed = cells[order[0]].clone();
         bed.domain = bed.domain.bays(length);
-        bed.records.clear();
-        bed.bodies.clear();
-        bed.owner.clear();
-        bed.index.clear();
-        bed.clumps.clear();
-        bed.arms.clear();
+        bed.clear_bodies();
         let mut bays = Vec::with_capacity(order.len());
         for (bay, &cell) in order.iter().enumerate() {
             let numbers = bed.take_over(cells, cell, first + bay as i32, |body| kept(bay, body));
@@ -69,29 +64,47 @@ impl<R: Real> Bed<R> {
         // bodies of one cell are equal in all its bays, and unlike those of any other cell
         let before: usize = cells[..number].iter().map(Bed::len).sum();
         let copied = |place: &u32| {
-            let (mut body, pebbles) = (cell.bodies[*place as usize], self.owner.len() as u32);
+            let body = &cell.bodies[*place as usize];
             if !kept(BodyId(body.id)) {
                 return None;
             }
-            let id = self.bodies.len() as u32;
-            let own = body.first as usize..body.first as usize + usize::from(body.pebbles);
-            if body.clump != SPHERE {
-                let mut clump = cell.clumps[body.clump as usize];
-                let arms = clump.arms as usize..clump.arms as usize + usize::from(body.pebbles);
-                clump.arms = self.arms.len() as u32;
-                self.arms.extend_from_slice(&cell.arms[arms]);
-                body.clump = self.clumps.len() as u32;
-                self.clumps.push(clump);
-            }
-            body.cell[0] = bay;
-            (body.id, body.rank, body.first) = (id, before as u32 + body.rank, pebbles);
-            self.records.extend_from_slice(&cell.records[own.clone()]);
-            self.owner.resize(self.owner.len() + own.len(), id);
-            self.index.push(id);
-            self.bodies.push(body);
-            Some(id)
+            let rank = before as u32 + body.rank;
+            let copy = self.copy_body(cell, *place);
+            (copy.cell[0], copy.rank) = (bay, rank);
+            Some(copy.id)
         };
         cell.index.iter().map(copied).collect()
+    }
+
+    /// Adds a copy of a body of another bed, known by its place there, with the next number.
+    pub(super) fn copy_body(&mut self, from: &Bed<R>, place: u32) -> &mut Body {
+        let (mut body, pebbles) = (from.bodies[place as usize], self.owner.len() as u32);
+        let id = self.bodies.len() as u32;
+        let own = body.first as usize..body.first as usize + usize::from(body.pebbles);
+        if body.clump != SPHERE {
+            let mut clump = from.clumps[body.clump as usize];
+            let arms = clump.arms as usize..clump.arms as usize + usize::from(body.pebbles);
+            clump.arms = self.arms.len() as u32;
+            self.arms.extend_from_slice(&from.arms[arms]);
+            body.clump = self.clumps.len() as u32;
+            self.clumps.push(clump);
+        }
+        (body.id, body.first) = (id, pebbles);
+        self.records.extend_from_slice(&from.records[own.clone()]);
+        self.owner.resize(self.owner.len() + own.len(), id);
+        self.index.push(id);
+        self.bodies.push(body);
+        &mut self.bodies[id as usize]
+    }
+
+    /// Takes all bodies out of the lists in which they stand; walls and histories stay.
+    pub(super) fn clear_bodies(&mut self) {
+        self.records.clear();
+        self.bodies.clear();
+        self.owner.clear();
+        self.index.clear();
+        self.clumps.clear();
+        self.arms.clear();
     }
 }
 

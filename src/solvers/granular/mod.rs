@@ -56,6 +56,7 @@ pub mod packing;
 mod prefetch;
 pub mod probe;
 mod record;
+mod remove;
 mod replicate;
 mod rest;
 pub mod rig;

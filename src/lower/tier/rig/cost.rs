@@ -2,11 +2,12 @@
 
 use super::{cycles, loads, period, rest_time};
 use crate::graph::{BedNode, Blocks, Cost, TestWork, Update, Work};
-use crate::lower::Draft;
 use crate::lower::bed::{confinement, width};
+use crate::lower::{Draft, crib};
 use crate::scenario::{Contact, Granular, Loading, Scenario, Section, Shape};
 use crate::solvers::granular::grains::Curve;
 use crate::solvers::granular::packing::lifts_that_fit;
+use crate::solvers::granular::rig::SOLID as POURED;
 use std::f64::consts::PI;
 
 /// Share of the volume that grains fill in a packed bed.
@@ -18,6 +19,8 @@ const PACKING_STEP: f64 = 0.25;
 const STAGE: f64 = 0.45;
 const LAST_STAGES: u32 = 3;
 const SET_DOWN: f64 = 0.15;
+/// Time, s, in which the grains of cribs are poured and come to rest, at the step of a test.
+const POURING: f64 = 1.0;
 /// Steps of a pebble a second on two cores, of clumps of three, while it is packed and tested (`docs/validation.md`).
 const PEBBLE_STEPS: [f64; 2] = [10e6, 20e6];
 /// Time on one core over that on two.
@@ -62,6 +65,14 @@ fn filling(scenario: &Scenario, section: &Section, area: f64) -> Filling {
     filling
 }
 
+/// Grains and pebbles of the top layer of a section in a space beside its sleepers, m3.
+fn beside(section: &Section, space: f64) -> [f64; 2] {
+    let top = section.layers.iter().find_map(|layer| layer.granular());
+    let Some((top, curve)) = top.and_then(|top| Some((top, top.grading.curve().ok()?))) else { return [0.0; 2] };
+    let grains = POURED * space / curve.mean_volume();
+    [grains, grains * pebbles_of(&top.shape)]
+}
+
 /// The estimate for a rig: good to a factor of two. One that has no bed is refused, and costs nothing.
 pub(super) fn of_rig(scenario: &Scenario, bed: Option<&BedNode>) -> Cost {
     let Some(bed) = bed else { return cost(0.0, TestWork::default()) };
@@ -69,15 +80,20 @@ pub(super) fn of_rig(scenario: &Scenario, bed: Option<&BedNode>) -> Cost {
     let [length, width] = bed.bed.numbers().plan;
     let copies = f64::from(bed.copies);
     let Filling { grains, pebbles, lifts, light, rest } = filling(scenario, section, length * width);
+    let rails = if scenario.solve.grains.both_rails { 2.0 } else { 1.0 };
+    let [beside_grains, beside_pebbles] = beside(section, rails * crib::space(scenario, 0, copies * length));
     let step = STEP * light;
     let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
     let loads = loads(scenario);
-    let test_steps = (SET_DOWN + (0.5 + cycles(&loads) as f64) * period(&loads, rest)) / step;
+    let pouring = if bed.crib.is_some() { POURING } else { 0.0 };
+    let test_steps = (SET_DOWN + pouring + (0.5 + cycles(&loads) as f64) * period(&loads, rest)) / step;
     let packings = scenario.solve.grains.repeats;
     // while a bed is packed half of it is there on average
     let [packing, testing] = [0.5 * packing_steps, copies * test_steps];
-    let seconds = f64::from(packings) * pebbles * (packing / PEBBLE_STEPS[0] + testing / PEBBLE_STEPS[1]);
-    let (grains, pebbles) = (copies * grains, copies * pebbles);
+    let steps_beside = beside_pebbles * test_steps / PEBBLE_STEPS[1];
+    let seconds =
+        f64::from(packings) * (pebbles * (packing / PEBBLE_STEPS[0] + testing / PEBBLE_STEPS[1]) + steps_beside);
+    let (grains, pebbles) = (copies * grains + beside_grains, copies * pebbles + beside_pebbles);
     let work = TestWork { grains, pebbles, time_step: step, packing_steps, test_steps, packings };
     cost(seconds, work)
 }
@@ -110,9 +126,12 @@ pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, length: f64)
     };
     let Filling { grains, pebbles, lifts, light, .. } = filling(scenario, section, length * width(scenario, number));
     let cell = filling(scenario, section, *section.spacing * width(scenario, number)).pebbles;
+    let [beside_grains, beside_pebbles] = beside(section, crib::space(scenario, number, length));
+    let (grains, pebbles) = (grains + beside_grains, pebbles + beside_pebbles);
     let time_step = TRACK_STEP * light;
     let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
-    let time = BUILDING + draft.blocks.as_ref().map_or(0.0, |blocks| passing(draft, blocks, length));
+    let building = BUILDING + if section.crib.is_some() { POURING } else { 0.0 };
+    let time = building + draft.blocks.as_ref().map_or(0.0, |blocks| passing(draft, blocks, length));
     let test_steps = time / time_step;
     let seconds = 0.5 * cell * packing_steps / PEBBLE_STEPS[0] + pebbles * test_steps / TRACK_PEBBLE_STEPS;
     cost(seconds, TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings: 1 })

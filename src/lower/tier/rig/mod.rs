@@ -5,9 +5,9 @@ mod refusals;
 
 use super::{ExpectedError, Proposal, Tier, edges};
 use crate::graph::{ActuatorsNode, BedNode, Model, Node, Schedule, SensorNode, SensorVolume, StandingBody, Tests};
-use crate::lower::Draft;
 use crate::lower::bed::{self, BedUse, beds, confinement};
 use crate::lower::blocks::COUNTS;
+use crate::lower::{Draft, crib};
 use crate::scenario::{Foot, Force, Given, Loading, RigLoad, Scenario, Seat, Section, SleeperBody, Target, Volume};
 use crate::schema::Reads;
 use crate::solvers::granular::packing::{GrainLayer, Recipe};
@@ -79,10 +79,13 @@ impl Tier for TestRig {
 impl TestRig {
     fn nodes(&self, scenario: &Scenario, mut bed: crate::graph::BedPlan) -> Vec<Node> {
         let confinement = confinement(scenario);
+        let crib = crib::note(&scenario.track.sections[0]);
         bed.notes.push(match confinement {
             Some(pressure) => format!("Its four sides give way under {} kPa.", number(pressure / 1e3)),
+            None if crib.is_some() => "The bed goes on periodically along the track.".into(),
             None => "The bed goes on periodically along the track; nothing lies beside or between the sleepers.".into(),
         });
+        bed.notes.extend(crib);
         let loads = loads(scenario);
         let rest = rest_time(rests(bed.numbers(), confinement));
         bed.notes.extend(driven(&loads, rest));
@@ -100,6 +103,7 @@ impl TestRig {
             copies,
             bodies,
             plate: pressed.map(|_| length * across),
+            crib: crib::planned(section),
             confinement,
             driven: forces.iter().any(|load| matches!(load, Load::Strain(_))),
             gravity: *scenario.solve.gravity,

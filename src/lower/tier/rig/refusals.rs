@@ -19,6 +19,7 @@ pub(super) fn refusals(scenario: &Scenario) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     one_bed(scenario, &mut found);
     let loads = loads(scenario);
+    no_crib_under_a_plate(scenario, &loads, &mut found);
     if let [first, second, ..] = loads.as_slice()
         && loads.iter().any(|load| load.on == Target::Bed)
     {
@@ -47,6 +48,17 @@ fn one_bed(scenario: &Scenario, found: &mut Vec<Diagnostic>) {
         let message = format!("a rig stands on one bed, and `{}` lies beside `{}`", second.name, first.name);
         let help = "keep one section, and run the other as a scene of its own";
         found.push(refused(message, second.length_origin.span(), "a second bed", help));
+    }
+}
+
+fn no_crib_under_a_plate(scenario: &Scenario, loads: &[RigLoad], found: &mut Vec<Diagnostic>) {
+    let plate = loads.iter().find(|load| load.on == Target::Bed);
+    let crib = scenario.track.sections.iter().find_map(|section| section.crib);
+    if let (Some(plate), Some(crib)) = (plate, crib) {
+        let message =
+            format!("`{}` presses with a plate over the whole bed, which leaves no `crib` to fill", plate.name);
+        let help = "write `crib = none`, or let the load act on sleepers";
+        found.push(refused(message, crib.height.origin.span(), "beside no sleeper", help));
     }
 }
 

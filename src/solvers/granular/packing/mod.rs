@@ -25,6 +25,7 @@ pub use describe::{BedState, LayerState, Stage, StageKind};
 pub use error::PackingError;
 pub use pack::pack;
 pub use packed::Packed;
+pub(super) use place::{Room, put, set_loose};
 pub use progress::Progress;
 pub use recipe::{GrainLayer, Packing, Recipe, Rest, lifts_that_fit};
 pub use store::StoredBed;

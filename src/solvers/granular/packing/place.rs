@@ -1,8 +1,11 @@
 //! Grains set loosely above a bed: by chance, the largest first, none touching another.
 
+use super::super::bed::{Bed, Placed};
 use super::super::clump::Template;
 use super::super::grains::{Grain, Random};
+use super::super::lanes::Real;
 use super::super::vector::Vec3;
+use super::recipe::GrainLayer;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 /// Solid share of the room in which places are sought first.
@@ -14,17 +17,21 @@ const GROWTH: f64 = 1.05;
 const MOST_GROWTHS: usize = 90;
 
 /// Room above a bed, m.
-pub(super) struct Room {
+pub(in super::super) struct Room<'a> {
     /// Along x and y, from 0, m.
     pub plan: [f64; 2],
     /// Whether it goes on along x and y; else walls stand at both ends.
     pub periodic: [bool; 2],
     /// What lies below.
     pub base: f64,
+    /// Area of the part of its plan where grains may be, m2.
+    pub area: f64,
+    /// Whether a ball at a place, of a radius, lies where grains may be.
+    pub free: &'a dyn Fn(&Vec3, f64) -> bool,
 }
 
 /// A grain in its place.
-pub(super) struct Loose {
+pub(in super::super) struct Loose {
     /// Scaled to its size.
     pub template: Template,
     /// Place of the centroid, m.
@@ -33,10 +40,10 @@ pub(super) struct Loose {
 }
 
 /// Places of all grains, and the level below which they lie, m; `None` where one of them is too large for the plan.
-pub(super) fn set_loose(
+pub(in super::super) fn set_loose(
     grains: &[Grain],
     templates: &[Template],
-    room: &Room,
+    room: &Room<'_>,
     random: &mut Random,
 ) -> Option<(Vec<Loose>, f64)> {
     let mut scaled: Vec<Template> = grains.iter().map(|grain| templates[grain.template].scaled(grain.size)).collect();
@@ -44,7 +51,7 @@ pub(super) fn set_loose(
     let solid: f64 = scaled.iter().map(|template| template.volume).sum();
     let widest = scaled.iter().flat_map(|t| &t.pebbles).map(|p| 2.0 * p.radius).fold(0.0, f64::max);
     let highest = scaled.iter().map(|t| 2.0 * t.bounding_radius()).fold(0.0, f64::max);
-    let mut height = (solid / (room.plan[0] * room.plan[1] * LOOSE)).max(highest);
+    let mut height = (solid / (room.area * LOOSE)).max(highest);
     let mut taken = Taken::new(room, widest.max(f64::MIN_POSITIVE));
     let mut placed = Vec::with_capacity(scaled.len());
     for template in scaled {
@@ -61,9 +68,24 @@ pub(super) fn set_loose(
     Some((placed, room.base + height))
 }
 
+/// Puts grains into a bed, falling.
+pub(in super::super) fn put<R: Real>(bed: &mut Bed<R>, loose: &[Loose], layer: &GrainLayer, surface: u16, fall: f64) {
+    for grain in loose {
+        let placed = Placed {
+            template: &grain.template,
+            centre: grain.centre,
+            attitude: grain.attitude,
+            density: layer.density,
+            surface,
+        };
+        let body = bed.add_clump(&placed);
+        bed.set_velocity(body, [0.0, 0.0, -fall], [0.0; 3]);
+    }
+}
+
 /// Pebbles that have their places, by cells as wide as the widest.
 struct Taken<'a> {
-    room: &'a Room,
+    room: &'a Room<'a>,
     cells: [usize; 2],
     edge: Vec3,
     /// Level by level.
@@ -71,7 +93,7 @@ struct Taken<'a> {
 }
 
 impl Taken<'_> {
-    fn new(room: &Room, widest: f64) -> Taken<'_> {
+    fn new<'a>(room: &'a Room<'a>, widest: f64) -> Taken<'a> {
         let cells = room.plan.map(|side| ((side / widest).floor() as usize).max(1));
         let edge = [room.plan[0] / cells[0] as f64, room.plan[1] / cells[1] as f64, widest];
         Taken { room, cells, edge, pebbles: Vec::new() }
@@ -98,7 +120,7 @@ impl Taken<'_> {
         let z = between(room.base + reach(2, -1.0), room.base + height - reach(2, 1.0), random)?;
         let centre = Vector3::new(x, y, z);
         let pebbles: Vec<(Vec3, f64)> = arms.iter().map(|(arm, r)| ((centre + arm).into(), *r)).collect();
-        if pebbles.iter().any(|pebble| self.meets(pebble)) {
+        if pebbles.iter().any(|pebble| !(room.free)(&pebble.0, pebble.1) || self.meets(pebble)) {
             return None;
         }
         pebbles.into_iter().for_each(|pebble| self.take(pebble));

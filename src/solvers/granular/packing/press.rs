@@ -1,6 +1,6 @@
 //! The plate that presses a bed, and the stages that it goes through.
 
-use super::super::bed::{Bed, Placed};
+use super::super::bed::Bed;
 use super::super::failure::Failure;
 use super::super::grains::{Grain, Random};
 use super::super::lanes::Real;
@@ -11,9 +11,9 @@ use super::super::walls::WallId;
 use super::describe::{BedState, Stage, StageKind};
 use super::error::PackingError;
 use super::pace::{Pace, SAFE};
-use super::place::{Loose, Room, set_loose};
+use super::place::{Room, put, set_loose};
 use super::progress::Progress;
-use super::recipe::{GrainLayer, Recipe};
+use super::recipe::Recipe;
 use nalgebra::Vector3;
 
 /// Steps between looks at forces and at the time step.
@@ -92,7 +92,13 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
     /// A lift of loose grains is laid on the bed and pressed.
     pub fn lay(&mut self, recipe: &Recipe, number: usize, lift: u32, grains: &[Grain]) -> Result<(), PackingError> {
         let layer = &recipe.layers[number];
-        let room = Room { plan: recipe.plan, periodic: [!recipe.ends, !recipe.walls], base: self.top() };
+        let room = Room {
+            plan: recipe.plan,
+            periodic: [!recipe.ends, !recipe.walls],
+            base: self.top(),
+            area: recipe.plan[0] * recipe.plan[1],
+            free: &|_, _| true,
+        };
         let mut random = chance(recipe, number, lift);
         let Some((loose, top)) = set_loose(grains, &layer.templates, &room, &mut random) else {
             return Err(PackingError::NoRoom { layer: layer.name.clone() });
@@ -258,21 +264,6 @@ impl<R: Real, T: FnMut(&Progress)> Waiting<R> for Pressing<'_, '_, R, T> {
 
 fn failed(stage: &StageKind, failure: Failure) -> PackingError {
     PackingError::Failure { stage: stage.clone(), failure }
-}
-
-/// Puts grains into a bed, falling.
-fn put<R: Real>(bed: &mut Bed<R>, loose: &[Loose], layer: &GrainLayer, surface: u16, fall: f64) {
-    for grain in loose {
-        let placed = Placed {
-            template: &grain.template,
-            centre: grain.centre,
-            attitude: grain.attitude,
-            density: layer.density,
-            surface,
-        };
-        let body = bed.add_clump(&placed);
-        bed.set_velocity(body, [0.0, 0.0, -fall], [0.0; 3]);
-    }
 }
 
 /// Numbers by chance of one lift.

@@ -137,7 +137,13 @@ fn loose_grains_touch_nothing() {
     let sample = curve.sample(0.01, 1).unwrap();
     let copies = grains(&sample, templates.len(), 1);
     for periodic in [false, true] {
-        let room = place::Room { plan: [0.3, 0.35], periodic: [true, periodic], base: 0.1 };
+        let room = place::Room {
+            plan: [0.3, 0.35],
+            periodic: [true, periodic],
+            base: 0.1,
+            area: 0.3 * 0.35,
+            free: &|_, _| true,
+        };
         let (loose, top) = place::set_loose(&copies, &templates, &room, &mut Random::new(7, 0)).unwrap();
         assert_eq!(loose.len(), copies.len());
         let pebbles: Vec<(usize, nalgebra::Vector3<f64>, f64)> = loose

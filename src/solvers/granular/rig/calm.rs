@@ -9,6 +9,8 @@ use super::error::{Resting, RigError, in_cycle};
 /// When sleepers are at rest: the bed carries them but for a hundredth of their force.
 pub(super) const AT_REST: Criterion =
     Criterion { unbalance: 2e-3, missed: 0.01, every: 400, looks: 3, longest: 6.0, look_first: false };
+/// When poured grains are calm enough for the next ones: as a lift of a bed is.
+pub(super) const POURED: Criterion = Criterion { unbalance: 0.01, ..AT_REST };
 /// Local damping meanwhile.
 pub(super) const DAMPING: f64 = 0.7;
 /// Inertia that may be added meanwhile, over all mass: forces at rest do not know it.
@@ -29,7 +31,7 @@ pub(super) fn calmed<R: Real, T>(
 }
 
 /// The error of a stage that has not come to rest.
-pub(super) fn restless(stage: Resting, look: &Look) -> RigError {
+pub(super) fn restless(stage: Resting, limit: f64, look: &Look) -> RigError {
     let &Look { unbalance, missed: uncarried, time, .. } = look;
-    RigError::Restless { stage, unbalance, limit: AT_REST.unbalance, uncarried, time }
+    RigError::Restless { stage, unbalance, limit, uncarried, time }
 }

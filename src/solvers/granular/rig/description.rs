@@ -1,5 +1,6 @@
 //! What a test is: the sleepers, what acts on them and what is kept.
 
+use super::filling::Filling;
 use super::sensor::Sensor;
 use super::specimen::Specimen;
 use serde::{Deserialize, Serialize};
@@ -10,6 +11,8 @@ pub struct Rig {
     pub sleepers: Vec<Sleeper>,
     /// Sides that give way under a pressure; the one sleeper is then a plate over all of the bed.
     pub specimen: Option<Specimen>,
+    /// Grains between and beside the sleepers; `None` leaves that space empty.
+    pub filling: Option<Filling>,
     /// Time of a cycle, s; of a history its length.
     pub period: f64,
     pub cycles: u64,

@@ -1,6 +1,7 @@
 //! Why a test has no answer.
 
 use super::super::failure::Failure;
+use super::super::grains::GradingError;
 use std::fmt;
 
 /// Why a test on a rig has no answer.
@@ -17,6 +18,10 @@ pub enum RigError {
     },
     /// A sleeper goes down as if nothing carried it.
     Sunk { sleeper: usize, depth: f64, cycle: u64 },
+    /// Grains for the cribs that find no place beside the sleepers.
+    NoRoom { layer: String },
+    /// A grading that gives no grains for the cribs.
+    Grading(GradingError),
     /// The motion of grains has run away.
     Failure { cycle: u64, failure: Failure },
 }
@@ -26,6 +31,8 @@ pub enum RigError {
 pub enum Resting {
     /// The sleepers under their own weight.
     Sleepers,
+    /// The grains poured between and beside the sleepers.
+    Crib,
     /// A specimen under the pressure on its sides.
     Specimen,
 }
@@ -34,6 +41,7 @@ impl fmt::Display for Resting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Resting::Sleepers => "sleepers set down",
+            Resting::Crib => "grains poured into the cribs",
             Resting::Specimen => "specimen under the pressure on its sides",
         })
     }
@@ -56,6 +64,12 @@ impl fmt::Display for RigError {
                 sleeper + 1,
                 1e3 * depth
             ),
+            RigError::NoRoom { layer } => write!(
+                f,
+                "a grain of `{layer}` finds no place between the sleepers or beside them: space the sleepers wider, or cut the \
+                 grading above"
+            ),
+            RigError::Grading(cause) => write!(f, "grains for the cribs: {cause}"),
             RigError::Failure { cycle: 0, failure } => write!(f, "as sleepers are set down: {failure}"),
             RigError::Failure { cycle, failure } => write!(f, "in cycle {cycle}: {failure}"),
         }

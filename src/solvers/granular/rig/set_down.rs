@@ -4,7 +4,7 @@ use super::super::bed::Bed;
 use super::super::failure::Failure;
 use super::super::lanes::Real;
 use super::super::motion::{Pose, Push, WallMotion};
-use super::super::rest::{self, Fading, Look, Waiting};
+use super::super::rest::{self, Criterion, Fading, Look, Waiting};
 use super::super::shape::Shape;
 use super::super::stride::Stride;
 use super::super::walls::WallId;
@@ -22,7 +22,7 @@ pub fn stand<R: Real>(
     tell: impl FnMut(f64),
 ) -> Result<Vec<WallId>, RigError> {
     let walls = place(bed, sleepers, gravity);
-    until_rest(bed, &walls, tell)?;
+    until_rest(bed, &walls, (Resting::Sleepers, &AT_REST), tell)?;
     Ok(walls)
 }
 
@@ -61,12 +61,17 @@ fn highest<R: Real>(bed: &Bed<R>, sleeper: &Sleeper) -> f64 {
     bed.pebbles().filter(|p| under(p.place, p.radius)).map(|p| p.place[2] + p.radius).fold(0.0, f64::max)
 }
 
-/// Runs until forces are in balance and the bed carries the sleepers. `tell` hears how far it is.
-pub(super) fn until_rest<R: Real>(bed: &mut Bed<R>, walls: &[WallId], tell: impl FnMut(f64)) -> Result<(), RigError> {
+/// Runs a stage until forces are in balance and the bed carries the sleepers. `tell` hears how far it is.
+pub(super) fn until_rest<R: Real>(
+    bed: &mut Bed<R>,
+    walls: &[WallId],
+    (stage, criterion): (Resting, &Criterion),
+    tell: impl FnMut(f64),
+) -> Result<(), RigError> {
     calmed(bed, |bed, stride| {
         let start = bed.time();
-        rest::until_rest(&mut Standing { bed, walls, stride, fading: Fading::default(), tell }, &AT_REST, start)
-            .map(|_| ())
+        let mut standing = Standing { bed, walls, stage, criterion, stride, fading: Fading::default(), tell };
+        rest::until_rest(&mut standing, criterion, start).map(|_| ())
     })
 }
 
@@ -74,6 +79,8 @@ pub(super) fn until_rest<R: Real>(bed: &mut Bed<R>, walls: &[WallId], tell: impl
 struct Standing<'s, R: Real, T> {
     bed: &'s mut Bed<R>,
     walls: &'s [WallId],
+    stage: Resting,
+    criterion: &'s Criterion,
     stride: Stride,
     fading: Fading,
     tell: T,
@@ -95,12 +102,12 @@ impl<R: Real, T: FnMut(f64)> Waiting<R> for Standing<'_, R, T> {
     }
 
     fn hear(&mut self, look: &Look) {
-        let times = (look.unbalance / AT_REST.unbalance).max(look.missed / AT_REST.missed);
+        let times = (look.unbalance / self.criterion.unbalance).max(look.missed / self.criterion.missed);
         (self.tell)(self.fading.share(times));
     }
 
     fn restless(&self, look: &Look) -> RigError {
-        restless(Resting::Sleepers, look)
+        restless(self.stage, self.criterion.unbalance, look)
     }
 
     fn failed(&self, failure: Failure) -> RigError {

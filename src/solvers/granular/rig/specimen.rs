@@ -188,7 +188,7 @@ impl<R: Real, L: Fn(&Bed<R>) -> f64, P: FnMut(&mut Bed<R>, f64), T: FnMut(f64)> 
     }
 
     fn restless(&self, look: &Look) -> RigError {
-        restless(Resting::Specimen, look)
+        restless(Resting::Specimen, CONSOLIDATED.unbalance, look)
     }
 
     fn failed(&self, failure: Failure) -> RigError {

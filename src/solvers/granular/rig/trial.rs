@@ -6,9 +6,10 @@ use super::super::motion::{Push, WallMotion};
 use super::super::stride::Stride;
 use super::super::walls::WallId;
 use super::answer::{Cycle, CycleSample};
-use super::calm::DAMPING;
+use super::calm::{AT_REST, DAMPING};
+use super::crib::fill;
 use super::description::{Load, Rig};
-use super::error::{RigError, in_cycle};
+use super::error::{Resting, RigError, in_cycle};
 use super::sensor::SensorReading;
 use super::set_down::{motion, place, until_rest};
 use super::specimen::{Size, SpecimenState};
@@ -64,11 +65,14 @@ pub(super) struct Current {
 }
 
 impl<'a, R: Real> Trial<'a, R> {
-    /// Sets the sleepers down and lets them come to rest. `tell` hears the share of the longest time that this may take.
+    /// Sets the sleepers down, fills the cribs and lets all come to rest. `tell` hears the share of the longest time that this may take.
     pub fn new(mut bed: Bed<R>, rig: &'a Rig, mut tell: impl FnMut(f64)) -> Result<Self, RigError> {
         let before = bed.steps();
         let walls = place(&mut bed, &rig.sleepers, rig.gravity);
-        until_rest(&mut bed, &walls, &mut tell)?;
+        until_rest(&mut bed, &walls, (Resting::Sleepers, &AT_REST), &mut tell)?;
+        if let Some(filling) = &rig.filling {
+            fill(&mut bed, (&rig.sleepers, &walls), filling, &mut tell)?;
+        }
         let size = consolidated(&mut bed, rig, &walls, tell)?;
         let rest = walls.iter().map(|wall| bed.wall(*wall).pose(bed.domain()).position.z).collect();
         let state = TrialState {

@@ -1,10 +1,12 @@
 //! Sleepers on small beds: what they press on the bed, how far they go, and that nothing depends on threads or pauses.
 
-use super::super::measure::Region;
-use super::super::packing::{GrainLayer, Packing, Recipe, Rest, pack};
-use super::super::{Bed, DashpotMode, Surface, clump::Template, grains::Curve};
 use super::*;
+use crate::solvers::granular::measure::Region;
+use crate::solvers::granular::packing::{GrainLayer, Packing, Recipe, Rest, pack};
+use crate::solvers::granular::{Bed, DashpotMode, Surface, clump::Template, grains::Curve};
 use std::sync::OnceLock;
+
+mod crib;
 
 /// Spheres of these sizes on a plan, in a box with smooth walls or in a cell with rough ones.
 fn recipe(plan: [f64; 2], thickness: f64, sizes: [f64; 2], friction: f64, boxed: bool) -> Recipe {
@@ -51,6 +53,7 @@ fn rig(load: Load, cycles: u64) -> Rig {
     Rig {
         sleepers: vec![sleeper],
         specimen: None,
+        filling: None,
         period: 0.04,
         cycles,
         gravity: 9.81,
@@ -152,6 +155,7 @@ fn specimen(friction: f64) -> (Bed<f32>, Rig) {
     let rig = Rig {
         sleepers: vec![plate],
         specimen: Some(Specimen { floor: recipe.floor(), sides: recipe.sides().unwrap(), pressure: 100e3 }),
+        filling: None,
         period: 0.9,
         cycles: 1,
         gravity: 9.81,
@@ -212,7 +216,7 @@ fn a_test_that_lost_a_list_is_refused() {
     }
     let whole = serde_json::to_value(trial.store()).unwrap();
     let mut refused = 0;
-    for list in super::super::packing::tests::lists(&whole) {
+    for list in crate::solvers::granular::packing::tests::lists(&whole) {
         let mut lacking = whole.clone();
         *lacking.pointer_mut(&list).unwrap() = serde_json::json!([]);
         let Ok(stored) = serde_json::from_value::<StoredTrial<f32>>(lacking) else { continue };
