@@ -85,8 +85,9 @@ pub(super) struct Books {
     beyond: Vec<Option<Spring>>,
     /// Stiffness of the support of every carried foot, N/m.
     stiffness: Vec<f64>,
-    /// Each carried foot at rest, before the first axle and now.
-    first: Vec<Reading>,
+    /// Level at which the support of each carried foot carried nothing when the track was built, m.
+    as_built: Vec<f64>,
+    /// Each carried foot at rest now.
     rest: Vec<Reading>,
     /// Level of every support without load below the level as built, m, of the seats.
     settlement: Vec<f64>,

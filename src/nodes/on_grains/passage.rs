@@ -148,17 +148,11 @@ impl Live {
             );
             return Err(NodeError::Other { node: "grains".into(), why });
         }
-        let first = coupled.readings();
+        let rest = coupled.readings();
+        let as_built = rest.iter().zip(&stiffness).map(|(rest, k)| rest.level - rest.force / k).collect();
         let settlement = parts.grains.settlement.clone();
-        let books = Books {
-            beyond,
-            stiffness,
-            rest: first.clone(),
-            first,
-            rate: vec![0.0; settlement.len()],
-            settlement,
-            revision: 1,
-        };
+        let books =
+            Books { beyond, stiffness, as_built, rest, rate: vec![0.0; settlement.len()], settlement, revision: 1 };
         Ok(Live { coupled, books })
     }
 
@@ -229,12 +223,14 @@ impl Live {
         }
         let started = &parts.grains.settlement;
         let carried = coupled.rail.carried();
-        let settled: Vec<f64> = (0..carried.len())
-            .map(|foot| {
-                let (first, k) = (books.first[foot], books.stiffness[foot]);
-                watched[foot].unloaded_level(books.rest[foot], k) - (first.level - first.force / k)
-            })
-            .collect();
+        let settled = |(foot, seat): (usize, &usize)| {
+            let seen = watched[foot].unloaded_level(books.rest[foot], books.stiffness[foot]);
+            // a support that no wheel has reached lies where it did, and no higher than the sleeper over it
+            let unseen =
+                || (books.as_built[foot] + books.settlement[*seat] - started[*seat]).max(books.rest[foot].level);
+            seen.unwrap_or_else(unseen) - books.as_built[foot]
+        };
+        let settled: Vec<f64> = carried.iter().enumerate().map(settled).collect();
         for (seat, settlement) in books.settlement.iter_mut().enumerate() {
             let settled = match carried.binary_search(&seat) {
                 Ok(foot) => settled[foot],
