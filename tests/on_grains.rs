@@ -168,8 +168,8 @@ fn zone_has_grains_where_the_law_differs_from_the_far_field() {
     assert_eq!(full, 24);
     let found = ["20 %", "2 %", "0.2 %"].map(|tolerance| sleepers(tolerance, &[]));
     assert!(found.windows(2).all(|pair| pair[0].1 <= pair[1].1), "less tolerance needs more bays: {found:?}");
-    assert!(found[0].1 >= 4 && found[0].1 < found[2].1 && found[2].1 < full, "{found:?}");
-    assert!(found[1].0.starts_with("grains under "), "{found:?}");
+    assert!(found[0].1 >= 3 && found[0].1 < found[2].1 && found[2].1 < full, "{found:?}");
+    assert!(found[1].0.starts_with("grains from -"), "{found:?}");
     // the pass left out: all of the window
     assert_eq!(sleepers("5 %", &["bays"]).1, full);
 }

@@ -84,7 +84,7 @@ fn with_a_law_fields_of_grains_are_told_once_for_each_reason() {
                 .to_owned(),
             1,
         ),
-        ("no run of this version reads `tolerance` yet".to_owned(), 1),
+        ("`tolerance` acts only where grains lie under some bays of a track: `substructure = zone`".to_owned(), 1),
     ];
     assert_eq!(found, expected, "{}", shown(&compiled));
     assert!(idle(&compiled).iter().all(|d| !d.is_error()));
@@ -169,7 +169,7 @@ fn a_study_over_a_field_that_does_nothing_is_told_once() {
     let found: Vec<&Diagnostic> = plan.diagnostics.iter().filter(|d| d.code == Code::E0429).collect();
     // the window of the scene is told there
     assert_eq!(found.len(), 1, "{found:?}");
-    assert!(found[0].message.contains("reads `tolerance` yet (6 of 6 points"), "{found:?}");
+    assert!(found[0].message.contains("`substructure = zone` (6 of 6 points"), "{found:?}");
     assert_eq!(base.sources.text(found[0].labels[0].span), "solve.tolerance");
 }
 

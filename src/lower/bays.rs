@@ -11,7 +11,10 @@ const EDGE: usize = 3;
 /// Length of track beside a transition that gets grains where no law can tell, m.
 const NEAR: f64 = 10.0;
 
-const READS: Reads = Reads { fields: &["solve.tolerance"], acts_where: "with `substructure = zone`" };
+const READS: Reads = Reads {
+    fields: &["solve.tolerance"],
+    acts_where: "where grains lie under some bays of a track: `substructure = zone`",
+};
 
 /// Chooses the bays.
 pub(super) struct Bays;
@@ -44,10 +47,13 @@ impl Pass for Bays {
         let tolerance = scenario.solve.grains.tolerance;
         let changes = changes(scenario, settlement);
         draft.bays = windows.iter().map(|window| chosen(scenario, &changes, tolerance, *window)).collect();
-        let count = |windows: &[[f64; 2]]| (0..changes.len()).filter(|seat| on_any(scenario, windows, *seat)).count();
+        let spans = |windows: &[[f64; 2]]| {
+            let span = |[a, b]: &[f64; 2]| format!("{} to {} m", number(rounded(*a)), number(rounded(*b)));
+            windows.iter().map(span).collect::<Vec<_>>().join(", ")
+        };
         let beyond = |seat: &usize| on_any(scenario, &windows, *seat) && !on_any(scenario, &draft.bays, *seat);
         let most = (0..changes.len()).filter(beyond).map(|seat| changes[seat]).fold(0.0, f64::max);
-        let what = format!("grains under {} of the {} sleepers of the window", count(&draft.bays), count(&windows));
+        let what = format!("grains from {} of the window from {}", spans(&draft.bays), spans(&windows));
         let why = format!(
             "by law `{}` no sleeper beyond settles otherwise than the far field by more than {} % of the largest settlement (`tolerance`), \
              {} % at most; the outermost {EDGE} on grains tell how springs beyond settle",
@@ -84,6 +90,11 @@ fn changes(scenario: &Scenario, settlement: &[f64]) -> Vec<f64> {
         }
     }
     changes
+}
+
+/// To a millimetre.
+fn rounded(x: f64) -> f64 {
+    (1e3 * x).round() / 1e3
 }
 
 fn is_inside([left, right]: [f64; 2], x: f64) -> bool {

@@ -274,7 +274,7 @@ pub(super) const APPROACH_SLAB: Kind = Kind {
     fields: &[
         required("thickness", number("m", 0.1, 1.0), ""),
         required("youngs_modulus", number("GPa", 5.0, 60.0), "of the plate, such as concrete"),
-        unread(required("density", number("kg/m^3", 1000.0, 3500.0), "of the plate")),
+        required("density", number("kg/m^3", 1000.0, 3500.0), "of the plate"),
         required("depth", number("m", 0.1, 5.0), "of its top below the sleepers"),
         default(
             "hinged",

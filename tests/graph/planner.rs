@@ -120,7 +120,7 @@ fn a_pass_changes_the_plan_and_can_be_left_out() {
     assert!(usual == 2 && plan.contains("pass coarse: left out\n"), "{plan}");
     assert_eq!(usual, elements(&Planner::default()).0);
     let needed = Planner::default().with_pass(Box::new(Coarse)).without("tier").err().unwrap();
-    assert_eq!((needed.name.as_str(), needed.optional), ("tier", vec!["share", "record", "coarse"]));
+    assert_eq!((needed.name.as_str(), needed.optional), ("tier", vec!["bays", "share", "record", "coarse"]));
 }
 
 #[test]

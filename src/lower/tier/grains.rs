@@ -37,6 +37,7 @@ const READS: Reads = Reads {
         "solve.grain_step",
         "track.base",
         "usp.bedding_modulus",
+        "approach_slab.density",
     ],
     acts_where: "where grains lie under a track: `substructure = cells`, `zone` or `full`",
 };

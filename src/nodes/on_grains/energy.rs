@@ -38,13 +38,15 @@ impl Coupled {
         }
     }
 
-    /// The account so far.
+    /// The account so far. That of the rail is half a step ahead of the others: what its feet did in that half is taken back.
     pub fn energy(&self) -> PassageEnergy {
         let rail = self.rail.energy().unwrap_or_default();
+        let half = 0.5 * self.time_step();
+        let ahead = |(foot, push): (usize, &f64)| half * push * self.rail.underside(foot).velocity;
         let mut sum = PassageEnergy {
             wheels: rail.wheels,
             lost_in_track: rail.dissipated - rail.supports,
-            interfaces: rail.pushes,
+            interfaces: rail.pushes + self.pushes.iter().enumerate().map(ahead).sum::<f64>(),
             unaccounted: rail.residual(),
             ..PassageEnergy::default()
         };

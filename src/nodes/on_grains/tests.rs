@@ -1,6 +1,5 @@
 //! The coupled step against closed forms: columns of spheres as springs, a ball on an elastic block, energy under a moving force.
 
-use super::energy::PassageEnergy;
 use super::soil::{Plan, SoilBelow};
 use super::step::{Coupled, Spent, StandingBed};
 use crate::graph::{SoilLayer, SoilNode};
@@ -190,16 +189,8 @@ fn energy_is_kept_from_the_wheel_to_the_soil() {
         let mut coupled = Columns { soil, dashpot: 0.1, time_step, ..Columns::plain(1) }.build().unwrap();
         coupled.come_to_rest(2.0, &mut |_| {}).unwrap();
         coupled.watch_energy();
-        // the accounts stand half a step apart: what rings on is in one before the other, and goes out in the mean
-        let (mut steps, mut sums) = (0.0, [0.0; 2]);
-        let start = coupled.rail.time();
-        pass(&mut coupled, |coupled| {
-            if coupled.rail.time() - start > 0.07 {
-                let now = coupled.energy();
-                (steps, sums) = (steps + 1.0, [sums[0] + now.interfaces, sums[1] + now.unaccounted]);
-            }
-        });
-        PassageEnergy { interfaces: sums[0] / steps, unaccounted: sums[1] / steps, ..coupled.energy() }
+        pass(&mut coupled, |_| {});
+        coupled.energy()
     };
     for youngs_modulus in [50e6, 500e6] {
         let (coarse, fine) = (run(20e-6, youngs_modulus), run(10e-6, youngs_modulus));
@@ -243,7 +234,6 @@ fn a_ball_bounces_on_an_elastic_block_a_thousand_times() {
         worst = worst.max((grains.residual() + soil.residual() + grains.walls + soil.external).abs() / start);
     }
     let soil = below.soil.energy();
-    println!("{bounces} bounces, {} s: {worst}", bed.time());
     assert!(soil.kinetic + soil.strain > 1e-3 * start, "the block takes part: {} J", soil.kinetic + soil.strain);
     assert!(worst < 0.01, "{worst} of the ball's energy");
 }
@@ -283,7 +273,6 @@ fn soft_and_stiff_soil_run() {
         [1e3 * most, 1e6 * coupled.time_step()]
     };
     let found = [5e6, 50e6, 500e6, 50e9, 5e12].map(sink);
-    println!("{found:?}");
     assert!(found.windows(2).all(|pair| pair[0][0] > pair[1][0]), "stiffer soil sinks less: {found:?}");
     assert!(found[4][1] < 20.0, "what is as good as rigid takes shorter steps: {found:?}");
     // a rigid floor

@@ -44,13 +44,16 @@ pub(super) struct Look {
 pub struct Fading {
     /// Logarithm of how far from rest the first look found it.
     first: Option<f64>,
+    /// What was told last: it never goes back.
+    told: f64,
 }
 
 impl Fading {
     /// The share of the way that is done where it is so many times as restless as what counts as rest.
     pub fn share(&mut self, times: f64) -> f64 {
         let far = times.ln().max(0.0);
-        1.0 - (far / *self.first.get_or_insert(far.max(1.0))).min(1.0)
+        self.told = self.told.max(1.0 - (far / *self.first.get_or_insert(far.max(1.0))).min(1.0));
+        self.told
     }
 }
 
