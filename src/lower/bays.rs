@@ -130,7 +130,7 @@ fn chosen(scenario: &Scenario, changes: &[f64], tolerance: f64, [left, right]: [
 
 fn near(scenario: &Scenario, [left, right]: [f64; 2]) -> [f64; 2] {
     let mut inside = scenario.track.transitions.iter().map(|t| t.x).filter(|x| is_inside([left, right], *x));
-    match (inside.next(), inside.last()) {
+    match (inside.next(), inside.next_back()) {
         (Some(first), last) => [left.max(first - NEAR), right.min(last.unwrap_or(first) + NEAR)],
         (None, _) => [left, right],
     }

@@ -12,9 +12,9 @@ fn filled(crib: Crib) -> (Bed<f32>, Sleeper, WallId, Filling) {
     let filling = crib.filling(&recipe, 1).unwrap();
     let sleeper = Sleeper { place: [0.3, 0.0], size: [0.3, 1.0, 0.2], mass: 150.0, load: Load::None };
     let mut bed = bed();
-    let walls = stand(&mut bed, &[sleeper.clone()], 9.81, |_| {}).unwrap();
+    let walls = stand(&mut bed, std::slice::from_ref(&sleeper), 9.81, |_| {}).unwrap();
     let mut told = Vec::new();
-    fill(&mut bed, (&[sleeper.clone()], &walls), &filling, |share| told.push(share)).unwrap();
+    fill(&mut bed, (std::slice::from_ref(&sleeper), &walls), &filling, |share| told.push(share)).unwrap();
     assert!(told.is_sorted() && told.last() == Some(&1.0), "{told:?}");
     (bed, sleeper, walls[0], filling)
 }
@@ -82,7 +82,7 @@ fn a_crib_too_narrow_for_its_grains_is_told() {
     let filling = Crib { shoulder: 0.0, ..CRIB }.filling(&recipe, 1).unwrap();
     let sleeper = Sleeper { place: [0.3, 0.0], size: [0.57, 1.2, 0.2], mass: 150.0, load: Load::None };
     let mut bed = super::bed();
-    let walls = stand(&mut bed, &[sleeper.clone()], 9.81, |_| {}).unwrap();
+    let walls = stand(&mut bed, std::slice::from_ref(&sleeper), 9.81, |_| {}).unwrap();
     let error = fill(&mut bed, (&[sleeper], &walls), &filling, |_| {}).unwrap_err();
     assert!(
         error == RigError::NoRoom { layer: "stone".into() } && error.to_string().contains("finds no place"),
