@@ -115,9 +115,13 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
         (Some(Loading::Static(_) | Loading::Rig(_)), _) => Schedule::Static { loads: Vec::<PointLoad>::new() },
         _ => return Err("nothing acts on the track".into()),
     };
-    let length = windows.iter().map(|[a, b]| b - a).sum();
     let soil = soil(scenario);
     let stretches = if beds.is_empty() { Vec::new() } else { stretches(scenario, &beds, &windows) };
+    // a window reaches over the structure too, where no grains lie
+    let length: f64 = match stretches.is_empty() {
+        true => windows.iter().map(|[a, b]| b - a).sum(),
+        false => stretches.iter().map(|s| f64::from(s.copies) * beds[s.bed].numbers().plan[0]).sum(),
+    };
     if runs {
         refusals.extend(refused::refusals(scenario, &stretches));
         refusals.extend(soil::refusals(scenario, &windows));

@@ -110,9 +110,9 @@ fn cost(seconds: f64, work: TestWork) -> Cost {
 /// Step of grains under a track over sqrt(m / k) of the lightest, and steps of a pebble a second on two cores, soil and rail included
 /// (`docs/validation.md`, a track on grains).
 const TRACK_STEP: f64 = 0.3;
-const TRACK_PEBBLE_STEPS: f64 = 18e6;
+const TRACK_PEBBLE_STEPS: f64 = 16e6;
 /// Way that trains run beside the grains, m, and time of a rest after a passage and of the stages of building, s.
-const BESIDE: f64 = 20.0;
+const BESIDE: f64 = 12.0;
 const REST: f64 = 0.25;
 const BUILDING: f64 = 0.7;
 
