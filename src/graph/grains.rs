@@ -248,8 +248,8 @@ pub struct SoilNode {
     pub gravity: f64,
 }
 
-/// Layers over a part of the track: a wedge, an embankment that is made stronger, the slab of an approach. They reach as deep as those beside
-/// them; the lowest goes on where they end before.
+/// A part of the track with other layers of soil: a wedge, a reinforced embankment, an approach slab. It is as deep as the soil beside it.
+/// The lowest layer goes on where the layers are thinner than that.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SoilBlock {
     /// Chainage of its ends, m.

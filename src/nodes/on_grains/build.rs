@@ -13,8 +13,8 @@ use crate::solvers::track::{Foot, Leapfrog, Spring, Track, TrackLevel};
 use crate::store::{Beds, recipe_hash};
 use std::sync::Arc;
 
-/// Share that is taken of the step that each grain bears by itself, for contacts that come between two looks at inertia. Without such looks
-/// 0.95 of it was above what the network bears once sleepers are loaded, and the run stopped there.
+/// The time step over the step that each grain bears by itself. The rest is for contacts that form between two looks at inertia.
+/// At 0.95, and with one look a passage, loaded sleepers made the step too long and the run stopped.
 pub const OF_STRIDE: f64 = 0.9;
 
 /// Grows whenever the same parts are built otherwise than before, or kept in another form.

@@ -120,8 +120,8 @@ fn lines(from: f64, to: f64, size: f64) -> Vec<f64> {
     (0..=count).map(|line| from + (to - from) * line as f64 / count as f64).collect()
 }
 
-/// The materials of the layers, each once, and the number of the one in each element by its place along the track and upwards: the one at its
-/// middle.
+/// The materials of the layers, each once, and the material of each element by its place along the track and upwards. An element has the
+/// material at its middle.
 fn materials(start: f64, node: &SoilNode, x: &[f64], z: &[f64]) -> (Vec<Material>, Vec<Vec<usize>>) {
     let mut found: Vec<Material> = Vec::new();
     let mut number = |layer: &SoilLayer| {

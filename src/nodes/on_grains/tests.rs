@@ -116,8 +116,8 @@ fn middle() -> f64 {
     SPACING * (0.5 * SLEEPERS as f64)
 }
 
-/// A column of equal contacts is a spring of one of them over their number: seat loads and levels under a wheel that stands are those of the
-/// track on springs.
+/// A column of n equal contacts has the stiffness of one contact over n. A wheel stands on the rail: seat loads and levels are those of the
+/// track on such springs.
 #[test]
 fn columns_of_spheres_are_springs() {
     for spheres in [1, 3] {
@@ -180,8 +180,8 @@ fn stand_under(coupled: &mut Coupled, (x, force): (f64, f64)) {
     }
 }
 
-/// Energy of rail, spheres and soil under a force that passes: what one part gives the other takes, and what is left unexplained falls with
-/// the square of the step.
+/// Rail, spheres and soil keep the work of a wheel that passes. Nothing is lost between them, and the unexplained part falls with the square
+/// of the step.
 #[test]
 fn energy_is_kept_from_the_wheel_to_the_soil() {
     let run = |time_step: f64, youngs_modulus: f64| {
@@ -255,8 +255,8 @@ fn a_sleeper_over_a_void_of_20_mm_hangs() {
     assert!(most[SLEEPERS / 2 - 1] > 40e3 && most[SLEEPERS / 2 - 1] < 80e3, "{most:?}");
 }
 
-/// Soil a hundred times softer or stiffer than the contacts, and as good as rigid: the step of the soil goes with it, and the answer stays
-/// finite.
+/// Soil from very soft to almost rigid. The time step adapts, the sleeper sinks less on stiffer soil, and the stiffest soil gives the answer
+/// of a rigid floor.
 #[test]
 fn soft_and_stiff_soil_run() {
     let sink = |youngs_modulus: f64| {

@@ -128,7 +128,6 @@ fn a_strip_footing_fails_as_prandtl_says() {
 
 /// Meshes twice as fine: 5.130 and 5.141.
 #[test]
-#[ignore = "a minute"]
 fn a_finer_footing_comes_nearer() {
     for (formulation, half) in [(Formulation::MeanStrain, 12), (Formulation::MixedDiscretisation, 8)] {
         let found = footing(formulation, half, 4000);
