@@ -230,6 +230,10 @@ pub struct SleeperOnGrains {
     /// Mass of the rail that it carries, kg.
     pub rail_mass: f64,
     pub pad: Option<UnderPad>,
+    /// Whether it stands in the bay between the window and grains that are held at the end of a bed. They make that bay stiffer, so what is
+    /// read there is not used: its support answers and settles as its neighbours.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub buffer: bool,
 }
 
 /// The layers below the grains.

@@ -148,8 +148,13 @@ fn of_grains(grains: &GrainsNode) -> Vec<String> {
         let bed = &grains.beds[stretch.bed];
         let [length, width] = bed.numbers().plan;
         let end = stretch.start + length * f64::from(stretch.copies);
+        let buffers = stretch.sleepers.iter().filter(|sleeper| sleeper.buffer).count();
+        let buffers = match buffers {
+            0 => String::new(),
+            count => format!(" ({count} of them over a buffer at the end, which is not read)"),
+        };
         lines.push(format!(
-            "grains from {} m to {} m: {} cells of `{}` of {} m x {} m, {} sleepers",
+            "grains from {} m to {} m: {} cells of `{}` of {} m x {} m, {} sleepers{buffers}",
             number(stretch.start),
             number(rounded_to_mm(end)),
             stretch.copies,

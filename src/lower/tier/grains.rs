@@ -11,7 +11,7 @@ use crate::lower::bays::wanted;
 use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
 use crate::lower::tier::rig::cost::grains_under_track;
 use crate::lower::{Draft, crib, track};
-use crate::scenario::{Foot, Loading, Scenario, Seat, SleeperBody};
+use crate::scenario::{Foot, Loading, Scenario, Seat, Section, SleeperBody, Track};
 use crate::schema::Reads;
 use crate::solvers::track::UnderPad;
 
@@ -120,11 +120,11 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
     // a window reaches over the structure too, where no grains lie
     let length: f64 = match stretches.is_empty() {
         true => windows.iter().map(|[a, b]| b - a).sum(),
-        false => stretches.iter().map(|s| f64::from(s.copies) * beds[s.bed].numbers().plan[0]).sum(),
+        false => extents(&beds, &stretches).iter().map(|[a, b]| b - a).sum(),
     };
     if runs {
         refusals.extend(refused::refusals(scenario, &stretches));
-        refusals.extend(soil::refusals(scenario, &windows));
+        refusals.extend(soil::refusals(scenario, &extents(&beds, &stretches)));
     } else {
         refusals.extend(waiting::refusal(scenario));
     }
@@ -192,33 +192,54 @@ fn headway(scenario: &Scenario) -> Option<f64> {
     scenario.solve.grains.continuous.then(|| lengths.sum::<Option<f64>>()).flatten()
 }
 
-/// Cells over each window, as many as fit, and the sleepers that stand on them with half a bay before them.
+/// Cells over each window, as many as fit, one more as a buffer at each end that is no end of the section, and the sleepers that stand on
+/// them with half a bay before them.
 fn stretches(scenario: &Scenario, beds: &[BedPlan], windows: &[[f64; 2]]) -> Vec<GrainStretch> {
-    let track = &scenario.track;
-    let of = |[left, right]: &[f64; 2]| -> Option<GrainStretch> {
-        let inside = |seat: &&(usize, &Seat)| {
-            seat.1.is_ballasted() && seat.1.sleeper.is_some() && (*left..=*right).contains(&seat.1.x)
-        };
-        let seats: Vec<(usize, &Seat)> = track.seats.iter().enumerate().filter(|seat| inside(&seat)).collect();
-        let section = &track.sections[seats.first()?.1.section];
-        let bed = beds.iter().position(|bed| bed.section == section.name).unwrap_or(0);
-        // grains end where their section does
-        let [start, end] = [left.max(section.start), right.min(section.end)];
-        let [cell, _] = beds[bed].numbers().plan;
-        let copies = ((end - start) / cell + 1e-6).floor().max(1.0);
-        // the structure is where it is, and the other end gives way
-        let at_left = track.sections.first().is_some_and(|first| first.start < section.start) && section.start >= *left;
-        let start = if at_left { start } else { end - copies * cell };
-        let fits = |seat: &&(usize, &Seat)| {
-            let half = 0.5 * *section.spacing - 1e-6;
-            seat.1.x - half >= start && seat.1.x + half.min(END) <= start + copies * cell + 1e-6
-        };
-        let sleepers = seats.iter().filter(fits).filter_map(|(number, seat)| standing(scenario, *number, seat, start));
-        let crib = crib::planned(section);
-        Some(GrainStretch { bed, start, copies: copies as u32, sleepers: sleepers.collect(), crib })
-    };
-    windows.iter().filter_map(of).collect()
+    windows.iter().filter_map(|window| stretch(scenario, beds, *window, windows)).collect()
 }
+
+fn stretch(scenario: &Scenario, beds: &[BedPlan], window: [f64; 2], windows: &[[f64; 2]]) -> Option<GrainStretch> {
+    let track = &scenario.track;
+    let seats = || track.seats.iter().enumerate().filter(|(_, seat)| seat.is_ballasted() && seat.sleeper.is_some());
+    let (_, first) = seats().find(|(_, seat)| (window[0]..=window[1]).contains(&seat.x))?;
+    let section = &track.sections[first.section];
+    let bed = beds.iter().position(|bed| bed.section == section.name).unwrap_or(0);
+    let [cell, _] = beds[bed].numbers().plan;
+    let read = whole_cells(track, section, window, cell);
+    // the cells of neighbouring windows and their buffers stay apart
+    let free = |x: f64| !windows.iter().any(|[a, b]| [*a, *b] != window && (a - cell..=b + cell).contains(&x));
+    let before = read[0] - cell > section.start - TINY && free(read[0] - cell);
+    let behind = read[1] + cell < section.end + TINY && free(read[1] + cell);
+    let all = [read[0] - if before { cell } else { 0.0 }, read[1] + if behind { cell } else { 0.0 }];
+    let fits = |seat: &Seat, [start, end]: [f64; 2]| {
+        let half = 0.5 * *section.spacing;
+        seat.x - half > start - TINY && seat.x + half.min(END) < end + TINY
+    };
+    let sleepers = seats().filter(|(_, seat)| fits(seat, all)).filter_map(|(number, seat)| {
+        Some(SleeperOnGrains { buffer: !fits(seat, read), ..standing(scenario, number, seat, all[0])? })
+    });
+    let copies = ((all[1] - all[0]) / cell).round() as u32;
+    Some(GrainStretch { bed, start: all[0], copies, sleepers: sleepers.collect(), crib: crib::planned(section) })
+}
+
+/// Chainages between which as many cells fit as a window and a section have room for, one at least: they begin at the structure, and the
+/// other end gives way.
+fn whole_cells(track: &Track, section: &Section, [left, right]: [f64; 2], cell: f64) -> [f64; 2] {
+    let [start, end] = [left.max(section.start), right.min(section.end)];
+    let length = ((end - start) / cell + TINY).floor().max(1.0) * cell;
+    let structure_at_left =
+        track.sections.first().is_some_and(|first| first.start < section.start) && section.start >= left;
+    if structure_at_left { [start, start + length] } else { [end - length, end] }
+}
+
+/// Chainages between which the grains of each stretch lie, m.
+fn extents(beds: &[BedPlan], stretches: &[GrainStretch]) -> Vec<[f64; 2]> {
+    let end = |stretch: &GrainStretch| stretch.start + f64::from(stretch.copies) * beds[stretch.bed].numbers().plan[0];
+    stretches.iter().map(|stretch| [stretch.start, end(stretch)]).collect()
+}
+
+/// Lengths closer than this are one, m.
+const TINY: f64 = 1e-6;
 
 /// Room that a sleeper needs before the end of the grains, m.
 const END: f64 = 0.2;
@@ -241,6 +262,7 @@ fn standing(scenario: &Scenario, number: usize, seat: &Seat, start: f64) -> Opti
         mass: **mass,
         rail_mass: *rail.mass * scenario.track.bay(number),
         pad,
+        buffer: false,
     })
 }
 

@@ -36,13 +36,14 @@ pub(super) fn soil(scenario: &Scenario) -> SoilNode {
     }
 }
 
-/// Why the layers along a track cannot lie under its grains: the bed is one all along a window, and a slab needs soil around it.
-pub(super) fn refusals(scenario: &Scenario, windows: &[[f64; 2]]) -> Vec<Diagnostic> {
+/// Why the layers along a track cannot lie under its grains: each of the beds, given by its ends (m), is one from end to end, and a slab needs
+/// soil around it.
+pub(super) fn refusals(scenario: &Scenario, beds: &[[f64; 2]]) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (number_of, section) in scenario.track.sections.iter().enumerate() {
         let grains = granular(&section.layers, 0.5 * (section.start + section.end));
         for part in scenario.track.ground(number_of) {
-            let inside = windows.iter().any(|[left, right]| part.start < *right && part.end > *left);
+            let inside = beds.iter().any(|[left, right]| part.start < right - TINY && part.end > left + TINY);
             if !inside || grains.is_empty() {
                 continue;
             }

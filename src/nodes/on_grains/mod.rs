@@ -2,7 +2,7 @@
 //!
 //! Between two exchanges the wheel forces of the plane track run over the rail of this model, and what they leave goes back: settlement
 //! of every support, and how stiff it is (the paper's Fig. 3). Sleepers beyond the grains stand on springs; their supports settle as the
-//! median of the outer third of the sleepers on grains.
+//! median of the outer third of the sleepers on grains, and so do those in the last bay before grains that are held.
 
 mod build;
 mod energy;

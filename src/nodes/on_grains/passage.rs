@@ -5,7 +5,7 @@ use super::reading::{Reading, Watched};
 use super::step::Coupled;
 use super::wheels::WheelRun;
 use super::{Books, Live, Stage, Telling};
-use crate::graph::StiffnessFrom;
+use crate::graph::{SleeperOnGrains, StiffnessFrom};
 use crate::nodes::{Load, NodeError};
 use crate::solvers::granular::measure::unbalance;
 use crate::solvers::granular::{Fading, Stride};
@@ -139,7 +139,7 @@ impl Live {
         copy.come_to_rest(LONGEST, &mut |share| tell(Stage::Rail, share))?;
         let stiffness = copy.press(parts, &mut |share| tell(Stage::StaticLoad, share))?;
         drop(copy);
-        let beyond = parts.beyond(median(stiffness.clone()));
+        let beyond = parts.beyond(median(parts.read(&stiffness)));
         coupled.rail = parts.rail(&beyond, coupled.time_step())?;
         let away = coupled.come_to_rest(LONGEST, &mut |share| tell(Stage::Rail, share))?;
         if away > 1.0 {
@@ -150,6 +150,7 @@ impl Live {
         }
         let rest = coupled.readings();
         let as_built = rest.iter().zip(&stiffness).map(|(rest, k)| rest.level - rest.force / k).collect();
+        let stiffness = parts.with_buffers(stiffness);
         let settlement = parts.grains.settlement.clone();
         let books =
             Books { beyond, stiffness, as_built, rest, rate: vec![0.0; settlement.len()], settlement, revision: 1 };
@@ -158,7 +159,8 @@ impl Live {
 
     /// Presses a copy as it is now.
     pub fn press(&mut self, parts: Parts<'_>, tell: &mut Telling<'_>) -> Result<(), NodeError> {
-        self.books.stiffness = self.coupled.clone().press(parts, &mut |share| tell(Stage::StaticLoad, share))?;
+        let stiffness = self.coupled.clone().press(parts, &mut |share| tell(Stage::StaticLoad, share))?;
+        self.books.stiffness = parts.with_buffers(stiffness);
         self.books.revision += 1;
         Ok(())
     }
@@ -219,6 +221,7 @@ impl Live {
             for (stiffness, watched) in books.stiffness.iter_mut().zip(watched) {
                 *stiffness = watched.stiffness().unwrap_or(*stiffness);
             }
+            books.stiffness = parts.with_buffers(std::mem::take(&mut books.stiffness));
             books.revision += 1;
         }
         let started = &parts.grains.settlement;
@@ -230,13 +233,11 @@ impl Live {
                 || (books.as_built[foot] + books.settlement[*seat] - started[*seat]).max(books.rest[foot].level);
             seen.unwrap_or_else(unseen) - books.as_built[foot]
         };
-        let settled: Vec<f64> = carried.iter().enumerate().map(settled).collect();
+        let settled = parts.with_buffers(carried.iter().enumerate().map(settled).collect());
         for (seat, settlement) in books.settlement.iter_mut().enumerate() {
             let settled = match carried.binary_search(&seat) {
                 Ok(foot) => settled[foot],
-                Err(_) if parts.track.seats[seat].is_ballasted() => {
-                    median(nearest_third(parts, carried, &settled, seat))
-                }
+                Err(_) if parts.track.seats[seat].is_ballasted() => parts.as_near(&settled, seat),
                 Err(_) => 0.0,
             };
             *settlement = started[seat] + settled;
@@ -247,14 +248,35 @@ impl Live {
     }
 }
 
-/// The values of the third of the carried feet that is nearest to a seat.
-fn nearest_third(parts: Parts<'_>, carried: &[usize], values: &[f64], seat: usize) -> Vec<f64> {
-    let x = |seat: usize| parts.track.seats[seat].x;
-    let mut near: Vec<(f64, f64)> =
-        carried.iter().zip(values).map(|(other, value)| ((x(*other) - x(seat)).abs(), *value)).collect();
-    near.sort_by(|a, b| a.0.total_cmp(&b.0));
-    near.truncate(carried.len().div_ceil(3));
-    near.into_iter().map(|(_, value)| value).collect()
+impl Parts<'_> {
+    fn sleepers(&self) -> impl Iterator<Item = &SleeperOnGrains> {
+        self.grains.stretches.iter().flat_map(|stretch| &stretch.sleepers)
+    }
+
+    /// Those of the values of the carried feet that are read: not of the buffers.
+    fn read(&self, values: &[f64]) -> Vec<f64> {
+        let read = self.sleepers().zip(values).filter(|(sleeper, _)| !sleeper.buffer);
+        read.map(|(_, value)| *value).collect()
+    }
+
+    /// The values of the carried feet, where those over buffers have what is read near them.
+    fn with_buffers(&self, mut values: Vec<f64>) -> Vec<f64> {
+        for (foot, sleeper) in self.sleepers().enumerate().filter(|(_, sleeper)| sleeper.buffer) {
+            values[foot] = self.as_near(&values, sleeper.seat);
+        }
+        values
+    }
+
+    /// Median of the values of those carried feet that are read and among the nearest third to a seat.
+    fn as_near(&self, values: &[f64], seat: usize) -> f64 {
+        let x = |seat: usize| self.track.seats[seat].x;
+        let read = self.sleepers().zip(values).filter(|(sleeper, _)| !sleeper.buffer);
+        let mut near: Vec<(f64, f64)> =
+            read.map(|(sleeper, value)| ((x(sleeper.seat) - x(seat)).abs(), *value)).collect();
+        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        near.truncate(near.len().div_ceil(3));
+        median(near.into_iter().map(|(_, value)| value).collect())
+    }
 }
 
 pub(super) fn median(mut values: Vec<f64>) -> f64 {

@@ -3,7 +3,7 @@
 use super::build::Parts;
 use super::extremes::{Extremes, Recorded};
 use super::passage::{AFTER, HOLD, REACH};
-use super::reading::{Reading, Watched};
+use super::reading::{LIFTED, Reading, Watched};
 use super::{GrainGround, Live, Stage, Telling};
 use crate::graph::{Blocks, Record, Runner, Train};
 use crate::nodes::{NodeError, PassageOutcome, RailPoint, Substructure, Unloaded, UnloadedSeat};
@@ -76,11 +76,12 @@ impl Live {
             // of a sleeper on springs they were made to carry the track at level 0
             let lifted = parts.dead_weight(number) / books.stiffness_of(number, rail.carried()).max(f64::MIN_POSITIVE);
             let gap = settlement[number] - parts.grains.settlement[number] - lifted - sleeper_level;
+            let force = view.contact_force(number).unwrap_or(0.0);
             UnloadedSeat {
                 settlement: settlement[number],
                 sleeper_level,
-                void: if seat.is_ballasted() { gap.max(0.0) } else { 0.0 },
-                contact_force: view.contact_force(number).unwrap_or(0.0),
+                void: if seat.is_ballasted() && force <= LIFTED { gap.max(0.0) } else { 0.0 },
+                contact_force: force,
                 seat_load: view.seat_load(number),
                 support_stiffness: books.stiffness_of(number, rail.carried()),
             }
