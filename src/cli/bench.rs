@@ -41,6 +41,9 @@ struct SceneSteps {
     /// Also runs the first passage whole, with an account of its energy: what rail, grains and soil lose, and what no part explains
     #[arg(long)]
     energy: bool,
+    /// Also lets the track lie for a second without a train and tells how far its sleepers move
+    #[arg(long)]
+    idle: bool,
     /// Threads; all cores where it is not given. The motion does not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -152,7 +155,7 @@ impl SceneSteps {
     }
 
     fn measure(&self, graph: &Graph, origins: &Origins) -> Outcome {
-        let measured = execute::Measured { steps: self.steps, energy: self.energy };
+        let measured = execute::Measured { steps: self.steps, energy: self.energy, idle: self.idle };
         let (mut bar, mut shown) = (progress::Patient::seen("building the track on grains"), None);
         let beds = pack::beds(self.cache.as_deref());
         let timed = execute::time_steps(graph, &beds, measured, &mut |stage, share| {
@@ -199,6 +202,9 @@ fn text_of_steps(m: &TimedSteps) -> String {
     );
     if let Some(energy) = &m.energy {
         out += &text_of_energy(energy);
+    }
+    if let Some(moved) = m.idle_m {
+        out += &format!("\nin a second without a train no sleeper moves by more than {:.3} um\n", 1e6 * moved);
     }
     out
 }

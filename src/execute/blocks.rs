@@ -1,12 +1,12 @@
 //! The schedule of blocks: static state, passage, settlement, block by block, until the axles are done (paper, Fig. 3).
 
-use super::event::{Between, Checkpoint, Event, Listener, ScheduleState, tell_stage};
+use super::event::{Between, Checkpoint, Event, Listener, ScheduleState, tell_of_trains, tell_stage};
 use super::exchange::{Exchange, Work};
 use super::machine::{Ending, Machine, RunError};
 use super::pair::{Pair, settling};
 use super::step::{BlockMeasures, Done};
 use crate::graph::{Blocks, Clock, Control, Graph, Model, Runner, Update};
-use crate::nodes::{Builders, Forces, Kept, NodeError, PassageOutcome, Request, Stage, Superstructure};
+use crate::nodes::{Builders, Forces, Kept, NodeError, PassageOutcome, Request, Superstructure, Told};
 use crate::store::Beds;
 use std::ops::ControlFlow;
 
@@ -99,11 +99,15 @@ macro_rules! going {
 impl Run<'_, '_> {
     fn go(&mut self, axles: u64) -> Going<()> {
         let mut here = self.pair.arrive(axles, self.pair.ground.settlement())?;
-        if self.done == 0 {
+        // what goes on in the middle of a block has told all that comes before it
+        let mut told = self.pair.ground.is_underway();
+        if self.done == 0 && !told {
             tell!(self, Event::Laws { axles: 0, settlement: &self.pair.ground.settlement_by_law() });
         }
         loop {
-            going!(self.show(&here));
+            if !std::mem::take(&mut told) {
+                going!(self.show(&here));
+            }
             if here.axles >= self.pair.blocks.total {
                 break;
             }
@@ -129,19 +133,21 @@ impl Run<'_, '_> {
     /// Tamps what is due, lets one block pass, and arrives at its end.
     fn block(&mut self, mut here: Exchange) -> Going<Exchange> {
         let mut work = BlockMeasures::default();
-        if self.pair.blocks.tamped_after(here.axles).next().is_some() {
+        if !self.pair.ground.is_underway() && self.pair.blocks.tamped_after(here.axles).next().is_some() {
             work.add(&here, Work::default());
             here = going!(self.tamp(here.axles));
         }
         let revision = self.pair.ground.responses().revision;
         let listener = &mut *self.listener;
-        let tell = &mut |stage: Stage, share: f64| {
-            // a run ends between two blocks only
-            let _ = tell_stage(listener, stage, share);
+        let began = (here.axles, self.done, self.pair.control);
+        let follow = &mut |told: Told<'_>| tell_of_trains(listener, began, told);
+        let done = match self.pair.blocks.adaptive() {
+            Some((tolerance, cap)) => self.pair.adaptive(&mut here, tolerance, cap, follow),
+            None => self.pair.prescribed(&mut here, follow),
         };
-        let Done { block, measured, next } = match self.pair.blocks.adaptive() {
-            Some((tolerance, cap)) => self.pair.adaptive(&mut here, tolerance, cap, tell)?,
-            None => self.pair.prescribed(&mut here, tell)?,
+        let Done { block, measured, next } = match done {
+            Err(RunError::Node { cause, .. }) if *cause == NodeError::Stopped => return Ok(ControlFlow::Break(())),
+            done => done?,
         };
         work.add(&here, Work::default());
         let after = self.pair.ground.settlement();

@@ -2,7 +2,7 @@
 
 use super::BlockMeasures;
 use crate::graph::{BedRecipe, Block, Clock, Control, Runner};
-use crate::nodes::{NodeError, PassageOutcome, Stage, TestState, Tested, Unloaded};
+use crate::nodes::{NodeError, PassageOutcome, Stage, TestState, Tested, Told, Unloaded};
 use crate::solvers::granular::Bed;
 use crate::solvers::granular::packing::Progress;
 use crate::store::FoundBed;
@@ -39,7 +39,7 @@ pub enum Event<'a> {
     Tested { tested: &'a Tested, bed: &'a Bed<f32> },
     /// Something that only a schedule of another program knows.
     Custom { clock: Clock, what: &'a serde_json::Value },
-    /// Between two steps of the schedule: the state may be kept here.
+    /// Between two steps of the schedule, or where trains on grains are under way: the state may be kept here.
     Between(Between<'a>),
     /// Steps of the schedule done, and to be done in all; the latter is an estimate that changes while the run goes on.
     Progress { done: u64, all: u64 },
@@ -49,6 +49,25 @@ pub enum Event<'a> {
 pub(super) fn tell_stage(listener: &mut dyn Listener, stage: Stage, share: f64) -> ControlFlow<()> {
     let progress = Progress { stage: stage.to_string(), share, bodies: 0, steps: 0 };
     listener.hear(&Event::Packing(&progress))
+}
+
+/// Tells what trains on grains do in a block that began after so many axles, with so many blocks done and this control: how far they are,
+/// and the states from which they can be gone on with.
+pub(super) fn tell_of_trains(
+    listener: &mut dyn Listener,
+    (axles, blocks, control): (u64, usize, Control),
+    told: Told<'_>,
+) -> ControlFlow<()> {
+    match told {
+        Told::Stage(stage, share) => tell_stage(listener, stage, share),
+        Told::State(ground) => {
+            let state = || {
+                let state = ScheduleState::Blocks { blocks, control, ground: ground()? };
+                Ok(Checkpoint { clock: Clock::Axles(axles), state })
+            };
+            listener.hear(&Event::Between(Between { is_last: false, state: &state }))
+        }
+    }
 }
 
 /// A moment at which a run can be interrupted and taken up again.

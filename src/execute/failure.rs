@@ -37,7 +37,7 @@ fn of_node(clock: Clock, cause: &NodeError, graph: &Graph, origins: &Origins) ->
         NodeError::Soil(_) => said(Code::E0801).help("give the soil more strength, or less load"),
         NodeError::Foreign { .. } => said(Code::E0803).help("run with `--force`"),
         NodeError::NoBuilder { .. } => said(Code::E0604),
-        NodeError::NoGround | NodeError::NoTrain | NodeError::Other { .. } => said(Code::E0801),
+        NodeError::NoGround | NodeError::NoTrain | NodeError::Stopped | NodeError::Other { .. } => said(Code::E0801),
     }
 }
 

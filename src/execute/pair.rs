@@ -3,7 +3,7 @@
 use super::exchange::Exchange;
 use super::machine::RunError;
 use crate::graph::{Block, Blocks, Clock, Control, Runner, TrackNode};
-use crate::nodes::{Load, Substructure, Superstructure, Telling, TrackSystem};
+use crate::nodes::{Following, Load, Substructure, Superstructure, TrackSystem};
 use crate::solvers::track::Direction::{Backward, Forward};
 use std::ops::Range;
 
@@ -61,9 +61,9 @@ impl Pair<'_> {
     }
 
     /// Lets a block pass, after which the track stands on what the ground answers then. A ground that fails is left as it was.
-    pub fn advance(&mut self, axles: u64, loads: &[Load<'_>], tell: &mut Telling<'_>) -> Result<(), RunError> {
+    pub fn advance(&mut self, axles: u64, loads: &[Load<'_>], follow: &mut Following<'_>) -> Result<(), RunError> {
         let mark = self.ground.mark();
-        if let Err(cause) = self.ground.advance_and_tell(loads, tell) {
+        if let Err(cause) = self.ground.advance_and_follow(loads, follow) {
             self.ground.roll_back(mark);
             return Err(RunError::node(Clock::Axles(axles), cause));
         }

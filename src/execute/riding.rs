@@ -1,6 +1,6 @@
 //! The schedule of trains that ride on a rail over grains: nothing is exchanged between blocks, which only say when the state is told.
 
-use super::event::{Checkpoint, Event, Listener, ScheduleState, tell_stage};
+use super::event::{Checkpoint, Event, Listener, ScheduleState, tell_of_trains, tell_stage};
 use super::machine::{Ending, Machine, RunError};
 use super::step::BlockMeasures;
 use super::{Between, blocks::restored};
@@ -34,22 +34,23 @@ pub(super) fn run(
         let trains = blocks.wanted(axles).unwrap_or(1).max(1);
         let block = blocks.block(axles, trains);
         let shown = blocks.recorded.binary_search(&axles).is_ok();
+        let told = ground.is_underway();
         let unloaded = ground.at_rest().map_err(at(axles))?;
-        if shown && listener.hear(&Event::Rest { axles, state: &unloaded }).is_break() {
+        if shown && !told && listener.hear(&Event::Rest { axles, state: &unloaded }).is_break() {
             return Ok(Ending::Stopped);
         }
         let before = ground.settlement();
         let runs =
             if last { blocks.leading().into_iter().map(|runner| (runner, 1)).collect() } else { block.runs.clone() };
-        let mut passages: Vec<PassageOutcome> = Vec::new();
-        for (runner, trains) in runs {
+        let mut passages = ground.begin_rides().map_err(at(axles))?;
+        for (runner, trains) in runs.into_iter().skip(passages.len()) {
             let records = shown.then_some(machine.graph.records.as_slice());
             let riders = Riders { blocks, runner, trains, axles, records };
-            let mut tell = |stage: Stage, share: f64| {
-                // a run ends between two blocks only
-                let _ = tell_stage(listener, stage, share);
+            let began = (axles, done as usize, Control::default());
+            let passage = match ground.ride(&riders, &mut |told| tell_of_trains(listener, began, told)) {
+                Err(NodeError::Stopped) => return Ok(Ending::Stopped),
+                passage => passage.map_err(at(axles))?,
             };
-            let passage = ground.ride(&riders, &mut tell).map_err(at(axles))?;
             if shown
                 && passages.is_empty()
                 && listener.hear(&Event::Passage { axles, runner, passage: &passage }).is_break()
@@ -58,6 +59,7 @@ pub(super) fn run(
             }
             passages.push(passage);
         }
+        ground.end_rides().map_err(at(axles))?;
         let passages: Vec<&PassageOutcome> = passages.iter().collect();
         let after = if last { before.clone() } else { ground.settlement() };
         let steps = passages.iter().map(|passage| passage.time_steps).sum();

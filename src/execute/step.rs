@@ -5,7 +5,7 @@ use super::machine::RunError;
 use super::oscillation::{amplification, sawtooth};
 use super::pair::Pair;
 use crate::graph::Block;
-use crate::nodes::Telling;
+use crate::nodes::Following;
 
 /// What the exchange of a block was worth, and what it took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -43,7 +43,7 @@ const UNSTABLE: f64 = 2.0;
 impl Pair<'_> {
     /// A block of the length that the scene prescribes, with the forces of its start. Where it overshoots it is done again
     /// in halves until it is far from that, down to one train.
-    pub fn prescribed(&mut self, here: &mut Exchange, tell: &mut Telling<'_>) -> Result<Done, RunError> {
+    pub fn prescribed(&mut self, here: &mut Exchange, follow: &mut Following<'_>) -> Result<Done, RunError> {
         let wanted = self.blocks.wanted(here.axles).unwrap_or(1);
         let mut measured = BlockMeasures::default();
         loop {
@@ -68,7 +68,7 @@ impl Pair<'_> {
                 continue;
             }
             self.control.lengthen(trains, wanted);
-            self.advance(here.axles, &loads, tell)?;
+            self.advance(here.axles, &loads, follow)?;
             return Ok(Done { block, measured, next: Some(next) });
         }
     }
@@ -95,7 +95,7 @@ impl Pair<'_> {
         here: &mut Exchange,
         tolerance: f64,
         cap: Option<f64>,
-        tell: &mut Telling<'_>,
+        follow: &mut Following<'_>,
     ) -> Result<Done, RunError> {
         let mut measured = BlockMeasures::default();
         let mut most = self.blocks.trains_left(here.axles);
@@ -110,7 +110,7 @@ impl Pair<'_> {
             let settled = difference(&whole, &here.settlement);
             if trains == 1 {
                 measured.sawtooth = sawtooth(&self.runs, &settled);
-                self.advance(here.axles, &loads, tell)?;
+                self.advance(here.axles, &loads, follow)?;
                 return Ok(Done { block, measured, next: None });
             }
 
@@ -140,7 +140,7 @@ impl Pair<'_> {
                 continue;
             }
             measured.error = if trains > 2 { error } else { 0.0 };
-            self.second_order(here, &between, trains, tell)?;
+            self.second_order(here, &between, trains, follow)?;
             measured.sawtooth = sawtooth(&self.runs, &difference(&self.settlement(), &here.settlement));
             return Ok(Done { block, measured, next: None });
         }
@@ -152,12 +152,12 @@ impl Pair<'_> {
         here: &Exchange,
         between: &Exchange,
         trains: u64,
-        tell: &mut Telling<'_>,
+        follow: &mut Following<'_>,
     ) -> Result<(), RunError> {
         let one = self.blocks.block(here.axles, 1);
         let others = self.blocks.block(here.axles + one.axles, trains - 1);
         let first = here.loads(&self.blocks.parts(&one));
-        self.advance(here.axles, &[first, between.loads(&self.blocks.parts(&others))].concat(), tell)
+        self.advance(here.axles, &[first, between.loads(&self.blocks.parts(&others))].concat(), follow)
     }
 
     /// Trains of the next block: as many as settle the aim of the control with the forces of the start. Of unlike trains their order

@@ -15,7 +15,12 @@ pub struct Measured {
     pub steps: u64,
     /// Whether a whole passage is run too, with an account of its energy.
     pub energy: bool,
+    /// Whether the track lies for a second without a train too, to see how far it moves.
+    pub idle: bool,
 }
+
+/// Time without a train, s.
+const IDLE: f64 = 1.0;
 
 /// Builds a track on grains, lets its first train come and times steps under its wheels. Fails where no grains lie under a track with
 /// trains.
@@ -44,5 +49,6 @@ fn timed(machine: &Machine<'_>, measured: Measured, tell: &mut Telling<'_>) -> R
     let load = Load { passage: &passage, trains: 1 };
     let mut timed = ground.time_steps(&load, measured.steps)?;
     timed.energy = if measured.energy { Some(ground.energy_of(&load, tell)?) } else { None };
+    timed.idle_m = if measured.idle { Some(ground.idle(IDLE, tell)?) } else { None };
     Ok(timed)
 }

@@ -18,7 +18,9 @@ pub use build::Builders;
 pub use error::NodeError;
 pub use grains::{BedUnderActuators, TestState, Tested};
 pub use law::LawGround;
-pub use on_grains::{GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling, TimedSteps};
+pub use on_grains::{
+    Following, GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling, TimedSteps, Told,
+};
 pub use outcome::{
     PassageOutcome, RailPlace, RailPoint, Sample, SampledPart, SeatForces, SeatOutcome, Unloaded, UnloadedSeat,
     WheelHistories,
@@ -113,9 +115,15 @@ pub trait Substructure: Send + Sync {
     /// Lets trains pass. After an error the state is that of the last mark only once it is rolled back.
     fn advance(&mut self, loads: &[Load<'_>]) -> Result<(), NodeError>;
 
-    /// The same; `tell` hears how far it is.
-    fn advance_and_tell(&mut self, loads: &[Load<'_>], _tell: &mut Telling<'_>) -> Result<(), NodeError> {
+    /// The same; `follow` hears how far it is and may keep the state on the way. Where a state of before is restored, the same trains go on
+    /// from there.
+    fn advance_and_follow(&mut self, loads: &[Load<'_>], _follow: &mut Following<'_>) -> Result<(), NodeError> {
         self.advance(loads)
+    }
+
+    /// Whether it was restored in the middle of a block of trains. Until the block is done it answers as when it began.
+    fn is_underway(&self) -> bool {
+        false
     }
 
     /// The present state, to be rolled back to.

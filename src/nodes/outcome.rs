@@ -2,9 +2,10 @@
 
 use crate::graph::{History, TrackNode};
 use crate::solvers::settlement::Peak;
+use serde::{Deserialize, Serialize};
 
 /// The track without a train.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Unloaded {
     /// Every rail node, left to right.
     pub rail: Vec<RailPoint>,
@@ -13,7 +14,7 @@ pub struct Unloaded {
     pub profile: Vec<RailPlace>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RailPoint {
     /// Chainage, m.
     pub x: f64,
@@ -24,7 +25,7 @@ pub struct RailPoint {
 }
 
 /// A place on the rail where wheels run, four to a bay and one over each seat.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RailPlace {
     /// Chainage, m.
     pub x: f64,
@@ -36,7 +37,7 @@ pub struct RailPlace {
     pub stiffness: f64,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct UnloadedSeat {
     /// Permanent downward move of the support, m.
     pub settlement: f64,
@@ -53,7 +54,7 @@ pub struct UnloadedSeat {
 }
 
 /// What one passage did to the track.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PassageOutcome {
     pub seats: Vec<SeatOutcome>,
     /// For every seat what each wheel of the train does to its support at most.
@@ -83,7 +84,7 @@ pub struct PassageOutcome {
 }
 
 /// Wheels of a train over a passage, at equal intervals.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WheelHistories {
     /// Time between two instants, s.
     pub interval: f64,
@@ -108,7 +109,7 @@ impl WheelHistories {
 }
 
 /// Forces of sleepers on their supports at equal intervals, R(t).
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SeatForces {
     /// Time between two values, s.
     pub interval: f64,
@@ -117,7 +118,7 @@ pub struct SeatForces {
 }
 
 /// Extremes of one seat over a passage.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct SeatOutcome {
     /// N.
     pub max_rail_seat_load: f64,
@@ -129,7 +130,7 @@ pub struct SeatOutcome {
 }
 
 /// One value of a history.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// s.
     pub time: f64,
@@ -142,7 +143,7 @@ pub struct Sample {
 }
 
 /// The part of the track or of the train whose history a sample is of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SampledPart {
     /// Index of a seat.
     Seat(usize),

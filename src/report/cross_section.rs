@@ -5,7 +5,7 @@ use super::number::plain;
 use super::svg::{Anchor, Frame, Svg};
 use super::symbols::{draw_dimension, draw_stones, draw_usp};
 use super::view::{WIDTH, seat_depth};
-use crate::scenario::{Groundwork, Scenario, Seat, Section, SleeperBody, Usp};
+use crate::scenario::{Groundwork, Loading, Material, Scenario, Seat, Section, SleeperBody, Usp};
 
 /// Sections side by side, at most.
 const COLUMNS: usize = 3;
@@ -110,9 +110,8 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place
     svg.text("small halo", (place.centre, place.top - 34.0), Anchor::Middle, &name);
     let foot = seat_depth(section);
     let mut depth = foot + height;
-    // beside the sleeper the bed reaches up to its top
     if let Some(first) = layers.first() {
-        svg.rect(class(&first.material), place.area(-half, half, foot + 0.25 * height, depth));
+        draw_beside(svg, scenario, cut, place, (&first.material, depth));
     }
     let mut named = f64::NEG_INFINITY;
     for layer in layers {
@@ -166,6 +165,28 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place
     }
     draw_widths(svg, place, &[(2.0 * half, bottom + 50.0)]);
     bottom + 58.0
+}
+
+/// What lies beside the sleeper, down to its underside, m. Grains are drawn as far as the scene has them there; where nothing computes with
+/// grains, the ballast that a track has.
+fn draw_beside(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place, (ballast, foot): (&Material, f64)) {
+    let (half, height) = (half_width(scenario, cut.sleeper), cut.sleeper.height);
+    let Some(crib) = &cut.section.crib else {
+        let rig = matches!(scenario.loading, Some(Loading::Rig(_)));
+        if !rig && !scenario.solve.grains.tier.has_grains() {
+            svg.rect(class(ballast), place.area(-half, half, foot - 0.75 * height, foot));
+        }
+        return;
+    };
+    let reach = half.min(0.5 * cut.sleeper.length + crib.beyond());
+    let area = place.area(-reach, reach, foot - *crib.height, foot);
+    svg.titled_rect(class(ballast), area, "crib");
+    draw_stones(svg, area, place.scale);
+    let mut text = format!("crib {} mm", plain(1e3 * *crib.height, 3));
+    if crib.beyond() > 0.0 {
+        text += &format!(", shoulder {} m", plain(crib.beyond(), 3));
+    }
+    svg.text("small halo", (place.centre, area.y - 5.0), Anchor::Middle, &text);
 }
 
 /// A rail of that height on its pad, which ends at the seat, m.

@@ -90,6 +90,8 @@ pub struct RunRecorder<'a> {
 /// Time between two checkpoints at least, and as a multiple of what the last one took: they cost a twentieth of a run at most.
 const KEEP: Duration = Duration::from_secs(2);
 const SHARE: u32 = 20;
+/// What checkpoints write in the mean at most: those of a track on grains have 100 MB, and a night has many of them.
+const BYTES_A_SECOND: u64 = 1 << 20;
 
 impl<'a> RunRecorder<'a> {
     /// A recorder that writes nothing while the run goes on.
@@ -150,8 +152,10 @@ impl<'a> RunRecorder<'a> {
             self.written = self.histories.len();
         }
         let checkpoint = between.checkpoint().map_err(|cause| ResultsError::unwritable(directory.path(), cause))?;
-        directory.write_checkpoint(&Saved { checkpoint, tables: self.tables.clone(), histories: self.kept.clone() })?;
-        self.due = Some(Instant::now() + KEEP.max(SHARE * started.elapsed()));
+        let saved = Saved { checkpoint, tables: self.tables.clone(), histories: self.kept.clone() };
+        let bytes = directory.write_checkpoint(&saved)?;
+        let of_size = Duration::from_secs(bytes as u64 / BYTES_A_SECOND);
+        self.due = Some(Instant::now() + KEEP.max(SHARE * started.elapsed()).max(of_size));
         Ok(())
     }
 

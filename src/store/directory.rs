@@ -110,10 +110,12 @@ impl<D: Disk> Directory<D> {
         self.finished.as_ref()
     }
 
-    /// Replaces the checkpoint by `state`, at once. Fails where a number of it is not finite.
-    pub fn write_checkpoint<T: Serialize + DeserializeOwned>(&self, state: &T) -> Result<(), StoreError> {
+    /// Replaces the checkpoint by `state`, at once, and gives its size in bytes. Fails where a number of it is not finite.
+    pub fn write_checkpoint<T: Serialize + DeserializeOwned>(&self, state: &T) -> Result<usize, StoreError> {
         let path = self.layout.checkpoint();
-        self.replace(&path, &self.checkpoint_seal().close_json(&path, state)?)
+        let bytes = self.checkpoint_seal().close_json(&path, state)?;
+        self.replace(&path, &bytes)?;
+        Ok(bytes.len())
     }
 
     /// The state of the last checkpoint; `None` where there is none. Fails where it is damaged, or of another scene or version.

@@ -7,6 +7,7 @@
 mod build;
 mod energy;
 mod extremes;
+mod idle;
 mod passage;
 mod reading;
 mod ride;
@@ -16,12 +17,14 @@ mod stored;
 #[cfg(test)]
 mod tests;
 mod timed;
+mod underway;
 mod wheels;
 
 pub use build::Parts;
 pub use energy::PassageEnergy;
 pub use ride::Riders;
 pub use timed::{Parted, TimedSteps};
+pub use underway::{Following, Told};
 
 use crate::graph::{Responses, StiffnessFrom};
 use crate::nodes::{Forces, Load, Mark, NodeError, Substructure};
@@ -29,7 +32,9 @@ use crate::solvers::track::Spring;
 use reading::Reading;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::ops::ControlFlow;
 use step::Coupled;
+use underway::Underway;
 
 /// What a track on grains is busy with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,6 +81,8 @@ pub struct GrainGround<'a> {
 pub(super) struct Live {
     coupled: Coupled,
     books: Books,
+    /// The block of trains that has begun and is not done.
+    underway: Option<Underway>,
 }
 
 /// What is known of every seat.
@@ -132,7 +139,8 @@ impl<'a> GrainGround<'a> {
 
     /// Takes over what the books say of the supports.
     fn answer(&mut self) {
-        let Some(Live { books, coupled }) = &self.live else { return };
+        let Some(live) = &self.live else { return };
+        let (books, coupled) = (live.told(), &live.coupled);
         let mut seats = books.beyond.clone();
         for (foot, seat) in coupled.rail.carried().iter().enumerate() {
             let stiffness = books.stiffness[foot];
@@ -156,7 +164,7 @@ impl Substructure for GrainGround<'_> {
     }
 
     fn settlement(&self) -> Vec<f64> {
-        self.live.as_ref().map_or(&self.parts.grains.settlement, |live| &live.books.settlement).clone()
+        self.live.as_ref().map_or(&self.parts.grains.settlement, |live| &live.told().settlement).clone()
     }
 
     fn forces(&self) -> Forces {
@@ -166,26 +174,35 @@ impl Substructure for GrainGround<'_> {
     /// What the last train added, once more for each: nobody knows what grains do before they have done it.
     fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError> {
         let trains: u64 = loads.iter().map(|load| load.trains).sum();
-        let rate = self.live.as_ref().map(|live| live.books.rate.as_slice()).unwrap_or_default();
+        let rate = self.live.as_ref().map(|live| live.told().rate.as_slice()).unwrap_or_default();
         let settlement = self.settlement().into_iter().enumerate();
         Ok(settlement.map(|(seat, s)| s + trains as f64 * rate.get(seat).copied().unwrap_or(0.0)).collect())
     }
 
     fn advance(&mut self, loads: &[Load<'_>]) -> Result<(), NodeError> {
-        self.advance_and_tell(loads, &mut |_, _| {})
+        self.advance_and_follow(loads, &mut |_| ControlFlow::Continue(()))
     }
 
-    fn advance_and_tell(&mut self, loads: &[Load<'_>], tell: &mut Telling<'_>) -> Result<(), NodeError> {
+    fn advance_and_follow(&mut self, loads: &[Load<'_>], follow: &mut Following<'_>) -> Result<(), NodeError> {
         let parts = self.parts;
         let live = self.working()?;
-        for load in loads {
-            live.pass(parts, load, tell)?;
+        let done = live.block().runs;
+        for load in loads.iter().skip(done) {
+            live.pass(parts, load, follow)?;
         }
+        live.underway = None;
         if parts.grains.stiffness_from == StiffnessFrom::StaticLoad {
-            live.press(parts, tell)?;
+            live.press(parts, &mut |stage, share| {
+                // nothing is kept while a copy is pressed
+                let _ = follow(Told::Stage(stage, share));
+            })?;
         }
         self.answer();
         Ok(())
+    }
+
+    fn is_underway(&self) -> bool {
+        self.live.as_ref().is_some_and(|live| live.underway.is_some())
     }
 
     /// A failure of grains ends the run, and nothing goes back to before it.

@@ -3,6 +3,7 @@
 use super::build::{OF_STRIDE, Parts};
 use super::reading::{Reading, Watched};
 use super::step::Coupled;
+use super::underway::Following;
 use super::wheels::WheelRun;
 use super::{Books, Live, Stage, Telling};
 use crate::graph::{SleeperOnGrains, StiffnessFrom};
@@ -10,6 +11,7 @@ use crate::nodes::{Load, NodeError};
 use crate::solvers::granular::measure::unbalance;
 use crate::solvers::granular::{Fading, Stride};
 use crate::solvers::track::WheelLoads;
+use std::ops::Range;
 
 /// Local damping of grains (Cundall), and drag of the rail (1/s), on the way to rest.
 const DAMPING: f64 = 0.7;
@@ -41,6 +43,13 @@ impl Coupled {
         self.pushes.iter().enumerate().map(of).collect()
     }
 
+    /// Looks at every carried foot after a step.
+    pub fn look(&self, watched: &mut [Watched]) {
+        for (foot, watched) in watched.iter_mut().enumerate() {
+            watched.see(Reading { level: self.level(foot), force: self.pushes[foot] }, self.time_step());
+        }
+    }
+
     /// Adds the inertia that the contacts of now need for the step.
     pub fn hold(&mut self) -> Result<(), NodeError> {
         let stride = Stride(self.time_step() / OF_STRIDE);
@@ -60,8 +69,18 @@ impl Coupled {
         mut see: impl FnMut(f64, &Coupled),
     ) -> Result<(), NodeError> {
         let steps = (time / self.time_step()).ceil() as u64;
+        self.run_steps(0..steps, &mut wheels, &mut see)
+    }
+
+    /// Some of the steps of a run.
+    fn run_steps(
+        &mut self,
+        steps: Range<u64>,
+        wheels: &mut impl FnMut(f64, &mut Vec<(f64, f64)>),
+        see: &mut impl FnMut(f64, &Coupled),
+    ) -> Result<(), NodeError> {
         let mut loads = Vec::new();
-        for step in 0..steps {
+        for step in steps {
             if step.is_multiple_of(HOLD) {
                 self.hold()?;
             }
@@ -154,7 +173,7 @@ impl Live {
         let settlement = parts.grains.settlement.clone();
         let books =
             Books { beyond, stiffness, as_built, rest, rate: vec![0.0; settlement.len()], settlement, revision: 1 };
-        Ok(Live { coupled, books })
+        Ok(Live { coupled, books, underway: None })
     }
 
     /// Presses a copy as it is now.
@@ -165,21 +184,21 @@ impl Live {
         Ok(())
     }
 
-    /// Lets trains pass, with the wheel forces of the plane track.
-    pub fn pass(&mut self, parts: Parts<'_>, load: &Load<'_>, tell: &mut Telling<'_>) -> Result<(), NodeError> {
+    /// Lets trains pass, with the wheel forces of the plane track; goes on with those that are under way.
+    pub fn pass(&mut self, parts: Parts<'_>, load: &Load<'_>, follow: &mut Following<'_>) -> Result<(), NodeError> {
         let none = || NodeError::Other { node: "grains".into(), why: "a passage brings no wheel forces".into() };
         let wheels = load.passage.wheels.as_ref().ok_or_else(none)?;
-        // trains that follow each other closely are one run; others pass one by one, and the track comes to rest between them
-        let runs: Vec<WheelRun<'_>> = match parts.grains.headway {
+        // trains that follow each other closely are one passage; others pass one by one, and the track comes to rest between them
+        let passages: Vec<WheelRun<'_>> = match parts.grains.headway {
             Some(distance) => vec![WheelRun::new(wheels, load.trains, distance / wheels.speed)],
             None => (0..load.trains).map(|_| WheelRun::new(wheels, 1, 0.0)).collect(),
         };
-        let before = self.books.settlement.clone();
-        let all = runs.len() as f64;
-        for (number, run) in runs.iter().enumerate() {
-            self.pass_once(parts, run, &mut |stage, share| tell(stage, (number as f64 + share) / all))?;
+        let (done, all) = (self.block().passages, passages.len() as u64);
+        for (number, passage) in (0..).zip(&passages).skip(done as usize) {
+            self.pass_once(parts, passage, &mut |told| follow(told.of_part(number, all)))?;
+            self.block().passages += 1;
         }
-        self.note_rate(&before, load.trains);
+        self.end_of_run(load.trains);
         Ok(())
     }
 
@@ -189,33 +208,55 @@ impl Live {
         self.books.rate = added.map(|added| added / trains.max(1) as f64).collect();
     }
 
-    fn pass_once(&mut self, parts: Parts<'_>, wheels: &WheelRun<'_>, tell: &mut Telling<'_>) -> Result<(), NodeError> {
+    fn pass_once(
+        &mut self,
+        parts: Parts<'_>,
+        wheels: &WheelRun<'_>,
+        follow: &mut Following<'_>,
+    ) -> Result<(), NodeError> {
         let [left, right] = parts.ends();
         let Some([begin, end]) = wheels.within([left - REACH, right + REACH]) else { return Ok(()) };
-        let mut watched: Vec<Watched> = self.books.rest.iter().map(|rest| Watched::from_rest(*rest)).collect();
         let time_step = self.coupled.time_step();
-        let mut shown = 0.0;
-        self.coupled.run(
-            end - begin,
-            |time, loads| wheels.loads_at(begin + time, begin, loads),
-            |time, coupled| {
-                for (foot, watched) in watched.iter_mut().enumerate() {
-                    watched.see(Reading { level: coupled.level(foot), force: coupled.pushes[foot] }, time_step);
-                }
-                let share = time / (end - begin);
-                if share - shown > 0.01 {
-                    shown = share;
-                    tell(Stage::Passage, share);
-                }
-            },
-        )?;
+        let steps = ((end - begin) / time_step).ceil() as u64;
+        self.watch();
+        let mut step = self.block().step;
+        while step < steps {
+            self.block().step = step;
+            let next = self.next_steps(step, steps, follow)?;
+            step = next.end;
+            let Live { coupled, underway, .. } = self;
+            let mut nobody = Vec::new();
+            let watched = underway.as_mut().map_or(&mut nobody, |underway| &mut underway.watched);
+            coupled.run_steps(
+                next,
+                &mut |time, loads| wheels.loads_at(begin + time, begin, loads),
+                &mut |_, coupled| coupled.look(watched),
+            )?;
+        }
+        self.come_to_rest_after(parts)
+    }
+
+    /// Looks at every carried foot from the beginning of a passage on.
+    pub fn watch(&mut self) {
+        let watched: Vec<Watched> = self.books.rest.iter().map(|rest| Watched::from_rest(*rest)).collect();
+        let underway = self.block();
+        if underway.step == 0 {
+            underway.watched = watched;
+        }
+    }
+
+    /// Ends a passage.
+    pub fn come_to_rest_after(&mut self, parts: Parts<'_>) -> Result<(), NodeError> {
         self.coupled.come_to_rest(AFTER, &mut |_| {})?;
+        let underway = self.block();
+        underway.step = 0;
+        let watched = std::mem::take(&mut underway.watched);
         self.close_the_books(parts, &watched)
     }
 
     /// What a passage has left.
-    pub fn close_the_books(&mut self, parts: Parts<'_>, watched: &[Watched]) -> Result<(), NodeError> {
-        let Live { coupled, books } = self;
+    fn close_the_books(&mut self, parts: Parts<'_>, watched: &[Watched]) -> Result<(), NodeError> {
+        let Live { coupled, books, .. } = self;
         books.rest = coupled.readings();
         if parts.grains.stiffness_from == StiffnessFrom::Passage {
             for (stiffness, watched) in books.stiffness.iter_mut().zip(watched) {

@@ -13,7 +13,7 @@ pub struct Reading {
 pub const LIFTED: f64 = 100.0;
 
 /// One sleeper over a passage.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Watched {
     /// At rest before it.
     before: Reading,

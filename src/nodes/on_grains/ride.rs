@@ -2,11 +2,12 @@
 
 use super::build::Parts;
 use super::extremes::{Extremes, Recorded};
-use super::passage::{AFTER, HOLD, REACH};
-use super::reading::{LIFTED, Reading, Watched};
-use super::{GrainGround, Live, Stage, Telling};
+use super::passage::REACH;
+use super::reading::LIFTED;
+use super::underway::{Following, RideUnderway};
+use super::{GrainGround, Live};
 use crate::graph::{Blocks, Record, Runner, Train};
-use crate::nodes::{NodeError, PassageOutcome, RailPoint, Substructure, Unloaded, UnloadedSeat};
+use crate::nodes::{NodeError, PassageOutcome, RailPoint, Unloaded, UnloadedSeat};
 use crate::solvers::track::{Direction, WheelLoads};
 
 /// Room that the first wheel has before the rail, m.
@@ -24,29 +25,45 @@ pub struct Riders<'a> {
 }
 
 impl GrainGround<'_> {
-    /// The track without a train.
+    /// The track without a train; in the middle of a block, as the block began.
     pub fn at_rest(&self) -> Result<Unloaded, NodeError> {
-        self.live_at_rest().map(|live| live.at_rest(self.parts(), &self.settlement()))
+        let live = self.live_at_rest()?;
+        let ride = live.underway.as_ref().and_then(|underway| underway.ride.as_ref());
+        Ok(ride.map_or_else(|| live.at_rest(self.parts()), |ride| ride.unloaded.clone()))
     }
 
-    /// Lets trains of a block ride over the grains, and gives the passage of the first of them; trains that follow each other closely are
-    /// one passage.
-    pub fn ride(&mut self, riders: &Riders<'_>, tell: &mut Telling<'_>) -> Result<PassageOutcome, NodeError> {
-        let before = self.settlement();
+    /// Begins a block of trains that ride, or goes on with the one that is under way: gives the passages of its runs that are done.
+    pub fn begin_rides(&mut self) -> Result<Vec<PassageOutcome>, NodeError> {
         let unloaded = self.at_rest()?;
-        let parts = self.parts();
-        let passages = if parts.grains.headway.is_some() { 1 } else { riders.trains };
-        let together = riders.trains.div_ceil(passages.max(1));
-        let mut first = None;
-        for passage in 0..passages {
-            let train = following(riders, parts.grains.headway, together);
-            let mut tell = |stage, share: f64| tell(stage, (passage as f64 + share) / passages as f64);
-            let outcome = self.working()?.ride(parts, riders, &train, &unloaded, &mut tell)?;
-            first.get_or_insert(outcome);
-        }
-        self.working()?.note_rate(&before, riders.trains);
+        let underway = self.working()?.block();
+        let begun = || RideUnderway::new(unloaded);
+        Ok(underway.ride.get_or_insert_with(begun).outcomes.clone())
+    }
+
+    /// Ends a block of trains that ride.
+    pub fn end_rides(&mut self) -> Result<(), NodeError> {
+        self.working()?.underway = None;
         self.answer();
-        first.ok_or(NodeError::NoTrain)
+        Ok(())
+    }
+
+    /// Lets the next run of trains of a block ride over the grains, and gives the passage of the first of them; trains that follow each other
+    /// closely are one passage.
+    pub fn ride(&mut self, riders: &Riders<'_>, follow: &mut Following<'_>) -> Result<PassageOutcome, NodeError> {
+        let parts = self.parts();
+        let live = self.working()?;
+        let passages = if parts.grains.headway.is_some() { 1 } else { riders.trains };
+        let train = following(riders, parts.grains.headway, riders.trains.div_ceil(passages.max(1)));
+        for number in live.block().passages..passages {
+            let outcome = live.ride(parts, riders, &train, &mut |told| follow(told.of_part(number, passages)))?;
+            live.underway_ride()?.first.get_or_insert(outcome);
+            live.block().passages += 1;
+        }
+        let ride = live.underway_ride()?;
+        let first = ride.first.take().ok_or(NodeError::NoTrain)?;
+        ride.outcomes.push(first.clone());
+        live.end_of_run(riders.trains);
+        Ok(first)
     }
 }
 
@@ -62,8 +79,9 @@ fn following(riders: &Riders<'_>, headway: Option<f64>, trains: u64) -> Train {
 
 impl Live {
     /// The track without a train, as it lies on the grains.
-    fn at_rest(&self, parts: Parts<'_>, settlement: &[f64]) -> Unloaded {
+    fn at_rest(&self, parts: Parts<'_>) -> Unloaded {
         let (rail, books) = (&self.coupled.rail, &self.books);
+        let settlement = &books.settlement;
         let view = rail.view();
         let nodes = rail.track().nodes().iter().enumerate();
         let point = |(node, x): (usize, &f64)| RailPoint {
@@ -93,46 +111,70 @@ impl Live {
         }
     }
 
+    /// The part of a block under way that is about vehicles that ride.
+    fn underway_ride(&mut self) -> Result<&mut RideUnderway, NodeError> {
+        self.block().ride.as_mut().ok_or(NodeError::NoTrain)
+    }
+
+    /// One passage, from its beginning or from where it is.
     fn ride(
         &mut self,
         parts: Parts<'_>,
         riders: &Riders<'_>,
         train: &Train,
-        unloaded: &Unloaded,
-        tell: &mut Telling<'_>,
+        follow: &mut Following<'_>,
     ) -> Result<PassageOutcome, NodeError> {
+        let way = self.set_out(parts, riders, train)?;
         let (kind, plan) = riders.blocks.kind(riders.runner.kind);
-        let direction = riders.runner.direction;
+        let time_step = self.coupled.time_step();
+        let (first, ride) = (self.block().step == 0, self.underway_ride()?);
+        let (since, unloaded) = (ride.since, ride.unloaded.clone());
+        let interval = plan.sample_every as f64 * plan.time_step;
+        let recorded = riders.records.map(|records| Recorded { records, axles: riders.axles, interval });
+        let mut extremes = Extremes::new(parts.track, &unloaded, (kind, plan), recorded, time_step);
+        if !first {
+            extremes.seen = std::mem::take(&mut ride.seen);
+        }
+        let steps = (way / train.speed / time_step).ceil() as u64;
+        let mut step = self.block().step;
+        while step < steps {
+            self.block().step = step;
+            self.underway_ride()?.seen = std::mem::take(&mut extremes.seen);
+            let next = self.next_steps(step, steps, follow)?;
+            extremes.seen = std::mem::take(&mut self.underway_ride()?.seen);
+            step = next.end;
+            self.coupled.hold()?;
+            for _ in next {
+                self.coupled.step(&WheelLoads::Riding)?;
+                let Some(underway) = &mut self.underway else { continue };
+                self.coupled.look(&mut underway.watched);
+                extremes.see(&self.coupled.rail.view(), time_step, since);
+            }
+        }
+        self.coupled.rail.dismiss();
+        self.underway_ride()?.on_rail = false;
+        self.come_to_rest_after(parts)?;
+        Ok(extremes.outcome())
+    }
+
+    /// Puts a train before the rail, or where it was in the middle of its passage; gives the way that its first wheel goes, m.
+    fn set_out(&mut self, parts: Parts<'_>, riders: &Riders<'_>, train: &Train) -> Result<f64, NodeError> {
         let ([left, right], [start, end]) = (parts.ends(), parts.track.ends());
-        let model = train.model(direction);
+        let direction = riders.runner.direction;
         let (from, way) = match direction {
             Direction::Forward => (start - BEFORE, right + REACH - (start - BEFORE)),
             Direction::Backward => (end + BEFORE, end + BEFORE - (left - REACH)),
         };
-        // the last wheel goes behind the grains, or to the end of the track
-        let way = way.min(end - start + BEFORE) + train.wheel_base();
-        let time_step = self.coupled.time_step();
-        let interval = plan.sample_every as f64 * plan.time_step;
-        let recorded = riders.records.map(|records| Recorded { records, axles: riders.axles, interval });
-        let mut extremes = Extremes::new(parts.track, unloaded, (kind, plan), recorded, time_step);
-        let mut watched: Vec<Watched> = self.books.rest.iter().map(|rest| Watched::from_rest(*rest)).collect();
-        self.coupled.rail.ride(&model, &train.motion, from)?;
-        let (began, steps) = (self.coupled.rail.time(), (way / train.speed / time_step).ceil() as u64);
-        for step in 0..steps {
-            if step.is_multiple_of(HOLD) {
-                self.coupled.hold()?;
-            }
-            self.coupled.step(&WheelLoads::Riding)?;
-            for (foot, watched) in watched.iter_mut().enumerate() {
-                watched.see(Reading { level: self.coupled.level(foot), force: self.coupled.pushes[foot] }, time_step);
-            }
-            extremes.see(&self.coupled.rail.view(), time_step, began);
-            if step.is_multiple_of(steps.div_ceil(100)) {
-                tell(Stage::Passage, step as f64 / steps as f64);
-            }
+        self.watch();
+        let motion = self.underway_ride()?.motion.take();
+        self.coupled.rail.ride(&train.model(direction), &train.motion, from)?;
+        let now = self.coupled.rail.time();
+        match motion {
+            Some(motion) => self.coupled.rail.restore(&motion)?,
+            None => self.underway_ride()?.since = now,
         }
-        self.coupled.come_to_rest(AFTER, &mut |_| {})?;
-        self.close_the_books(parts, &watched)?;
-        Ok(extremes.outcome())
+        self.underway_ride()?.on_rail = true;
+        // the last wheel goes behind the grains, or to the end of the track
+        Ok(way.min(end - start + BEFORE) + train.wheel_base())
     }
 }

@@ -5,6 +5,7 @@
 use super::build::Parts;
 use super::soil::SoilBelow;
 use super::step::{Coupled, Spent, StandingBed};
+use super::underway::Underway;
 use super::{Books, Live};
 use crate::nodes::NodeError;
 use crate::solvers::continuum::State;
@@ -24,6 +25,7 @@ struct Stored {
     beds: Vec<StoredBed>,
     pushes: Vec<f64>,
     books: Books,
+    underway: Option<Underway>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -49,6 +51,7 @@ impl Live {
             beds: beds.iter().map(bed).collect(),
             pushes: pushes.clone(),
             books: self.books.clone(),
+            underway: self.underway.clone(),
         };
         let bytes = postcard::to_stdvec(&stored).map_err(foreign)?;
         Ok(serde_json::Value::String(STANDARD.encode(bytes)))
@@ -58,7 +61,7 @@ impl Live {
     pub fn restore(parts: Parts<'_>, state: &serde_json::Value) -> Result<Live, NodeError> {
         let text = state.as_str().ok_or_else(|| foreign("it holds no grains"))?;
         let bytes = STANDARD.decode(text).map_err(foreign)?;
-        let Stored { time_step, rail: motion, settlement_of_supports, beds, pushes, books } =
+        let Stored { time_step, rail: motion, settlement_of_supports, beds, pushes, books, mut underway } =
             postcard::from_bytes(&bytes).map_err(foreign)?;
         let seats = parts.track.seats.len();
         if books.beyond.len() != seats
@@ -71,7 +74,10 @@ impl Live {
         let mut level = rail.level().clone();
         level.settlements = settlement_of_supports;
         rail.set_level(&level)?;
-        rail.restore(&motion)?;
+        match underway.as_mut().and_then(|underway| underway.ride.as_mut()) {
+            Some(ride) if ride.on_rail => ride.motion = Some(motion),
+            _ => rail.restore(&motion)?,
+        }
         let standing = |(number, stored): (usize, StoredBed)| -> Result<StandingBed, NodeError> {
             let bed = Bed::restore(stored.bed).map_err(foreign)?;
             let soil = match (stored.soil, parts.soil) {
@@ -87,7 +93,7 @@ impl Live {
         if pushes.len() != rail.carried().len() || books.stiffness.len() != pushes.len() {
             return Err(foreign("it holds another number of sleepers"));
         }
-        Ok(Live { coupled: Coupled { rail, beds, pushes, added: 0.0, spent: Spent::default() }, books })
+        Ok(Live { coupled: Coupled { rail, beds, pushes, added: 0.0, spent: Spent::default() }, books, underway })
     }
 }
 

@@ -30,6 +30,9 @@ pub struct TimedSteps {
     /// The account of a whole passage, where it is asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy: Option<PassageEnergy>,
+    /// Farthest move of a sleeper in a second without a train, m, where it is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub idle_m: Option<f64>,
 }
 
 /// Milliseconds of a step by part.
@@ -91,6 +94,7 @@ impl Live {
             seconds_a_simulated_second,
             seconds_an_axle: seconds_a_simulated_second * time_an_axle,
             energy: None,
+            idle_m: None,
         })
     }
 }

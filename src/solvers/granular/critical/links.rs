@@ -2,7 +2,7 @@
 
 use super::super::bed::Bed;
 use super::super::body::{Body, SPHERE};
-use super::super::domain::mirrored;
+use super::super::domain::{Image, mirrored};
 use super::super::failure::Failure;
 use super::super::force::Tangent;
 use super::super::lanes::{BLOCK, Real};
@@ -17,6 +17,10 @@ const CHUNK: usize = 4096;
 
 /// Instead of a second body: a wall.
 pub const GROUND: u32 = u32::MAX;
+
+/// A body, and a pebble in it; two pebbles, and the image of the second.
+type PebbleName = (u32, u16);
+type PairName = (PebbleName, PebbleName, Image);
 
 /// A spring and a dashpot between two bodies, or a body and the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,6 +92,11 @@ impl Roots {
         Roots { translation: self.translation * share, rotation: self.rotation * share }
     }
 
+    /// A bound of the largest root of rotation: the largest sum of a row.
+    pub fn widest_turn(&self) -> f64 {
+        self.rotation.row_iter().map(|row| row.iter().map(|value| value.abs()).sum()).fold(0.0, f64::max)
+    }
+
     pub fn apply(&self, [x, y, z, p, q, r]: [f64; 6]) -> [f64; 6] {
         let turned = self.rotation * Vector3::new(p, q, r);
         let w = self.translation;
@@ -105,11 +114,7 @@ impl<R: Real> Bed<R> {
     /// them are the same, bit by bit, however the bodies lie in memory.
     pub(in super::super) fn links(&mut self, gap: f64) -> Result<Vec<Link>, Failure> {
         self.reach(gap)?;
-        let named = |place: usize| {
-            let [a, b] = [self.contacts.first[place], self.contacts.second[place]].map(|pebble| self.name(pebble));
-            let image = self.contacts.image[place];
-            ((a.min(b), a.max(b), if a < b { image } else { mirrored(image) }), place)
-        };
+        let named = |place: usize| (self.name_of_pair(place), place);
         // one in four of the listed pairs touches: those alone are sorted, and computed twice rather than moved
         let all = || (0..self.contacts.len()).into_par_iter().with_min_len(CHUNK);
         let mut pairs: Vec<_> = all().filter(|place| self.pair(*place, gap).is_some()).map(named).collect();
@@ -123,6 +128,42 @@ impl<R: Real> Bed<R> {
         });
         entries.into_iter().for_each(|entry| self.walled(entry, gap, &mut links));
         Ok(links)
+    }
+
+    /// Names of the two pebbles of a listed pair and the image of the second, in an order that does not depend on the lists.
+    fn name_of_pair(&self, place: usize) -> PairName {
+        let [a, b] = [self.contacts.first[place], self.contacts.second[place]].map(|pebble| self.name(pebble));
+        let image = self.contacts.image[place];
+        (a.min(b), a.max(b), if a < b { image } else { mirrored(image) })
+    }
+
+    /// Contacts of now of one body, in the order that they have among those of all.
+    pub(in super::super) fn own_links(&self, body: u32) -> Vec<Link> {
+        let (mut pairs, mut walls): (Vec<(PairName, Link)>, Vec<(PebbleName, u32, usize)>) = (Vec::new(), Vec::new());
+        let Body { first, pebbles, .. } = self.bodies[body as usize];
+        for pebble in first as usize..first as usize + usize::from(pebbles) {
+            let range = self.incidence.start[pebble] as usize..self.incidence.start[pebble + 1] as usize;
+            for entry in &self.incidence.entries[range] {
+                let place = (entry >> 1) as usize;
+                if let Some(slot) = place.checked_sub(self.contacts.len()) {
+                    let entry = self.wall_contacts.entries.partition_point(|e| e.slots.1 as usize <= slot);
+                    walls.push((self.name(pebble as u32), self.wall_contacts.entries[entry].wall, entry));
+                    continue;
+                }
+                // a body that touches its own image has both ends of the contact
+                let again = entry & 1 == 1 && self.owner[self.contacts.first[place] as usize] == body;
+                if let Some(link) = self.pair(place, 0.0).filter(|_| !again) {
+                    pairs.push((self.name_of_pair(place), link));
+                }
+            }
+        }
+        pairs.sort_unstable_by_key(|(name, _)| *name);
+        // an entry has room for several contacts
+        walls.sort_unstable();
+        walls.dedup();
+        let mut links: Vec<Link> = pairs.into_iter().map(|(_, link)| link).collect();
+        walls.into_iter().for_each(|(.., entry)| self.walled(entry, 0.0, &mut links));
+        links
     }
 
     /// Those of one body, as far as they are listed.
@@ -168,7 +209,7 @@ impl<R: Real> Bed<R> {
     }
 
     /// Makes lists that hold all pairs up to `gap` apart.
-    fn reach(&mut self, gap: f64) -> Result<(), Failure> {
+    pub(in super::super) fn reach(&mut self, gap: f64) -> Result<(), Failure> {
         self.refresh()?;
         // lists are good for their skin less what was gone since
         if gap + self.lists.travel <= self.lists.skin {
@@ -224,7 +265,8 @@ impl<R: Real> Bed<R> {
 
     /// Roots of the inverse inertia of all bodies by their numbers, as local damping leaves it.
     pub(in super::super) fn roots(&self) -> Vec<Roots> {
-        self.index.iter().map(|&place| self.root(&self.bodies[place as usize])).collect()
+        let places = self.index.par_iter().with_min_len(CHUNK);
+        places.map(|&place| self.root(&self.bodies[place as usize])).collect()
     }
 
     pub(in super::super) fn root(&self, body: &Body) -> Roots {

@@ -26,7 +26,7 @@ mod network;
 pub(super) mod tests;
 
 pub(super) use links::{Link, Roots};
-pub(super) use local::{Around, Weight, bound, pencil};
+pub(super) use local::{Around, Weight, bound, pencil, surely_allows};
 pub(super) use network::Network;
 
 use super::bed::Bed;

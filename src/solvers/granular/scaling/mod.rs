@@ -9,7 +9,7 @@
 
 use super::bed::{Bed, BodyState};
 use super::body::{BodyId, SPHERE};
-use super::critical::{Around, Link, Network, Roots, Weight, pencil};
+use super::critical::{Around, Link, Network, Roots, Weight, pencil, surely_allows};
 use super::failure::Failure;
 use super::lanes::Real;
 use super::record::Record;
@@ -170,18 +170,26 @@ impl<R: Real> Bed<R> {
     /// Adds inertia until `target` \[s\] is a stable step for the contacts of now, each body by its own with those between
     /// bodies counted twice: more than [`Bed::scale_masses`] adds, at a fraction of its cost. A body has `least` times its
     /// mass at least, whatever touches it: contacts that form later find it prepared. What was added before is taken off.
-    pub fn hold_time_step(&mut self, target: f64, least: impl Fn(&BodyState) -> f64) -> Result<Scaling, Failure> {
+    pub fn hold_time_step(
+        &mut self,
+        target: f64,
+        least: impl Fn(&BodyState) -> f64 + Sync,
+    ) -> Result<Scaling, Failure> {
         assert!(target.is_finite() && target > 0.0, "a time step is a positive time");
         self.unscale_masses();
-        let links = self.links(0.0)?;
-        let roots = self.roots();
-        let around = Around::new(&links, roots.len());
+        self.reach(0.0)?;
         let needed = |body: usize| {
-            let pencil = pencil(body, &roots[body], around.pick(body, &links), Weight::Even(2.0));
+            let place = self.index[body];
+            let (links, root) = (self.own_links(place), self.root(&self.bodies[place as usize]));
+            if surely_allows(body, &root, &links, Weight::Even(2.0), target) {
+                return 1.0;
+            }
+            let pencil = pencil(body, &root, &links, Weight::Even(2.0));
             if pencil.allows(target) { 1.0 } else { pencil.inertia_factor(target * (1.0 + TOLERANCE)) }
         };
-        let needed: Vec<f64> = (0..roots.len()).into_par_iter().with_min_len(CHUNK).map(needed).collect();
-        let factors: Vec<f64> = self.states().zip(needed).map(|(state, needed)| needed.max(least(&state))).collect();
+        let factor = |body: usize| needed(body).max(least(&self.body_state(BodyId(body as u32))));
+        let bodies = (0..self.bodies.len()).into_par_iter().with_min_len(CHUNK);
+        let factors: Vec<f64> = bodies.map(factor).collect();
         Ok(self.weigh_down(&factors, target, target))
     }
 

@@ -1,6 +1,7 @@
 //! What mass scaling changes, and what it must not.
 
 use crate::solvers::granular::clump::{Pebble, Template};
+use crate::solvers::granular::critical::{Around, Weight, pencil, surely_allows};
 use crate::solvers::granular::{
     Bed, BodyId, ContactLaw, ContactLaws, Dashpot, DashpotMode, Domain, FrictionLimit, Gravity, Linear, Placed, Sphere,
 };
@@ -175,4 +176,25 @@ fn the_longest_step_for_a_share_of_mass_is_one_that_the_network_bears() {
     alone.add_sphere(&Sphere { centre: [0.0; 3], radius: 0.01, density: 2700.0, surface: 0 });
     let held = alone.hold_longest_step(0.02, 0.0).unwrap();
     assert_eq!((held.limit, held.bodies), (f64::INFINITY, 0));
+}
+
+/// Every grain's own contacts, found without a list of all, are those of that list in its order; what its traces allow its pencil allows.
+#[test]
+fn the_own_contacts_of_a_body_are_those_among_all() {
+    let mut bed = mixed();
+    let links = bed.links(0.0).unwrap();
+    let roots = bed.roots();
+    let around = Around::new(&links, roots.len());
+    let (mut sure, mut allowed) = (0, 0);
+    for body in 0..roots.len() {
+        let own = bed.own_links(bed.index[body]);
+        assert_eq!(own, around.pick(body, &links).copied().collect::<Vec<_>>(), "body {body}");
+        for step in [1e-4, 3e-4, 1e-3] {
+            let allows = pencil(body, &roots[body], &own, Weight::Even(2.0)).allows(step);
+            let surely = surely_allows(body, &roots[body], &own, Weight::Even(2.0), step);
+            assert!(allows || !surely, "body {body} at {step} s");
+            (sure, allowed) = (sure + usize::from(surely), allowed + usize::from(allows));
+        }
+    }
+    assert!(sure > allowed / 4 && allowed < 3 * roots.len(), "{sure} of {allowed} without their pencils");
 }

@@ -196,6 +196,12 @@ impl Leapfrog {
         Ok(())
     }
 
+    /// Takes the train away.
+    pub fn dismiss(&mut self) {
+        self.ride = None;
+        self.state.ride = ride_state::RideState::default();
+    }
+
     /// Where the leading wheel of a train is not yet felt by the track that it comes to, m.
     pub fn approach(&self, direction: Direction) -> f64 {
         let (sign, entry) = (direction.sign(), usize::from(direction == Direction::Backward));

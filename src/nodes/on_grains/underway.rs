@@ -1,0 +1,114 @@
+//! A block of trains under way: what must be known beside the state of all that moves, so that it can be gone on with in another process.
+
+use super::extremes::Seen;
+use super::passage::HOLD;
+use super::reading::Watched;
+use super::{Books, Live, Stage};
+use crate::nodes::{NodeError, PassageOutcome, Unloaded};
+use crate::solvers::track::LeapfrogState;
+use serde::{Deserialize, Serialize};
+use std::ops::{ControlFlow, Range};
+
+/// What is told while trains pass.
+pub enum Told<'a> {
+    /// What is done, and the share of it that is.
+    Stage(Stage, f64),
+    /// A run can be gone on with from here; the function gives the state.
+    State(&'a dyn Fn() -> Result<serde_json::Value, NodeError>),
+}
+
+/// Hears what is told while trains pass. A break ends the run.
+pub type Following<'a> = dyn FnMut(Told<'_>) -> ControlFlow<()> + 'a;
+
+impl Told<'_> {
+    /// The same, as one part of several.
+    pub(super) fn of_part(self, part: u64, parts: u64) -> Self {
+        match self {
+            Told::Stage(stage, share) => Told::Stage(stage, (part as f64 + share) / parts.max(1) as f64),
+            state => state,
+        }
+    }
+}
+
+/// A block that has begun and is not done. Its trains come in runs: of one kind, in one direction, with one passage of the plane track.
+#[derive(Clone, Serialize, Deserialize)]
+pub(super) struct Underway {
+    /// The books as the block began: what others are told until it is done.
+    pub began: Books,
+    /// Runs that are done, and passages of the run under way.
+    pub runs: usize,
+    pub passages: u64,
+    /// Steps of the passage under way.
+    pub step: u64,
+    /// Settlement of every seat before the run under way, m.
+    pub before: Vec<f64>,
+    /// Each carried foot in the passage under way.
+    pub watched: Vec<Watched>,
+    /// Vehicles that ride on the rail of this model.
+    pub ride: Option<RideUnderway>,
+}
+
+/// What is known of vehicles that ride in a block under way.
+#[derive(Clone, Serialize, Deserialize)]
+pub(super) struct RideUnderway {
+    /// The track as the block began.
+    pub unloaded: Unloaded,
+    /// The first passage of each run that is done, and of the one under way.
+    pub outcomes: Vec<PassageOutcome>,
+    pub first: Option<PassageOutcome>,
+    /// Time of the rail as the passage under way began, s.
+    pub since: f64,
+    pub seen: Seen,
+    /// Whether vehicles are on the rail.
+    pub on_rail: bool,
+    /// How rail and vehicles move, where that was stored in the middle of a passage: the vehicles must be there before it is taken over.
+    #[serde(skip)]
+    pub motion: Option<LeapfrogState>,
+}
+
+impl RideUnderway {
+    /// No vehicle has come yet.
+    pub fn new(unloaded: Unloaded) -> RideUnderway {
+        let (outcomes, first, motion) = (Vec::new(), None, None);
+        RideUnderway { unloaded, outcomes, first, since: 0.0, seen: Seen::default(), on_rail: false, motion }
+    }
+}
+
+impl Live {
+    /// The block of trains under way; begins one where there is none.
+    pub(super) fn block(&mut self) -> &mut Underway {
+        let books = &self.books;
+        self.underway.get_or_insert_with(|| Underway {
+            began: books.clone(),
+            runs: 0,
+            passages: 0,
+            step: 0,
+            before: books.settlement.clone(),
+            watched: Vec::new(),
+            ride: None,
+        })
+    }
+
+    /// Ends a run of trains, so many of them.
+    pub fn end_of_run(&mut self, trains: u64) {
+        let Some(underway) = &mut self.underway else { return };
+        let before = std::mem::replace(&mut underway.before, self.books.settlement.clone());
+        (underway.runs, underway.passages) = (underway.runs + 1, 0);
+        self.note_rate(&before, trains);
+    }
+
+    /// What others are told of the ground.
+    pub fn told(&self) -> &Books {
+        self.underway.as_ref().map_or(&self.books, |underway| &underway.began)
+    }
+
+    /// The next steps of a passage of so many: up to where inertia is looked at. Tells the state before them.
+    pub fn next_steps(&self, from: u64, steps: u64, follow: &mut Following<'_>) -> Result<Range<u64>, NodeError> {
+        let share = from as f64 / steps.max(1) as f64;
+        let told = [Told::Stage(Stage::Passage, share), Told::State(&|| self.save())];
+        match told.into_iter().try_for_each(follow) {
+            ControlFlow::Continue(()) => Ok(from..steps.min(from + HOLD)),
+            ControlFlow::Break(()) => Err(NodeError::Stopped),
+        }
+    }
+}
