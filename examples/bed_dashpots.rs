@@ -91,7 +91,7 @@ fn csv(rows: &[Row]) -> String {
     out + "\n"
 }
 
-const SIZE: [f64; 2] = [720.0, 420.0];
+const SIZE: [f64; 2] = [760.0, 420.0];
 const PLOT: [f64; 4] = [70.0, 70.0, 430.0, 290.0];
 const STYLE: &str = "text{font:13px system-ui,sans-serif;fill:#222}.m{fill:#666}path{fill:none;stroke-width:2}\
     .paper{fill:#fff}.grid{stroke:#ddd;stroke-width:1}.k0{stroke:#1a6fb0}.k1{stroke:#c4581b}.held{stroke-dasharray:6 4}\

@@ -198,6 +198,20 @@ fn zone_has_grains_where_the_law_differs_from_the_far_field() {
 }
 
 #[test]
+fn sleepers_turn_where_the_scene_lets_them() {
+    let pitches = |text: &str| -> Vec<_> {
+        let (_, grains) = planned(text, &[]);
+        grains.stretches[0].sleepers.iter().map(|sleeper| sleeper.pitch).collect()
+    };
+    assert!(pitches(SCENE).iter().all(Option::is_none));
+    for pitch in pitches(&SCENE.replace("support_from = passage", "sleeper_pitch = free")) {
+        let pitch = pitch.unwrap();
+        // 40 MN/m over 150 mm of pad; 150 kg of a sleeper some 0.3 m wide and 0.2 m high
+        assert!((pitch.stiffness - 75e3).abs() < 1.0 && (1.0..3.0).contains(&pitch.inertia), "{pitch:?}");
+    }
+}
+
+#[test]
 fn layers_along_the_track_lie_in_the_soil_below_the_grains() {
     let wedge =
         "stretch wedge { over = -6 .. 0 m, layers = [stone: 200 mm, mortar: ramp(0.1 .. 0.4 m), clay: rest] }\n";
@@ -257,6 +271,7 @@ fn what_grains_under_a_track_cannot_run_is_told() {
         assert!(told.len() == 1 && told[0].1.contains(part), "{to}: {told:?}");
     };
     one("support_from = passage", "symmetry = full", "both rails");
+    one("track line { ", "track line { base = quiet, ", "lets the soil sink");
     one("window = -1.8 .. 1.2 m", "window = 3 .. 6 m", "fewer than 2 sleepers");
     one("substructure = full", "substructure = cells", "`cells`");
 }

@@ -6,7 +6,7 @@ use crate::solvers::granular::measure::Region;
 use crate::solvers::granular::packing::{PackingError, Recipe};
 use crate::solvers::granular::probe::Plate;
 use crate::solvers::granular::rig::{Crib, Load, Rig, Sensor, Sleeper, Specimen};
-use crate::solvers::track::UnderPad;
+use crate::solvers::track::{Pitch, UnderPad};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -230,6 +230,9 @@ pub struct SleeperOnGrains {
     /// Mass of the rail that it carries, kg.
     pub rail_mass: f64,
     pub pad: Option<UnderPad>,
+    /// How it turns about its axis across the track; it stays level where none is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pitch: Option<Pitch>,
     /// Whether it stands in the bay between the window and grains that are held at the end of a bed. They make that bay stiffer, so what is
     /// read there is not used: its support answers and settles as its neighbours.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]

@@ -182,11 +182,12 @@ fn draw_beside(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place,
     let area = place.area(-reach, reach, foot - *crib.height, foot);
     svg.titled_rect(class(ballast), area, "crib");
     draw_stones(svg, area, place.scale);
-    let mut text = format!("crib {} mm", plain(1e3 * *crib.height, 3));
+    let x = place.centre + half * place.scale + 8.0;
+    svg.text("small", (x, area.y + 2.0), Anchor::Start, &format!("crib {} mm", plain(1e3 * *crib.height, 3)));
     if crib.beyond() > 0.0 {
-        text += &format!(", shoulder {} m", plain(crib.beyond(), 3));
+        let text = format!("shoulder {} m", plain(crib.beyond(), 3));
+        svg.text("small", (x, area.y - 11.0), Anchor::Start, &text);
     }
-    svg.text("small halo", (place.centre, area.y - 5.0), Anchor::Middle, &text);
 }
 
 /// A rail of that height on its pad, which ends at the seat, m.

@@ -69,6 +69,8 @@ pub struct Grains {
     pub continuous: Given<bool>,
     /// Whether grains give the stiffness of supports from the forces of a passage, instead of from a static load.
     pub support_from_passage: bool,
+    /// Whether sleepers on grains turn about their axis across the track, instead of staying level.
+    pub sleepers_pitch: bool,
     /// Time step, s; `None` is chosen by the planner.
     pub step: Option<Given>,
     /// Size of the elements of soil, m; `None` is chosen by the planner.
@@ -93,6 +95,7 @@ impl Default for Grains {
             monolithic: false,
             continuous: Given { value: false, origin: Origin::Default },
             support_from_passage: false,
+            sleepers_pitch: false,
             step: None,
             soil_element: None,
             tolerance: 0.05,

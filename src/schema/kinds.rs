@@ -639,6 +639,15 @@ pub const KINDS: &[Kind] = &[
                 "from which grains give the stiffness of supports",
             ),
             default(
+                "sleeper_pitch",
+                Form::Words(&[
+                    word("held", "sleepers on grains stay level"),
+                    word("free", "they turn about their axis across the track, held by their rail pads alone"),
+                ]),
+                "held",
+                "of sleepers on grains",
+            ),
+            default(
                 "grain_step",
                 Form::OneOf(&[number("s", 1e-9, 1e-2), Form::Words(AUTO)]),
                 "auto",

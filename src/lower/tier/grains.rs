@@ -13,7 +13,7 @@ use crate::lower::tier::rig::cost::grains_under_track;
 use crate::lower::{Draft, crib, track};
 use crate::scenario::{Foot, Loading, Scenario, Seat, Section, SleeperBody, Track};
 use crate::schema::Reads;
-use crate::solvers::track::UnderPad;
+use crate::solvers::track::{Pitch, UnderPad};
 
 pub struct Cells;
 pub struct Zone;
@@ -33,6 +33,7 @@ const READS: Reads = Reads {
         "solve.coupling",
         "solve.passages",
         "solve.support_from",
+        "solve.sleeper_pitch",
         "solve.soil_element",
         "solve.grain_step",
         "track.base",
@@ -182,6 +183,8 @@ fn train_by_train(blocks: &Blocks) -> Blocks {
 const ADDED: f64 = 0.02;
 /// Damping of a support over its stiffness where grains are the support, s (methods 2; Nielsen 2008).
 const DAMPING_TIME: f64 = 1e-3;
+/// Length of a rail pad along the rail, m.
+const PAD_LENGTH: f64 = 0.15;
 /// Density of the rubber of an under sleeper pad whose lower half moves with the ballast, kg/m3.
 const PAD_DENSITY: f64 = 1100.0;
 
@@ -262,6 +265,10 @@ fn standing(scenario: &Scenario, number: usize, seat: &Seat, start: f64) -> Opti
         mass: **mass,
         rail_mass: *rail.mass * scenario.track.bay(number),
         pad,
+        pitch: seat.pad.as_ref().filter(|_| scenario.solve.grains.sleepers_pitch).map(|pad| Pitch {
+            inertia: **mass * (base_width * base_width + height * height) / 12.0,
+            stiffness: *pad.stiffness * PAD_LENGTH * PAD_LENGTH / 12.0,
+        }),
         buffer: false,
     })
 }

@@ -2,7 +2,7 @@
 
 use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::GrainStretch;
-use crate::scenario::{Loading, Scenario};
+use crate::scenario::{Base, Loading, Scenario};
 
 /// Why a track on grains cannot run; nothing where it can.
 pub(super) fn refusals(scenario: &Scenario, stretches: &[GrainStretch]) -> Vec<Diagnostic> {
@@ -22,6 +22,13 @@ pub(super) fn refusals(scenario: &Scenario, stretches: &[GrainStretch]) -> Vec<D
     }
     if !scenario.tampings.is_empty() {
         found.push(waits("grains cannot be tamped in this version".into(), None, "leave the `tamping` out"));
+    }
+    if scenario.track.bed.base == Base::Quiet {
+        found.push(waits(
+            "under grains `base = quiet` lets the soil sink: a quiet base bears no load that stays".into(),
+            None,
+            "leave out `base = quiet`, and let the lowest layer of soil be deeper",
+        ));
     }
     if grains.both_rails {
         found.push(waits(

@@ -99,7 +99,8 @@ impl Parts<'_> {
         let responses = Responses { revision: 0, seats: beyond.to_vec() };
         let mut model = self.track.model(&responses);
         for sleeper in self.grains.stretches.iter().flat_map(|stretch| &stretch.sleepers) {
-            model.seats[sleeper.seat].foot = Foot::Carried { mass: sleeper.mass, pad: sleeper.pad };
+            model.seats[sleeper.seat].foot =
+                Foot::Carried { mass: sleeper.mass, pad: sleeper.pad, pitch: sleeper.pitch };
         }
         let level = self.level(beyond, &vec![0.0; self.track.seats.len()]);
         Ok(Leapfrog::new(Arc::new(Track::new(model)?), &level, time_step)?)

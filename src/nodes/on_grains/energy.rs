@@ -42,7 +42,8 @@ impl Coupled {
     pub fn energy(&self) -> PassageEnergy {
         let rail = self.rail.energy().unwrap_or_default();
         let half = 0.5 * self.time_step();
-        let ahead = |(foot, push): (usize, &f64)| half * push * self.rail.underside(foot).velocity;
+        let turning = |foot: usize| self.rail.pitch(foot).map_or(0.0, |pitch| self.rail.turned(foot) * pitch.velocity);
+        let ahead = |(foot, push): (usize, &f64)| half * (push * self.rail.underside(foot).velocity - turning(foot));
         let mut sum = PassageEnergy {
             wheels: rail.wheels,
             lost_in_track: rail.dissipated - rail.supports,

@@ -71,10 +71,17 @@ fn in_turn(
         return Ok(());
     };
     bed.guided_step(|walls| {
-        sleepers.iter().for_each(|(wall, foot)| pushes[*foot] = walls.felt(*wall).force.z);
+        for (wall, foot) in &*sleepers {
+            pushes[*foot] = walls.felt(*wall).force.z;
+            rail.turn(*foot, walls.moment(*wall)[1]);
+        }
         in_turn(others, rail, pushes, spent, wheels)?;
         for (wall, foot) in &*sleepers {
             walls.drive(*wall, [0.0, 0.0, -rail.underside(*foot).velocity]);
+            // a turn about y takes the side of larger x down, as the slope of the rail does
+            if let Some(pitch) = rail.pitch(*foot) {
+                walls.turn(*wall, [0.0, pitch.velocity, 0.0]);
+            }
         }
         let start = Instant::now();
         soil.iter_mut().try_for_each(|soil| soil.step(walls))?;

@@ -33,9 +33,19 @@ impl Guided<'_> {
         &self.walls[wall.0 as usize].felt
     }
 
+    /// The moment of the contacts on a wall about its place, N m.
+    pub fn moment(&self, wall: WallId) -> [f64; 3] {
+        self.walls[wall.0 as usize].moment
+    }
+
     /// Velocity of a guided wall in this step, m/s.
     pub fn drive(&mut self, wall: WallId, velocity: [f64; 3]) {
         self.walls[wall.0 as usize].velocity = velocity.into();
+    }
+
+    /// Angular velocity of a guided wall about its place in this step, rad/s.
+    pub fn turn(&mut self, wall: WallId, spin: [f64; 3]) {
+        self.walls[wall.0 as usize].spin = spin.into();
     }
 
     /// The corners of a floor: their forces stand, and where they go is to be set.

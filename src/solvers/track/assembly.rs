@@ -139,13 +139,20 @@ impl Track {
                     self.damping.add(unknown, unknown, support_damping);
                     bodies.push((unknown, mass));
                 }
-                (Foot::Carried { mass, pad }, FootUnknown::Carried(c)) => {
-                    let CarriedSleeper { unknown, underside, .. } = self.carried[c];
+                (Foot::Carried { mass, pad, pitch }, FootUnknown::Carried(c)) => {
+                    let CarriedSleeper { unknown, underside, pitch: turn, .. } = self.carried[c];
                     bodies.push((unknown, mass));
                     if let Some(pad) = pad {
                         bodies.push((underside, pad.mass));
                         add_spring(&mut self.stiffness, unknown, Some(underside), pad.stiffness);
                         add_spring(&mut self.damping, unknown, Some(underside), pad.damping);
+                    }
+                    if let (Some(pitch), Some(turn)) = (pitch, turn) {
+                        // the slope of the rail is its next unknown
+                        let damping = pitch.stiffness * seat.pad_damping / seat.pad_stiffness;
+                        add_spring(&mut self.stiffness, rail + 1, Some(turn), pitch.stiffness);
+                        add_spring(&mut self.damping, rail + 1, Some(turn), damping);
+                        self.mass.add(turn, turn, pitch.inertia);
                     }
                 }
                 _ => {}

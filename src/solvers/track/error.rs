@@ -45,6 +45,7 @@ pub enum Flaw {
     Sleeper,
     Carried,
     UnderPad,
+    Pitch,
     Unsupported,
     NoSlab,
     AuxiliaryRailOutside,
@@ -157,6 +158,7 @@ impl fmt::Display for Flaw {
             Flaw::Sleeper => "a sleeper lacks mass or support stiffness, or has a negative damping",
             Flaw::Carried => "a sleeper carried from outside has no mass",
             Flaw::UnderPad => "an under sleeper pad lacks mass or stiffness, or has a negative damping",
+            Flaw::Pitch => "a sleeper that turns lacks inertia, or its rail pad stiffness against turning",
             Flaw::Unsupported => {
                 "a sleeper is carried by forces from outside, which this time step does not have: give it a support"
             }

@@ -66,6 +66,8 @@ pub(super) struct CarriedSleeper {
     /// Its unknown, and that of its underside, which is the same where there is no pad under it.
     pub unknown: usize,
     pub underside: usize,
+    /// Its rotation, as the slope of the rail: down with x. None where it stays level.
+    pub pitch: Option<usize>,
 }
 
 /// A beam below or beside the rail, over some of its nodes.
@@ -178,9 +180,12 @@ impl Track {
         self.held.iter().map(|(unknown, end)| (*unknown, end.map_or(0.0, |end| level.ends[end])))
     }
 
-    /// The unknowns that are prescribed at rest with their levels, m: those that always are, and undersides of carried sleepers.
+    /// The unknowns that are prescribed at rest with their levels, m: those that always are, and undersides of carried sleepers, which lie
+    /// level.
     pub(super) fn held_at_rest<'a>(&'a self, level: &'a TrackLevel) -> impl Iterator<Item = (usize, f64)> + 'a {
-        self.held_at(level).chain(self.carried.iter().map(|c| (c.underside, level.settlements[c.seat])))
+        let undersides = self.carried.iter().map(|c| (c.underside, level.settlements[c.seat]));
+        let pitches = self.carried.iter().filter_map(|c| c.pitch).map(|pitch| (pitch, 0.0));
+        self.held_at(level).chain(undersides).chain(pitches)
     }
 
     /// Fails where a sleeper has no support of its own.

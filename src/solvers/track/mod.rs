@@ -48,7 +48,9 @@ pub use irregularity::{Cubic, Irregularity};
 pub use ladder::Ladder;
 pub use leapfrog::{EnergyAccount, FootMotion, Leapfrog, LeapfrogState, LeapfrogView, StepLimit, WheelLoads};
 pub use mesh::Track;
-pub use model::{AuxiliaryRail, Foot, RailEnds, RailSection, Seat, Shear, Slab, TrackLevel, TrackModel, UnderPad};
+pub use model::{
+    AuxiliaryRail, Foot, Pitch, RailEnds, RailSection, Seat, Shear, Slab, TrackLevel, TrackModel, UnderPad,
+};
 pub use motion::Motion;
 pub use multibody::{Multibody, Wheel, WheelContact};
 pub use passage::{Passage, Run};

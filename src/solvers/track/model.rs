@@ -91,7 +91,16 @@ pub enum Foot {
     Slab,
     /// Half a sleeper (kg) that forces from outside carry, step by step: grains under it, say. At rest its underside is held at
     /// the settlement of its seat.
-    Carried { mass: f64, pad: Option<UnderPad> },
+    Carried { mass: f64, pad: Option<UnderPad>, pitch: Option<Pitch> },
+}
+
+/// How a carried sleeper turns about its axis across the track: as a body, held by the rail pad alone.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Pitch {
+    /// kg m^2, above 0.
+    pub inertia: f64,
+    /// Of the rail pad against turning, N m/rad, above 0. Its damping is to it as that of the pad to its stiffness.
+    pub stiffness: f64,
 }
 
 /// An under sleeper pad: a spring and a damper between a sleeper and its underside, on which the ground pushes.
@@ -274,13 +283,16 @@ impl TrackModel {
                         return fail(seat.x, Flaw::Sleeper);
                     }
                 }
-                Foot::Carried { mass, pad } => {
+                Foot::Carried { mass, pad, pitch } => {
                     let sound = |p: UnderPad| positive(p.mass) && positive(p.stiffness) && not_negative(p.damping);
                     if !positive(mass) {
                         return fail(seat.x, Flaw::Carried);
                     }
                     if pad.is_some_and(|p| !sound(p)) {
                         return fail(seat.x, Flaw::UnderPad);
+                    }
+                    if pitch.is_some_and(|p| !positive(p.inertia) || !positive(p.stiffness)) {
+                        return fail(seat.x, Flaw::Pitch);
                     }
                 }
                 Foot::Slab if self.slab_under(seat.x).is_none() => return fail(seat.x, Flaw::NoSlab),

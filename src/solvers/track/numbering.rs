@@ -88,11 +88,12 @@ impl Numbering {
                 self.sleepers.push(SleeperSupport { seat, unknown, support_stiffness, support_damping, seating });
                 self.order += 1;
             }
-            Foot::Carried { pad, .. } => {
+            Foot::Carried { pad, pitch, .. } => {
                 let underside = unknown + usize::from(pad.is_some());
                 self.feet[seat] = FootUnknown::Carried(self.carried.len());
-                self.carried.push(CarriedSleeper { seat, unknown, underside });
-                self.order = underside + 1;
+                let pitch = pitch.map(|_| underside + 1);
+                self.carried.push(CarriedSleeper { seat, unknown, underside, pitch });
+                self.order = pitch.unwrap_or(underside) + 1;
             }
             Foot::Rigid | Foot::Slab => {}
         }
@@ -122,7 +123,7 @@ impl Numbering {
                 FootUnknown::Sleeper(s) => self.sleepers[*s].unknown,
                 FootUnknown::Slab { unknown } => *unknown,
                 FootUnknown::Rigid => self.rail[*node],
-                FootUnknown::Carried(c) => self.carried[*c].unknown,
+                FootUnknown::Carried(c) => self.carried[*c].pitch.unwrap_or(self.carried[*c].unknown),
             };
             half_band = half_band.max(foot - self.rail[*node]);
             for beam in &self.auxiliary_rails {

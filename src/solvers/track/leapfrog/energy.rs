@@ -18,7 +18,7 @@ pub struct EnergyAccount {
     pub potential: f64,
     /// What was stored when the account began.
     pub begin: f64,
-    /// Work on the track: of pushes on carried feet, of supports of ordinary sleepers, of wheels.
+    /// Work on the track: of pushes and turns on carried feet, of supports of ordinary sleepers, of wheels.
     pub pushes: f64,
     pub supports: f64,
     pub wheels: f64,
@@ -73,6 +73,9 @@ impl Leapfrog {
         let way = |i: usize| 0.5 * (last * (v[i] - kick * a[i]) + next * v[i]);
         for (carried, push) in track.carried.iter().zip(&state.pushes) {
             account.pushes -= push * way(carried.underside);
+        }
+        for (carried, turn) in track.carried.iter().zip(&state.turns) {
+            account.pushes += carried.pitch.map_or(0.0, |pitch| turn * way(pitch));
         }
         for (sleeper, support) in track.sleepers.iter().zip(&state.supports) {
             account.supports -= support * way(sleeper.unknown);

@@ -28,6 +28,8 @@ pub struct LeapfrogState {
     /// Forces of the last step: pushes on carried feet and of the supports of ordinary sleepers, N up; wheels that the track
     /// feels, m and N down.
     pub(super) pushes: Vec<f64>,
+    /// Moments of the ground on carried feet, N m, as the slope of the rail.
+    pub(super) turns: Vec<f64>,
     pub(super) supports: Vec<f64>,
     pub(super) on_rail: Vec<(f64, f64)>,
     pub(super) level: TrackLevel,
@@ -49,6 +51,7 @@ impl LeapfrogState {
             velocity: zeros.clone(),
             acceleration: zeros,
             pushes: vec![0.0; track.carried.len()],
+            turns: vec![0.0; track.carried.len()],
             supports: vec![0.0; track.sleepers.len()],
             on_rail: Vec::new(),
             level: level.clone(),
@@ -59,12 +62,19 @@ impl LeapfrogState {
     }
 
     /// The lengths of its lists.
-    fn shape(&self) -> [usize; 9] {
+    fn shape(&self) -> [usize; 10] {
         let [vehicles, wheels] = self.ride.shape();
-        let lists =
-            [&self.displacement, &self.before, &self.velocity, &self.acceleration, &self.pushes, &self.supports];
-        let [a, b, c, d, e, f] = lists.map(Vec::len);
-        [a, b, c, d, e, f, self.level.settlements.len(), vehicles, wheels]
+        let lists = [
+            &self.displacement,
+            &self.before,
+            &self.velocity,
+            &self.acceleration,
+            &self.pushes,
+            &self.supports,
+            &self.turns,
+        ];
+        let [a, b, c, d, e, f, g] = lists.map(Vec::len);
+        [a, b, c, d, e, f, g, self.level.settlements.len(), vehicles, wheels]
     }
 }
 

@@ -28,13 +28,22 @@ impl Leapfrog {
         self.check_sense()
     }
 
+    /// Sets the moment of the ground on the i-th carried foot about its middle for the steps to come, N m: above 0 where it presses the side of
+    /// larger x down. Nothing where the foot stays level.
+    pub fn turn(&mut self, i: usize, moment: f64) {
+        self.state.turns[i] = moment;
+    }
+
     fn push_feet(&mut self, pushes: &[f64]) -> Result<(), TrackError> {
         if pushes.len() != self.track.carried.len() {
             let (name, value) = (TrackParameter::Load("pushes on carried feet"), pushes.len() as f64);
             return Err(TrackError::Parameter { name, value, expected: "one per carried foot" });
         }
-        for (carried, push) in self.track.carried.iter().zip(pushes) {
+        for ((carried, push), turn) in self.track.carried.iter().zip(pushes).zip(&self.state.turns) {
             self.forces[carried.underside] -= push;
+            if let Some(pitch) = carried.pitch {
+                self.forces[pitch] += turn;
+            }
         }
         self.state.pushes.copy_from_slice(pushes);
         Ok(())

@@ -34,6 +34,16 @@ impl Leapfrog {
         self.motion(self.track.carried[i].underside)
     }
 
+    /// How the i-th carried sleeper turns, rad as the slope of the rail: down with x. None where it stays level.
+    pub fn pitch(&self, i: usize) -> Option<FootMotion> {
+        self.track.carried[i].pitch.map(|unknown| self.motion(unknown))
+    }
+
+    /// Moment of the ground on the i-th carried foot in the last step, N m.
+    pub fn turned(&self, i: usize) -> f64 {
+        self.state.turns[i]
+    }
+
     fn motion(&self, unknown: usize) -> FootMotion {
         let state = &self.state;
         let (velocity, acceleration) = (state.velocity[unknown], state.acceleration[unknown]);
@@ -114,6 +124,11 @@ impl<'a> LeapfrogView<'a> {
     /// Deflection of the rail at a node, m, from the track as built.
     pub fn rail_deflection(&self, node: usize) -> f64 {
         self.displacement(self.leapfrog.track.rail[node])
+    }
+
+    /// Slope of the rail at a node, rad, down with x; at a joint that of the rail left of it.
+    pub fn rail_slope(&self, node: usize) -> f64 {
+        self.displacement(self.leapfrog.track.rail[node] + 1)
     }
 
     /// Sagging rail moment at a node, N m.

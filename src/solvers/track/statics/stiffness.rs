@@ -10,7 +10,7 @@ pub(super) fn factor(track: &Track, phases: &[SupportPhase]) -> Result<BandedFac
     for (sleeper, phase) in track.sleepers.iter().zip(phases) {
         stiffness.add(sleeper.unknown, sleeper.unknown, -sleeper.lacking_stiffness(*phase));
     }
-    let carried = track.carried.iter().map(|c| c.underside);
+    let carried = track.carried.iter().flat_map(|c| [Some(c.underside), c.pitch]).flatten();
     track.held.iter().map(|(unknown, _)| *unknown).chain(carried).for_each(|unknown| stiffness.pin(unknown));
     stiffness.factor().map_err(|e| e.row)
 }

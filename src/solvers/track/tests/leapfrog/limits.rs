@@ -102,7 +102,7 @@ fn what_cannot_be_is_refused() {
         [UnderPad { mass: 0.0, stiffness: 1e8, damping: 0.0 }, UnderPad { mass: 5.0, stiffness: 1e8, damping: -1.0 }]
     {
         let mut broken = model.clone();
-        broken.seats[2].foot = Foot::Carried { mass: 150.0, pad: Some(pad) };
+        broken.seats[2].foot = Foot::Carried { mass: 150.0, pad: Some(pad), pitch: None };
         assert!(matches!(Track::new(broken), Err(TrackError::Model { flaw: Flaw::UnderPad, .. })));
     }
 }

@@ -18,7 +18,7 @@ pub const FORCE: f64 = 98.1e3;
 pub fn carried(mut model: TrackModel) -> TrackModel {
     for seat in &mut model.seats {
         if let Foot::Sleeper { mass, .. } = seat.foot {
-            seat.foot = Foot::Carried { mass, pad: None };
+            seat.foot = Foot::Carried { mass, pad: None, pitch: None };
         }
     }
     model

@@ -41,7 +41,11 @@ fn pads_under_sleepers() {
     let (stiff, model) = (150e6, ballast(20));
     let mut padded = model.clone();
     for seat in &mut padded.seats {
-        seat.foot = Foot::Carried { mass: 145.0, pad: Some(UnderPad { mass: 5.0, stiffness: stiff, damping: 10e3 }) };
+        seat.foot = Foot::Carried {
+            mass: 145.0,
+            pad: Some(UnderPad { mass: 5.0, stiffness: stiff, damping: 10e3 }),
+            pitch: None,
+        };
     }
     let level = TrackLevel::as_built(&model);
     let mut leapfrog = leapfrog(&padded, &level, 2e-5);
