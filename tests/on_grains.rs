@@ -4,10 +4,11 @@ use std::ops::ControlFlow;
 use trackbed::check::NoModules;
 use trackbed::compile::{compile, compile_with};
 use trackbed::diag::Code;
-use trackbed::execute::{Checkpoint, Event, Executor, Listener, Measured, time_steps};
+use trackbed::execute::{Both, Checkpoint, Event, Executor, Listener, Measured, time_steps};
 use trackbed::graph::{GrainsNode, Graph, Model};
 use trackbed::lower::Planner;
-use trackbed::store::Beds;
+use trackbed::results::RunRecorder;
+use trackbed::store::{Beds, Directory, Mode, Work};
 
 /// Coarse spheres on soft soil under three sleepers before a slab, one wagon after the other: seconds to pack and minutes for nobody.
 const SCENE: &str = "use std
@@ -132,21 +133,48 @@ fn stopped_and_resumed(graph: &Graph, beds: &std::path::Path, stop: (usize, u32)
     assert_eq!([begun.at_rest, resumed.at_rest].concat(), whole.at_rest, "{stop:?}");
 }
 
+/// A recorder that kept the state under a recorded train, and another process that goes on with it, make the tables of a whole run.
+fn tables_of_a_run_that_was_stopped(text: &str, beds: &std::path::Path) {
+    let compiled = compile("scene.track", text, &NoModules, &[]);
+    let (scenario, graph) = (compiled.scenario.unwrap(), compiled.graph.unwrap());
+    let executor = Executor::default().with_beds(Beds::kept_in(beds));
+    let mut whole = RunRecorder::new(&scenario, &graph);
+    executor.run(&graph, &mut whole, None).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let directory = || {
+        let work = Work { name: "run".into(), scene_sha256: "scene".into() };
+        Directory::open(folder.path(), work, Mode::Resume).unwrap()
+    };
+    {
+        let (directory, mut stop) = (directory(), Heard { stop_after: Some((0, 5)), ..Heard::default() });
+        let mut recorder = RunRecorder::new(&scenario, &graph).kept_in(&directory);
+        executor.run(&graph, &mut Both(&mut recorder, &mut stop), None).unwrap();
+        assert!(recorder.tables.blocks.is_empty() && stop.kept.is_some(), "stopped under its first train");
+    }
+    let directory = directory();
+    let mut resumed = RunRecorder::new(&scenario, &graph).kept_in(&directory);
+    let from = resumed.resume().unwrap();
+    assert!(from.is_some());
+    executor.run(&graph, &mut resumed, from).unwrap();
+    assert_eq!(resumed.tables, whole.tables);
+    assert_eq!(resumed.all_histories(), whole.all_histories());
+}
+
 #[test]
 fn vehicles_ride_on_the_rail_over_the_grains() {
     let folder = tempfile::tempdir().unwrap();
-    let graph = graph(
-        &SCENE
-            .replace("support_from = passage", "coupling = monolithic")
-            .replace("8 axles", "4 axles")
-            .replace("[0, 8]", "[0, 4]"),
-    );
+    let text = SCENE
+        .replace("support_from = passage", "coupling = monolithic")
+        .replace("8 axles", "4 axles")
+        .replace("[0, 8]", "[0, 4]");
+    let graph = graph(&text);
     assert!(graph.is_ridden());
     let mut ridden = Heard::default();
     run(&graph, folder.path(), 2, &mut ridden, None);
     for stop in [(0, 40), (1, 0), (1, 25)] {
         stopped_and_resumed(&graph, folder.path(), stop, &ridden);
     }
+    tables_of_a_run_that_was_stopped(&text, folder.path());
     let on_grains = carried(&graph);
     let track = graph.track().unwrap();
     // the forces of the feet are the weight of the track

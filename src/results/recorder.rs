@@ -60,6 +60,9 @@ struct Saved {
     checkpoint: Checkpoint,
     tables: RunTables,
     histories: Vec<Piece>,
+    /// The track before the passages of a block under way.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    unloaded: Option<Unloaded>,
 }
 
 /// Makes the tables of a run.
@@ -130,7 +133,7 @@ impl<'a> RunRecorder<'a> {
             self.histories.extend(histories::decode_bytes(bytes, &directory.path().join(&piece.key))?);
         }
         self.written = self.histories.len();
-        (self.kept, self.tables) = (saved.histories, saved.tables);
+        (self.kept, self.tables, self.unloaded) = (saved.histories, saved.tables, saved.unloaded);
         Ok(Some(saved.checkpoint))
     }
 
@@ -152,7 +155,8 @@ impl<'a> RunRecorder<'a> {
             self.written = self.histories.len();
         }
         let checkpoint = between.checkpoint().map_err(|cause| ResultsError::unwritable(directory.path(), cause))?;
-        let saved = Saved { checkpoint, tables: self.tables.clone(), histories: self.kept.clone() };
+        let (tables, histories, unloaded) = (self.tables.clone(), self.kept.clone(), self.unloaded.clone());
+        let saved = Saved { checkpoint, tables, histories, unloaded };
         let bytes = directory.write_checkpoint(&saved)?;
         let of_size = Duration::from_secs(bytes as u64 / BYTES_A_SECOND);
         self.due = Some(Instant::now() + KEEP.max(SHARE * started.elapsed()).max(of_size));
@@ -440,6 +444,7 @@ impl RunRecorder<'_> {
         if let Some(block) = block {
             self.keep_settlements(axles + block.axles, after);
         }
+        self.unloaded = None;
         self.tables.max_rail_moment = Some(largest(|p| p.max_rail_moment));
         self.tables.max_rail_displacement = Some(largest(|p| p.max_rail_displacement));
     }

@@ -2,7 +2,7 @@
 
 use super::build::{OF_STRIDE, Parts};
 use super::reading::{Reading, Watched};
-use super::step::Coupled;
+use super::step::{Coupled, HOLD};
 use super::underway::Following;
 use super::wheels::WheelRun;
 use super::{Books, Live, Stage, Telling};
@@ -16,8 +16,6 @@ use std::ops::Range;
 /// Local damping of grains (Cundall), and drag of the rail (1/s), on the way to rest.
 const DAMPING: f64 = 0.7;
 const DRAG: f64 = 200.0;
-/// Steps between looks at inertia: loads form contacts.
-pub(super) const HOLD: u64 = 200;
 /// Steps between looks at rest.
 const LOOK: u64 = 200;
 /// At rest forces are in balance to this share of those that act, and no sleeper is faster, m/s: at two looks in a row.

@@ -10,6 +10,9 @@ use crate::solvers::granular::{Bed, WallId};
 use crate::solvers::track::{Leapfrog, WheelLoads};
 use std::time::{Duration, Instant};
 
+/// Steps between looks at inertia: loads form contacts.
+pub const HOLD: u64 = 200;
+
 /// A bed with what stands on it and what lies below.
 #[derive(Clone)]
 pub struct StandingBed {

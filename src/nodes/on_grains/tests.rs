@@ -70,7 +70,7 @@ struct Columns {
     dashpot: f64,
     soil: Option<SoilNode>,
     lowered: fn(usize) -> f64,
-    /// Of every column from the middle of its sleeper, along the rail, m.
+    /// Distance of every column from the middle of its sleeper, along the rail, m.
     shift: f64,
     pitch: Option<Pitch>,
     time_step: f64,

@@ -3,8 +3,8 @@
 use super::Live;
 use super::build::Parts;
 use super::energy::PassageEnergy;
-use super::passage::{AFTER, HOLD, REACH, median};
-use super::step::{Coupled, StandingBed};
+use super::passage::{AFTER, REACH, median};
+use super::step::{Coupled, HOLD, StandingBed};
 use super::wheels::WheelRun;
 use crate::nodes::{Load, NodeError};
 use serde::Serialize;

@@ -1,8 +1,8 @@
 //! A block of trains under way: what must be known beside the state of all that moves, so that it can be gone on with in another process.
 
 use super::extremes::Seen;
-use super::passage::HOLD;
 use super::reading::Watched;
+use super::step::HOLD;
 use super::{Books, Live, Stage};
 use crate::nodes::{NodeError, PassageOutcome, Unloaded};
 use crate::solvers::track::LeapfrogState;

@@ -99,7 +99,7 @@ pub enum Foot {
 pub struct Pitch {
     /// kg m^2, above 0.
     pub inertia: f64,
-    /// Of the rail pad against turning, N m/rad, above 0. Its damping is to it as that of the pad to its stiffness.
+    /// Stiffness of the rail pad against turning, N m/rad, above 0. Its damping is to it as that of the pad to its stiffness.
     pub stiffness: f64,
 }
 

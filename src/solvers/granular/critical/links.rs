@@ -139,7 +139,8 @@ impl<R: Real> Bed<R> {
 
     /// Contacts of now of one body, in the order that they have among those of all.
     pub(in super::super) fn own_links(&self, body: u32) -> Vec<Link> {
-        let (mut pairs, mut walls): (Vec<(PairName, Link)>, Vec<(PebbleName, u32, usize)>) = (Vec::new(), Vec::new());
+        let mut pairs: Vec<(PairName, Link)> = Vec::new();
+        let mut walls: Vec<(PebbleName, u32, usize)> = Vec::new();
         let Body { first, pebbles, .. } = self.bodies[body as usize];
         for pebble in first as usize..first as usize + usize::from(pebbles) {
             let range = self.incidence.start[pebble] as usize..self.incidence.start[pebble + 1] as usize;

@@ -186,12 +186,12 @@ fn the_own_contacts_of_a_body_are_those_among_all() {
     let roots = bed.roots();
     let around = Around::new(&links, roots.len());
     let (mut sure, mut allowed) = (0, 0);
-    for body in 0..roots.len() {
+    for (body, root) in roots.iter().enumerate() {
         let own = bed.own_links(bed.index[body]);
         assert_eq!(own, around.pick(body, &links).copied().collect::<Vec<_>>(), "body {body}");
         for step in [1e-4, 3e-4, 1e-3] {
-            let allows = pencil(body, &roots[body], &own, Weight::Even(2.0)).allows(step);
-            let surely = surely_allows(body, &roots[body], &own, Weight::Even(2.0), step);
+            let allows = pencil(body, root, &own, Weight::Even(2.0)).allows(step);
+            let surely = surely_allows(body, root, &own, Weight::Even(2.0), step);
             assert!(allows || !surely, "body {body} at {step} s");
             (sure, allowed) = (sure + usize::from(surely), allowed + usize::from(allows));
         }
