@@ -18,7 +18,7 @@ use std::sync::Arc;
 pub const OF_STRIDE: f64 = 0.9;
 
 /// Grows whenever the same parts are built otherwise than before, or kept in another form.
-const METHOD: &str = "track on grains 5";
+const METHOD: &str = "track on grains 6";
 
 /// What a track on grains is made of.
 #[derive(Clone, Copy)]
