@@ -286,6 +286,45 @@ fn a_track_whose_cribs_are_filled_runs() {
     }
 }
 
+/// A slab between two banks: two beds under one rail, stopped under its train and gone on with.
+#[test]
+fn beds_on_both_sides_of_a_structure_carry_one_rail() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = SCENE
+        .replace("sections = [open: 18 m, stiff: 15 m]", "sections = [open: 18 m, stiff: 6 m, open: 15 m]")
+        .replace("[edge: soft_to_stiff]", "[edge: soft_to_stiff, other: stiff_to_soft]")
+        .replace("[-2, -1, +1] sleepers", "[-2, -1, +1] sleepers, from = edge")
+        .replace("8 axles", "4 axles")
+        .replace("[0, 8]", "[0, 4]");
+    let graph = graph(&scene);
+    let (_, grains) = planned(&scene, &[]);
+    assert_eq!(grains.stretches.len(), 2);
+    let mut whole = Heard::default();
+    run(&graph, folder.path(), 2, &mut whole, None);
+    let track = graph.track().unwrap();
+    let settled = &whole.settlements[0].1;
+    for seat in carried(&graph) {
+        assert!(settled[seat] > 1e-6 && settled[seat] < 20e-3, "seat {seat} settles: {} m", settled[seat]);
+    }
+    // beyond each bed sleepers go with its outer end
+    let ends = grains.stretches.iter().map(|stretch| {
+        let read = || stretch.sleepers.iter().filter(|sleeper| !sleeper.buffer).map(|sleeper| sleeper.seat);
+        (read().next().unwrap(), read().next_back().unwrap())
+    });
+    let ends: Vec<(usize, usize)> = ends.collect();
+    let last = track.seats.len() - 1;
+    assert_eq!((settled[0], settled[last]), (settled[ends[0].0], settled[ends[1].1]));
+    assert_ne!(settled[0], settled[last]);
+    // the feet of both beds and the springs beyond carry the track
+    let (_, forces, _) = &whole.at_rest[0];
+    let ballasted: Vec<usize> = (0..=last).filter(|seat| track.seats[*seat].is_ballasted()).collect();
+    let weight: f64 =
+        ballasted.iter().map(|seat| 9.81 * (track.seats[*seat].foot.mass() + 0.6 * track.rail[0].mass)).sum();
+    let carried: f64 = ballasted.iter().map(|seat| forces[*seat]).sum();
+    assert!((carried / weight - 1.0).abs() < 0.015, "{carried} of {weight} N");
+    stopped_and_resumed(&graph, folder.path(), (0, 30), &whole);
+}
+
 #[test]
 fn what_grains_under_a_track_cannot_run_is_told() {
     let told = |from: &str, to: &str| -> Vec<(Code, String)> {

@@ -6,7 +6,7 @@ use super::step::{Coupled, HOLD};
 use super::underway::Following;
 use super::wheels::WheelRun;
 use super::{Books, Live, Stage, Telling};
-use crate::graph::{SleeperOnGrains, StiffnessFrom};
+use crate::graph::{GrainStretch, SleeperOnGrains, StiffnessFrom};
 use crate::nodes::{Load, NodeError};
 use crate::solvers::granular::measure::unbalance;
 use crate::solvers::granular::{Fading, Stride};
@@ -306,13 +306,18 @@ impl Parts<'_> {
         values
     }
 
-    /// Median of the values of those carried feet that are read and among the nearest third to a seat.
+    /// Median of the values of those carried feet that are read and in the third of the nearest bed that is next to a seat.
     fn as_near(&self, values: &[f64], seat: usize) -> f64 {
-        let x = |seat: usize| self.track.seats[seat].x;
-        let read = self.sleepers().zip(values).filter(|(sleeper, _)| !sleeper.buffer);
-        let mut near: Vec<(f64, f64)> =
-            read.map(|(sleeper, value)| ((x(sleeper.seat) - x(seat)).abs(), *value)).collect();
-        near.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let away = |other: usize| (self.track.seats[other].x - self.track.seats[seat].x).abs();
+        let mut values = values.iter();
+        let of_bed = |stretch: &GrainStretch| {
+            let read = stretch.sleepers.iter().zip(&mut values).filter(|(sleeper, _)| !sleeper.buffer);
+            let mut read: Vec<(f64, f64)> = read.map(|(sleeper, value)| (away(sleeper.seat), *value)).collect();
+            read.sort_by(|a, b| a.0.total_cmp(&b.0));
+            read
+        };
+        let beds = self.grains.stretches.iter().map(of_bed).filter(|read| !read.is_empty());
+        let mut near = beds.min_by(|a, b| a[0].0.total_cmp(&b[0].0)).unwrap_or_default();
         near.truncate(near.len().div_ceil(3));
         median(near.into_iter().map(|(_, value)| value).collect())
     }
