@@ -4,8 +4,8 @@ use super::layers::class;
 use super::number::plain;
 use super::svg::{Anchor, Frame, Svg};
 use super::symbols::{draw_dimension, draw_stones, draw_usp};
-use super::view::{WIDTH, seat_depth};
-use crate::scenario::{Groundwork, Loading, Material, Scenario, Seat, Section, SleeperBody, Usp};
+use super::view::{WIDTH, height_beside, seat_depth};
+use crate::scenario::{Groundwork, Material, Scenario, Seat, Section, SleeperBody, Usp};
 
 /// Sections side by side, at most.
 const COLUMNS: usize = 3;
@@ -167,19 +167,18 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place
     bottom + 58.0
 }
 
-/// What lies beside the sleeper, down to its underside, m. Grains are drawn as far as the scene has them there; where nothing computes with
-/// grains, the ballast that a track has.
+/// What lies beside the sleeper, down to its underside, m.
 fn draw_beside(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place, (ballast, foot): (&Material, f64)) {
     let (half, height) = (half_width(scenario, cut.sleeper), cut.sleeper.height);
+    let beside = height_beside(scenario, cut.section, height);
     let Some(crib) = &cut.section.crib else {
-        let rig = matches!(scenario.loading, Some(Loading::Rig(_)));
-        if !rig && !scenario.solve.grains.tier.has_grains() {
-            svg.rect(class(ballast), place.area(-half, half, foot - 0.75 * height, foot));
+        if beside > 0.0 {
+            svg.rect(class(ballast), place.area(-half, half, foot - beside, foot));
         }
         return;
     };
     let reach = half.min(0.5 * cut.sleeper.length + crib.beyond());
-    let area = place.area(-reach, reach, foot - *crib.height, foot);
+    let area = place.area(-reach, reach, foot - beside, foot);
     svg.titled_rect(class(ballast), area, "crib");
     draw_stones(svg, area, place.scale);
     let x = place.centre + half * place.scale + 8.0;

@@ -7,7 +7,7 @@ use super::number::{plain, tick_label, ticks, whole};
 use super::svg::{Anchor, Frame, Svg, text_width};
 use super::symbols::{draw_dimension, draw_spring, draw_stones, draw_usp};
 use super::vehicle;
-use super::view::{MARGIN, View, WIDTH, scale, seat_depth};
+use super::view::{MARGIN, View, WIDTH, height_beside, scale, seat_depth};
 use crate::graph::SupportNode;
 use crate::lower::supports;
 use crate::scenario::{Foot, Force, Loading, RigLoad, Scenario, Seat, Section, StaticLoad, Tamping, Target};
@@ -147,7 +147,8 @@ fn draw_track(svg: &mut Svg, scenario: &Scenario, view: &View) {
         let seats: Vec<&Seat> = scenario.track.seats.iter().filter(|s| s.section == index && view.shows(s.x)).collect();
         if let Some(seat) = seats.iter().find(|seat| seat.is_ballasted()) {
             let (_, height) = sleeper_size(seat);
-            let area = view.area(section.start, section.end, base + 0.5 * height, ground);
+            let beside = height_beside(scenario, section, height);
+            let area = view.area(section.start, section.end, base + height - beside, ground);
             svg.rect("stones", area);
             draw_stones(svg, area, view.scale);
         }

@@ -1,7 +1,7 @@
 //! A window on the track, and where its places lie on the picture.
 
 use super::svg::Frame;
-use crate::scenario::Section;
+use crate::scenario::{Loading, Scenario, Section};
 
 pub(super) const WIDTH: f64 = 900.0;
 pub(super) const MARGIN: f64 = 26.0;
@@ -11,6 +11,17 @@ const PAD: f64 = 0.035;
 /// Depth of a section's rail seats, m, below the top of what is drawn: of the rail, or of the sleepers where there is none.
 pub(super) fn seat_depth(section: &Section) -> f64 {
     section.rail.as_ref().map_or(0.0, |rail| rail.height + PAD)
+}
+
+/// Height of the ballast that is drawn beside sleepers of a height, m above their underside. Grains are drawn as far as the scene has them
+/// there; where nothing computes with grains, the ballast that a track has.
+pub(super) fn height_beside(scenario: &Scenario, section: &Section, sleeper: f64) -> f64 {
+    let rig = matches!(scenario.loading, Some(Loading::Rig(_)));
+    match &section.crib {
+        Some(crib) => *crib.height,
+        None if rig || scenario.solve.grains.tier.has_grains() => 0.0,
+        None => 0.75 * sleeper,
+    }
 }
 
 /// At which a length (m) is drawn, px a metre: as wide as there is room, without a short rig growing high.
