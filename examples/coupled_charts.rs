@@ -17,7 +17,7 @@ const FOLDER: &str = "docs/charts";
 /// The sleeper of `passages`.
 const SLEEPER: &str = "-1";
 /// From the first wheel on, s.
-const TIMES: [f64; 2] = [-0.1, 0.6];
+const TIMES: [f64; 2] = [-0.1, 0.5];
 /// Chainage of `tiers`, m.
 const PLACES: [f64; 2] = [-5.4, 0.0];
 
