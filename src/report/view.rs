@@ -13,8 +13,8 @@ pub(super) fn seat_depth(section: &Section) -> f64 {
     section.rail.as_ref().map_or(0.0, |rail| rail.height + PAD)
 }
 
-/// Height of the ballast that is drawn beside sleepers of a height, m above their underside. Grains are drawn as far as the scene has them
-/// there; where nothing computes with grains, the ballast that a track has.
+/// Height of the ballast beside a sleeper in the drawing, m above the underside of the sleeper. A scene with grains shows the crib that it states,
+/// or none. Other scenes show three quarters of the sleeper's height.
 pub(super) fn height_beside(scenario: &Scenario, section: &Section, sleeper: f64) -> f64 {
     let rig = matches!(scenario.loading, Some(Loading::Rig(_)));
     match &section.crib {

@@ -160,7 +160,7 @@ fn columns_of_spheres_are_springs() {
 /// Half a sleeper on a rail pad ten times stiffer than real ones, so that turns stay small and statics linear.
 const PITCH: Pitch = Pitch { inertia: 1.5, stiffness: 750e3 };
 
-/// Columns beside the middle of their sleepers turn them: the rail pad bears the moment, and the column gives way under the place where it stands.
+/// A column beside the middle of a sleeper turns it. The rail pad bears the moment.
 #[test]
 fn a_sleeper_that_turns_is_held_by_its_rail_pad() {
     let shift = 0.03;

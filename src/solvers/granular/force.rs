@@ -282,23 +282,16 @@ impl Tangent {
     }
 }
 
-/// What a contact leaves for the bodies that it acts on: two rows of four, force and arm of the first, `force x normal` and arm of
-/// the second.
+/// What a contact leaves for the bodies that it acts on: force, `normal x force`, and both arms.
 #[inline(always)]
 pub fn outcome<L: Lanes>(meeting: &Meeting<L>, contact: &ContactForces<L>) -> [Num<L>; 8] {
     let [fx, fy, fz] = contact.force.0;
-    let [qx, qy, qz] = contact.force.cross(meeting.normal).0;
-    [fx, fy, fz, meeting.arms[0], qx, qy, qz, meeting.arms[1]]
+    let [qx, qy, qz] = meeting.normal.cross(contact.force).0;
+    [fx, fy, fz, qx, qy, qz, meeting.arms[0], meeting.arms[1]]
 }
 
-/// [`outcome`] stored: force on the first and its arm, `force x normal` and the arm of the second.
+/// [`outcome`] stored: force on the first, `normal x force`, arms.
 pub type Outcome<R> = [R; 8];
-
-/// Arm of the first of two by an [`Outcome`], or of the second \[m\].
-#[inline(always)]
-pub fn arm_of<R: Real>(outcome: &Outcome<R>, of_second: bool) -> f64 {
-    outcome[if of_second { 7 } else { 3 }].to_f64()
-}
 
 /// Force on the first of two by an [`Outcome`].
 pub fn force_of<R: Real>(outcome: &Outcome<R>) -> [f64; 3] {

@@ -1,7 +1,7 @@
 //! Newton's law for every body: forces of its contacts in a fixed order, damping, leapfrog (methods 4.2, pass 2).
 
 use super::body::{Body, Clump, SPHERE};
-use super::force::{Outcome, arm_of};
+use super::force::Outcome;
 use super::lanes::{BLOCK, Fine, FineVector, Lanes, Real, Vector, Work};
 use super::prefetch::prefetch;
 use super::record::Record;
@@ -121,7 +121,7 @@ pub(super) fn advance<R: Real>(moving: Moving<R>, tasks: &[Task], forces: Forces
     tallies.into_iter().fold(Tally::default(), Tally::and)
 }
 
-/// Force and moment about its centre on a pebble: the first three numbers of each half.
+/// Force and moment about its centre on a pebble: the first six of eight numbers.
 #[inline(always)]
 fn sum<R: Real>(pebble: usize, forces: Forces<R>) -> [f64; 8] {
     let mut sums = [0.0; 8];
@@ -129,11 +129,10 @@ fn sum<R: Real>(pebble: usize, forces: Forces<R>) -> [f64; 8] {
     let range = incidence.start[pebble] as usize..incidence.start[pebble + 1] as usize;
     for &entry in &incidence.entries[range] {
         let outcome = &outcomes[(entry >> 1) as usize];
-        // the second of two feels the opposite force; the moments of both have the same sign. No branch, and the signs as bits: which of
-        // two a pebble is no processor foresees, and one product and one sum of eight numbers are what is left
-        let sign = f64::from_bits(1f64.to_bits() | u64::from(entry & 1) << 63);
-        let arm = arm_of(outcome, entry & 1 == 1);
-        let factors = [sign, sign, sign, sign, arm, arm, arm, arm];
+        // the second of two feels the opposite force; the moments of both have the same sign
+        let (sign, arm) = if entry & 1 == 0 { (1.0, outcome[6]) } else { (-1.0, outcome[7]) };
+        let arm = -arm.to_f64();
+        let factors = [sign, sign, sign, arm, arm, arm, 0.0, 0.0];
         for k in 0..8 {
             sums[k] += factors[k] * outcome[k].to_f64();
         }
@@ -158,7 +157,7 @@ impl<R: Real> Work<R> for Share<'_, R> {
             let kind = &self.moving.bodies[body];
             let pebble = (kind.first - self.at.pebble) as usize;
             let pebbles = usize::from(kind.pebbles);
-            ask_for(&self.moving, body + AHEAD, clump + AHEAD);
+            ask_for(self.moving.bodies, body + AHEAD);
             if kind.clump == SPHERE {
                 spheres.put(Member { body, pebble, pebbles, clump: 0 });
                 if spheres.count == L::WIDTH {
@@ -187,16 +186,12 @@ impl<R: Real> Work<R> for Share<'_, R> {
 /// Bodies between what is asked for and what is looked at.
 const AHEAD: usize = 32;
 
-/// Asks for a body and a clump that will move soon; each lies in two lines of the cache.
+/// Asks for a body that will move soon; each lies in two lines of the cache.
 #[inline(always)]
-fn ask_for<R: Real>(moving: &Moving<'_, R>, body: usize, clump: usize) {
-    if let Some(body) = moving.bodies.get(body) {
+fn ask_for(bodies: &[Body], place: usize) {
+    if let Some(body) = bodies.get(place) {
         prefetch(&body.velocity);
         prefetch(&body.id);
-    }
-    if let Some(clump) = moving.clumps.get(clump) {
-        prefetch(&clump.centre);
-        prefetch(&clump.inverse_inertia);
     }
 }
 
@@ -396,7 +391,7 @@ impl<R: Real> Share<'_, R> {
         let (inverse, per_inertia) = (states.one(lanes, 6), states.one(lanes, 7));
         let before = (states.three(lanes, 0), inverse, states.one(lanes, 8));
         let Kick { velocity, spent: [translation, gravity, damping] } = kick(before, sums.three(lanes, 0), drive);
-        let mut acting = sums.three(lanes, 4);
+        let mut acting = sums.three(lanes, 3);
         let zero = inverse.alike(0.0);
         let mut lost = FineVector([zero; 3]);
         let spin = states.three(lanes, 3);
@@ -457,7 +452,7 @@ impl<R: Real> Share<'_, R> {
                     arms.put(l, moving.arms[moving.clumps[member.clump].arms as usize + k]);
                 }
             }
-            let (push, turn) = (sums.three(lanes, 0), sums.three(lanes, 4));
+            let (push, turn) = (sums.three(lanes, 0), sums.three(lanes, 3));
             force = force + push;
             moment = moment + (turn + turned.apply(arms.three(lanes, 0)).cross(push));
         }

@@ -3,7 +3,7 @@
 use super::bed::Bed;
 use super::body::{BodyId, SPHERE};
 use super::failure::Failure;
-use super::force::{arm_of, force_of};
+use super::force::force_of;
 use super::integrate::{self, Drive, Forces, Moving, Task};
 use super::lanes::{BLOCK, Real};
 use super::record::Record;
@@ -180,7 +180,7 @@ impl<R: Real> Bed<R> {
         let (a, b) = (self.contacts.first[place], self.contacts.second[place]);
         let (image, outcome) = (self.domain.shift(self.contacts.image[place]), &self.contacts.outcomes[place]);
         let is_turned = self.party(b) < self.party(a);
-        let (a, b, sign) = if is_turned { (b, a, -1.0) } else { (a, b, 1.0) };
+        let (a, b, sign, arm) = if is_turned { (b, a, -1.0, outcome[7]) } else { (a, b, 1.0, outcome[6]) };
         let apart = add(sub(self.offset(a), self.offset(b)), scale(image, sign));
         let distance = norm(apart);
         let normal = scale(apart, 1.0 / distance);
@@ -191,7 +191,7 @@ impl<R: Real> Bed<R> {
             normal,
             // from places: an arm in single precision knows a hundredth of a small overlap
             overlap: self.records[a as usize].radius() + self.records[b as usize].radius() - distance,
-            point: sub(self.place_of(a), scale(normal, arm_of(outcome, is_turned))),
+            point: sub(self.place_of(a), scale(normal, arm.to_f64())),
             branch: add(sub(self.centre(a), self.centre(b)), scale(image, sign)),
         }
     }

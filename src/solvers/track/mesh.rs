@@ -180,8 +180,8 @@ impl Track {
         self.held.iter().map(|(unknown, end)| (*unknown, end.map_or(0.0, |end| level.ends[end])))
     }
 
-    /// The unknowns that are prescribed at rest with their levels, m: those that always are, and undersides of carried sleepers, which lie
-    /// level.
+    /// Unknowns that are prescribed at rest, with their levels, m. To those that always are come the undersides of carried sleepers, which
+    /// lie level.
     pub(super) fn held_at_rest<'a>(&'a self, level: &'a TrackLevel) -> impl Iterator<Item = (usize, f64)> + 'a {
         let undersides = self.carried.iter().map(|c| (c.underside, level.settlements[c.seat]));
         let pitches = self.carried.iter().filter_map(|c| c.pitch).map(|pitch| (pitch, 0.0));

@@ -14,7 +14,6 @@ use super::bed::Bed;
 use super::body::{Body, BodyId, SPHERE};
 use super::critical::{Around, Network, Weight, bound, pencil};
 use super::failure::{Culprit, Failure, Limits};
-use super::force::arm_of;
 use super::lanes::Real;
 use super::record::Record;
 use super::vector::{Vec3, dot, norm};
@@ -176,7 +175,7 @@ impl<R: Real> Bed<R> {
         let outcome = &self.contacts.outcomes[place];
         let radius = self.records[self.contacts.first[place] as usize].radius();
         let touches = outcome[..3].iter().any(|&force| force != R::default());
-        touches.then_some(2.0 * (radius - arm_of(outcome, false)).max(0.0))
+        touches.then_some(2.0 * (radius - outcome[6].to_f64()).max(0.0))
     }
 
     fn culprit(&self, place: u32) -> Culprit {

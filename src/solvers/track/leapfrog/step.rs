@@ -28,8 +28,8 @@ impl Leapfrog {
         self.check_sense()
     }
 
-    /// Sets the moment of the ground on the i-th carried foot about its middle for the steps to come, N m: above 0 where it presses the side of
-    /// larger x down. Nothing where the foot stays level.
+    /// Sets the moment of the ground on the i-th carried foot about its middle, N m. A moment above 0 presses the side of larger x down.
+    /// It acts in all steps until it is set again. A foot that stays level has none.
     pub fn turn(&mut self, i: usize, moment: f64) {
         self.state.turns[i] = moment;
     }
