@@ -8,7 +8,7 @@ use crate::graph::{GrainStretch, GrainsNode, Responses, SleeperOnGrains, SoilNod
 use crate::nodes::NodeError;
 use crate::solvers::granular::packing::{Order, lay};
 use crate::solvers::granular::rig::{Load, Sleeper, fill, stand};
-use crate::solvers::granular::{Bed, Stride, WallId, WallMotion};
+use crate::solvers::granular::{Bed, Sharing, Stride, WallId, WallMotion};
 use crate::solvers::track::{Foot, Leapfrog, Spring, Track, TrackLevel};
 use crate::store::{Beds, recipe_hash};
 use std::sync::Arc;
@@ -16,9 +16,11 @@ use std::sync::Arc;
 /// The time step over the step that each grain bears by itself. The rest is for contacts that form between two looks at inertia.
 /// At 0.95, and with one look a passage, loaded sleepers made the step too long and the run stopped.
 pub const OF_STRIDE: f64 = 0.9;
+/// How grains share contacts when inertia is added for the step.
+pub const SHARING: Sharing = Sharing::ByNeed;
 
 /// Grows whenever the same parts are built otherwise than before, or kept in another form.
-const METHOD: &str = "track on grains 6";
+const METHOD: &str = "track on grains 7";
 
 /// What a track on grains is made of.
 #[derive(Clone, Copy)]
@@ -87,9 +89,9 @@ impl Parts<'_> {
         match self.grains.time_step {
             Some(step) => Ok(step),
             None => {
-                let stride = Stride::with_added(bed, self.grains.added_inertia)?;
+                let stride = Stride::with_added(bed, SHARING, self.grains.added_inertia)?;
                 stride.hold(bed)?;
-                Ok(OF_STRIDE * stride.0)
+                Ok(OF_STRIDE * stride.step)
             }
         }
     }

@@ -1,6 +1,6 @@
 //! What is done to a track on grains: it comes to rest, it is pressed, trains pass.
 
-use super::build::{OF_STRIDE, Parts};
+use super::build::{OF_STRIDE, Parts, SHARING};
 use super::reading::{Reading, Watched};
 use super::step::{Coupled, HOLD};
 use super::underway::Following;
@@ -50,7 +50,7 @@ impl Coupled {
 
     /// Adds the inertia that the contacts of now need for the step.
     pub fn hold(&mut self) -> Result<(), NodeError> {
-        let stride = Stride(self.time_step() / OF_STRIDE);
+        let stride = Stride { step: self.time_step() / OF_STRIDE, sharing: SHARING };
         self.added = 0.0;
         for standing in &mut self.beds {
             self.added = stride.hold(&mut standing.bed)?.max(self.added);

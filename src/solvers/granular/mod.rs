@@ -95,6 +95,6 @@ pub use shape::Shape;
 pub use sheet::{Corner, Sheet};
 pub use snapshot::{ContactState, Party, Snapshot};
 pub use step::Guided;
-pub use stride::Stride;
+pub use stride::{Sharing, Stride};
 pub use timings::Timings;
 pub use walls::{Wall, WallId};

@@ -81,7 +81,7 @@ impl Sheet {
     fn facet(&self, place: Vec3) -> ([usize; 2], [f64; 2], [f64; 2]) {
         let along = |axis: usize| {
             let lines = &self.lines[axis];
-            let cell = lines.partition_point(|line| *line <= place[axis]).clamp(1, lines.len() - 1) - 1;
+            let cell = interval(lines, place[axis]);
             let size = lines[cell + 1] - lines[cell];
             (cell, ((place[axis] - lines[cell]) / size).clamp(0.0, 1.0), size)
         };
@@ -157,6 +157,22 @@ impl Sheet {
     }
 }
 
+/// The interval between growing lines in which `x` lies, the first or the last beyond them. Lines of a mesh are nearly even: it is found from
+/// where it would be if they were.
+#[inline(always)]
+fn interval(lines: &[f64], x: f64) -> usize {
+    let last = lines.len() - 2;
+    let share = (x - lines[0]) / (lines[last + 1] - lines[0]);
+    let mut cell = ((share * (last + 1) as f64) as usize).min(last);
+    while cell < last && lines[cell + 1] <= x {
+        cell += 1;
+    }
+    while cell > 0 && lines[cell] > x {
+        cell -= 1;
+    }
+    cell
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::law::{ContactLaw, Dashpot, DashpotMode, FrictionLimit, Linear};
@@ -164,6 +180,18 @@ mod tests {
     use super::*;
 
     const STIFFNESS: f64 = 5e6;
+
+    #[test]
+    fn an_interval_is_found_wherever_lines_are() {
+        for lines in [vec![0.0, 1.0], vec![-1.0, -0.9, 0.0, 5.0, 5.1], (0..50).map(|k| 0.2 * f64::from(k)).collect()] {
+            let mut places: Vec<f64> = lines.iter().flat_map(|x| [x - 1e-9, *x, x + 1e-9]).collect();
+            places.extend([f64::NEG_INFINITY, -3.0, 0.33, 7.7, 1e9, f64::INFINITY]);
+            for x in places {
+                let sought = lines.partition_point(|line| *line <= x).clamp(1, lines.len() - 1) - 1;
+                assert_eq!(interval(&lines, x), sought, "{x} in {lines:?}");
+            }
+        }
+    }
 
     fn lines(count: usize, size: f64) -> Vec<f64> {
         (0..=count).map(|line| line as f64 * size).collect()

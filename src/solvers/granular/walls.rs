@@ -1,9 +1,9 @@
 //! Contacts of pebbles with walls: one evaluation a pebble and wall, as many contacts as the shape has there.
 
-use super::contacts::{ContactEnergy, Surroundings};
+use super::contacts::{BlockVector, ContactEnergy, Surroundings};
 use super::domain::Domain;
 use super::force::{ContactForces, Meeting, Outcome, Tangent, force_of, outcome};
-use super::lanes::{Lanes, Num, Plain, Real, Vector, Work};
+use super::lanes::{BLOCK, Lanes, Num, Plain, Real, Vector, Work};
 use super::law::ContactLaws;
 use super::motion::{Felt, Pose, WallMotion};
 use super::prefetch::prefetch;
@@ -281,25 +281,30 @@ impl<R: Real> WallContacts<R> {
 
     /// Sums what each wall feels: contact by contact, so that what is merely listed leaves no trace.
     fn load(&self, walls: &mut [Wall], outcomes: &[Outcome<R>]) {
-        for wall in walls.iter_mut() {
-            (wall.felt, wall.moment) = (Felt { velocity: wall.velocity, ..Felt::default() }, [0.0; 3]);
-            wall.sheet.iter_mut().for_each(|sheet| sheet.unload());
+        walls.par_iter_mut().with_max_len(1).enumerate().for_each(|(number, wall)| {
+            let begin = |number: usize| self.entries.partition_point(|entry| (entry.wall as usize) < number);
+            let own = &self.entries[begin(number)..begin(number + 1)];
+            let slots = own.first().map_or(0, |e| e.slots.0) as usize..own.last().map_or(0, |e| e.slots.1) as usize;
+            wall.feel(&self.slots[slots.clone()], &outcomes[slots]);
+        });
+    }
+}
+
+impl Wall {
+    /// Takes what its contacts do to it.
+    fn feel<R: Real>(&mut self, slots: &[Slot<R>], outcomes: &[Outcome<R>]) {
+        let (mut felt, mut moment) = (Felt { velocity: self.velocity, ..Felt::default() }, [0.0; 3]);
+        self.sheet.iter_mut().for_each(|sheet| sheet.unload());
+        for (slot, outcome) in slots.iter().zip(outcomes).filter(|(s, _)| s.touches()) {
+            let force = force_of(outcome);
+            felt.force -= Vector3::from(force);
+            felt.stiffness += slot.stiffness[0];
+            felt.dashpot += slot.stiffness[1];
+            felt.contacts += 1;
+            moment = sub(moment, cross(slot.point, force));
+            self.sheet.iter_mut().for_each(|sheet| sheet.load(slot.point, scale(force, -1.0), slot.stiffness[0]));
         }
-        for of_wall in self.entries.chunk_by(|a, b| a.wall == b.wall) {
-            let wall = &mut walls[of_wall[0].wall as usize];
-            let (mut felt, mut moment) = (wall.felt, wall.moment);
-            let range = of_wall[0].slots.0 as usize..of_wall[of_wall.len() - 1].slots.1 as usize;
-            for (slot, outcome) in self.slots[range.clone()].iter().zip(&outcomes[range]).filter(|(s, _)| s.touches()) {
-                let force = force_of(outcome);
-                felt.force -= Vector3::from(force);
-                felt.stiffness += slot.stiffness[0];
-                felt.dashpot += slot.stiffness[1];
-                felt.contacts += 1;
-                moment = sub(moment, cross(slot.point, force));
-                wall.sheet.iter_mut().for_each(|sheet| sheet.load(slot.point, scale(force, -1.0), slot.stiffness[0]));
-            }
-            (wall.felt, wall.moment) = (felt, moment);
-        }
+        (self.felt, self.moment) = (felt, moment);
     }
 }
 
@@ -401,24 +406,109 @@ struct Pass<'a, R: Real> {
     places: &'a mut [Outcome<R>],
 }
 
-/// One lane: a shape's contacts differ too much to be worked on together.
+/// One lane, for contacts that come singly.
 type One<R> = Plain<R, 1>;
 
 impl<R: Real> Work<R> for Pass<'_, R> {
     type Output = ContactEnergy;
 
     #[inline(always)]
-    fn run<L: Lanes<Real = R>>(self, _: L) -> ContactEnergy {
+    fn run<L: Lanes<Real = R>>(mut self, lanes: L) -> ContactEnergy {
         let mut energy = ContactEnergy::default();
         let mut scratch = Scratch::default();
+        let mut batches: Vec<Batch<R>> = Vec::new();
         let base = self.entries[0].slots.0;
         self.ask_for();
         for entry in self.entries {
-            let range = (entry.slots.0 - base) as usize..(entry.slots.1 - base) as usize;
+            let first = (entry.slots.0 - base) as usize;
+            let range = first..(entry.slots.1 - base) as usize;
             let (slots, places) = (&mut self.slots[range.clone()], &mut self.places[range]);
-            self.shared.entry(entry, slots, places, &mut scratch, &mut energy);
+            let Some((met, shear)) = self.shared.entry(entry, slots, places, &mut scratch, &mut energy) else {
+                continue;
+            };
+            let batch = batch_of(&mut batches, entry.law);
+            batch.put(first, &met, &shear);
+            if batch.count == L::WIDTH {
+                self.finish(lanes, batch);
+            }
+        }
+        for batch in &mut batches {
+            self.finish(lanes, batch);
         }
         energy
+    }
+}
+
+/// A meeting in numbers: overlap, normal, arm, velocity, twist, mass, radius of curvature.
+type Met<R> = [R; 11];
+/// Which of them is the mass: it has the precision of contacts already.
+const MASS: usize = 9;
+
+/// Meetings under one law, one a lane.
+struct Batch<R> {
+    law: u16,
+    count: usize,
+    /// Where their results go.
+    slots: [usize; BLOCK],
+    met: [[R; BLOCK]; 11],
+    shear: BlockVector<R>,
+}
+
+impl<R: Real> Batch<R> {
+    #[inline(always)]
+    fn put(&mut self, slot: usize, met: &Met<R>, shear: &[R; 3]) {
+        let lane = self.count;
+        self.slots[lane] = slot;
+        for row in 0..met.len() {
+            self.met[row][lane] = met[row];
+        }
+        for row in 0..3 {
+            self.shear[row][lane] = shear[row];
+        }
+        self.count += 1;
+    }
+}
+
+/// The batch of a law.
+fn batch_of<R: Real>(batches: &mut Vec<Batch<R>>, law: u16) -> &mut Batch<R> {
+    let zero = R::default();
+    let known = batches.iter().position(|batch| batch.law == law);
+    let place = known.unwrap_or_else(|| {
+        batches.push(Batch { law, count: 0, slots: [0; BLOCK], met: [[zero; BLOCK]; 11], shear: [[zero; BLOCK]; 3] });
+        batches.len() - 1
+    });
+    &mut batches[place]
+}
+
+impl<R: Real> Pass<'_, R> {
+    /// Computes the forces of a batch, and empties it.
+    #[inline(always)]
+    fn finish<L: Lanes<Real = R>>(&mut self, lanes: L, batch: &mut Batch<R>) {
+        let mut met = [Num::splat(lanes, 0.0); 11];
+        for row in 0..met.len() {
+            met[row] = Num::load(lanes, &batch.met[row]);
+        }
+        let meeting = meeting(met);
+        let contact = self.shared.around.laws[usize::from(batch.law)].force(
+            lanes,
+            &meeting,
+            Vector::load(lanes, &batch.shear, 0),
+        );
+        contact.shear.store(&mut batch.shear, 0);
+        let mut damping = [[R::default(); BLOCK]; 3];
+        contact.damping.store(&mut damping, 0);
+        let mut outcomes = [[R::default(); 8]; BLOCK];
+        lanes.scatter(outcome(&meeting, &contact), &mut outcomes[..L::WIDTH]);
+        for lane in 0..batch.count {
+            let place = batch.slots[lane];
+            let slot = &mut self.slots[place];
+            for row in 0..3 {
+                slot.shear[row] = batch.shear[row][lane];
+                slot.damping[row] = damping[row][lane];
+            }
+            self.places[place] = outcomes[lane];
+        }
+        batch.count = 0;
     }
 }
 
@@ -433,7 +523,8 @@ impl<R: Real> Pass<'_, R> {
 }
 
 impl<R: Real> Shared<'_, R> {
-    /// All contacts of a pebble with a wall.
+    /// All contacts of a pebble with a wall. One that goes on or begins, which is the usual case, is left to be computed with others: its
+    /// slot has all but its forces then, and what they follow from is given back.
     #[inline(always)]
     fn entry(
         &self,
@@ -442,7 +533,7 @@ impl<R: Real> Shared<'_, R> {
         places: &mut [Outcome<R>],
         scratch: &mut Scratch<R>,
         energy: &mut ContactEnergy,
-    ) {
+    ) -> Option<(Met<R>, [R; 3])> {
         let wall = &self.walls[entry.wall as usize];
         let record = &self.around.records[entry.pebble as usize];
         let away = wall.to(self.domain, entry.cell, record.position());
@@ -451,18 +542,17 @@ impl<R: Real> Shared<'_, R> {
         let touched = slots.iter().any(Slot::touches);
         if scratch.touches.is_empty() && !touched {
             // it was near and still is no more than that
-            return;
+            return None;
         }
         for touch in &mut scratch.touches {
             touch.normal = wall.pose.direction_to_space(&touch.normal);
         }
-        if let ([slot], [touch], [place]) = (&mut *slots, &scratch.touches[..], &mut *places)
+        if let ([slot], [touch], false) = (&mut *slots, &scratch.touches[..], self.watched)
             && (slot.feature == touch.feature || !touched)
         {
-            // the usual case: one contact that goes on or begins
-            let before = *slot;
-            (*slot, *place) = self.contact(entry, (wall, record, away), touch, &before, energy);
-            return;
+            let (met, point) = meet::<R>(wall, record, away, touch);
+            *slot = self.slot(entry, record, touch, point, slot.shear);
+            return Some((met, slot.shear));
         }
         scratch.remember(slots);
         slots.fill(Slot::empty(R::default()));
@@ -470,6 +560,24 @@ impl<R: Real> Shared<'_, R> {
         for (k, touch) in scratch.touches.iter().enumerate().take(slots.len()) {
             let history = scratch.heirs[k].map_or(Slot::empty(R::default()), |old| scratch.before[old]);
             (slots[k], places[k]) = self.contact(entry, (wall, record, away), touch, &history, energy);
+        }
+        None
+    }
+
+    /// A contact before its forces are known.
+    #[inline(always)]
+    fn slot(&self, entry: &Entry, record: &R::Record, touch: &Touch, point: Vec3, shear: [R; 3]) -> Slot<R> {
+        let overlap = record.radius() - touch.distance;
+        let law = &self.laws.all()[usize::from(entry.law)];
+        let tangent = Tangent::from_law(law, overlap, record.mass().to_f64(), record.radius());
+        Slot {
+            feature: touch.feature,
+            normal: touch.normal.into(),
+            shear,
+            damping: [R::default(); 3],
+            point,
+            overlap,
+            stiffness: [tangent.normal, tangent.normal_dashpot],
         }
     }
 
@@ -483,26 +591,16 @@ impl<R: Real> Shared<'_, R> {
         history: &Slot<R>,
         energy: &mut ContactEnergy,
     ) -> (Slot<R>, Outcome<R>) {
-        let law = usize::from(entry.law);
-        let (meeting, point) = meet(wall, record, away, touch);
         let lanes = One::<R>::new();
-        let [x, y, z] = history.shear;
-        let shear = Vector([Num { lanes, value: [x] }, Num { lanes, value: [y] }, Num { lanes, value: [z] }]);
-        let contact = self.around.laws[law].force(lanes, &meeting, shear);
+        let (met, point) = meet::<R>(wall, record, away, touch);
+        let meeting = meeting(met.map(|number| Num { lanes, value: [number] }));
+        let shear = Vector(history.shear.map(|part| Num { lanes, value: [part] }));
+        let contact = self.around.laws[usize::from(entry.law)].force(lanes, &meeting, shear);
         if self.watched {
             *energy += spent(&meeting, &contact, history.damping, self.around.dt);
         }
-        let overlap = record.radius() - touch.distance;
-        let tangent = Tangent::from_law(&self.laws.all()[law], overlap, record.mass().to_f64(), record.radius());
-        let slot = Slot {
-            feature: touch.feature,
-            normal: touch.normal.into(),
-            shear: numbers(contact.shear),
-            damping: numbers(contact.damping),
-            point,
-            overlap,
-            stiffness: [tangent.normal, tangent.normal_dashpot],
-        };
+        let damping = numbers(contact.damping);
+        let slot = Slot { damping, ..self.slot(entry, record, touch, point, numbers(contact.shear)) };
         let [a, b, c, d, e, f, g, h] = outcome(&meeting, &contact);
         let outcome = [a.value[0], b.value[0], c.value[0], d.value[0], e.value[0], f.value[0], g.value[0], h.value[0]];
         (slot, outcome)
@@ -516,7 +614,7 @@ fn numbers<R: Real>(v: Vector<One<R>>) -> [R; 3] {
 
 /// How a pebble meets a wall, and where \[m from the wall's origin\].
 #[inline(always)]
-fn meet<R: Real>(wall: &Wall, record: &R::Record, away: Vec3, touch: &Touch) -> (Meeting<One<R>>, Vec3) {
+fn meet<R: Real>(wall: &Wall, record: &R::Record, away: Vec3, touch: &Touch) -> (Met<R>, Vec3) {
     let normal: Vec3 = touch.normal.into();
     let overlap = record.radius() - touch.distance;
     // on a floor that moves the contact point lies on the facet, so that its corners feel the moment too
@@ -528,17 +626,22 @@ fn meet<R: Real>(wall: &Wall, record: &R::Record, away: Vec3, touch: &Touch) -> 
     let (wall_velocity, wall_spin): (Vec3, Vec3) = (wall.velocity.into(), wall.spin.into());
     let of_sheet = wall.sheet.as_ref().map_or([0.0; 3], |sheet| sheet.velocity_at(point));
     let [u, v, w] = sub(own, add(add(wall_velocity, of_sheet), cross(wall_spin, point)));
-    let lanes = One::<R>::new();
-    let meeting = Meeting {
-        overlap: Num::splat(lanes, overlap),
-        normal: Vector([Num::splat(lanes, normal[0]), Num::splat(lanes, normal[1]), Num::splat(lanes, normal[2])]),
-        arms: [Num::splat(lanes, arm), Num::splat(lanes, 0.0)],
-        velocity: Vector([Num::splat(lanes, u), Num::splat(lanes, v), Num::splat(lanes, w)]),
-        twist: Num::splat(lanes, 0.5 * dot(add(spin, wall_spin), normal)),
-        mass: Num { lanes, value: [record.mass()] },
-        curvature_radius: Num::splat(lanes, record.radius()),
-    };
-    (meeting, point)
+    let twist = 0.5 * dot(add(spin, wall_spin), normal);
+    let [x, y, z] = normal;
+    let numbers = [overlap, x, y, z, arm, u, v, w, twist, 0.0, record.radius()];
+    let mut met = [record.mass(); 11];
+    for row in (0..11).filter(|row| *row != MASS) {
+        met[row] = R::from_f64(numbers[row]);
+    }
+    (met, point)
+}
+
+/// Meetings of pebbles with a wall in lanes.
+#[inline(always)]
+fn meeting<L: Lanes>([overlap, x, y, z, arm, u, v, w, twist, mass, curvature_radius]: [Num<L>; 11]) -> Meeting<L> {
+    let arms = [arm, Num::splat(arm.lanes, 0.0)];
+    let (normal, velocity) = (Vector([x, y, z]), Vector([u, v, w]));
+    Meeting { overlap, normal, arms, velocity, twist, mass, curvature_radius }
 }
 
 /// Energy in a contact, and what it lost in a step.

@@ -190,7 +190,7 @@ impl<R: Real> Bed<R> {
     }
 
     /// Contacts of a pebble with a wall.
-    fn walled(&self, entry: usize, gap: f64, links: &mut Vec<Link>) {
+    pub(in super::super) fn walled(&self, entry: usize, gap: f64, links: &mut Vec<Link>) {
         let entry = &self.wall_contacts.entries[entry];
         let wall = &self.walls[entry.wall as usize];
         let record = &self.records[entry.pebble as usize];

@@ -25,7 +25,7 @@ mod network;
 #[cfg(test)]
 pub(super) mod tests;
 
-pub(super) use links::{Link, Roots};
+pub(super) use links::{Link, Roots, reduced};
 pub(super) use local::{Around, Weight, bound, pencil, surely_allows};
 pub(super) use network::Network;
 

@@ -15,7 +15,7 @@ use super::lanes::Real;
 use super::motion::{Pose, WallMotion};
 use super::rest::{Criterion, Look, Waiting, until_rest};
 use super::shape::{Mesh, Shape};
-use super::stride::Stride;
+use super::stride::{Sharing, Stride};
 use super::vector::Vec3;
 use super::walls::WallId;
 use nalgebra::Vector3;
@@ -251,7 +251,7 @@ impl<'a, R: Real> Test<'a, R> {
         let pose = Pose { position: Vector3::new(x, y, top + depth), ..Pose::default() };
         let wall = bed.add_wall(shape, pose, plate.surface, WallMotion::Fixed);
         bed.set_damping(LOCAL_DAMPING);
-        let stride = Stride::with_added(&mut bed, ADDED).map_err(ProbeError::Failure)?;
+        let stride = Stride::with_added(&mut bed, Sharing::Even, ADDED).map_err(ProbeError::Failure)?;
         Ok(Test { bed, plate, wall, depth, seat: top, stride })
     }
 

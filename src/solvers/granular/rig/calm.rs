@@ -3,7 +3,7 @@
 use super::super::bed::Bed;
 use super::super::lanes::Real;
 use super::super::rest::{Criterion, Look};
-use super::super::stride::Stride;
+use super::super::stride::{Sharing, Stride};
 use super::error::{Resting, RigError, in_cycle};
 
 /// When sleepers are at rest: the bed carries them but for a hundredth of their force.
@@ -23,7 +23,7 @@ pub(super) fn calmed<R: Real, T>(
 ) -> Result<T, RigError> {
     let damping = bed.damping;
     bed.set_damping(DAMPING);
-    let stride = Stride::with_added(bed, ADDED).map_err(in_cycle(0))?;
+    let stride = Stride::with_added(bed, Sharing::Even, ADDED).map_err(in_cycle(0))?;
     let done = work(bed, stride)?;
     bed.unscale_masses();
     bed.set_damping(damping);

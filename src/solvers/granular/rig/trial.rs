@@ -3,7 +3,7 @@
 use super::super::bed::Bed;
 use super::super::lanes::Real;
 use super::super::motion::{Push, WallMotion};
-use super::super::stride::Stride;
+use super::super::stride::{Sharing, Stride};
 use super::super::walls::WallId;
 use super::answer::{Cycle, CycleSample};
 use super::calm::{AT_REST, DAMPING};
@@ -79,7 +79,7 @@ impl<'a, R: Real> Trial<'a, R> {
             start: bed.time(),
             pieces: 0,
             steps: bed.steps() - before,
-            stride: Stride::with_added(&mut bed, rig.added).map_err(in_cycle(0))?.0,
+            stride: Stride::with_added(&mut bed, Sharing::Even, rig.added).map_err(in_cycle(0))?.step,
             current: vec![Current::default(); walls.len()],
             walls,
             rest,
@@ -205,7 +205,7 @@ impl<'a, R: Real> Trial<'a, R> {
         if self.rig.specimen.is_some() {
             self.engage();
         }
-        let stride = Stride(self.state.stride);
+        let stride = Stride { step: self.state.stride, sharing: Sharing::Even };
         let piece = self.piece();
         self.state.steps += stride.run(&mut self.bed, &self.state.walls, piece).map_err(in_cycle(cycle))?;
         self.state.pieces += 1;

@@ -7,6 +7,8 @@
 //! Gravity pulls, and dashpots by ratio refer to, the real mass: forces at rest are those without scaling, and dashpots keep
 //! their coefficients, so that a scaled body rebounds as if its damping ratio were smaller by the root of its factor.
 
+mod need;
+
 use super::bed::{Bed, BodyState};
 use super::body::{BodyId, SPHERE};
 use super::critical::{Around, Link, Network, Roots, Weight, pencil, surely_allows};

@@ -1,5 +1,6 @@
 //! What mass scaling changes, and what it must not.
 
+use super::need::{Acting, largest};
 use crate::solvers::granular::clump::{Pebble, Template};
 use crate::solvers::granular::critical::{Around, Weight, pencil, surely_allows};
 use crate::solvers::granular::{
@@ -197,4 +198,34 @@ fn the_own_contacts_of_a_body_are_those_among_all() {
         }
     }
     assert!(sure > allowed / 4 && allowed < 3 * roots.len(), "{sure} of {allowed} without their pencils");
+}
+
+/// What a body's contacts do to it, summed by blocks, is the pencil at that step; the network bears a step held by need, and less mass is
+/// added for it than with contacts counted twice.
+#[test]
+fn contacts_shared_by_need_hold_a_step_with_less_mass() {
+    let bed = mixed();
+    let plain = bed.clone().critical_step(0.0).unwrap().network.step;
+    let (links, roots) = (bed.clone().links(0.0).unwrap(), bed.roots());
+    let (around, acting) = (Around::new(&links, roots.len()), Acting::new(&bed, 1e-4));
+    let loads: Vec<f64> = (0..roots.len()).map(|body| 1.0 + body as f64 % 7.0).collect();
+    for (body, root) in roots.iter().enumerate() {
+        let pencil = pencil(body, root, around.pick(body, &links), Weight::Shared(&loads));
+        let of = |place: u32| loads[bed.bodies[place as usize].id as usize];
+        let count = |other| 1.0 + of(other) / loads[body];
+        let whole = acting.matrix(bed.index[body] as usize, count);
+        // the sums take normals in single precision, and arms without overlaps
+        assert!((whole - pencil.at_step(1e-4)).norm() <= 1e-3 * whole.norm(), "body {body}");
+        assert!(largest(&whole) >= whole.symmetric_eigenvalues().max(), "body {body}");
+    }
+    for factor in [1.0, 1.5, 3.0] {
+        let step = factor * plain;
+        let (mut shared, mut even) = (bed.clone(), bed.clone());
+        let by_need = shared.hold_time_step_by_need(step, |_, _| 0.0).unwrap();
+        let twice = even.hold_time_step(step, |_| 0.0).unwrap();
+        let bears = shared.critical_step(0.0).unwrap().network.step;
+        assert!(bears >= step, "{factor}: {bears} s for {step} s");
+        println!("{factor} {} {} {}", by_need.added_share, twice.added_share, bears / step);
+        assert!(by_need.added_share <= twice.added_share, "{factor}: {by_need:?} {twice:?}");
+    }
 }
