@@ -16,7 +16,7 @@ use std::time::Instant;
 /// Tasks that one thread does before it moves their bodies: what fits into its own cache.
 const ALONE: usize = 3;
 /// Tasks a thread that several do: threads wait for each other twice a window.
-const TOGETHER: usize = 6;
+const TOGETHER: usize = 12;
 
 /// Walls between the forces of a step and their motion.
 pub struct Guided<'a> {

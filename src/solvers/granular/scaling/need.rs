@@ -75,8 +75,8 @@ impl Sums {
         }
         for r in 0..3 {
             self.arm[r] += across * arm[r];
-            for c in 0..3 {
-                self.mixed[r][c] += along * turn[r] * normal[c];
+            for (mixed, part) in self.mixed[r].iter_mut().zip(normal) {
+                *mixed += along * turn[r] * part;
             }
         }
     }
