@@ -225,7 +225,6 @@ fn contacts_shared_by_need_hold_a_step_with_less_mass() {
         let twice = even.hold_time_step(step, |_| 0.0).unwrap();
         let bears = shared.critical_step(0.0).unwrap().network.step;
         assert!(bears >= step, "{factor}: {bears} s for {step} s");
-        println!("{factor} {} {} {}", by_need.added_share, twice.added_share, bears / step);
         assert!(by_need.added_share <= twice.added_share, "{factor}: {by_need:?} {twice:?}");
     }
 }
