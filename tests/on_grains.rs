@@ -116,7 +116,7 @@ fn a_track_on_grains_settles_and_a_run_that_was_stopped_ends_with_the_same_bits(
     assert!(idle < an_axle, "{idle} m in a second, {an_axle} m an axle");
 
     // the other number of threads, and a stop between the trains, under the first and under the second
-    for stop in [(1, 0), (0, 20), (1, 30)] {
+    for stop in [(1, 0), (0, 20), (1, 24)] {
         stopped_and_resumed(&graph, folder.path(), stop, &whole);
     }
 }
