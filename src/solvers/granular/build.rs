@@ -8,6 +8,7 @@ use super::body::{Body, SPHERE};
 use super::contacts::{BlockVector, Contacts};
 use super::domain::{mirrored, steps_of};
 use super::failure::Failure;
+use super::force::Outcome;
 use super::integrate::{Incidence, TASK, Task};
 use super::lanes::{BLOCK, Real};
 use super::order::Strips;
@@ -327,7 +328,7 @@ impl<R: Real> Bed<R> {
                 }
             }
         }
-        contacts.outcomes = vec![[R::default(); 8]; contacts.len() + self.wall_contacts.slots.len()];
+        contacts.outcomes = vec![Outcome::default(); contacts.len() + self.wall_contacts.slots.len()];
         self.contacts = contacts;
     }
 

@@ -1,6 +1,6 @@
 //! The force of a contact: methods 1.1, lane by lane.
 
-use super::lanes::{Columns, Fine, Lanes, Num, Real, Vector};
+use super::lanes::{Columns, Fine, Lanes, Num, Real, Row, Vector};
 use super::law::{ContactLaw, Dashpot, FrictionLimit, HertzMindlin, Linear};
 
 /// Two surfaces that may touch.
@@ -291,7 +291,7 @@ pub fn outcome<L: Lanes>(meeting: &Meeting<L>, contact: &ContactForces<L>) -> [N
 }
 
 /// [`outcome`] stored: force on the first, `normal x force`, arms.
-pub type Outcome<R> = [R; 8];
+pub type Outcome<R> = Row<R>;
 
 /// Force on the first of two by an [`Outcome`].
 pub fn force_of<R: Real>(outcome: &Outcome<R>) -> [f64; 3] {

@@ -121,21 +121,26 @@ pub(super) fn advance<R: Real>(moving: Moving<R>, tasks: &[Task], forces: Forces
     tallies.into_iter().fold(Tally::default(), Tally::and)
 }
 
+/// Entries between what is asked for and what is summed.
+const ASKED: usize = 16;
+
 /// Force and moment about its centre on a pebble: the first six of eight numbers.
 #[inline(always)]
-fn sum<R: Real>(pebble: usize, forces: Forces<R>) -> [f64; 8] {
+fn sum<L: Lanes>(lanes: L, pebble: usize, forces: Forces<L::Real>) -> [f64; 8] {
     let mut sums = [0.0; 8];
     let Forces { incidence, outcomes } = forces;
     let range = incidence.start[pebble] as usize..incidence.start[pebble + 1] as usize;
-    for &entry in &incidence.entries[range] {
+    for at in range {
+        if let Some(&later) = incidence.entries.get(at + ASKED) {
+            prefetch(&outcomes[(later >> 1) as usize]);
+        }
+        let entry = incidence.entries[at];
         let outcome = &outcomes[(entry >> 1) as usize];
         // the second of two feels the opposite force; the moments of both have the same sign
-        let (sign, arm) = if entry & 1 == 0 { (1.0, outcome[6]) } else { (-1.0, outcome[7]) };
-        let arm = -arm.to_f64();
-        let factors = [sign, sign, sign, arm, arm, arm, 0.0, 0.0];
-        for k in 0..8 {
-            sums[k] += factors[k] * outcome[k].to_f64();
-        }
+        let second = u64::from(entry & 1);
+        let sign = f64::from_bits(1f64.to_bits() | second << 63);
+        let arm = -outcome[6 + second as usize].to_f64();
+        sums = lanes.add_row(outcome, [sign, sign, sign, arm, arm, arm, arm, arm], sums);
     }
     sums
 }
@@ -385,7 +390,7 @@ impl<R: Real> Share<'_, R> {
             let body = &moving.bodies[member.body];
             let ([u, v, w], [p, q, r]) = (body.velocity, body.spin);
             states.put(l, [u, v, w, p, q, r, body.inverse_mass, body.inverse_inertia, body.mass]);
-            sums.put(l, sum(self.at.pebble as usize + member.pebble, self.forces));
+            sums.put(l, sum(lanes, self.at.pebble as usize + member.pebble, self.forces));
             places.put(l, moving.records[member.pebble].position());
         }
         let (inverse, per_inertia) = (states.one(lanes, 6), states.one(lanes, 7));
@@ -448,7 +453,7 @@ impl<R: Real> Share<'_, R> {
             let (mut sums, mut arms) = (Table::<8>::new(), Table::<3>::new());
             for (l, member) in batch.members().iter().enumerate() {
                 if k < member.pebbles {
-                    sums.put(l, sum(self.at.pebble as usize + member.pebble + k, self.forces));
+                    sums.put(l, sum(lanes, self.at.pebble as usize + member.pebble + k, self.forces));
                     arms.put(l, moving.arms[moving.clumps[member.clump].arms as usize + k]);
                 }
             }

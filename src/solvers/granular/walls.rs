@@ -6,7 +6,7 @@
 use super::contacts::{BlockVector, ContactEnergy, Surroundings};
 use super::domain::Domain;
 use super::force::{ContactForces, Meeting, Outcome, Tangent, force_of, outcome};
-use super::lanes::{BLOCK, Lanes, Num, Plain, Real, Vector, Work};
+use super::lanes::{BLOCK, Lanes, Num, Plain, Real, Row, Vector, Work};
 use super::law::ContactLaws;
 use super::motion::{Felt, Pose, WallMotion};
 use super::prefetch::prefetch;
@@ -500,7 +500,7 @@ impl<R: Real> Pass<'_, R> {
         contact.shear.store(&mut batch.shear, 0);
         let mut damping = [[R::default(); BLOCK]; 3];
         contact.damping.store(&mut damping, 0);
-        let mut outcomes = [[R::default(); 8]; BLOCK];
+        let mut outcomes = [Outcome::default(); BLOCK];
         lanes.scatter(outcome(&meeting, &contact), &mut outcomes[..L::WIDTH]);
         for lane in 0..batch.count {
             let place = batch.slots[lane];
@@ -559,7 +559,7 @@ impl<R: Real> Shared<'_, R> {
         }
         scratch.remember(slots);
         slots.fill(Slot::empty(R::default()));
-        places.fill([R::default(); 8]);
+        places.fill(Outcome::default());
         for (k, touch) in scratch.touches.iter().enumerate().take(slots.len()) {
             let history = scratch.heirs[k].map_or(Slot::empty(R::default()), |old| scratch.before[old]);
             (slots[k], places[k]) = self.contact(entry, (wall, record, away), touch, &history, energy);
@@ -606,7 +606,7 @@ impl<R: Real> Shared<'_, R> {
         let slot = Slot { damping, ..self.slot(entry, record, touch, point, numbers(contact.shear)) };
         let [a, b, c, d, e, f, g, h] = outcome(&meeting, &contact);
         let outcome = [a.value[0], b.value[0], c.value[0], d.value[0], e.value[0], f.value[0], g.value[0], h.value[0]];
-        (slot, outcome)
+        (slot, Row(outcome))
     }
 }
 

@@ -19,7 +19,7 @@ pub use plain::Plain;
 use super::record::Record;
 use bytemuck::Pod;
 use serde::{Serialize, de::DeserializeOwned};
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, Div, Index, Mul, Neg, Sub};
 
 /// Contacts that are stored together; a multiple of every width.
 pub const BLOCK: usize = 16;
@@ -70,6 +70,19 @@ pub struct Columns<L: Lanes> {
     pub mass: Num<L>,
 }
 
+/// Eight numbers of one contact, in one line of the cache.
+#[repr(C, align(32))]
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Row<R>(pub [R; 8]);
+
+impl<R> Index<usize> for Row<R> {
+    type Output = R;
+    #[inline(always)]
+    fn index(&self, place: usize) -> &R {
+        &self.0[place]
+    }
+}
+
 /// A set of lanes, with the instructions that work on them.
 pub trait Lanes: Copy {
     const WIDTH: usize;
@@ -115,8 +128,10 @@ pub trait Lanes: Copy {
 
     /// The records at `index`, transposed.
     fn gather(self, records: &[<Self::Real as Real>::Record], index: &[u32]) -> Columns<Self>;
+    /// `factors row + sums` for the eight numbers of one row.
+    fn add_row(self, row: &Row<Self::Real>, factors: [f64; 8], sums: [f64; 8]) -> [f64; 8];
     /// Eight numbers a lane, written lane by lane.
-    fn scatter(self, columns: [Num<Self>; 8], to: &mut [[Self::Real; 8]]);
+    fn scatter(self, columns: [Num<Self>; 8], to: &mut [Row<Self::Real>]);
 }
 
 /// A number of the contact's precision in each lane.

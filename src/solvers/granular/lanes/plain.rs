@@ -1,6 +1,6 @@
 //! Lanes as plain arrays: the reference of every other kind, and what machines without wide instructions use.
 
-use super::{Columns, Fine, Lanes, Num, Real, Vector};
+use super::{Columns, Fine, Lanes, Num, Real, Row, Vector};
 use crate::solvers::granular::record::Record;
 use std::marker::PhantomData;
 
@@ -242,10 +242,18 @@ impl<R: Real, const W: usize> Lanes for Plain<R, W> {
     }
 
     #[inline(always)]
-    fn scatter(self, columns: [Num<Self>; 8], to: &mut [[R; 8]]) {
+    fn add_row(self, row: &Row<R>, factors: [f64; 8], mut sums: [f64; 8]) -> [f64; 8] {
+        for k in 0..8 {
+            sums[k] += factors[k] * row.0[k].to_f64();
+        }
+        sums
+    }
+
+    #[inline(always)]
+    fn scatter(self, columns: [Num<Self>; 8], to: &mut [Row<R>]) {
         for (l, row) in to[..W].iter_mut().enumerate() {
             for c in 0..8 {
-                row[c] = columns[c].value[l];
+                row.0[c] = columns[c].value[l];
             }
         }
     }

@@ -3,7 +3,7 @@
 //! Records come in by whole cache lines and are transposed in registers: a gather instruction would fetch each number
 //! of a line by itself. No closures here: their bodies would lose the instructions that their surroundings have.
 
-use super::{Columns, Fine, Lanes, Num, Plain, Vector, Work};
+use super::{Columns, Fine, Lanes, Num, Row, Vector, Work};
 use crate::solvers::granular::record::Compact;
 use bytemuck::{cast, cast_ref, must_cast};
 use pulp::NullaryFnOnce;
@@ -260,8 +260,15 @@ impl Lanes for Wide {
         }
     }
 
+    // products of two numbers in single precision are exact in double: fused or not, the same bits
     #[inline(always)]
-    fn scatter(self, columns: [Num<Self>; 8], to: &mut [[f32; 8]]) {
+    fn add_row(self, row: &Row<f32>, factors: [f64; 8], sums: [f64; 8]) -> [f64; 8] {
+        let s = self.0.avx512f;
+        must_cast(s._mm512_fmadd_pd(s._mm512_cvtps_pd(must_cast(row.0)), must_cast(factors), must_cast(sums)))
+    }
+
+    #[inline(always)]
+    fn scatter(self, columns: [Num<Self>; 8], to: &mut [Row<f32>]) {
         let s = self.0.avx512f;
         let [c0, c1, c2, c3, c4, c5, c6, c7] = columns;
         let (front, back) = (self.quads([c0, c1, c2, c3]), self.quads([c4, c5, c6, c7]));
@@ -279,7 +286,7 @@ impl Lanes for Wide {
                 s._mm512_shuffle_f32x4::<0xdd>(t[1], t[3]),
             ];
             for g in 0..4 {
-                to[4 * g + r..4 * g + r + 2].copy_from_slice(&cast::<_, [[f32; 8]; 2]>(groups[g]));
+                [to[4 * g + r].0, to[4 * g + r + 1].0] = cast(groups[g]);
             }
         }
     }
@@ -303,14 +310,71 @@ impl Middle {
 }
 
 impl Middle {
+    /// Words of four records, record by record, to eight words of one kind each.
     #[inline(always)]
-    fn num(self, column: Num<Plain<f32, 8>>) -> Num<Self> {
-        Num { lanes: self, value: cast(column.value) }
+    fn columns(self, records: &[Compact], index: &[u32]) -> [__m256d; 8] {
+        let mut rows = [[self.0.avx._mm256_setzero_pd(); 2]; 4];
+        for l in 0..4 {
+            rows[l] = *cast_ref(&records[index[l] as usize]);
+        }
+        let mut columns = [rows[0][0]; 8];
+        for half in 0..2 {
+            let four = self.transpose([rows[0][half], rows[1][half], rows[2][half], rows[3][half]]);
+            columns[4 * half..4 * half + 4].copy_from_slice(&four);
+        }
+        columns
     }
 
     #[inline(always)]
-    fn fine(self, column: Fine<Plain<f32, 8>>) -> Fine<Self> {
-        Fine { lanes: self, value: must_cast(column.value) }
+    fn transpose(self, [a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
+        let s = self.0.avx;
+        let (even, odd) = (
+            [s._mm256_unpacklo_pd(a, b), s._mm256_unpacklo_pd(c, d)],
+            [s._mm256_unpackhi_pd(a, b), s._mm256_unpackhi_pd(c, d)],
+        );
+        [
+            s._mm256_permute2f128_pd::<0x20>(even[0], even[1]),
+            s._mm256_permute2f128_pd::<0x20>(odd[0], odd[1]),
+            s._mm256_permute2f128_pd::<0x31>(even[0], even[1]),
+            s._mm256_permute2f128_pd::<0x31>(odd[0], odd[1]),
+        ]
+    }
+
+    /// The first and the second halves of eight pairs of numbers.
+    #[inline(always)]
+    fn halves(self, low: __m256d, high: __m256d) -> [Num<Self>; 2] {
+        let (low, high) = (cast(low), cast(high));
+        let first = self.0.avx._mm256_shuffle_ps::<0x88>(low, high);
+        let second = self.0.avx._mm256_shuffle_ps::<0xdd>(low, high);
+        // shuffles stay within halves of a register
+        let first = self.0.avx2._mm256_permute4x64_pd::<0xd8>(cast(first));
+        let second = self.0.avx2._mm256_permute4x64_pd::<0xd8>(cast(second));
+        [Num { lanes: self, value: cast(first) }, Num { lanes: self, value: cast(second) }]
+    }
+
+    #[inline(always)]
+    fn fine(self, low: __m256d, high: __m256d) -> Fine<Self> {
+        Fine { lanes: self, value: [low, high] }
+    }
+
+    /// Numbers of two columns in turn, lower and upper halves of each four.
+    #[inline(always)]
+    fn pair(self, a: Num<Self>, b: Num<Self>) -> [__m256d; 2] {
+        let s = self.0.avx;
+        [cast(s._mm256_unpacklo_ps(a.value, b.value)), cast(s._mm256_unpackhi_ps(a.value, b.value))]
+    }
+
+    /// Four columns as quarter rows: half `h` of the `r`th holds row `4 h + r`.
+    #[inline(always)]
+    fn quads(self, columns: [Num<Self>; 4]) -> [__m256d; 4] {
+        let s = self.0.avx;
+        let (a, b) = (self.pair(columns[0], columns[1]), self.pair(columns[2], columns[3]));
+        [
+            s._mm256_unpacklo_pd(a[0], b[0]),
+            s._mm256_unpackhi_pd(a[0], b[0]),
+            s._mm256_unpacklo_pd(a[1], b[1]),
+            s._mm256_unpackhi_pd(a[1], b[1]),
+        ]
     }
 }
 
@@ -452,25 +516,32 @@ impl Lanes for Middle {
 
     #[inline(always)]
     fn gather(self, records: &[Compact], index: &[u32]) -> Columns<Self> {
-        let plain = Plain::<f32, 8>::new().gather(records, index);
-        let [x, y, z] = plain.position;
-        let ([u, v, w], [p, q, r]) = (plain.velocity.0, plain.spin.0);
+        let (low, high) = (self.columns(records, &index[..4]), self.columns(records, &index[4..8]));
+        let ([u, v], [w, p]) = (self.halves(low[3], high[3]), self.halves(low[4], high[4]));
+        let ([q, r], [mass, _]) = (self.halves(low[5], high[5]), self.halves(low[7], high[7]));
         Columns {
-            position: [self.fine(x), self.fine(y), self.fine(z)],
-            radius: self.fine(plain.radius),
-            velocity: Vector([self.num(u), self.num(v), self.num(w)]),
-            spin: Vector([self.num(p), self.num(q), self.num(r)]),
-            mass: self.num(plain.mass),
+            position: [self.fine(low[0], high[0]), self.fine(low[1], high[1]), self.fine(low[2], high[2])],
+            radius: self.fine(low[6], high[6]),
+            velocity: Vector([u, v, w]),
+            spin: Vector([p, q, r]),
+            mass,
         }
     }
 
+    // products of two numbers in single precision are exact in double: fused or not, the same bits
     #[inline(always)]
-    fn scatter(self, columns: [Num<Self>; 8], to: &mut [[f32; 8]]) {
-        for c in 0..8 {
-            let column: [f32; 8] = cast(columns[c].value);
-            for l in 0..8 {
-                to[l][c] = column[l];
-            }
+    fn add_row(self, row: &Row<f32>, factors: [f64; 8], sums: [f64; 8]) -> [f64; 8] {
+        must_cast(self.fine_fma(self.widen(must_cast(row.0)), must_cast(factors), must_cast(sums)))
+    }
+
+    #[inline(always)]
+    fn scatter(self, columns: [Num<Self>; 8], to: &mut [Row<f32>]) {
+        let s = self.0.avx;
+        let [c0, c1, c2, c3, c4, c5, c6, c7] = columns;
+        let (front, back) = (self.quads([c0, c1, c2, c3]), self.quads([c4, c5, c6, c7]));
+        for r in 0..4 {
+            to[r].0 = cast(s._mm256_permute2f128_pd::<0x20>(front[r], back[r]));
+            to[r + 4].0 = cast(s._mm256_permute2f128_pd::<0x31>(front[r], back[r]));
         }
     }
 }

@@ -174,7 +174,7 @@ impl<R: Real> Bed<R> {
     pub(super) fn overlap(&self, place: usize) -> Option<f64> {
         let outcome = &self.contacts.outcomes[place];
         let radius = self.records[self.contacts.first[place] as usize].radius();
-        let touches = outcome[..3].iter().any(|&force| force != R::default());
+        let touches = outcome.0[..3].iter().any(|&force| force != R::default());
         touches.then_some(2.0 * (radius - outcome[6].to_f64()).max(0.0))
     }
 
