@@ -162,12 +162,21 @@ fn a_killed_run_resumes_with_the_same_bits() {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    while !killed.join(".trackbed/checkpoint").exists() && child.try_wait().unwrap().is_none() {
+    while !killed.join(".trackbed/pieces/so-far").exists() && child.try_wait().unwrap().is_none() {
         std::thread::yield_now();
     }
     child.kill().unwrap();
     child.wait().unwrap();
     assert!(!killed.join("summary.json").exists(), "the run was over before it could be killed");
+
+    // what there is so far is shown, and said to be that
+    let told = trackbed(&["report", out]);
+    assert_eq!(code(&told), 0, "{}", said(&told));
+    let (told, page) = (String::from_utf8_lossy(&told.stdout).into_owned(), killed.join("so_far.html"));
+    assert!(told.contains("so_far.html") && told.contains(" of 400 axles after "), "{told}");
+    let shown = fs::read_to_string(&page).unwrap();
+    assert!(shown.contains("Not finished") && shown.contains(" of 400 axles after "));
+    assert!(shown.contains("id=\"headline\"") && !killed.join("report.html").exists());
 
     // without --resume nothing is overwritten
     let refused = trackbed(&["run", scene, "--out", out]);
@@ -182,6 +191,13 @@ fn a_killed_run_resumes_with_the_same_bits() {
     let resumed = trackbed(&["run", scene, "--out", out, "--resume"]);
     assert_eq!(code(&resumed), 0, "{}", said(&resumed));
     same_results(&whole, &killed);
+    assert!(!page.exists());
+    let parts = |out: &Path| {
+        let timings: Value = serde_json::from_slice(&fs::read(out.join("timings.json")).unwrap()).unwrap();
+        assert!(timings["total_s"].as_f64() >= timings["solve_s"].as_f64());
+        timings["parts"].as_f64()
+    };
+    assert_eq!((parts(&whole), parts(&killed)), (Some(1.0), Some(2.0)));
 }
 
 #[test]

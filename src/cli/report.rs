@@ -2,11 +2,11 @@
 
 use super::{Outcome, terminal};
 use crate::report::{self, BedTestsPage, Figure};
-use crate::results::{self, BedTestsView, NamedBytes, ResultsError};
-use crate::store::Directory;
+use crate::results::{self, BedTestsView, NamedBytes, ResultsError, SoFar};
+use crate::store::{Directory, Finished, Unfinished};
 use std::path::{Path, PathBuf};
 
-/// Write the report page of a run, from its directory
+/// Write the report page of a run, from its directory. A run that is not finished, or goes on now, has a page of what there is so far
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// The directory that `trackbed run --out` wrote.
@@ -17,9 +17,16 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
-    match write(&arguments.directory, arguments.figures) {
-        Ok(page) => {
-            terminal::out(&format!("wrote {}\n", page.display()));
+    // a commit that was killed is finished first
+    let found = Finished::open(&arguments.directory).and_then(|_| Unfinished::open(&arguments.directory));
+    let written = match found {
+        Ok(None) => write(&arguments.directory, arguments.figures).map(|page| format!("wrote {}", page.display())),
+        Ok(Some(unfinished)) => write_so_far(&unfinished, arguments.figures),
+        Err(error) => Err(error.into()),
+    };
+    match written {
+        Ok(told) => {
+            terminal::out(&format!("{told}\n"));
             Outcome::Fine
         }
         Err(error) => {
@@ -27,6 +34,17 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             Outcome::Usage
         }
     }
+}
+
+/// Shows what unfinished work has so far, without disturbing who is at work on it.
+fn write_so_far(unfinished: &Unfinished, figures: bool) -> Result<String, ResultsError> {
+    let (path, work) = (unfinished.path().display(), &unfinished.work().name);
+    let Some(so_far) = SoFar::read(unfinished)? else {
+        return Ok(format!("`{path}` holds a {work} that is not finished and has nothing to show yet"));
+    };
+    let page = unfinished.show(report::page_so_far(&so_far).as_bytes())?;
+    let pictures = if figures { "; `--figures` acts when it is finished" } else { "" };
+    Ok(format!("wrote {}: {}{pictures}", page.display(), report::standing(&so_far)))
 }
 
 /// Reads the results of a directory, each file checked, and puts their page in place.

@@ -7,7 +7,9 @@ use crate::diag::{Code, Diagnostic, render};
 use crate::execute::{self, Both, Ending, Event, Executor, Listener};
 use crate::graph::{Graph, Schedule};
 use crate::lower::Parameter;
-use crate::results::{self, BedTestsView, BlockRow, NamedBytes, ResultsError, Run, RunRecorder, Scalar, Verdict};
+use crate::results::{
+    self, BedTestsView, BlockRow, NamedBytes, ResultsError, Run, RunRecorder, Scalar, Source, Verdict,
+};
 use crate::scenario::Scenario;
 use crate::solvers::granular::Bed;
 use crate::solvers::granular::packing::Progress;
@@ -57,7 +59,6 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
 
 /// Runs in the pool of threads of the caller.
 fn run_here(arguments: &Arguments) -> Outcome {
-    let started = Instant::now();
     let scene = arguments.scene.with_seed(&arguments.seed);
     let Some(compiled) = scene.compile_without(&arguments.passes).map(Compiled::to_run) else {
         return Outcome::Usage;
@@ -72,7 +73,7 @@ fn run_here(arguments: &Arguments) -> Outcome {
     let work = Work { name: arguments.name(), scene_sha256: fingerprint(&compiled.sources) };
     match Directory::open(&arguments.out, work, arguments.mode()) {
         Ok(directory) if directory.finished().is_some() => again(directory.path(), &compiled),
-        Ok(directory) => compute(arguments, directory, &Running { compiled: &compiled, scenario, graph, started }),
+        Ok(directory) => compute(arguments, directory, &Running { compiled: &compiled, scenario, graph }),
         Err(error) => stop(&compiled, stored::diagnostic(&error)),
     }
 }
@@ -98,13 +99,14 @@ struct Running<'a> {
     compiled: &'a Compiled,
     scenario: &'a Scenario,
     graph: &'a Graph,
-    started: Instant,
 }
 
 fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -> Outcome {
-    let Running { compiled, scenario, graph, started } = running;
+    let Running { compiled, scenario, graph } = running;
     let refused = |error: &ResultsError| stop(compiled, results_diagnostic(error));
-    let mut recorder = RunRecorder::new(scenario, graph).kept_in(&directory);
+    let sha256 = fingerprint(&compiled.sources);
+    let source = Source { sources: &compiled.sources, sha256: &sha256, diagnostics: &compiled.diagnostics };
+    let mut recorder = RunRecorder::new(scenario, graph).kept_in(&directory).made_by(source);
     let from = match recorder.resume() {
         Ok(from) => from,
         Err(error) => return refused(&error),
@@ -122,23 +124,17 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
         (Ok(Ending::Stopped), None) => return Outcome::Failed,
         (Err(error), _) => return stop(compiled, execute::diagnose(&error, graph, &compiled.origins)),
     }
-    let computed = started.elapsed().as_secs_f64();
-    let run = Run::gather(
-        &recorder,
-        scenario,
-        graph,
-        (&compiled.sources, fingerprint(&compiled.sources)),
-        &compiled.diagnostics,
-    );
+    let timed = Timed { solve: recorder.seconds(), parts: recorder.parts(), after: Instant::now() };
+    let run = Run::gather(&recorder, scenario, graph, source);
     let files = match files(&run, recorder.last_bed.take(), &arguments.out) {
         Ok(files) => files,
         Err(error) => return refused(&error),
     };
     drop(recorder);
-    if let Err(error) = put_in_place(directory, &files, computed, started) {
+    if let Err(error) = put_in_place(directory, &files, &timed) {
         return refused(&error);
     }
-    summary(&run, &arguments.out.join(report::PAGE), computed);
+    summary(&run, &arguments.out.join(report::PAGE), timed.solve);
     warn(&run, compiled);
     verdicts(&run.summary.expectations, scenario, compiled)
 }
@@ -243,19 +239,24 @@ fn files(run: &Run, last_bed: Option<Bed<f32>>, out: &Path) -> Result<Vec<NamedB
     })
 }
 
+/// What a run took.
+struct Timed {
+    /// Seconds of all its parts.
+    solve: f64,
+    parts: u64,
+    /// When it was computed: files and pages follow.
+    after: Instant,
+}
+
 /// Puts all files in place at once.
-fn put_in_place(
-    mut directory: Directory,
-    files: &[NamedBytes],
-    computed: f64,
-    started: &Instant,
-) -> Result<(), ResultsError> {
+fn put_in_place(mut directory: Directory, files: &[NamedBytes], timed: &Timed) -> Result<(), ResultsError> {
     for (name, bytes) in files {
         directory.stage(name, bytes)?;
     }
     let timings = BTreeMap::from([
-        ("solve_s".to_string(), computed),
-        ("total_s".to_string(), started.elapsed().as_secs_f64()),
+        ("solve_s".to_string(), timed.solve),
+        ("total_s".to_string(), timed.solve + timed.after.elapsed().as_secs_f64()),
+        ("parts".to_string(), timed.parts as f64),
         ("threads".to_string(), rayon::current_num_threads() as f64),
     ]);
     let (name, bytes) = results::timings_file(&timings, directory.path())?;

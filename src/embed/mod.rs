@@ -4,7 +4,7 @@ use crate::check::{self, DataError, Folder, Modules, Override};
 use crate::compile::{Compiled, compile, fingerprint};
 use crate::diag::{Diagnostic, Sources, render};
 use crate::execute::{self, Both, Executor, Listener};
-use crate::results::{Run, RunRecorder};
+use crate::results::{Run, RunRecorder, Source};
 use crate::syntax;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -114,13 +114,9 @@ impl Scene {
             let mistake = execute::diagnose(&error, graph, &compiled.origins);
             Stopped::refused(vec![mistake], &compiled.sources)
         })?;
-        Ok(Run::gather(
-            &recorder,
-            scenario,
-            graph,
-            (&compiled.sources, fingerprint(&compiled.sources)),
-            &compiled.diagnostics,
-        ))
+        let sha256 = fingerprint(&compiled.sources);
+        let source = Source { sources: &compiled.sources, sha256: &sha256, diagnostics: &compiled.diagnostics };
+        Ok(Run::gather(&recorder, scenario, graph, source))
     }
 }
 

@@ -58,7 +58,7 @@ pub use bed::{BedView, Colour, Side, bed_svg};
 pub use bed_tests::BedTestsPage;
 pub use drawing::{DRAWN, drawing_svg};
 pub use packed::BedPage;
-pub use page::page;
+pub use page::{page, page_so_far, standing};
 pub use pebbles::{PebbleRow, grain_pebbles_svg};
 pub use reference::reference;
 pub use scene::scene_svg;

@@ -7,13 +7,51 @@ use super::reliance::reliance;
 use super::scene::force;
 use super::svg::{STYLE, escape};
 use super::{Figure, figures, laws};
-use crate::results::{Provenance, Run, Verdict};
+use crate::graph::Clock;
+use crate::results::{Provenance, Run, SoFar, Verdict};
 use crate::scenario::{Loading, Scenario, Train};
 use std::fmt::Write;
 
 /// Makes the whole page.
 pub fn page(run: &Run) -> String {
+    page_with(run, "")
+}
+
+/// The page of a run that is not finished: what there is so far.
+pub fn page_so_far(so_far: &SoFar) -> String {
+    let notice = format!(
+        "<section id=\"unfinished\"><h2>Not finished</h2><p class=\"caption\">{}. Figures and tables show what is recorded so far; \
+         what the scene expects is judged when the run is finished.</p></section>\n",
+        prose(&standing(so_far))
+    );
+    page_with(&so_far.run, &notice)
+}
+
+/// Where a run stands that is not finished: `40 of 500 axles after 1.2 h of computing; now trains on grains, 43 % of a block`.
+pub fn standing(so_far: &SoFar) -> String {
+    let done = match (so_far.clock, &so_far.run.scenario.loading) {
+        (Clock::Axles(axles), Some(Loading::Traffic(traffic))) => {
+            format!("{} of {} axles", whole(axles), whole(*traffic.total))
+        }
+        (clock, _) => clock.to_string(),
+    };
+    let stage = so_far.stage.as_ref();
+    let now = stage.map_or(String::new(), |(what, share)| format!("; now {what}, {} %", plain(100.0 * share, 2)));
+    format!("{done} after {} of computing{now}", hours(so_far.seconds))
+}
+
+/// `40 s`, `12 min`, `3.4 h`
+fn hours(seconds: f64) -> String {
+    match seconds {
+        s if s < 120.0 => format!("{} s", plain(s, 2)),
+        s if s < 7200.0 => format!("{} min", plain(s / 60.0, 2)),
+        s => format!("{} h", plain(s / 3600.0, 2)),
+    }
+}
+
+fn page_with(run: &Run, notice: &str) -> String {
     let mut html = opening(&run.scenario.title, &subtitle(&run.scenario));
+    html += notice;
     let figures = figures(run);
     headline(&mut html, run);
     reliance(&mut html, &run.summary.reliance);

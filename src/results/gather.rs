@@ -1,21 +1,25 @@
-//! Everything that a finished run says, from its recorder.
+//! Everything that a run says, from its recorder.
 
 use super::{Provenance, Reliance, Run, RunRecorder, Summary, TestTables, law_rows, summarise_laws, verdicts};
 use crate::diag::{Diagnostic, Sources};
 use crate::graph::Graph;
 use crate::scenario::Scenario;
 
+/// The texts that made a run, and what the check said of them.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    /// The main file first.
+    pub sources: &'a Sources,
+    /// Their hash.
+    pub sha256: &'a str,
+    pub diagnostics: &'a [Diagnostic],
+}
+
 impl Run {
-    /// Takes together what a recorder has of a finished run. `sources` are the texts that made it, the main file first, `sha256` is
-    /// their hash, and `diagnostics` are what the check said of them.
-    pub fn gather(
-        recorder: &RunRecorder<'_>,
-        scenario: &Scenario,
-        graph: &Graph,
-        (sources, sha256): (&Sources, String),
-        diagnostics: &[Diagnostic],
-    ) -> Run {
-        let provenance = Provenance::new(sources, sha256, scenario.solve.seed, graph.listing().text());
+    /// Takes together what a recorder has of a run.
+    pub fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, source: Source<'_>) -> Run {
+        let Source { sources, sha256, diagnostics } = source;
+        let provenance = Provenance::new(sources, sha256.to_owned(), scenario.solve.seed, graph.listing().text());
         let tables = &recorder.tables;
         if let Some(tests) = &tables.tests {
             let means = TestTables::new(tests);

@@ -16,6 +16,7 @@ mod laws;
 mod level;
 mod recorder;
 mod reliance;
+mod so_far;
 mod states;
 mod steps;
 mod summarise;
@@ -36,11 +37,13 @@ pub use bed_tests::{
 pub use error::ResultsError;
 pub use evaluate::{SleeperTable, Tables, contact_pressures, evaluate, holds, known, verdict, verdicts};
 pub use files::{NamedBytes, files, read, read_summary, read_timings, timings_file, write, write_files};
+pub use gather::Source;
 pub use grains::{Grain, Link, grains, links, places};
 pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};
 pub use level::{LongitudinalLevel, longitudinal_level};
 pub use recorder::{RunRecorder, RunTables};
 pub use reliance::{Reliance, Silenced, Unchecked, Warned};
+pub use so_far::SoFar;
 pub use states::remove as remove_states;
 pub use summarise::{
     RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise, worst_train,

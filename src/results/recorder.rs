@@ -2,9 +2,9 @@
 //! histories go into their own file as soon as they exist.
 
 use super::{
-    BedSummary, BedTest, BedTests, BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Scalar,
-    SleeperRow, SleeperTable, Tables, TampingRow, TrainRow, bed_summary, histories, static_wheel_load, summarise,
-    test_loads,
+    BedSummary, BedTest, BedTests, BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Run, Scalar,
+    SleeperRow, SleeperTable, SoFar, Source, Tables, TampingRow, TrainRow, bed_summary, histories, static_wheel_load,
+    summarise, test_loads,
 };
 use crate::execute::{Between, BlockMeasures, Checkpoint, Event, Listener};
 use crate::graph::{Block, Blocks, Graph, Record, Runner, SupportNode, TrackNode};
@@ -63,12 +63,29 @@ struct Saved {
     /// The track before the passages of a block under way.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     unloaded: Option<Unloaded>,
+    #[serde(default)]
+    spent: Spent,
+}
+
+/// Computing that is done and kept.
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+struct Spent {
+    seconds: f64,
+    /// A run that is interrupted and resumed once has two.
+    parts: u64,
 }
 
 /// Makes the tables of a run.
 pub struct RunRecorder<'a> {
     scenario: &'a Scenario,
     track: Option<&'a TrackNode>,
+    graph: &'a Graph,
+    source: Option<Source<'a>>,
+    /// In the parts before this one, and when this one began.
+    spent: Spent,
+    begun: Instant,
+    /// What the run is busy with, and the share of it that is done.
+    stage: Option<(String, f64)>,
     records: &'a [Record],
     supports: &'a [SupportNode],
     /// Chainages between which every wheel of a train passes, m, for each kind of train.
@@ -103,6 +120,11 @@ impl<'a> RunRecorder<'a> {
         RunRecorder {
             scenario,
             track: graph.track(),
+            graph,
+            source: None,
+            spent: Spent::default(),
+            begun: Instant::now(),
+            stage: None,
             records: &graph.records,
             supports: &graph.supports,
             passed: graph.blocks().map(Blocks::passed_by_kind).unwrap_or_default(),
@@ -124,6 +146,31 @@ impl<'a> RunRecorder<'a> {
         RunRecorder { directory: Some(directory), ..self }
     }
 
+    /// The same, that shows beside its checkpoints what there is so far of a run that these texts made.
+    pub fn made_by(self, source: Source<'a>) -> Self {
+        RunRecorder { source: Some(source), ..self }
+    }
+
+    /// What there is of the run; `None` where nobody has said what made it.
+    pub fn gather(&self) -> Option<Run> {
+        Some(Run::gather(self, self.scenario, self.graph, self.source?))
+    }
+
+    /// Seconds of computing for what there is, over all parts of the run.
+    pub fn seconds(&self) -> f64 {
+        self.spent.seconds + self.begun.elapsed().as_secs_f64()
+    }
+
+    /// Parts of the run, this one among them: each `--resume` begins another.
+    pub fn parts(&self) -> u64 {
+        self.spent.parts + 1
+    }
+
+    /// What the run is busy with, and the share of it that is done.
+    pub fn stage(&self) -> Option<&(String, f64)> {
+        self.stage.as_ref()
+    }
+
     /// Takes up what an interrupted run has left in the directory; `None` where it left nothing.
     pub fn resume(&mut self) -> Result<Option<Checkpoint>, ResultsError> {
         let Some(directory) = self.directory else { return Ok(None) };
@@ -133,6 +180,7 @@ impl<'a> RunRecorder<'a> {
             self.histories.extend(histories::decode_bytes(bytes, &directory.path().join(&piece.key))?);
         }
         self.written = self.histories.len();
+        self.spent = saved.spent;
         (self.kept, self.tables, self.unloaded) = (saved.histories, saved.tables, saved.unloaded);
         Ok(Some(saved.checkpoint))
     }
@@ -155,9 +203,11 @@ impl<'a> RunRecorder<'a> {
             self.written = self.histories.len();
         }
         let checkpoint = between.checkpoint().map_err(|cause| ResultsError::unwritable(directory.path(), cause))?;
+        let clock = checkpoint.clock;
         let (tables, histories, unloaded) = (self.tables.clone(), self.kept.clone(), self.unloaded.clone());
-        let saved = Saved { checkpoint, tables, histories, unloaded };
-        let bytes = directory.write_checkpoint(&saved)?;
+        let spent = Spent { seconds: self.seconds(), parts: self.parts() };
+        let bytes = directory.write_checkpoint(&Saved { checkpoint, tables, histories, unloaded, spent })?;
+        SoFar::keep(self, clock, &self.kept, directory)?;
         let of_size = Duration::from_secs(bytes as u64 / BYTES_A_SECOND);
         self.due = Some(Instant::now() + KEEP.max(SHARE * started.elapsed()).max(of_size));
         Ok(())
@@ -356,7 +406,8 @@ impl Listener for RunRecorder<'_> {
                     return ControlFlow::Break(());
                 }
             }
-            Event::Packing(_) | Event::Custom { .. } | Event::Progress { .. } => {}
+            Event::Packing(progress) => self.stage = Some((progress.stage.clone(), progress.share)),
+            Event::Custom { .. } | Event::Progress { .. } => {}
         }
         ControlFlow::Continue(())
     }

@@ -245,7 +245,7 @@ fn supports(graph: &Graph) -> Option<String> {
 fn shared(graph: &Graph, tables: &RunTables) -> Option<String> {
     let trains = graph.blocks()?.trains_left(0);
     let passages: u64 = tables.blocks.iter().map(|block| block.passages).sum();
-    (passages < trains).then(|| {
+    (1..trains).contains(&passages).then(|| {
         format!(
             "{passages} passages stand for {trains} trains: all of a kind in a block run over the same settled track"
         )

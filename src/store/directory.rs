@@ -6,9 +6,10 @@ use super::layout::{Layout, part};
 use super::lock::Lock;
 use super::manifest::{FileRecord, Manifest, is_inside};
 use super::seal::Seal;
+use super::unfinished::{Piece, Unfinished, WORK};
 use super::{Finished, StoreError, Work, recovery, sha256};
+use serde::Serialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Serialize};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -31,22 +32,11 @@ pub enum Mode {
 #[derive(Debug)]
 pub struct Directory<D: Disk = FileSystem> {
     disk: D,
-    layout: Layout,
-    work: Work,
+    unfinished: Unfinished,
     finished: Option<Finished>,
     /// Files of the next results, staged or kept from the last.
     files: Vec<FileRecord>,
     _lock: Lock,
-}
-
-/// Seal of the file that says whose work is under way; it is this very file that names the scene.
-const WORK: Seal<'_> = Seal { kind: "work", key: "" };
-
-/// Data that has been kept beside a checkpoint. A checkpoint that holds this names exactly the bytes that were kept.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Piece {
-    pub key: String,
-    pub sha256: String,
 }
 
 impl Directory {
@@ -71,7 +61,8 @@ impl Directory {
         }
         let finished = Finished::read_from(path)?.ok_or_else(nothing)?;
         let (work, files) = (finished.manifest().work.clone(), finished.manifest().files.clone());
-        Ok(Directory { disk: FileSystem, layout, work, finished: Some(finished), files, _lock: lock })
+        let unfinished = Unfinished { layout, work };
+        Ok(Directory { disk: FileSystem, unfinished, finished: Some(finished), files, _lock: lock })
     }
 }
 
@@ -92,17 +83,22 @@ impl<D: Disk> Directory<D> {
             Mode::Resume => found(&layout, &work)?,
             Mode::Force => recovery::discard(&disk, &layout).map(|()| None)?,
         };
-        let directory = Directory { disk, layout, work, finished, files: Vec::new(), _lock: lock };
+        let unfinished = Unfinished { layout, work };
+        let directory = Directory { disk, unfinished, finished, files: Vec::new(), _lock: lock };
         if directory.finished.is_none() {
-            let path = directory.layout.work();
-            directory.replace(&path, &WORK.close_json(&path, &directory.work)?)?;
+            let path = directory.layout().work();
+            directory.replace(&path, &WORK.close_json(&path, directory.unfinished.work())?)?;
         }
         Ok(directory)
     }
 
     /// The directory itself.
     pub fn path(&self) -> &Path {
-        &self.layout.root
+        self.unfinished.path()
+    }
+
+    fn layout(&self) -> &Layout {
+        &self.unfinished.layout
     }
 
     /// What was finished here before, in [`Mode::Resume`]: each of its files has been checked.
@@ -112,42 +108,35 @@ impl<D: Disk> Directory<D> {
 
     /// Replaces the checkpoint by `state`, at once, and gives its size in bytes. Fails where a number of it is not finite.
     pub fn write_checkpoint<T: Serialize + DeserializeOwned>(&self, state: &T) -> Result<usize, StoreError> {
-        let path = self.layout.checkpoint();
-        let bytes = self.checkpoint_seal().close_json(&path, state)?;
+        let path = self.layout().checkpoint();
+        let bytes = self.unfinished.checkpoint_seal().close_json(&path, state)?;
         self.replace(&path, &bytes)?;
         Ok(bytes.len())
     }
 
-    /// The state of the last checkpoint; `None` where there is none. Fails where it is damaged, or of another scene or version.
+    /// The same as [`Unfinished::read_checkpoint`].
     pub fn read_checkpoint<T: DeserializeOwned>(&self) -> Result<Option<T>, StoreError> {
-        let path = self.layout.checkpoint();
-        read(&path)?.map(|bytes| self.checkpoint_seal().open_json(&path, &bytes)).transpose()
+        self.unfinished.read_checkpoint()
     }
 
     /// Keeps data beside the checkpoint until the commit; a key is one word, and keeping it again replaces it.
     ///
     /// A piece that no checkpoint names, because of a kill in between, is not in the way: it is kept again.
     pub fn keep(&self, key: &str, bytes: &[u8]) -> Result<Piece, StoreError> {
-        let (folder, path) = (self.layout.pieces(), self.piece(key)?);
+        let (folder, path) = (self.layout().pieces(), self.unfinished.piece(key)?);
         self.disk.create_folder(&folder).map_err(|cause| StoreError::io(&folder, "create", cause))?;
-        self.replace(&path, &Seal { kind: "piece", key: &self.piece_key(key) }.close(bytes))?;
+        self.replace(&path, &Seal { kind: "piece", key: &self.unfinished.piece_key(key) }.close(bytes))?;
         Ok(Piece { key: key.to_owned(), sha256: sha256(bytes) })
     }
 
-    /// Data that was kept under a key; `None` where there is none. Fails where it is damaged or of another version.
+    /// The same as [`Unfinished::kept`].
     pub fn kept(&self, key: &str) -> Result<Option<Vec<u8>>, StoreError> {
-        let path = self.piece(key)?;
-        let Some(bytes) = read(&path)? else { return Ok(None) };
-        Ok(Some(Seal { kind: "piece", key: &self.piece_key(key) }.open(&path, &bytes)?.to_vec()))
+        self.unfinished.kept(key)
     }
 
-    /// The very bytes of a piece that a checkpoint names. Fails where they are missing or others.
+    /// The same as [`Unfinished::read_piece`].
     pub fn read_piece(&self, piece: &Piece) -> Result<Vec<u8>, StoreError> {
-        match self.kept(&piece.key)? {
-            Some(bytes) if sha256(&bytes) == piece.sha256 => Ok(bytes),
-            Some(_) => Err(StoreError::damaged(&self.piece(&piece.key)?, "it is not what the checkpoint names")),
-            None => Err(StoreError::damaged(&self.piece(&piece.key)?, "it is gone, and the checkpoint names it")),
-        }
+        self.unfinished.read_piece(piece)
     }
 
     /// Writes a file of the next results, which nobody sees before the commit. Folders in its name are parted by `/`.
@@ -162,18 +151,18 @@ impl<D: Disk> Directory<D> {
 
     /// Puts everything that was staged in place of the old results, at once, and ends the unfinished work.
     pub fn commit(self) -> Result<Finished, StoreError> {
-        let manifest = Manifest::new(self.work.clone(), self.files.clone());
-        self.replace(&self.layout.intent(), &manifest.bytes())?;
-        recovery::finish(&self.disk, &self.layout, &manifest)?;
-        Ok(Finished::new(self.layout.root.clone(), manifest))
+        let manifest = Manifest::new(self.unfinished.work.clone(), self.files.clone());
+        self.replace(&self.layout().intent(), &manifest.bytes())?;
+        recovery::finish(&self.disk, self.layout(), &manifest)?;
+        Ok(Finished::new(self.layout().root.clone(), manifest))
     }
 
     fn stage_as(&mut self, record: FileRecord, bytes: &[u8]) -> Result<(), StoreError> {
-        let path = self.layout.staging().join(&record.name);
+        let path = self.layout().staging().join(&record.name);
         if !is_inside(&record.name) {
             return Err(StoreError::unwritable(&path, "it has no name of a result"));
         }
-        let folder = path.parent().map_or_else(|| self.layout.staging(), PathBuf::from);
+        let folder = path.parent().map_or_else(|| self.layout().staging(), PathBuf::from);
         let written = self.disk.create_folder(&folder).and_then(|()| self.disk.write(&path, bytes));
         let durable = written.and_then(|()| self.disk.sync_folder(&folder));
         durable.map_err(|cause| StoreError::io(&path, "write", cause))?;
@@ -184,23 +173,6 @@ impl<D: Disk> Directory<D> {
 
     fn replace(&self, path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
         replace(&self.disk, path, &part(path), bytes)
-    }
-
-    fn checkpoint_seal(&self) -> Seal<'_> {
-        Seal { kind: "checkpoint", key: &self.work.scene_sha256 }
-    }
-
-    fn piece(&self, key: &str) -> Result<PathBuf, StoreError> {
-        let path = self.layout.pieces().join(key);
-        if key.contains('/') || !is_inside(key) {
-            return Err(StoreError::unwritable(&path, "it has no name of a piece"));
-        }
-        Ok(path)
-    }
-
-    /// Binds a piece to its scene and to its key.
-    fn piece_key(&self, key: &str) -> String {
-        format!("{} {key}", self.work.scene_sha256)
     }
 }
 
@@ -217,10 +189,7 @@ pub(super) fn enter(disk: &impl Disk, layout: &Layout) -> Result<Lock, StoreErro
 /// What a resumed work finds finished. Unfinished work comes first: it was begun over finished one.
 fn found(layout: &Layout, work: &Work) -> Result<Option<Finished>, StoreError> {
     if layout.is_unfinished() {
-        let path = layout.work();
-        let whose = read(&path)?.ok_or_else(|| StoreError::damaged(&path, "it is gone"))?;
-        let whose: Work = WORK.open_json(&path, &whose)?;
-        return same(layout, work, &whose).map(|()| None);
+        return same(layout, work, &Unfinished::work_in(layout)?).map(|()| None);
     }
     let Some(finished) = Finished::read_from(&layout.root)? else {
         return refuse_foreign(layout).map(|()| None);
@@ -257,11 +226,12 @@ fn refuse_any(layout: &Layout) -> Result<(), StoreError> {
 
 /// Says whose unfinished work is there.
 fn unfinished(layout: &Layout) -> Result<StoreError, StoreError> {
-    let path = layout.root.clone();
-    let whose = read(&layout.work())?;
-    let whose = whose.and_then(|bytes| WORK.open_json::<Work>(&path, &bytes).ok());
-    let work = whose.map_or_else(|| "work".to_owned(), |work| work.name);
-    Ok(StoreError::Unfinished { path, work })
+    let work = match Unfinished::work_in(layout) {
+        Ok(work) => work.name,
+        Err(StoreError::Io { path, action, cause }) => return Err(StoreError::Io { path, action, cause }),
+        Err(_) => "work".to_owned(),
+    };
+    Ok(StoreError::Unfinished { path: layout.root.clone(), work })
 }
 
 /// Fails where files are there that no manifest names. Hidden ones belong to tools and are nobody's results.
@@ -277,14 +247,5 @@ fn refuse_foreign(layout: &Layout) -> Result<(), StoreError> {
     match names.first() {
         Some(first) => Err(StoreError::Foreign { path, first: first.clone(), count: names.len() }),
         None => Ok(()),
-    }
-}
-
-/// The bytes of a file; `None` where there is none.
-pub(super) fn read(path: &Path) -> Result<Option<Vec<u8>>, StoreError> {
-    match fs::read(path) {
-        Ok(bytes) => Ok(Some(bytes)),
-        Err(cause) if cause.kind() == ErrorKind::NotFound => Ok(None),
-        Err(cause) => Err(StoreError::io(path, "read", cause)),
     }
 }

@@ -3,6 +3,7 @@
 //! ```text
 //! manifest.json          what the directory is of, and its files
 //! summary.json ...       those files
+//! so_far.html            the page of work that is not finished; it goes with that
 //! .trackbed/lock         held while somebody works here
 //! .trackbed/work         whose unfinished work this is
 //! .trackbed/checkpoint   the state to go on from
@@ -22,6 +23,10 @@ pub(super) struct Layout {
 impl Layout {
     pub fn manifest(&self) -> PathBuf {
         self.root.join("manifest.json")
+    }
+
+    pub fn so_far(&self) -> PathBuf {
+        self.root.join("so_far.html")
     }
 
     /// The folder of everything that is no result.

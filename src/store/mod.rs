@@ -2,7 +2,8 @@
 //!
 //! A [`Directory`] of results is a transaction: its files are staged, and [`Directory::commit`] puts all of them in place at once, so
 //! that a kill at any instant leaves the old results or the new ones. While work is under way it keeps a checkpoint and pieces
-//! beside it, and a lock that keeps others out. [`Finished`] reads such a directory and checks every file. [`Beds`] are packed beds
+//! beside it, and a lock that keeps others out. [`Finished`] reads such a directory and checks every file; [`Unfinished`] reads
+//! what work under way has kept so far. [`Beds`] are packed beds
 //! by the hash of their recipe.
 //!
 //! The store knows bytes, hashes and recipes of solvers, and no scene.
@@ -21,15 +22,17 @@ mod seal;
 mod shelf;
 #[cfg(test)]
 mod tests;
+mod unfinished;
 
 pub use atomic::write_atomically;
 pub use beds::{Beds, BedsError, FoundBed, bed_hash, recipe_hash};
-pub use directory::{Directory, Mode, Piece};
+pub use directory::{Directory, Mode};
 pub use disk::{Disk, FileSystem};
 pub use error::StoreError;
 pub use finished::Finished;
 pub use manifest::{FileRecord, Manifest};
 pub use shelf::Shelf;
+pub use unfinished::{Piece, Unfinished};
 
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};

@@ -64,6 +64,7 @@ pub(super) fn discard(disk: &impl Disk, layout: &Layout) -> Result<(), StoreErro
     file(layout.checkpoint())?;
     let pieces = layout.pieces();
     disk.remove_folder(&pieces).map_err(|cause| StoreError::io(&pieces, "remove", cause))?;
+    file(layout.so_far())?;
     file(layout.work())
 }
 

@@ -1,8 +1,8 @@
 //! A folder of values that can be made again, each found by its key: a file a value, sealed.
 
-use super::directory::read;
 use super::lock::Lock;
 use super::seal::Seal;
+use super::unfinished::read;
 use super::{StoreError, write_atomically};
 use serde::Serialize;
 use serde::de::DeserializeOwned;

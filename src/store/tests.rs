@@ -302,3 +302,28 @@ fn equal_work_leaves_equal_manifests() {
     };
     assert!(manifest(b"1") == manifest(b"2"));
 }
+
+#[test]
+fn work_under_way_is_read_while_its_lock_is_held_and_its_page_goes_with_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    assert!(Unfinished::open(path).unwrap().is_none());
+    let mut directory = Directory::open(path, work("a"), Mode::New).unwrap();
+    assert!(Unfinished::open(path).unwrap().is_none(), "nothing is kept yet");
+    let piece = directory.keep("rows", b"first").unwrap();
+    directory.write_checkpoint(&(1.5, piece.clone())).unwrap();
+
+    let unfinished = Unfinished::open(path).unwrap().unwrap();
+    assert_eq!(unfinished.work(), &work("a"));
+    assert_eq!(unfinished.read_checkpoint::<(f64, Piece)>().unwrap(), Some((1.5, piece.clone())));
+    assert_eq!(unfinished.read_piece(&piece).unwrap(), b"first");
+    directory.keep("rows", b"other").unwrap();
+    assert!(unfinished.read_piece(&piece).unwrap_err().to_string().contains("it is not what the checkpoint names"));
+
+    let page = unfinished.show(b"so far").unwrap();
+    assert_eq!(fs::read(&page).unwrap(), b"so far");
+    directory.stage("summary.json", b"done").unwrap();
+    directory.commit().unwrap();
+    assert!(!page.exists());
+    assert!(Unfinished::open(path).unwrap().is_none());
+}
