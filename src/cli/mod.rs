@@ -18,6 +18,7 @@ mod progress;
 mod report;
 mod resolve;
 mod run;
+mod run_progress;
 mod scene;
 mod stability;
 mod stored;

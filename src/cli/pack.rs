@@ -10,7 +10,7 @@ use crate::graph::{BedError, BedPlan, BedRecipe};
 use crate::lower::{self, BedUse};
 use crate::report::{BedPage, Side};
 use crate::results::{self, BedReadings, BedSummary, Beds, FoundBed};
-use crate::solvers::granular::packing::{Packed, Progress};
+use crate::solvers::granular::packing::Packed;
 use crate::store::{Directory, Mode, StoreError, Work};
 use crate::units::number;
 use std::path::{Path, PathBuf};
@@ -134,7 +134,7 @@ pub(super) fn beds(given: Option<&Path>) -> Beds {
 /// The bed of a plan and whether it was there already; a new one is kept.
 fn kept_or_built(beds: &Beds, plan: &BedRecipe) -> Result<(Packed<f32>, bool), Diagnostic> {
     let mut bar = progress::Patient::new("the bed");
-    let found = beds.bed(&plan.recipe, |progress| show_packing(&mut bar, progress)).map_err(|error| {
+    let found = beds.bed(&plan.recipe, |progress| show_share(&mut bar, progress.share)).map_err(|error| {
         Diagnostic::new(Code::E0810, error.to_string())
             .help("give the `packing` of the material more `local_damping`, or less `pressure`")
     })?;
@@ -142,9 +142,9 @@ fn kept_or_built(beds: &Beds, plan: &BedRecipe) -> Result<(Packed<f32>, bool), D
     Ok((found.packed, found.was_kept))
 }
 
-/// How far packing is.
-pub(super) fn show_packing(bar: &mut progress::Patient, progress: &Progress) {
-    bar.show((1e4 * progress.share) as u64, 10_000);
+/// How far work is.
+pub(super) fn show_share(bar: &mut progress::Patient, share: f64) {
+    bar.show((1e4 * share) as u64, 10_000);
 }
 
 /// A bed that was damaged, or cannot be kept, is there all the same.

@@ -1,22 +1,21 @@
 //! `trackbed run`: runs a scene into a directory, with checkpoints, a report and the verdict on its expectations.
 
+use super::run_progress::Shown;
 use super::scene::{PassArguments, SceneArguments, SeedArgument, failed, not_yet, show};
-use super::{Outcome, pack, progress, report, stored, terminal};
+use super::{Outcome, pack, report, stored, terminal};
 use crate::compile::{Compiled, fingerprint};
 use crate::diag::{Code, Diagnostic, render};
-use crate::execute::{self, Both, Ending, Event, Executor, Listener};
-use crate::graph::{Graph, Schedule};
+use crate::execute::{self, Both, Ending, Executor};
+use crate::graph::Graph;
 use crate::lower::Parameter;
 use crate::results::{
     self, BedTestsView, BlockRow, NamedBytes, ResultsError, Run, RunRecorder, Scalar, Source, Verdict,
 };
 use crate::scenario::Scenario;
 use crate::solvers::granular::Bed;
-use crate::solvers::granular::packing::Progress;
 use crate::store::{Directory, Mode, Work};
 use crate::units::number;
 use std::collections::BTreeMap;
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -115,7 +114,7 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
         terminal::note(&format!("goes on after {}: what is left is told from here\n", checkpoint.clock));
     }
     let executor = Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
-    let mut shown = Shown::new(graph);
+    let mut shown = Shown::new(graph, from.as_ref());
     let ended = executor.run(graph, &mut Both(&mut recorder, &mut shown), from);
     drop(shown);
     match (ended, recorder.failure()) {
@@ -149,54 +148,6 @@ fn again(out: &Path, compiled: &Compiled) -> Outcome {
     match &compiled.scenario {
         Some(scenario) => verdicts(&summary.expectations, scenario, compiled),
         None => Outcome::Fine,
-    }
-}
-
-/// Shows how far a run is, on a terminal or in a line a minute.
-struct Shown {
-    bar: progress::Patient,
-    tests: bool,
-    /// What a track on grains is busy with, and blocks done of all.
-    stage: String,
-    blocks: Option<(u64, u64)>,
-}
-
-impl Shown {
-    fn new(graph: &Graph) -> Shown {
-        let tests = matches!(graph.schedule, Schedule::Actuators(_));
-        let bar = progress::Patient::new(if tests { "the bed" } else { "the run" });
-        Shown { bar, tests, stage: String::new(), blocks: None }
-    }
-
-    /// Shows a stage of a track on grains: each has a bar of its own.
-    fn stage(&mut self, progress: &Progress) {
-        if self.stage != progress.stage {
-            self.stage.clone_from(&progress.stage);
-            let block =
-                self.blocks.map_or(String::new(), |(done, all)| format!(", block {} of {all}", (done + 1).min(all)));
-            self.bar = progress::Patient::new(format!("{}{block}", self.stage));
-        }
-        pack::show_packing(&mut self.bar, progress);
-    }
-}
-
-impl Listener for Shown {
-    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
-        match event {
-            Event::Packing(progress) if self.tests => pack::show_packing(&mut self.bar, progress),
-            Event::Packing(progress) => self.stage(progress),
-            Event::Packed { found, .. } => {
-                pack::tell_loss(found);
-                self.bar = progress::Patient::new("the test");
-            }
-            Event::Tested { .. } if self.tests => self.bar = progress::Patient::new("the bed"),
-            Event::Progress { done, all } if self.stage.is_empty() => self.bar.show(*done, *all),
-            Event::Progress { done, all } => {
-                (self.blocks, self.stage) = (Some((*done, *all)), " ".into());
-            }
-            _ => {}
-        }
-        ControlFlow::Continue(())
     }
 }
 

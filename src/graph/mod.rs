@@ -11,6 +11,7 @@ mod grains;
 mod ground;
 mod listing;
 mod node;
+mod passing;
 mod port;
 pub mod quantity;
 mod record;
@@ -28,6 +29,7 @@ pub use grains::{
 pub use ground::{LawNode, NamedLaw, SpringsNode, SupportNode};
 pub use listing::Listing;
 pub use node::{CustomNode, Model, Node};
+pub use passing::Passing;
 pub use port::{Edge, Fault, Ports, faults};
 pub use quantity::{Basis, Quantity, Rate};
 pub use record::{History, Record};
@@ -67,6 +69,13 @@ impl Graph {
             Model::Track(track) | Model::Riding(track) => Some(&**track),
             _ => None,
         })
+    }
+
+    /// How trains pass the grains under a track, where it has some.
+    pub fn passing(&self) -> Option<Passing> {
+        self.nodes
+            .iter()
+            .find_map(|node| if let Model::Grains(grains) = &node.model { Passing::over(grains) } else { None })
     }
 
     /// Whether vehicles ride on a rail that is advanced step by step with what carries it, so that blocks exchange nothing.

@@ -5,7 +5,8 @@ use super::soil::{self, soil};
 use super::{ExpectedError, Proposal, Tier, edges, refused, waiting};
 use crate::diag::{Diagnostic, Severity};
 use crate::graph::{
-    BedPlan, Blocks, GrainStretch, GrainsNode, Model, Node, PointLoad, Schedule, SleeperOnGrains, StiffnessFrom, Update,
+    BedPlan, Blocks, GrainStretch, GrainsNode, Model, Node, Passing, PointLoad, Schedule, SleeperOnGrains,
+    StiffnessFrom, Update,
 };
 use crate::lower::bays::wanted;
 use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
@@ -123,6 +124,9 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
         true => windows.iter().map(|[a, b]| b - a).sum(),
         false => extents(&beds, &stretches).iter().map(|[a, b]| b - a).sum(),
     };
+    let passing = Passing { length, headway: headway(scenario) };
+    let blocks = if let Schedule::Blocks(blocks) = &schedule { Some(&**blocks) } else { None };
+    let cost = grains_under_track(draft, blocks, passing);
     if runs {
         refusals.extend(refused::refusals(scenario, &stretches));
         refusals.extend(soil::refusals(scenario, &extents(&beds, &stretches)));
@@ -140,7 +144,7 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
             true => StiffnessFrom::Passage,
             false => StiffnessFrom::StaticLoad,
         },
-        headway: headway(scenario),
+        headway: passing.headway,
         damping_time: DAMPING_TIME,
         gravity: *scenario.solve.gravity,
         time_step: scenario.solve.grains.step.map(|step| *step),
@@ -159,7 +163,7 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
         edges: edges(&nodes),
         nodes,
         schedule,
-        cost: grains_under_track(draft, length),
+        cost,
         what: what.into(),
         why: "the scene asks for grains".into(),
         error: ExpectedError { share: None, evidence: "its error is not measured yet".into() },

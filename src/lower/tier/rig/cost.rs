@@ -1,10 +1,10 @@
 //! What a rig costs, without packing it: grains from gradings, steps from the lightest grain.
 
 use super::{cycles, loads, period, rest_time};
-use crate::graph::{BedNode, Blocks, Cost, TestWork, Update, Work};
+use crate::graph::{BedNode, Blocks, Cost, Passing, TestWork, Work};
 use crate::lower::bed::{confinement, width};
 use crate::lower::{Draft, crib};
-use crate::scenario::{Contact, Granular, Loading, Scenario, Section, Shape};
+use crate::scenario::{Contact, Granular, Scenario, Section, Shape};
 use crate::solvers::granular::grains::Curve;
 use crate::solvers::granular::packing::lifts_that_fit;
 use crate::solvers::granular::rig::SOLID as POURED;
@@ -109,15 +109,14 @@ fn cost(seconds: f64, work: TestWork) -> Cost {
 
 /// Step of grains under a track over sqrt(m / k) of the lightest, and steps of a pebble a second on two cores, soil and rail included
 /// (`docs/validation.md`, a track on grains).
-const TRACK_STEP: f64 = 0.3;
+const TRACK_STEP: f64 = 0.36;
 const TRACK_PEBBLE_STEPS: f64 = 16e6;
-/// Way that trains run beside the grains, m, and time of a rest after a passage and of the stages of building, s.
-const BESIDE: f64 = 12.0;
-const REST: f64 = 0.25;
+/// Time of the stages of building, s.
 const BUILDING: f64 = 0.7;
 
 /// The estimate for grains under so many metres of a track: every train runs over them, in their own time step. Good to a factor of two.
-pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, length: f64) -> Cost {
+pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, blocks: Option<&Blocks>, passing: Passing) -> Cost {
+    let length = passing.length;
     let scenario = draft.scenario;
     let sections = scenario.track.sections.iter().enumerate().filter(|(_, section)| super::has_grains(section));
     let Some((number, section)) = sections.max_by(|(_, a), (_, b)| (a.end - a.start).total_cmp(&(b.end - b.start)))
@@ -131,30 +130,10 @@ pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, length: f64)
     let time_step = TRACK_STEP * light;
     let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
     let building = BUILDING + if section.crib.is_some() { POURING } else { 0.0 };
-    let time = building + draft.blocks.as_ref().map_or(0.0, |blocks| passing(draft, blocks, length));
+    let time = building + blocks.map_or(0.0, |blocks| passing.between(blocks, 0, blocks.total));
     let test_steps = time / time_step;
     let seconds = 0.5 * cell * packing_steps / PEBBLE_STEPS[0] + pebbles * test_steps / TRACK_PEBBLE_STEPS;
     cost(seconds, TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings: 1 })
-}
-
-/// Time in which trains pass so much track, and rests between them, s: those that follow each other closely rest once a block.
-fn passing(draft: &Draft<'_>, blocks: &Blocks, length: f64) -> f64 {
-    let (train, trains) = (&blocks.train, blocks.sequence.trains() as f64);
-    let alone = (length + BESIDE + train.wheel_base()) / train.speed + REST;
-    let together = match blocks.update {
-        Update::Fixed { axles } => (axles / train.axles()).max(1) as f64,
-        _ => 1.0,
-    };
-    let lengths: Option<f64> = train_lengths(draft.scenario);
-    match lengths.filter(|_| *draft.scenario.solve.grains.continuous) {
-        Some(headway) => (trains / together).ceil() * alone + trains * headway / train.speed,
-        None => trains * alone,
-    }
-}
-
-fn train_lengths(scenario: &Scenario) -> Option<f64> {
-    let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
-    traffic.train.vehicles.iter().map(|vehicle| vehicle.length.map(|length| *length)).sum()
 }
 
 fn pebbles_of(shape: &Shape) -> f64 {

@@ -1,0 +1,66 @@
+//! How long trains take to pass grains, in the time of the scene: what a run on grains costs, and how far it is.
+
+use super::{Block, Blocks, GrainsNode};
+
+/// Way that wheels run beside the grains while they act on them, m, and time of a rest after a passage, s.
+const BESIDE: f64 = 12.0;
+const REST: f64 = 0.25;
+/// Blocks that are looked at one by one; those behind count as the last of them.
+const FOLLOWED: usize = 10_000;
+
+/// Trains on their way over grains.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Passing {
+    /// From the first grain to the last, m.
+    pub length: f64,
+    /// Distance from the front of a train to that of the next one, m; `None` where the track comes to rest between them.
+    pub headway: Option<f64>,
+}
+
+impl Passing {
+    /// Trains over the grains of a node; `None` where it has none yet.
+    pub fn over(grains: &GrainsNode) -> Option<Passing> {
+        let ends = grains.stretches.iter().map(|stretch| {
+            let [cell, _] = grains.beds[stretch.bed].numbers().plan;
+            [stretch.start, stretch.start + f64::from(stretch.copies) * cell]
+        });
+        let [left, right] = ends.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;
+        Some(Passing { length: right - left, headway: grains.headway })
+    }
+
+    /// Time of a block, s.
+    pub fn of_block(&self, blocks: &Blocks, block: &Block) -> f64 {
+        let of_run = |(runner, trains): &(super::Runner, u64)| {
+            let (train, _) = blocks.kind(runner.kind);
+            let alone = (self.length + BESIDE + train.wheel_base()) / train.speed + REST;
+            match self.headway {
+                Some(headway) => alone + trains.saturating_sub(1) as f64 * headway / train.speed,
+                None => *trains as f64 * alone,
+            }
+        };
+        block.runs.iter().map(of_run).sum()
+    }
+
+    /// Time of the blocks between two counts of axles, s. Blocks that nobody knows before their forces count as a train each.
+    pub fn between(&self, blocks: &Blocks, from: u64, to: u64) -> f64 {
+        let (mut time, mut before) = (0.0, from);
+        for followed in 0.. {
+            if before >= to {
+                break;
+            }
+            let block = self.next_block(blocks, before);
+            let (one, axles) = (self.of_block(blocks, &block), block.axles.max(1));
+            if followed == FOLLOWED {
+                return time + one * (to - before) as f64 / axles as f64;
+            }
+            time += one;
+            before += axles;
+        }
+        time
+    }
+
+    /// The block that begins after so many axles.
+    pub fn next_block(&self, blocks: &Blocks, before: u64) -> Block {
+        blocks.block(before, blocks.wanted(before).unwrap_or(1))
+    }
+}
