@@ -342,3 +342,26 @@ fn what_grains_under_a_track_cannot_run_is_told() {
     one("window = -1.8 .. 1.2 m", "window = 3 .. 6 m", "fewer than 2 sleepers");
     one("substructure = full", "substructure = cells", "`cells`");
 }
+
+#[test]
+fn the_time_of_trains_over_grains_counts_blocks_of_every_policy() {
+    let time = |text: &str| {
+        let graph = graph(text);
+        let (passing, blocks) = (graph.passing().unwrap(), graph.blocks().unwrap());
+        let all = passing.between(blocks, 0, blocks.total);
+        let split = passing.between(blocks, 0, 16) + passing.between(blocks, 16, blocks.total);
+        assert!((all - split).abs() < 1e-12 * all);
+        (all, passing.of_block(blocks, &blocks.block(0, 1)))
+    };
+    let solve = |words: &str| {
+        SCENE.replace("total = 8 axles", "total = 80 axles").replace("solve { ", &format!("solve {{ {words}, "))
+    };
+    let (isolated, alone) = time(&solve("update_every = 8 axles"));
+    assert!((isolated - 20.0 * alone).abs() < 1e-9, "20 trains, one by one");
+    // trains that follow each other save the way to the grains and the rest: all but the first of a block
+    let follows = 12.0 / (200.0 / 3.6);
+    let (fixed, _) = time(&solve("passages = continuous, update_every = 8 axles"));
+    assert!((fixed - (10.0 * alone + 10.0 * follows)).abs() < 1e-9, "10 blocks of 2 trains");
+    let (grown, _) = time(&solve("passages = continuous, update_every = geometric(8 axles, ratio = 1)"));
+    assert!((grown - (5.0 * alone + 15.0 * follows)).abs() < 1e-9, "blocks of 2, 2, 4, 8 and 4 trains");
+}
