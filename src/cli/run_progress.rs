@@ -7,7 +7,7 @@ use crate::nodes::Stage;
 use crate::solvers::granular::packing::Progress;
 use std::ops::ControlFlow;
 
-/// Shows it.
+/// Shows a run while it goes on.
 pub(super) struct Shown {
     bar: progress::Patient,
     tests: bool,
@@ -41,7 +41,7 @@ impl Shown {
 
 /// How far trains are on their way over grains: in the time of the scene, for blocks differ in length.
 struct Way {
-    /// Of the blocks that are done, of the one under way, and of all, s.
+    /// Time of the blocks that are done, of the one under way, and of all, s.
     done: f64,
     block: f64,
     all: f64,
