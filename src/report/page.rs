@@ -27,7 +27,7 @@ pub fn page_so_far(so_far: &SoFar) -> String {
     page_with(&so_far.run, &notice)
 }
 
-/// Where a run stands that is not finished: `40 of 500 axles after 1.2 h of computing; now trains on grains, 43 % of a block`.
+/// Where a run stands that is not finished: `40 of 500 axles after 1.2 h of computing; now trains on grains, 43 % of that`.
 pub fn standing(so_far: &SoFar) -> String {
     let done = match (so_far.clock, &so_far.run.scenario.loading) {
         (Clock::Axles(axles), Some(Loading::Traffic(traffic))) => {
@@ -36,7 +36,7 @@ pub fn standing(so_far: &SoFar) -> String {
         (clock, _) => clock.to_string(),
     };
     let stage = so_far.stage.as_ref();
-    let now = stage.map_or(String::new(), |(what, share)| format!("; now {what}, {} %", plain(100.0 * share, 2)));
+    let now = stage.map_or(String::new(), |(what, share)| format!("; now {what}, {} % of that", plain(100.0 * share, 2)));
     format!("{done} after {} of computing{now}", hours(so_far.seconds))
 }
 
