@@ -36,7 +36,8 @@ pub fn standing(so_far: &SoFar) -> String {
         (clock, _) => clock.to_string(),
     };
     let stage = so_far.stage.as_ref();
-    let now = stage.map_or(String::new(), |(what, share)| format!("; now {what}, {} % of that", plain(100.0 * share, 2)));
+    let now =
+        stage.map_or(String::new(), |(what, share)| format!("; now {what}, {} % of that", plain(100.0 * share, 2)));
     format!("{done} after {} of computing{now}", hours(so_far.seconds))
 }
 
