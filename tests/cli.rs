@@ -169,6 +169,10 @@ fn a_killed_run_resumes_with_the_same_bits() {
     child.wait().unwrap();
     assert!(!killed.join("summary.json").exists(), "the run was over before it could be killed");
 
+    // where nothing is yet there is no page
+    let empty = trackbed(&["report", dir.path().to_str().unwrap()]);
+    assert_eq!(code(&empty), 2);
+    assert!(said(&empty).contains("holds no results"), "{}", said(&empty));
     // what there is so far is shown, and said to be that
     let told = trackbed(&["report", out]);
     assert_eq!(code(&told), 0, "{}", said(&told));

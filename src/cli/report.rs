@@ -3,10 +3,12 @@
 use super::{Outcome, terminal};
 use crate::report::{self, BedTestsPage, Figure};
 use crate::results::{self, BedTestsView, NamedBytes, ResultsError, SoFar};
-use crate::store::{Directory, Finished, Unfinished};
+use crate::store::{Directory, Finished, StoreError, Unfinished};
 use std::path::{Path, PathBuf};
 
-/// Write the report page of a run, from its directory. A run that is not finished, or goes on now, has a page of what there is so far
+/// Write the report page of a run, from its directory
+///
+/// A run that goes on now, or was interrupted, gets the page `so_far.html`: what it has recorded so far.
 #[derive(clap::Args)]
 pub(super) struct Arguments {
     /// The directory that `trackbed run --out` wrote.
@@ -17,14 +19,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
-    // a commit that was killed is finished first
-    let found = Finished::open(&arguments.directory).and_then(|_| Unfinished::open(&arguments.directory));
-    let written = match found {
-        Ok(None) => write(&arguments.directory, arguments.figures).map(|page| format!("wrote {}", page.display())),
-        Ok(Some(unfinished)) => write_so_far(&unfinished, arguments.figures),
-        Err(error) => Err(error.into()),
-    };
-    match written {
+    match found(&arguments.directory, arguments.figures) {
         Ok(told) => {
             terminal::out(&format!("{told}\n"));
             Outcome::Fine
@@ -33,6 +28,17 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             terminal::error(&error.to_string());
             Outcome::Usage
         }
+    }
+}
+
+/// Writes the page of what is there, and says what has been written.
+fn found(directory: &Path, figures: bool) -> Result<String, ResultsError> {
+    // a commit that was killed is finished first
+    let finished = Finished::open(directory)?;
+    match Unfinished::open(directory)? {
+        Some(unfinished) => write_so_far(&unfinished, figures),
+        None if finished.is_none() => Err(StoreError::Empty { path: directory.to_owned() }.into()),
+        None => write(directory, figures).map(|page| format!("wrote {}", page.display())),
     }
 }
 

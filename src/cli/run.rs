@@ -69,10 +69,11 @@ fn run_here(arguments: &Arguments) -> Outcome {
     let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else {
         return not_yet(&compiled);
     };
-    let work = Work { name: arguments.name(), scene_sha256: fingerprint(&compiled.sources) };
+    let sha256 = fingerprint(&compiled.sources);
+    let work = Work { name: arguments.name(), scene_sha256: sha256.clone() };
     match Directory::open(&arguments.out, work, arguments.mode()) {
         Ok(directory) if directory.finished().is_some() => again(directory.path(), &compiled),
-        Ok(directory) => compute(arguments, directory, &Running { compiled: &compiled, scenario, graph }),
+        Ok(directory) => compute(arguments, directory, &Running { compiled: &compiled, sha256, scenario, graph }),
         Err(error) => stop(&compiled, stored::diagnostic(&error)),
     }
 }
@@ -96,15 +97,15 @@ impl Arguments {
 /// A run on its way.
 struct Running<'a> {
     compiled: &'a Compiled,
+    sha256: String,
     scenario: &'a Scenario,
     graph: &'a Graph,
 }
 
 fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -> Outcome {
-    let Running { compiled, scenario, graph } = running;
+    let Running { compiled, sha256, scenario, graph } = running;
     let refused = |error: &ResultsError| stop(compiled, results_diagnostic(error));
-    let sha256 = fingerprint(&compiled.sources);
-    let source = Source { sources: &compiled.sources, sha256: &sha256, diagnostics: &compiled.diagnostics };
+    let source = Source { sources: &compiled.sources, sha256, diagnostics: &compiled.diagnostics };
     let mut recorder = RunRecorder::new(scenario, graph).kept_in(&directory).made_by(source);
     let from = match recorder.resume() {
         Ok(from) => from,

@@ -65,7 +65,7 @@ impl Way {
     /// The block after so many axles begins.
     fn begin(&mut self, axles: u64) {
         let over = axles >= self.blocks.total;
-        let block = (!over).then(|| self.passing.next_block(&self.blocks, axles));
+        let block = (!over).then(|| self.blocks.next_block(axles));
         self.block = block.map_or(0.0, |block| self.passing.of_block(&self.blocks, &block));
     }
 

@@ -96,6 +96,11 @@ impl Blocks {
         Block { before, axles, runs }
     }
 
+    /// The block that begins after so many axles; one train where nobody knows its length before its forces.
+    pub fn next_block(&self, before: u64) -> Block {
+        self.block(before, self.wanted(before).unwrap_or(1))
+    }
+
     /// The passages over the track after so many axles, where the next block is expected to have so many trains.
     pub fn due(&self, axles: u64, trains: u64) -> Due {
         let adaptive = self.adaptive().is_some();

@@ -1,6 +1,6 @@
 //! How long trains take to pass grains, in the time of the scene: what a run on grains costs, and how far it is.
 
-use super::{Block, Blocks, GrainsNode};
+use super::{Block, Blocks, GrainsNode, Runner};
 
 /// Way that wheels run beside the grains while they act on them, m, and time of a rest after a passage, s.
 const BESIDE: f64 = 12.0;
@@ -30,7 +30,7 @@ impl Passing {
 
     /// Time of a block, s.
     pub fn of_block(&self, blocks: &Blocks, block: &Block) -> f64 {
-        let of_run = |(runner, trains): &(super::Runner, u64)| {
+        let of_run = |(runner, trains): &(Runner, u64)| {
             let (train, _) = blocks.kind(runner.kind);
             let alone = (self.length + BESIDE + train.wheel_base()) / train.speed + REST;
             match self.headway {
@@ -48,7 +48,7 @@ impl Passing {
             if before >= to {
                 break;
             }
-            let block = self.next_block(blocks, before);
+            let block = blocks.next_block(before);
             let (one, axles) = (self.of_block(blocks, &block), block.axles.max(1));
             if followed == FOLLOWED {
                 return time + one * (to - before) as f64 / axles as f64;
@@ -57,10 +57,5 @@ impl Passing {
             before += axles;
         }
         time
-    }
-
-    /// The block that begins after so many axles.
-    pub fn next_block(&self, blocks: &Blocks, before: u64) -> Block {
-        blocks.block(before, blocks.wanted(before).unwrap_or(1))
     }
 }

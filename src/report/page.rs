@@ -38,11 +38,11 @@ pub fn standing(so_far: &SoFar) -> String {
     let stage = so_far.stage.as_ref();
     let now =
         stage.map_or(String::new(), |(what, share)| format!("; now {what}, {} % of that", plain(100.0 * share, 2)));
-    format!("{done} after {} of computing{now}", hours(so_far.seconds))
+    format!("{done} after {} of computing{now}", duration(so_far.seconds))
 }
 
 /// `40 s`, `12 min`, `3.4 h`
-fn hours(seconds: f64) -> String {
+fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 120.0 => format!("{} s", plain(s, 2)),
         s if s < 7200.0 => format!("{} min", plain(s / 60.0, 2)),

@@ -25,6 +25,8 @@ pub enum StoreError {
     Finished { path: PathBuf, work: String },
     /// The directory holds work that was interrupted.
     Unfinished { path: PathBuf, work: String },
+    /// Nothing is finished in the directory, and no work there has kept anything yet.
+    Empty { path: PathBuf },
     /// The directory holds files that no manifest names; the first of them by name, and how many there are.
     Foreign { path: PathBuf, first: String, count: usize },
 }
@@ -57,6 +59,7 @@ impl StoreError {
             }
             StoreError::Busy { .. } => "wait until it has ended, or give another `--out`",
             StoreError::Finished { .. } | StoreError::Foreign { .. } => "give another `--out`, or `--force`",
+            StoreError::Empty { .. } => "give the directory that `trackbed run --out` wrote",
             StoreError::Unfinished { .. } => "go on with `--resume`, or begin anew with `--force`",
         }
     }
@@ -83,6 +86,13 @@ impl fmt::Display for StoreError {
                 write!(out, "`{}` holds the results of a finished {work}", path.display())
             }
             StoreError::Unfinished { path, work } => write!(out, "`{}` holds an interrupted {work}", path.display()),
+            StoreError::Empty { path } => {
+                let path = path.display();
+                write!(
+                    out,
+                    "`{path}` holds no results: nothing is finished there, and no run there has kept anything yet"
+                )
+            }
             StoreError::Foreign { path, first, count } => {
                 let more = if *count > 1 { format!(" and {} more", count - 1) } else { String::new() };
                 write!(out, "`{}` holds files that no manifest of results names: `{first}`{more}", path.display())
