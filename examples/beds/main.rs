@@ -12,6 +12,7 @@
 //! cores, each with a core of its own.
 
 use std::time::Instant;
+use trackbed::nodes::turns;
 use trackbed::solvers::granular::clump::Template;
 use trackbed::solvers::granular::grains::{ClumpShape, Curve};
 use trackbed::solvers::granular::packing::{
@@ -20,7 +21,6 @@ use trackbed::solvers::granular::packing::{
 use trackbed::solvers::granular::probe::{Outline, Plate, Stillness, probe};
 use trackbed::solvers::granular::{DashpotMode, Surface};
 use trackbed::store::Beds;
-use trackbed::study::turns;
 
 const USAGE: &str = "beds cell [seed] | track BAYS [CELLS] | seeds COUNT | readings [WORD] | accuracy [WORD]";
 
@@ -218,7 +218,7 @@ fn peak_memory() -> f64 {
 /// A row for each case, as many at a time as there are cores.
 fn table(cases: &[(String, Recipe)]) {
     println!("{HEADER}");
-    turns::each(cases, turns::cores(), |(name, recipe)| match tried(recipe) {
+    turns::each(cases, turns::cores(), turns::cores(), |(name, recipe)| match tried(recipe) {
         Ok((packed, seconds)) => println!("{}", row(name, &packed, seconds, plate_stiffness(recipe, &packed))),
         Err(error) => eprintln!("{name}: {error}"),
     })

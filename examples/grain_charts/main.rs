@@ -16,7 +16,7 @@ use cycle::{Answer, Setting};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use trackbed::study::turns;
+use trackbed::nodes::turns;
 
 /// Seeds of every setting.
 const SEEDS: u64 = 5;
@@ -94,7 +94,8 @@ fn settings() -> Vec<(&'static str, String, f64, Setting)> {
 
 /// The answers of all seeds; none where a run failed. Each run has a core to itself.
 fn runs(setting: &Setting) -> Vec<Option<Answer>> {
-    turns::each(&(0..SEEDS).collect::<Vec<_>>(), turns::cores(), |seed| cycle::run(setting, *seed)).expect("threads")
+    turns::each(&(0..SEEDS).collect::<Vec<_>>(), turns::cores(), turns::cores(), |seed| cycle::run(setting, *seed))
+        .expect("threads")
 }
 
 fn mean(values: impl Iterator<Item = f64> + Clone) -> f64 {

@@ -15,7 +15,7 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use test::Setting;
-use trackbed::study::turns;
+use trackbed::nodes::turns;
 
 /// Packings of a setting, and of the one that all others are compared with.
 const SEEDS: u64 = 2;
@@ -56,7 +56,7 @@ fn rows() -> Vec<Row> {
     let tests: Vec<(&Case, u64)> =
         cases.iter().flat_map(|case| (1..=case.seeds).map(move |seed| (case, seed))).collect();
     let done = AtomicUsize::new(0);
-    turns::each(&tests, turns::cores(), |(case, seed)| {
+    turns::each(&tests, turns::cores(), turns::cores(), |(case, seed)| {
         let answer = test::run(&case.setting, *seed);
         let row = Row { chart: case.chart.to_owned(), name: case.name.clone(), seed: *seed, answer };
         eprintln!("{:3} of {}: {}", 1 + done.fetch_add(1, Ordering::Relaxed), tests.len(), table::line(&row));

@@ -7,10 +7,11 @@ use crate::compile::Compiled;
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, has_errors, or_list, render};
 use crate::execute;
+use crate::nodes::turns;
 use crate::report;
 use crate::scenario::Study;
 use crate::store::Mode;
-use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Repeat, Scene, StudyFolder, turns};
+use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Repeat, Scene, StudyFolder};
 use crate::units::number;
 use clap::ValueEnum;
 use std::collections::BTreeMap;
@@ -251,7 +252,8 @@ fn perform(
         let taken = work.lock().unwrap_or_else(PoisonError::into_inner).take(*index, *repeat, run, folder);
         taken.inspect_err(|_| broken.store(true, Ordering::Relaxed))
     };
-    let kept = turns::each(&tasks, jobs, one).map_err(|error| format!("cannot start threads: {error}"))?;
+    let kept =
+        turns::each(&tasks, jobs, turns::cores(), one).map_err(|error| format!("cannot start threads: {error}"))?;
     kept.into_iter().collect::<Result<(), String>>()?;
     Ok(work.into_inner().unwrap_or_else(PoisonError::into_inner).known.into_iter().flatten().collect())
 }

@@ -10,11 +10,11 @@ use std::ops::ControlFlow;
 const FIRST: u64 = 4;
 const RATIO: f64 = 3.0;
 
-/// Settlement of every seat after all axles by the law of a scene that asks for `zone`, m; `None` of any other scene, and where the law
+/// Settlement of every seat after all axles by the law of a scene that asks for `cells` or `zone`, m; `None` of any other scene, and where the law
 /// cannot run.
 pub fn settlement(planner: &Planner, scenario: &Scenario) -> Option<Vec<f64>> {
     let grains = &scenario.solve.grains;
-    if *grains.tier != Tier::Zone {
+    if !matches!(*grains.tier, Tier::Cells | Tier::Zone) {
         return None;
     }
     let mut by_law = scenario.clone();

@@ -5,7 +5,7 @@ use super::exchange::{Exchange, Work};
 use super::machine::{Ending, Machine, RunError};
 use super::pair::{Pair, settling};
 use super::step::{BlockMeasures, Done};
-use crate::graph::{Blocks, Clock, Control, Graph, Model, Runner, Update};
+use crate::graph::{Blocks, Clock, Control, Graph, Runner, Update};
 use crate::nodes::{Builders, Forces, Kept, NodeError, PassageOutcome, Request, Superstructure, Told};
 use crate::store::Beds;
 use std::ops::ControlFlow;
@@ -53,7 +53,7 @@ pub(super) fn restored(from: Option<Checkpoint>) -> Result<(u64, u64, Control, O
 /// packed for it.
 pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunError> {
     let Some(blocks) = graph.blocks() else { return Ok(None) };
-    if graph.nodes.iter().any(|node| matches!(node.model, Model::Grains(_))) {
+    if graph.has_grains_under_track() {
         return Ok(None);
     }
     let machine = Machine { graph, builders: &Builders::default(), beds: &Beds::default() };

@@ -2,7 +2,9 @@
 
 use crate::graph::quantity::SETTLEMENT;
 use crate::graph::{Blocks, Clock, Fault, Graph, Model, Node, TrackNode};
-use crate::nodes::{Builders, GrainGround, GrainParts, NodeError, Substructure, Superstructure, TrackSystem};
+use crate::nodes::{
+    Builders, CellGround, CellParts, GrainGround, GrainParts, NodeError, Substructure, Superstructure, TrackSystem,
+};
 use crate::store::Beds;
 use std::fmt;
 
@@ -101,6 +103,7 @@ impl<'a> Machine<'a> {
         let ground = self.ground_node(name).ok_or_else(|| none("ground"))?;
         let mut ground: Box<dyn Substructure> = match (&ground.model, self.grain_parts()) {
             (Model::Grains(_), Some(parts)) => Box::new(GrainGround::new(parts)),
+            (Model::Cells(cells), _) => Box::new(CellGround::new(CellParts { cells, beds: self.beds })),
             _ => self.builders.substructure(ground)?,
         };
         begin(&mut *ground)?;

@@ -10,7 +10,8 @@ use crate::nodes::Following;
 /// What the exchange of a block was worth, and what it took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BlockMeasures {
-    /// Estimate of the error of settlement that the block adds at the worst seat, m; 0 for a block of one train.
+    /// Estimate of the error of settlement that the block adds at the worst seat, m: by forces that stay the same over it, 0 for a block
+    /// of one train, and by trains that the ground leaves out.
     pub error: f64,
     /// By how much a disturbance of the settlement comes back with the other sign: above 1 the exchange overshoots, above 2
     /// it grows. `None` where the track moved too evenly to tell.
@@ -69,6 +70,7 @@ impl Pair<'_> {
             }
             self.control.lengthen(trains, wanted);
             self.advance(here.axles, &loads, follow)?;
+            measured.error += self.ground.error_added();
             return Ok(Done { block, measured, next: Some(next) });
         }
     }

@@ -176,6 +176,8 @@ pub struct GrainsNode {
     pub ridden: bool,
     /// Settlement of every seat of the track at the start, m.
     pub settlement: Vec<f64>,
+    /// The pad under the sleeper of each seat of the track, where there is one.
+    pub pads: Vec<Option<UnderPad>>,
     /// Where the stiffness of supports is taken from.
     pub stiffness_from: StiffnessFrom,
     /// Distance from the front of a train to that of the next one that follows it closely, m; `None` lets the track come to rest between

@@ -1,8 +1,8 @@
 //! The graph as a person reads it: text, JSON and DOT, generated from the ports of its nodes and from its edges.
 
 use super::{
-    ActuatorsNode, BedNode, Blocks, Cost, Decision, Edge, GrainsNode, Graph, LawNode, Model, Node, Quantity, Schedule,
-    SoilNode, StiffnessFrom, TestWork, Tests, TrackNode, Update, Work,
+    ActuatorsNode, BedNode, Blocks, CellsNode, Cost, Decision, Edge, GrainsNode, Graph, LawNode, Model, Node, Quantity,
+    Schedule, SoilNode, StiffnessFrom, TestWork, Tests, TrackNode, Update, Work,
 };
 use crate::solvers::granular::rig::{Crib, Load};
 use crate::solvers::track::Integrator;
@@ -77,6 +77,7 @@ fn listed(node: &Node) -> ListedNode {
         Model::Bed(bed) => (format!("{} on a packed bed of grains", standing(bed)), of_bed(bed)),
         Model::Actuators(actuators) => ("loads of a test rig".into(), of_actuators(actuators)),
         Model::Grains(grains) => ("grains under the sleepers".into(), of_grains(grains)),
+        Model::Cells(cells) => ("a periodic cell of grains for each distinct sleeper".into(), of_cells(cells)),
         Model::Soil(soil) => ("soil below the grains".into(), of_soil(soil)),
         Model::Custom(custom) => (format!("`{}` of another program", custom.kind), custom.details.clone()),
     };
@@ -176,6 +177,39 @@ fn of_grains(grains: &GrainsNode) -> Vec<String> {
         Some(headway) => format!("trains of a block follow each other every {} m", number(headway)),
         None => "trains run one by one, and the track comes to rest between them".into(),
     });
+    lines
+}
+
+fn of_cells(node: &CellsNode) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for (index, cell) in node.cells.iter().enumerate() {
+        let bed = &node.beds[cell.bed];
+        let [length, width] = bed.numbers().plan;
+        let bays = if cell.copies == 1 { "1 bay".to_owned() } else { format!("{} bays", cell.copies) };
+        let sleepers = match node.seats_of(index) {
+            1 => "1 sleeper".to_owned(),
+            count => format!("{count} sleepers"),
+        };
+        let soil =
+            cell.soil.map(|soil| format!(", on soil of {} MN/m", number((soil / 1e6).round()))).unwrap_or_default();
+        lines.push(format!(
+            "cell of `{}`, {bays} of {} m x {} m, under the forces at {} m: for {sleepers}{soil}",
+            bed.section,
+            number(length),
+            number(width),
+            number(rounded_to_mm(cell.x))
+        ));
+        lines.extend(cell.crib.map(of_crib));
+    }
+    lines.push("stiffness of supports: by the forces of the last passage that was computed".into());
+    lines.push(match node.headway_time {
+        Some(time) => format!("trains of a block follow each other every {} s", number(rounded_to_mm(time))),
+        None => "trains run one by one, and the sleepers come to rest between them".into(),
+    });
+    lines.push(format!(
+        "trains are left out where a law fitted on the way is good to {} % of the settlement so far",
+        number((1e3 * node.tolerance).round() / 10.0)
+    ));
     lines
 }
 

@@ -5,6 +5,7 @@
 //! one rail and no word of the language; where the scene says a number is told by `lower`.
 
 mod blocks;
+mod cells;
 mod control;
 mod decision;
 mod grains;
@@ -20,6 +21,7 @@ mod track;
 mod train;
 
 pub use blocks::Due;
+pub use cells::{CellPlan, CellsNode};
 pub use control::Control;
 pub use decision::{Cost, Decision, PassageWork, Rejected, TestWork, Work};
 pub use grains::{
@@ -78,6 +80,11 @@ impl Graph {
             .find_map(|node| if let Model::Grains(grains) = &node.model { Passing::over(grains) } else { None })
     }
 
+    /// Whether grains lie under its track: all along, in part or in cells.
+    pub fn has_grains_under_track(&self) -> bool {
+        self.nodes.iter().any(|node| matches!(node.model, Model::Grains(_) | Model::Cells(_)))
+    }
+
     /// Whether vehicles ride on a rail that is advanced step by step with what carries it, so that blocks exchange nothing.
     pub fn is_ridden(&self) -> bool {
         self.nodes.iter().any(|node| matches!(node.model, Model::Riding(_)))
@@ -94,6 +101,7 @@ impl Graph {
         self.nodes.iter().flat_map(|node| match &node.model {
             Model::Bed(bed) => std::slice::from_ref(&bed.bed),
             Model::Grains(grains) => grains.beds.as_slice(),
+            Model::Cells(cells) => cells.beds.as_slice(),
             _ => &[],
         })
     }

@@ -1,7 +1,7 @@
 //! A node as data: its name, the plain parameters of its solver, and its ports, which follow from them.
 
 use super::quantity::*;
-use super::{ActuatorsNode, BedNode, GrainsNode, LawNode, Ports, SoilNode, SpringsNode, TrackNode};
+use super::{ActuatorsNode, BedNode, CellsNode, GrainsNode, LawNode, Ports, SoilNode, SpringsNode, TrackNode};
 use serde::{Deserialize, Serialize};
 
 /// A part of the machine that owns a state and advances it.
@@ -29,6 +29,8 @@ pub enum Model {
     Actuators(ActuatorsNode),
     /// The grains under a track.
     Grains(GrainsNode),
+    /// A cell of grains for each sleeper that is loaded otherwise than the others.
+    Cells(CellsNode),
     /// The ground below the grains.
     Soil(SoilNode),
     /// A node of another program: whoever runs the graph says how it is built.
@@ -77,6 +79,7 @@ impl Node {
                 }
                 (gives, takes)
             }
+            Model::Cells(_) => (vec![SUPPORT_STIFFNESS, SUPPORT_DAMPING, SETTLEMENT], vec![SLEEPER_FORCES]),
             Model::Soil(_) => (vec![SOIL_VELOCITY], vec![GRAIN_FORCE]),
             Model::Custom(node) => return node.ports.clone(),
         };

@@ -26,7 +26,7 @@ pub(super) struct GrainLayer<'a> {
 
 /// The granular layers of a scene whose plan has grains; none where a settlement law answers.
 pub(super) fn beds<'a>(scenario: &'a Scenario, graph: &Graph) -> Vec<GrainLayer<'a>> {
-    if !graph.nodes.iter().any(|node| matches!(node.model, Model::Bed(_) | Model::Grains(_))) {
+    if !graph.nodes.iter().any(|node| matches!(node.model, Model::Bed(_) | Model::Grains(_) | Model::Cells(_))) {
         return Vec::new();
     }
     let sections = scenario.track.sections.iter().enumerate();

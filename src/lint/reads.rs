@@ -1,6 +1,6 @@
 //! Fields that only physics rules read.
 
-use crate::graph::{Graph, Model, Work};
+use crate::graph::{Graph, Work};
 use crate::schema::{Reader, Reads};
 
 /// What rule L1022 holds a plan against.
@@ -16,7 +16,7 @@ const GRAIN_STEP: Reads = Reads {
 /// What physics rules read of a scene, and whether they have something to say about its plan.
 pub fn readers(graph: &Graph) -> Vec<Reader> {
     let passages = matches!(graph.cost.work, Work::Passages(_));
-    let grains_under_track = graph.nodes.iter().any(|node| matches!(node.model, Model::Grains(_)));
+    let grains_under_track = graph.has_grains_under_track();
     vec![
         Reader { reads: &BUDGET, acted: graph.runs },
         Reader { reads: &MEMORY, acted: graph.runs && passages },

@@ -5,7 +5,7 @@
 
 use super::led;
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{Graph, Model};
+use crate::graph::Graph;
 use crate::scenario::{Layer, Material, Scenario};
 use crate::units::number;
 
@@ -17,7 +17,7 @@ const OF_GRAINS: f64 = 0.2;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let Some(traffic) = led(scenario, graph) else { return Vec::new() };
-    if !graph.nodes.iter().any(|node| matches!(node.model, Model::Grains(_))) {
+    if !graph.has_grains_under_track() {
         return Vec::new();
     }
     let track = &scenario.track;

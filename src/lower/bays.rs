@@ -11,9 +11,10 @@ const EDGE: usize = 3;
 /// Length of track beside a transition that gets grains where no law can tell, m.
 const NEAR: f64 = 10.0;
 
-const READS: Reads = Reads {
+/// What tells sleepers apart.
+pub(super) const READS: Reads = Reads {
     fields: &["solve.tolerance"],
-    acts_where: "where grains lie under some bays of a track: `substructure = zone`",
+    acts_where: "where grains lie under some sleepers of a track: `substructure = cells` or `zone`",
 };
 
 /// Chooses the bays.

@@ -7,17 +7,20 @@ mod build;
 mod error;
 mod grains;
 mod law;
+mod on_cells;
 mod on_grains;
 mod outcome;
 mod profile;
 mod sampler;
 mod steps;
 mod track;
+pub mod turns;
 
 pub use build::Builders;
 pub use error::NodeError;
 pub use grains::{BedUnderActuators, TestState, Tested};
 pub use law::LawGround;
+pub use on_cells::{CellGround, Parts as CellParts};
 pub use on_grains::{
     Following, GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling, TimedSteps, Told,
 };
@@ -119,6 +122,11 @@ pub trait Substructure: Send + Sync {
     /// from there.
     fn advance_and_follow(&mut self, loads: &[Load<'_>], _follow: &mut Following<'_>) -> Result<(), NodeError> {
         self.advance(loads)
+    }
+
+    /// Standard error of what the last block added to the settlement, at the worst seat, m.
+    fn error_added(&self) -> f64 {
+        0.0
     }
 
     /// Whether it was restored in the middle of a block of trains. Until the block is done it answers as when it began.

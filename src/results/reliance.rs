@@ -104,12 +104,19 @@ fn confidence(
     (tables, scalars): (&RunTables, &BTreeMap<String, Scalar>),
 ) -> Vec<String> {
     let mut told = Vec::new();
-    if graph.nodes.iter().any(|node| matches!(node.model, Model::Grains(_))) {
+    if graph.has_grains_under_track() {
         let seed = scenario.solve.seed;
         told.push(format!(
             "one packing of the grains under the track, seed {seed}: `--seed` shows others, and their scatter"
         ));
         told.extend(risen(tables));
+    }
+    if graph.nodes.iter().any(|node| matches!(node.model, Model::Cells(_))) {
+        let error = scalars.get("update_error").filter(|error| error.value > 0.0);
+        told.extend(error.map(|error| {
+            let error = millimetres(error.value);
+            format!("trains that cells leave out: a standard error of the settlement of {error} at the worst sleeper")
+        }));
     }
     if graph.laws().next().is_some() {
         told.push(spread_of_laws(scenario, warnings, scalars));
@@ -212,6 +219,16 @@ fn assumptions(scenario: &Scenario, graph: &Graph, tables: &RunTables) -> Vec<St
 
 /// The stiffness of the supports, and that it stays.
 fn supports(graph: &Graph) -> Option<String> {
+    let cells =
+        graph.nodes.iter().find_map(|node| if let Model::Cells(cells) = &node.model { Some(cells) } else { None });
+    if let Some(node) = cells {
+        let bays = node.cells.first().map_or(0, |cell| cell.copies);
+        return Some(format!(
+            "{} periodic cells of grains of {} carry the sleepers, each under the forces of its own seat; grains do not move along the track from one cell to the next, and the soil below is a spring",
+            node.cells.len(),
+            if bays == 1 { "1 bay".to_owned() } else { format!("{bays} bays") },
+        ));
+    }
     let grains =
         graph.nodes.iter().find_map(|node| if let Model::Grains(grains) = &node.model { Some(grains) } else { None });
     if let Some(grains) = grains {

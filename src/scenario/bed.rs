@@ -71,6 +71,8 @@ pub struct Grains {
     pub support_from_passage: bool,
     /// Whether sleepers on grains turn about their axis across the track, instead of staying level.
     pub sleepers_pitch: bool,
+    /// Bays of a periodic cell of grains: 1, 2 or 3.
+    pub cell_bays: u32,
     /// Time step, s; `None` is chosen by the planner.
     pub step: Option<Given>,
     /// Size of the elements of soil, m; `None` is chosen by the planner.
@@ -96,6 +98,7 @@ impl Default for Grains {
             continuous: Given { value: false, origin: Origin::Default },
             support_from_passage: false,
             sleepers_pitch: false,
+            cell_bays: 1,
             step: None,
             soil_element: None,
             tolerance: 0.05,

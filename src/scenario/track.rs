@@ -3,7 +3,7 @@
 use super::{Bed, Given, Layer, Origin, Profile};
 use crate::diag::Span;
 use crate::solvers::foundation;
-use crate::solvers::track::Spring;
+use crate::solvers::track::{Spring, UnderPad};
 use crate::units::number;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
@@ -291,13 +291,10 @@ impl Support {
     pub fn below(&self, usp: Option<&Usp>) -> Spring {
         let (k, c) = (*self.stiffness, *self.damping);
         let seating = self.seating.map(|s| (*s.stiffness, *s.closure));
-        let Some(usp) = usp else { return Spring { stiffness: k, damping: c, seating } };
-        let (pad, pad_damping) = (*usp.stiffness, *usp.damping);
-        let series = |k: f64| k * pad / (k + pad);
-        Spring {
-            stiffness: series(k),
-            damping: (c * pad * pad + pad_damping * k * k) / ((k + pad) * (k + pad)),
-            seating: seating.map(|(soft, closure)| (series(soft), closure * (1.0 + soft / pad))),
+        let support = Spring { stiffness: k, damping: c, seating };
+        match usp {
+            Some(usp) => UnderPad { mass: 0.0, stiffness: *usp.stiffness, damping: *usp.damping }.on(support),
+            None => support,
         }
     }
 }
@@ -357,6 +354,28 @@ pub struct SleeperBody {
     pub base_area: f64,
     /// Between the rails, m.
     pub seat_distance: f64,
+}
+
+/// Nearer to its hinge than this share of its length a plate is as stiff as there: the ground must keep a modulus.
+const AT_HINGE: f64 = 0.05;
+
+impl ApproachSlab {
+    /// How far a load at a chainage (m) is from the hinge, as share of the length: by the lever, what of the load the ground bears.
+    pub fn lever(&self, x: f64) -> f64 {
+        let [structure, far] = self.ends;
+        if self.hinged { ((x - structure) / (far - structure)).abs().clamp(AT_HINGE, 1.0) } else { 1.0 }
+    }
+}
+
+impl SleeperBody {
+    /// How half a sleeper lies, its neighbours so far away on the left and on the right, m: its bearing area under the seat as far as the
+    /// sleeper reaches.
+    pub fn bearing(&self, spacings: [f64; 2]) -> foundation::Bearing {
+        let half = 0.5 * self.length;
+        let length = (0.5 * self.base_area / self.base_width).min(half);
+        let to_centre = (0.5 * (self.seat_distance - length)).clamp(0.0, half - length);
+        foundation::Bearing { width: self.base_width, length, spacings, to_centre: Some(to_centre) }
+    }
 }
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

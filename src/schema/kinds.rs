@@ -464,7 +464,10 @@ pub const KINDS: &[Kind] = &[
                 Form::Words(&[
                     word("auto", "the cheapest tier that answers"),
                     word("law", "a settlement law under each sleeper"),
-                    word("cells", "grains under each sleeper that differs, in a periodic cell; checked, not run yet"),
+                    word(
+                        "cells",
+                        "grains under each sleeper that differs, in a periodic cell that no rail joins to the others; tens of minutes",
+                    ),
                     word("zone", "grains within 10 m of a transition, springs beyond; hours"),
                     word("full", "grains under all of `window`, springs beyond; a day and more"),
                 ]),
@@ -648,6 +651,12 @@ pub const KINDS: &[Kind] = &[
                 "of sleepers on grains",
             ),
             default(
+                "cell_bays",
+                Form::Integer { min: 1, max: 3 },
+                "1",
+                "bays of a periodic cell of grains; the next sleepers are loaded by their own forces",
+            ),
+            default(
                 "grain_step",
                 Form::OneOf(&[number("s", 1e-9, 1e-2), Form::Words(AUTO)]),
                 "auto",
@@ -663,7 +672,7 @@ pub const KINDS: &[Kind] = &[
                 "tolerance",
                 number("%", 0.1, 50.0),
                 "5 %",
-                "of the largest settlement: the change for which `zone` leaves a bay to springs",
+                "of the largest settlement: the change for which `zone` leaves a bay to springs and sleepers share a cell; of that of a cell: the error of the trains that it leaves out",
             ),
             default(
                 "budget",

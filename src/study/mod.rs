@@ -15,7 +15,6 @@ mod miss;
 mod perform;
 mod plan;
 mod point;
-pub mod turns;
 
 pub use answer::{Answer, Row};
 pub use compared::{Difference, MetAndMissed, amount};

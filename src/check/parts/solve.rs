@@ -113,6 +113,7 @@ pub fn grains(record: &Record, places: Option<&Places>, findings: &mut Findings)
         continuous: Given { value: record.word("passages")? == "continuous", origin: record.get("passages")?.origin },
         support_from_passage: record.word("support_from")? == "passage",
         sleepers_pitch: record.word("sleeper_pitch")? == "free",
+        cell_bays: record.number("cell_bays")?.value as u32,
         step: optional("grain_step")?,
         soil_element: optional("soil_element")?,
         tolerance: record.number("tolerance")?.value,

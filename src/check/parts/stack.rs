@@ -2,10 +2,7 @@
 
 use crate::diag::Span;
 use crate::scenario::{self, ApproachSlab, Given, Material, SleeperBody, Stack};
-use crate::solvers::foundation::{Bearing, Layer};
-
-/// Nearer to its hinge than this share of its length a plate is as stiff as there: the ground must keep a modulus.
-const AT_HINGE: f64 = 0.05;
+use crate::solvers::foundation::Layer;
 
 /// The ground of some seats, of which each takes what lies at its place.
 pub struct Ground<'a> {
@@ -24,22 +21,14 @@ impl Ground<'_> {
     /// modulus is not known.
     pub fn at_seat(&self, x: f64, spacings: [f64; 2]) -> Option<Stack> {
         Some(Stack {
-            bearing: bearing(&self.body, spacings),
+            bearing: self.body.bearing(spacings),
             layers: continua(self.layers, x)?,
-            plate: self.plate.map(|plate| (plate, lever(&plate, x))),
+            plate: self.plate.map(|plate| (plate, plate.lever(x))),
             before: self.before.and_then(|layers| continua(layers, x)),
             damping_time: self.damping_time,
             span: self.span,
         })
     }
-}
-
-/// How half a sleeper lies: its bearing area under the seat as far as the sleeper reaches.
-fn bearing(body: &SleeperBody, spacings: [f64; 2]) -> Bearing {
-    let half = 0.5 * body.length;
-    let length = (0.5 * body.base_area / body.base_width).min(half);
-    let to_centre = (0.5 * (body.seat_distance - length)).clamp(0.0, half - length);
-    Bearing { width: body.base_width, length, spacings, to_centre: Some(to_centre) }
 }
 
 /// Layers at a chainage as continua; `None` where a modulus is not known.
@@ -58,10 +47,4 @@ fn continua(layers: &[scenario::Layer], x: f64) -> Option<Vec<Layer>> {
         })
     };
     layers.iter().map(continuum).collect()
-}
-
-/// How far a load is from the hinge of a plate, as share of its length: by the lever, what of the load the ground bears.
-fn lever(plate: &ApproachSlab, x: f64) -> f64 {
-    let [structure, far] = plate.ends;
-    if plate.hinged { ((x - structure) / (far - structure)).abs().clamp(AT_HINGE, 1.0) } else { 1.0 }
 }

@@ -1,5 +1,4 @@
-//! Tiers `cells`, `zone` and `full`: grains under the sleepers of a track, one cell for each distinct sleeper, under the bays that
-//! differ, or under all of the window. `cells` is planned and not run.
+//! Tiers `zone` and `full`: grains under the sleepers of a track, under the bays that differ, or under all of the window.
 
 use super::soil::{self, soil};
 use super::{ExpectedError, Proposal, Tier, edges, refused, waiting};
@@ -16,26 +15,19 @@ use crate::scenario::{Foot, Loading, Scenario, Seat, Section, SleeperBody, Track
 use crate::schema::Reads;
 use crate::solvers::track::{Pitch, UnderPad};
 
-pub struct Cells;
 pub struct Zone;
 pub struct Full;
 
 /// Fields of the grains and the soil under a track.
-const READS: Reads = Reads {
+pub(super) const READS: Reads = Reads {
     fields: &[
-        "solve.window",
-        "track.bed_ends",
         "soil.youngs_modulus",
         "soil.poisson_ratio",
         "soil.bulk_modulus",
         "soil.shear_modulus",
         "soil.density",
-        "soil.strength",
         "solve.coupling",
         "solve.passages",
-        "solve.support_from",
-        "solve.sleeper_pitch",
-        "solve.soil_element",
         "solve.grain_step",
         "track.base",
         "usp.bedding_modulus",
@@ -43,24 +35,21 @@ const READS: Reads = Reads {
     ],
     acts_where: "where grains lie under a track: `substructure = cells`, `zone` or `full`",
 };
+/// Those of bays that are joined by a rail and by their soil.
+const JOINED: Reads = Reads {
+    fields: &[
+        "solve.window",
+        "track.bed_ends",
+        "soil.strength",
+        "solve.support_from",
+        "solve.sleeper_pitch",
+        "solve.soil_element",
+    ],
+    acts_where: "where grains lie under bays of a track: `substructure = zone` or `full`",
+};
 
 /// What each of these tiers reads.
-const ALL: &[&Reads] = &[&track::READS, &bed::READS, &bed::VOLUMES, &READS];
-
-impl Tier for Cells {
-    fn name(&self) -> &'static str {
-        "cells"
-    }
-
-    fn reads(&self) -> &'static [&'static Reads] {
-        ALL
-    }
-
-    fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
-        let spacing: f64 = draft.scenario.track.sections.iter().map(|section| *section.spacing).sum();
-        propose(draft, "a cell of grains for each distinct sleeper", vec![[-spacing, 0.0]], false)
-    }
-}
+const ALL: &[&Reads] = &[&track::READS, &bed::READS, &bed::VOLUMES, &READS, &JOINED];
 
 impl Tier for Zone {
     fn name(&self) -> &'static str {
@@ -74,7 +63,7 @@ impl Tier for Zone {
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
         // a scene that does not ask for this tier has chosen no bays
         let windows = if draft.bays.is_empty() { wanted(draft.scenario) } else { draft.bays.clone() };
-        propose(draft, "grains under the bays that differ from the far field", windows, true)
+        propose(draft, "grains under the bays that differ from the far field", windows)
     }
 }
 
@@ -88,11 +77,11 @@ impl Tier for Full {
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
-        propose(draft, "grains under all of the window", wanted(draft.scenario), true)
+        propose(draft, "grains under all of the window", wanted(draft.scenario))
     }
 }
 
-fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) -> Result<Proposal, String> {
+fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>) -> Result<Proposal, String> {
     let scenario = draft.scenario;
     if !scenario.track.has_rails() {
         return Err("there are no rails".into());
@@ -103,7 +92,7 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
         false => beds_of_spheres(scenario, BedUse::Track),
     };
     // hours of grains are for who asks for them by name
-    let runs = runs && scenario.solve.grains.tier.has_grains();
+    let runs = scenario.solve.grains.tier.has_grains();
     let (beds, mut refusals): (_, Vec<Diagnostic>) = match found {
         Ok(beds) if beds.is_empty() => return Err("no section has a layer of grains".into()),
         Ok(beds) => (beds, Vec::new()),
@@ -128,7 +117,8 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
     let blocks = if let Schedule::Blocks(blocks) = &schedule { Some(&**blocks) } else { None };
     let cost = grains_under_track(draft, blocks, passing);
     if runs {
-        refusals.extend(refused::refusals(scenario, &stretches));
+        refusals.extend(refused::of_traffic(scenario));
+        refusals.extend(refused::few_sleepers(&stretches));
         refusals.extend(soil::refusals(scenario, &extents(&beds, &stretches)));
     } else {
         refusals.extend(waiting::refusal(scenario));
@@ -140,6 +130,7 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
         on_soil: !soil.layers.is_empty(),
         ridden: scenario.solve.grains.monolithic,
         settlement: scenario.track.seats.iter().map(|seat| *seat.initial_settlement).collect(),
+        pads: scenario.track.seats.iter().map(pad).collect(),
         stiffness_from: match scenario.solve.grains.support_from_passage {
             true => StiffnessFrom::Passage,
             false => StiffnessFrom::StaticLoad,
@@ -173,7 +164,7 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>, runs: bool) ->
 }
 
 /// Blocks that grains decide nothing of: where the scene asks for an error, forces and settlement are exchanged after every train.
-fn train_by_train(blocks: &Blocks) -> Blocks {
+pub(super) fn train_by_train(blocks: &Blocks) -> Blocks {
     let mut blocks = blocks.clone();
     if matches!(blocks.update, Update::Adaptive { .. }) {
         blocks.update = Update::Fixed { axles: blocks.train.axles() };
@@ -184,16 +175,16 @@ fn train_by_train(blocks: &Blocks) -> Blocks {
 }
 
 /// Share of the mass of a bed that is added as inertia.
-const ADDED: f64 = 0.02;
+pub(super) const ADDED: f64 = 0.02;
 /// Damping of a support over its stiffness where grains are the support, s (methods 2; Nielsen 2008).
-const DAMPING_TIME: f64 = 1e-3;
+pub(super) const DAMPING_TIME: f64 = 1e-3;
 /// Length of a rail pad along the rail, m.
 const PAD_LENGTH: f64 = 0.15;
 /// Density of the rubber of an under sleeper pad whose lower half moves with the ballast, kg/m3.
 const PAD_DENSITY: f64 = 1100.0;
 
 /// Distance between the fronts of trains that follow each other, m; `None` where they run one by one.
-fn headway(scenario: &Scenario) -> Option<f64> {
+pub(super) fn headway(scenario: &Scenario) -> Option<f64> {
     let Some(Loading::Traffic(traffic)) = &scenario.loading else { return None };
     let lengths = traffic.train.vehicles.iter().map(|vehicle| vehicle.length.map(|length| *length));
     scenario.solve.grains.continuous.then(|| lengths.sum::<Option<f64>>()).flatten()
@@ -252,15 +243,10 @@ const TINY: f64 = 1e-6;
 const END: f64 = 0.2;
 
 /// A sleeper on grains that begin at a chainage, m.
-fn standing(scenario: &Scenario, number: usize, seat: &Seat, start: f64) -> Option<SleeperOnGrains> {
-    let Foot::Sleeper { mass, usp, .. } = &seat.foot else { return None };
+pub(super) fn standing(scenario: &Scenario, number: usize, seat: &Seat, start: f64) -> Option<SleeperOnGrains> {
+    let Foot::Sleeper { mass, .. } = &seat.foot else { return None };
     let SleeperBody { length, base_width, height, base_area, .. } = seat.sleeper?;
     let rail = scenario.track.sections[seat.section].rail.as_ref()?;
-    let pad = usp.as_ref().map(|usp| UnderPad {
-        mass: 0.5 * PAD_DENSITY * usp.thickness.max(THIN) * base_area / 2.0,
-        stiffness: *usp.stiffness,
-        damping: *usp.damping,
-    });
     Some(SleeperOnGrains {
         seat: number,
         place: [seat.x - start, 0.0],
@@ -268,12 +254,23 @@ fn standing(scenario: &Scenario, number: usize, seat: &Seat, start: f64) -> Opti
         size: [base_width, (base_area / base_width).min(length), height],
         mass: **mass,
         rail_mass: *rail.mass * scenario.track.bay(number),
-        pad,
+        pad: pad(seat),
         pitch: seat.pad.as_ref().filter(|_| scenario.solve.grains.sleepers_pitch).map(|pad| Pitch {
             inertia: **mass * (base_width * base_width + height * height) / 12.0,
             stiffness: *pad.stiffness * PAD_LENGTH * PAD_LENGTH / 12.0,
         }),
         buffer: false,
+    })
+}
+
+/// The pad under the sleeper of a seat.
+fn pad(seat: &Seat) -> Option<UnderPad> {
+    let Foot::Sleeper { usp: Some(usp), .. } = &seat.foot else { return None };
+    let area = seat.sleeper?.base_area / 2.0;
+    Some(UnderPad {
+        mass: 0.5 * PAD_DENSITY * usp.thickness.max(THIN) * area,
+        stiffness: *usp.stiffness,
+        damping: *usp.damping,
     })
 }
 

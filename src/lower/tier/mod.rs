@@ -3,6 +3,7 @@
 //! A tier is one file: it says whether it can run a scene, what that costs, by how much it is expected to be off, and which nodes it
 //! makes. One that refuses yields its plan all the same, so that physics rules can speak of it.
 
+mod cells;
 mod equilibrium;
 mod grains;
 mod law;
@@ -12,8 +13,9 @@ mod rig;
 mod soil;
 mod waiting;
 
+pub use cells::Cells;
 pub use equilibrium::Equilibrium;
-pub use grains::{Cells, Full, Zone};
+pub use grains::{Full, Zone};
 pub use law::SettlementLaws;
 pub use rig::TestRig;
 

@@ -4,8 +4,8 @@ use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::GrainStretch;
 use crate::scenario::{Base, Loading, Scenario};
 
-/// Why a track on grains cannot run; nothing where it can.
-pub(super) fn refusals(scenario: &Scenario, stretches: &[GrainStretch]) -> Vec<Diagnostic> {
+/// Why a track on grains cannot run this traffic, whatever lies where; nothing where it can.
+pub(super) fn of_traffic(scenario: &Scenario) -> Vec<Diagnostic> {
     let grains = &scenario.solve.grains;
     let mut found = Vec::new();
     let Some(Loading::Traffic(traffic)) = &scenario.loading else {
@@ -46,12 +46,23 @@ pub(super) fn refusals(scenario: &Scenario, stretches: &[GrainStretch]) -> Vec<D
         let help = "give the vehicle its `length` over couplers, such as `length = 10.3 m`";
         found.push(waits(message, grains.continuous.origin.span(), help));
     }
-    if stretches.iter().map(|stretch| stretch.sleepers.len()).sum::<usize>() < FEWEST {
-        let message = format!("fewer than {FEWEST} sleepers stand on grains");
-        let help = "let `solve.window` reach over more bays of a section with a layer of grains";
-        found.push(waits(message, None, help));
-    }
     found
+}
+
+/// Too few sleepers on grains.
+pub(super) fn few_sleepers(stretches: &[GrainStretch]) -> Option<Diagnostic> {
+    (stretches.iter().map(|stretch| stretch.sleepers.len()).sum::<usize>() < FEWEST).then(|| {
+        let message = format!("fewer than {FEWEST} sleepers stand on grains");
+        waits(message, None, "let `solve.window` reach over more bays of a section with a layer of grains")
+    })
+}
+
+/// Vehicles that ride on the rail over the grains, where no rail joins the grains.
+pub(super) fn ridden(scenario: &Scenario) -> Option<Diagnostic> {
+    scenario.solve.grains.monolithic.then(|| {
+        let message = "vehicles cannot ride over cells of grains: no rail joins the cells".to_owned();
+        waits(message, None, "leave out `coupling = monolithic`, or write `substructure = zone`")
+    })
 }
 
 /// Sleepers on grains, at least.

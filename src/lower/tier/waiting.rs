@@ -3,10 +3,6 @@
 use crate::diag::{Code, Diagnostic, Span};
 use crate::scenario::{Loading, Scenario, Section, Tier, Track};
 
-/// What runs today in the place of cells, and of grains.
-const ZONE: &str = "`--set solve.substructure=zone` runs the scene with grains beside the transition";
-const INSTEAD: &str = "`--set solve.substructure=law` runs the scene with a settlement law under each sleeper";
-
 /// Why a scene waits for grains; `None` where nothing of it asks for them.
 pub(super) fn refusal(scenario: &Scenario) -> Option<Diagnostic> {
     let tier = scenario.solve.grains.tier;
@@ -15,26 +11,10 @@ pub(super) fn refusal(scenario: &Scenario) -> Option<Diagnostic> {
     let on_grains = (0..track.sections.len()).find(|section| stands_on_grains(track, *section));
     let on_grains = on_grains.map(|section| &track.sections[section]);
     match *tier {
-        Tier::Cells => Some(asks_for_cells(scenario, changing, on_grains)),
         _ if changing.is_some() => changing.map(changes),
         Tier::Auto => on_grains.map(unknown_stiffness),
-        Tier::Law | Tier::Zone | Tier::Full => None,
+        Tier::Law | Tier::Cells | Tier::Zone | Tier::Full => None,
     }
-}
-
-fn asks_for_cells(scenario: &Scenario, changing: Option<Span>, on_grains: Option<&Section>) -> Diagnostic {
-    let tier = scenario.solve.grains.tier;
-    let help = match (changing, on_grains) {
-        (Some(_), _) => "nothing else runs such a load; a constant one gives the equilibrium".to_owned(),
-        _ if scenario.track.sections.iter().any(|section| section.rail.is_none()) => {
-            "give the trackforms a `rail`, a `pad` and a `support` to run them with `law`".to_owned()
-        }
-        (None, Some(_)) => ZONE.to_owned(),
-        (None, None) => format!("{ZONE}; {INSTEAD}"),
-    };
-    let name = super::asked(*tier).unwrap_or_default();
-    let message = format!("this version checks the tier `{name}` and cannot run it yet");
-    waits(message, tier.origin.span(), "a model of grains", help)
 }
 
 fn changes(at: Span) -> Diagnostic {

@@ -20,7 +20,7 @@ pub const OF_STRIDE: f64 = 0.9;
 pub const SHARING: Sharing = Sharing::ByNeed;
 
 /// Grows whenever the same parts are built otherwise than before, or kept in another form.
-const METHOD: &str = "track on grains 7";
+const METHOD: &str = "track on grains 8";
 
 /// What a track on grains is made of.
 #[derive(Clone, Copy)]
@@ -34,9 +34,9 @@ pub struct Parts<'a> {
 impl Parts<'_> {
     /// Names what is built of these parts, whatever runs over it later.
     pub fn hash(&self) -> String {
-        let GrainsNode { beds, stretches, settlement, damping_time, gravity, time_step, added_inertia, .. } =
+        let GrainsNode { beds, stretches, settlement, pads, damping_time, gravity, time_step, added_inertia, .. } =
             self.grains;
-        let grains = (beds, stretches, settlement, damping_time, gravity, time_step, added_inertia);
+        let grains = (beds, stretches, settlement, pads, damping_time, gravity, time_step, added_inertia);
         recipe_hash(&(METHOD, grains, self.soil, self.track))
     }
 
@@ -108,10 +108,16 @@ impl Parts<'_> {
         Ok(Leapfrog::new(Arc::new(Track::new(model)?), &level, time_step)?)
     }
 
-    /// Springs under the sleepers beyond the grains, of a stiffness, N/m.
+    /// Springs under the sleepers beyond the grains, of a stiffness (N/m) without their pads.
     pub fn beyond(&self, stiffness: f64) -> Vec<Option<Spring>> {
-        let spring = Spring { stiffness, damping: self.grains.damping_time * stiffness, seating: None };
-        self.track.seats.iter().map(|seat| seat.is_ballasted().then_some(spring)).collect()
+        let seats = self.track.seats.iter().enumerate();
+        seats.map(|(number, seat)| seat.is_ballasted().then(|| self.support(number, stiffness))).collect()
+    }
+
+    /// What a sleeper stands on where its support has a stiffness, N/m: the support, and its pad in series.
+    pub fn support(&self, seat: usize, stiffness: f64) -> Spring {
+        let ground = Spring { stiffness, damping: self.grains.damping_time * stiffness, seating: None };
+        self.grains.pads.get(seat).copied().flatten().map_or(ground, |pad| pad.on(ground))
     }
 
     /// The level of the supports beyond the grains: as much higher as they give way under the track alone, which lies level so, and lower

@@ -21,6 +21,7 @@ mod underway;
 mod wheels;
 
 pub use build::Parts;
+pub(super) use build::{OF_STRIDE, SHARING};
 pub use energy::PassageEnergy;
 pub use ride::Riders;
 pub use timed::{Parted, TimedSteps};
@@ -105,10 +106,10 @@ pub(super) struct Books {
 }
 
 impl Books {
-    /// Stiffness of the support of a seat, N/m; 0 without a sleeper. `carried` are the seats on grains.
-    fn stiffness_of(&self, seat: usize, carried: &[usize]) -> f64 {
+    /// Stiffness of what carries the sleeper of a seat, N/m; 0 without a sleeper. `carried` are the seats on grains.
+    fn stiffness_of(&self, seat: usize, carried: &[usize], parts: Parts<'_>) -> f64 {
         match carried.binary_search(&seat) {
-            Ok(foot) => self.stiffness[foot],
+            Ok(foot) => parts.support(seat, self.stiffness[foot]).stiffness,
             Err(_) => self.beyond[seat].map_or(0.0, |spring| spring.stiffness),
         }
     }
@@ -143,9 +144,7 @@ impl<'a> GrainGround<'a> {
         let (books, coupled) = (live.told(), &live.coupled);
         let mut seats = books.beyond.clone();
         for (foot, seat) in coupled.rail.carried().iter().enumerate() {
-            let stiffness = books.stiffness[foot];
-            seats[*seat] =
-                Some(Spring { stiffness, damping: self.parts.grains.damping_time * stiffness, seating: None });
+            seats[*seat] = Some(self.parts.support(*seat, books.stiffness[foot]));
         }
         self.responses = Responses { revision: books.revision, seats };
     }

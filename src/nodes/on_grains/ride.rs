@@ -92,7 +92,8 @@ impl Live {
         let seat = |(number, seat): (usize, &crate::graph::TrackSeat)| {
             let sleeper_level = view.foot_displacement(number);
             // of a sleeper on springs they were made to carry the track at level 0
-            let lifted = parts.dead_weight(number) / books.stiffness_of(number, rail.carried()).max(f64::MIN_POSITIVE);
+            let lifted =
+                parts.dead_weight(number) / books.stiffness_of(number, rail.carried(), parts).max(f64::MIN_POSITIVE);
             let gap = settlement[number] - parts.grains.settlement[number] - lifted - sleeper_level;
             let force = view.contact_force(number).unwrap_or(0.0);
             UnloadedSeat {
@@ -101,7 +102,7 @@ impl Live {
                 void: if seat.is_ballasted() && force <= LIFTED { gap.max(0.0) } else { 0.0 },
                 contact_force: force,
                 seat_load: view.seat_load(number),
-                support_stiffness: books.stiffness_of(number, rail.carried()),
+                support_stiffness: books.stiffness_of(number, rail.carried(), parts),
             }
         };
         Unloaded {

@@ -88,7 +88,7 @@ pub use lanes::Real;
 pub use law::{
     ContactLaw, ContactLaws, Dashpot, DashpotMode, FrictionLimit, HertzMindlin, LawError, Linear, Surface, in_series,
 };
-pub use motion::{Felt, Pose, WallMotion};
+pub use motion::{Felt, Pose, Push, WallMotion};
 pub use rest::Fading;
 pub use scaling::Scaling;
 pub use shape::Shape;

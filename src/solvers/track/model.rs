@@ -2,7 +2,7 @@
 
 use super::error::{Flaw, TrackError, TrackParameter};
 use super::irregularity::Irregularity;
-use super::support::Seating;
+use super::support::{Seating, Spring};
 use serde::{Deserialize, Serialize};
 
 /// What the track of one rail consists of; SI units.
@@ -112,6 +112,21 @@ pub struct UnderPad {
     pub stiffness: f64,
     /// N s/m.
     pub damping: f64,
+}
+
+impl UnderPad {
+    /// What the sleeper feels where the pad lies on a support: both in series, in the slow limit (k1 k2 / (k1 + k2), and each damper by
+    /// the square of the share of the compression that it sees).
+    pub fn on(&self, support: Spring) -> Spring {
+        let (k, c) = (support.stiffness, support.damping);
+        let series = |k: f64| k * self.stiffness / (k + self.stiffness);
+        let both = (k + self.stiffness) * (k + self.stiffness);
+        Spring {
+            stiffness: series(k),
+            damping: (c * self.stiffness * self.stiffness + self.damping * k * k) / both,
+            seating: support.seating.map(|(soft, closure)| (series(soft), closure * (1.0 + soft / self.stiffness))),
+        }
+    }
 }
 
 /// Half a slab: a beam with free ends on a Winkler foundation that acts in both directions. Its level as built is that of the

@@ -136,6 +136,48 @@ pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, blocks: Opti
     cost(seconds, TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings: 1 })
 }
 
+/// Trains over cells of grains.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::lower::tier) struct PassingCells {
+    /// Bays of all cells.
+    pub bays: f64,
+    /// Between the fronts of trains that follow each other, s; `None` where they run one by one.
+    pub headway_time: Option<f64>,
+    /// Between the first and the last wheel of a train, s.
+    pub alone: f64,
+}
+
+/// Time beside a train that runs alone, and before and behind each, s.
+const BESIDE_ALONE: f64 = 0.1;
+const BESIDE_EACH: f64 = 0.04;
+/// Trains that a cell computes: the first ones, and a share of the others (`docs/validation.md`, cells).
+const FIRST_TRAINS: f64 = 12.0;
+const OTHER_TRAINS: f64 = 0.1;
+
+/// The estimate for cells of grains: good to a factor of three, as nobody knows how many trains a cell leaves out.
+pub(in crate::lower::tier) fn cells_under_track(draft: &Draft<'_>, blocks: &Blocks, passing: PassingCells) -> Cost {
+    let scenario = draft.scenario;
+    let sections = scenario.track.sections.iter().enumerate().filter(|(_, section)| super::has_grains(section));
+    let Some((number, section)) = sections.max_by(|(_, a), (_, b)| (a.end - a.start).total_cmp(&(b.end - b.start)))
+    else {
+        return cost(0.0, TestWork::default());
+    };
+    let bay = *section.spacing;
+    let Filling { grains, pebbles, lifts, light, .. } = filling(scenario, section, bay * width(scenario, number));
+    let [beside_grains, beside_pebbles] = beside(section, crib::space(scenario, number, bay));
+    let time_step = TRACK_STEP * light;
+    let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
+    let building = BUILDING + if section.crib.is_some() { POURING } else { 0.0 };
+    let all = blocks.total as f64 / blocks.train.axles().max(1) as f64;
+    let trains = all.min(FIRST_TRAINS + OTHER_TRAINS * (all - FIRST_TRAINS).max(0.0));
+    let train = BESIDE_EACH + passing.headway_time.unwrap_or(passing.alone + BESIDE_ALONE);
+    let test_steps = passing.bays * (building + trains * train) / time_step;
+    let [cell_grains, cell_pebbles] = [grains + beside_grains, pebbles + beside_pebbles];
+    let seconds = 0.5 * pebbles * packing_steps / PEBBLE_STEPS[0] + cell_pebbles * test_steps / TRACK_PEBBLE_STEPS;
+    let [grains, pebbles] = [cell_grains, cell_pebbles].map(|count| passing.bays * count);
+    cost(seconds, TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings: 1 })
+}
+
 fn pebbles_of(shape: &Shape) -> f64 {
     match shape {
         Shape::Clumps { pebbles: [fewest, most], .. } => f64::from(fewest + most) / 2.0,

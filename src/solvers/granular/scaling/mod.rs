@@ -201,7 +201,11 @@ impl<R: Real> Bed<R> {
         for (id, &factor) in factors.iter().enumerate() {
             let place = self.index[id] as usize;
             let body = &self.bodies[place];
-            moving += if body.inverse_mass > 0.0 { body.mass } else { 0.0 };
+            // what is fixed bears any step
+            if body.inverse_mass == 0.0 {
+                continue;
+            }
+            moving += body.mass;
             if factor <= 1.0 {
                 continue;
             }

@@ -158,6 +158,22 @@ fn scaling_and_back_changes_nothing() {
     }
 }
 
+/// A held clump was made heavier at every look and never lighter again: after five hundred axles its spin was no number.
+#[test]
+fn what_is_fixed_is_not_scaled() {
+    let mut bed = mixed();
+    for id in 0..bed.len() as u32 {
+        bed.set_velocity(BodyId(id), [0.0; 3], [1.0, 2.0, 3.0]);
+        bed.fix(BodyId(id));
+    }
+    let before: Vec<_> = bed.bodies.iter().map(|b| b.spin).collect();
+    for _ in 0..3 {
+        let scaling = bed.hold_time_step_by_need(1e-3, |_, _| 2.0).unwrap();
+        assert_eq!((scaling.bodies, scaling.added_share), (0, 0.0));
+    }
+    assert_eq!(bed.bodies.iter().map(|b| b.spin).collect::<Vec<_>>(), before);
+}
+
 #[test]
 fn the_longest_step_for_a_share_of_mass_is_one_that_the_network_bears() {
     let bed = mixed();

@@ -14,14 +14,15 @@ pub fn cores() -> usize {
     thread::available_parallelism().map_or(1, NonZero::get)
 }
 
-/// What `run` makes of each item, in their order, so many at a time. Fails where threads cannot be started.
+/// What `run` makes of each item, in their order, so many at a time on so many threads. Fails where threads cannot be started.
 pub fn each<T: Sync, A: Send>(
     items: &[T],
     at_a_time: usize,
+    threads: usize,
     run: impl Fn(&T) -> A + Sync,
 ) -> Result<Vec<A>, ThreadPoolBuildError> {
     let workers = at_a_time.min(items.len()).max(1);
-    let threads = (cores() / workers).max(1);
+    let threads = (threads / workers).max(1);
     let pools: Vec<ThreadPool> =
         (0..workers).map(|_| ThreadPoolBuilder::new().num_threads(threads).build()).collect::<Result<_, _>>()?;
     let next = AtomicUsize::new(0);
@@ -49,7 +50,7 @@ mod tests {
     fn answers_stand_in_the_order_of_the_items_and_no_more_run_at_a_time_than_should() {
         let (running, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
         let items: Vec<u64> = (0..40).collect();
-        let doubled = each(&items, 3, |item| {
+        let doubled = each(&items, 3, 3, |item| {
             most.fetch_max(1 + running.fetch_add(1, Ordering::SeqCst), Ordering::SeqCst);
             thread::yield_now();
             running.fetch_sub(1, Ordering::SeqCst);
@@ -57,6 +58,6 @@ mod tests {
         });
         assert_eq!(doubled.unwrap(), items.iter().map(|item| 2 * item).collect::<Vec<_>>());
         assert!((1..=3).contains(&most.into_inner()));
-        assert!(each(&[0; 0], 0, |item| *item).unwrap().is_empty());
+        assert!(each(&[0; 0], 0, 1, |item| *item).unwrap().is_empty());
     }
 }

@@ -1,0 +1,275 @@
+//! Tier `cells`: a periodic cell of grains for each distinct sleeper.
+//!
+//! Two sleepers are alike where they are built alike, lie on the same layers and settle by the law by about as much. One of them answers
+//! for all.
+
+use super::grains::{ADDED, DAMPING_TIME, READS, headway, standing, train_by_train};
+use super::rig::cost::{PassingCells, cells_under_track};
+use super::{ExpectedError, Proposal, Tier, edges, refused, waiting};
+use crate::diag::{Diagnostic, Severity};
+use crate::graph::{BedPlan, CellPlan, CellsNode, Model, Node, Schedule, SleeperOnGrains};
+use crate::lower::bays;
+use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
+use crate::lower::foundation::Foundations;
+use crate::lower::{Draft, crib, track};
+use crate::scenario::{Base, Given, Layer, Loading, Scenario, Stack};
+use crate::schema::Reads;
+use crate::solvers::foundation::{self, Method};
+
+pub struct Cells;
+
+/// Fields of the cells themselves.
+const CELLS: Reads = Reads {
+    fields: &["solve.cell_bays"],
+    acts_where: "where sleepers stand on cells of grains: `substructure = cells`",
+};
+
+/// Modulus of grains where only the soil below them is asked for, Pa.
+const UNYIELDING: f64 = 1e15;
+/// Length of track beside a transition in which each sleeper is distinct where no law can tell, m.
+const NEAR: f64 = 10.0;
+
+/// Length of rail over which a wheel is felt, m: three times that in which its deflection fades.
+const REACH: f64 = 6.0;
+/// Share of the range of a group in which settlements are as good as its median.
+const NEARLY: f64 = 0.1;
+
+impl Tier for Cells {
+    fn name(&self) -> &'static str {
+        "cells"
+    }
+
+    fn reads(&self) -> &'static [&'static Reads] {
+        &[&track::READS, &bed::READS, &bed::VOLUMES, &READS, &CELLS, &bays::READS]
+    }
+
+    fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
+        let scenario = draft.scenario;
+        if !scenario.track.has_rails() {
+            return Err("there are no rails".into());
+        }
+        let (Some(Loading::Traffic(_)), Some(blocks)) = (&scenario.loading, &draft.blocks) else {
+            return Err("no train runs, and cells settle by trains".into());
+        };
+        // hours of grains, and clumps, are for who asks for them by name
+        let asked = scenario.solve.grains.tier.has_grains();
+        let found = if asked { beds(scenario, BedUse::Track) } else { beds_of_spheres(scenario, BedUse::Track) };
+        let (beds, mut refusals): (_, Vec<Diagnostic>) = match found {
+            Ok(beds) if beds.is_empty() => return Err("no section has a layer of grains".into()),
+            Ok(beds) => (beds, Vec::new()),
+            // what cannot be packed stands against a run only, as E0604 does
+            Err(refusals) => {
+                (Vec::new(), refusals.into_iter().map(|refusal| refusal.severity(Severity::Warning)).collect())
+            }
+        };
+        let blocks = train_by_train(blocks);
+        let (train, _) = blocks.kind(0);
+        let headway_time = headway(scenario).map(|headway| headway / train.speed);
+        let (cells, cell_of) = if beds.is_empty() { Default::default() } else { cells(draft, &beds) };
+        let bays = cells.iter().map(|cell| f64::from(cell.copies)).sum();
+        let alone = train.wheel_base() / train.speed;
+        let cost = cells_under_track(draft, &blocks, PassingCells { bays, headway_time, alone });
+        refusals.extend(match asked {
+            true => refused::of_traffic(scenario).into_iter().chain(refused::ridden(scenario)).collect(),
+            false => waiting::refusal(scenario).into_iter().collect::<Vec<_>>(),
+        });
+        let what = match cells.len() {
+            0 => "a cell of grains for each distinct sleeper".to_owned(),
+            count => format!("a cell of grains for each of {count} distinct sleepers"),
+        };
+        let node = CellsNode {
+            beds,
+            cells,
+            cell_of,
+            settlement: scenario.track.seats.iter().map(|seat| *seat.initial_settlement).collect(),
+            headway_time,
+            damping_time: DAMPING_TIME,
+            gravity: *scenario.solve.gravity,
+            time_step: scenario.solve.grains.step.map(|step| *step),
+            added_inertia: ADDED,
+            tolerance: scenario.solve.grains.tolerance,
+        };
+        let nodes = vec![
+            Node::new("track", Model::Track(Box::new(track::track(scenario)))),
+            Node::new("grains", Model::Cells(node)),
+        ];
+        Ok(Proposal {
+            edges: edges(&nodes),
+            nodes,
+            schedule: Schedule::Blocks(Box::new(blocks)),
+            cost,
+            what,
+            why: "the scene asks for grains".into(),
+            error: ExpectedError { share: None, evidence: "no rail joins the cells".into() },
+            runs: asked && refusals.is_empty(),
+            refusals,
+        })
+    }
+}
+
+/// The cells, and for every seat the one that answers for it.
+fn cells(draft: &Draft<'_>, beds: &[BedPlan]) -> (Vec<CellPlan>, Vec<Option<usize>>) {
+    let scenario = draft.scenario;
+    let mut groups: Vec<(CellPlan, Vec<usize>)> = Vec::new();
+    let mut kinds: Vec<(CellPlan, Vec<usize>)> = Vec::new();
+    let plans = (0..scenario.track.seats.len()).filter_map(|seat| Some((seat, plan(scenario, beds, seat)?)));
+    for (seat, plan) in plans {
+        match kinds.iter_mut().find(|(kind, _)| is_alike(kind, &plan)) {
+            Some((_, seats)) => seats.push(seat),
+            None => kinds.push((plan, vec![seat])),
+        }
+    }
+    for (_, seats) in kinds {
+        for group in settling_alike(draft, seats) {
+            let plan = plan(scenario, beds, typical(draft, &group));
+            let seats = group.into_iter().map(|(_, seat)| seat).collect();
+            groups.extend(plan.map(|plan| (plan, seats)));
+        }
+    }
+    groups.sort_by(|(a, _), (b, _)| a.x.total_cmp(&b.x));
+    let mut cell_of = vec![None; scenario.track.seats.len()];
+    for (number, (_, seats)) in groups.iter().enumerate() {
+        seats.iter().for_each(|seat| cell_of[*seat] = Some(number));
+    }
+    (groups.into_iter().map(|(plan, _)| plan).collect(), cell_of)
+}
+
+/// Whether two sleepers are built alike on the same ground.
+fn is_alike(a: &CellPlan, b: &CellPlan) -> bool {
+    let anywhere = |plan: &CellPlan| {
+        let mut plan = CellPlan { x: 0.0, ..plan.clone() };
+        plan.sleepers.iter_mut().for_each(|sleeper| sleeper.seat = 0);
+        plan
+    };
+    anywhere(a) == anywhere(b)
+}
+
+/// Seats in groups that settle by the law by about as much, each with this settlement, growing.
+fn settling_alike(draft: &Draft<'_>, seats: Vec<usize>) -> Vec<Vec<(f64, usize)>> {
+    let scenario = draft.scenario;
+    let by_law = draft.by_law.filter(|settlement| settlement.len() == scenario.track.seats.len());
+    // where no law tells, each sleeper beside a transition counts as far away as it is
+    let beside = |seat: usize| {
+        let away = |x: f64| (scenario.track.seats[seat].x - x).abs();
+        scenario.track.transitions.iter().map(|t| away(t.x)).fold(NEAR, f64::min)
+    };
+    let measure = |seat: usize| by_law.map_or_else(|| beside(seat), |settlement| settlement[seat]);
+    let width = by_law.map_or(0.0, |settlement| {
+        let largest = settlement.iter().fold(0.0, |most: f64, settlement| most.max(settlement.abs()));
+        2.0 * scenario.solve.grains.tolerance * largest
+    });
+    let mut measured: Vec<(f64, usize)> = seats.into_iter().map(|seat| (measure(seat), seat)).collect();
+    measured.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut groups: Vec<Vec<(f64, usize)>> = Vec::new();
+    for one in measured {
+        match groups.last_mut() {
+            Some(group) if one.0 - group[0].0 <= width => group.push(one),
+            _ => groups.push(vec![one]),
+        }
+    }
+    groups
+}
+
+/// The seat that answers for a group: of those that every wheel passes and that settle as its median, nearly, the one in the middle.
+fn typical(draft: &Draft<'_>, group: &[(f64, usize)]) -> usize {
+    let passed: Vec<(f64, usize)> =
+        group.iter().filter(|(_, seat)| every_wheel_passes(draft, *seat)).copied().collect();
+    let group = if passed.is_empty() { group } else { &passed };
+    let (median, _) = group[group.len() / 2];
+    let width = group[group.len() - 1].0 - group[0].0;
+    let near = group.iter().filter(|(settlement, _)| (settlement - median).abs() <= NEARLY * width);
+    let mut near: Vec<usize> = near.map(|(_, seat)| *seat).collect();
+    near.sort_unstable();
+    near[near.len() / 2]
+}
+
+/// Whether every wheel comes from far before a seat and runs on far behind it.
+fn every_wheel_passes(draft: &Draft<'_>, seat: usize) -> bool {
+    let (Some(passage), Some(blocks)) = (draft.passages.first(), &draft.blocks) else { return true };
+    let away = blocks.kind(0).0.wheel_base() + REACH;
+    (passage.left + away..=passage.right - away).contains(&draft.scenario.track.seats[seat].x)
+}
+
+/// A cell with the sleeper of a seat in its middle; `None` for a seat without grains below.
+fn plan(scenario: &Scenario, beds: &[BedPlan], seat: usize) -> Option<CellPlan> {
+    let track = &scenario.track;
+    let here = track.seats.get(seat).filter(|seat| seat.is_ballasted())?;
+    let section = &track.sections[here.section];
+    let bed = beds.iter().position(|bed| bed.section == section.name)?;
+    let [length, _] = beds[bed].numbers().plan;
+    let copies = scenario.solve.grains.cell_bays;
+    let sleepers: Vec<SleeperOnGrains> = around(scenario, seat, copies)
+        .into_iter()
+        .enumerate()
+        .filter_map(|(bay, seat)| {
+            let standing = standing(scenario, seat, &track.seats[seat], 0.0)?;
+            Some(SleeperOnGrains { place: [(bay as f64 + 0.5) * length, 0.0], pitch: None, ..standing })
+        })
+        .collect();
+    (sleepers.len() == copies as usize).then(|| CellPlan {
+        bed,
+        x: here.x,
+        copies,
+        middle: (copies as usize - 1) / 2,
+        sleepers,
+        soil: soil(scenario, seat),
+        crib: crib::planned(section),
+    })
+}
+
+/// The seats of the bays of a cell around one in its middle. Where the section ends the other neighbour stands in.
+fn around(scenario: &Scenario, seat: usize, copies: u32) -> Vec<usize> {
+    let seats = &scenario.track.seats;
+    let section = seats[seat].section;
+    let beside = |seat: Option<usize>| {
+        seat.filter(|seat| seats.get(*seat).is_some_and(|seat| seat.section == section && seat.is_ballasted()))
+    };
+    let (before, behind) = (beside(seat.checked_sub(1)), beside(seat.checked_add(1)));
+    let left = before.or(behind).unwrap_or(seat);
+    let right = behind.or(before).unwrap_or(seat);
+    match copies {
+        1 => vec![seat],
+        2 => vec![seat, right],
+        _ => vec![left, seat, right],
+    }
+}
+
+/// Stiffness of the soil under a seat, N/m, by the stress cone: what the layers of grains above do not give way of; `None` without soil.
+fn soil(scenario: &Scenario, seat: usize) -> Option<f64> {
+    let track = &scenario.track;
+    let here = &track.seats[seat];
+    let parts = track.ground(here.section);
+    let part = parts.iter().find(|part| (part.start..=part.end).contains(&here.x))?;
+    part.layers.iter().find(|layer| layer.soil().is_some())?;
+    let stack = Stack {
+        bearing: here.sleeper?.bearing([track.bay(seat); 2]),
+        layers: part.layers.iter().map(|layer| below_grains(layer, here.x)).collect::<Option<_>>()?,
+        plate: part.approach_slab.map(|plate| (plate, plate.lever(here.x))),
+        before: None,
+        damping_time: Given::derived(DAMPING_TIME),
+        span: track.sections[here.section].layers_span?,
+    };
+    let mut foundations = Foundations::new(Method::StressCone, track.bed.base == Base::Quiet);
+    let carried = foundations.carried(&[&stack]).pop()?;
+    carried.ok().map(|carried| carried.stiffness)
+}
+
+/// A layer of soil, or one of grains as if it did not give way.
+fn below_grains(layer: &Layer, x: f64) -> Option<foundation::Layer> {
+    let (poisson_ratio, density, spread) = match (layer.granular(), layer.soil()) {
+        (Some(grains), _) => (*grains.poisson_ratio, *grains.density, *grains.spread),
+        (_, Some(soil)) => (*soil.poisson_ratio, *soil.density, *soil.spread),
+        _ => return None,
+    };
+    let youngs_modulus = match layer.granular() {
+        Some(_) => UNYIELDING,
+        None => layer.youngs_modulus()?.value_at(x),
+    };
+    Some(foundation::Layer {
+        thickness: layer.thickness.value_at(x).max(0.0),
+        youngs_modulus,
+        poisson_ratio,
+        density,
+        spread,
+    })
+}

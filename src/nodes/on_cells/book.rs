@@ -1,0 +1,114 @@
+//! What is known of each cell beside the state of its grains, and what follows for the seats of the track.
+
+use super::cell::Passed;
+use super::hardening::{Computed, Hardening, Jump};
+use crate::graph::CellsNode;
+use crate::solvers::track::Spring;
+use serde::{Deserialize, Serialize};
+
+/// A load that differs by more from the one of before begins a new run of trains that are alike.
+const ALIKE: f64 = 0.1;
+
+/// The account of a cell.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Book {
+    /// Stiffness of the grains, N/m.
+    pub stiffness: f64,
+    /// By all trains so far, and the standard error of it, m.
+    pub settled: f64,
+    pub error: f64,
+    /// What the last block added to this error, m.
+    pub error_added: f64,
+    /// What the last train added, m.
+    pub rate: f64,
+    /// Trains that were computed under about the same load, run by run; the last one goes on.
+    pub computed: Vec<Vec<Computed>>,
+    /// The load of the last run, N.
+    pub load: f64,
+}
+
+impl Book {
+    /// A cell that no train has passed.
+    pub fn new(stiffness: f64) -> Book {
+        Book { stiffness, settled: 0.0, error: 0.0, error_added: 0.0, rate: 0.0, computed: vec![Vec::new()], load: 0.0 }
+    }
+
+    /// Begins trains of a load, N.
+    pub fn begin(&mut self, load: f64) {
+        if (load - self.load).abs() > ALIKE * self.load {
+            self.load = load;
+            if !self.known().is_empty() {
+                self.computed.push(Vec::new());
+            }
+        }
+    }
+
+    /// Trains that were computed under such a load as now.
+    pub fn known(&self) -> &[Computed] {
+        self.computed.last().map_or(&[], Vec::as_slice)
+    }
+
+    /// Notes a train that was computed.
+    pub fn note(&mut self, passed: &Passed) {
+        let age = 1 + self.computed.iter().map(Vec::len).sum::<usize>();
+        self.stiffness = passed.stiffness.unwrap_or(self.stiffness);
+        if let Some(run) = self.computed.last_mut() {
+            run.push(Computed { age: age as f64, added: passed.added });
+        }
+    }
+
+    /// What a run of trains adds of which the first `now` are computed, with the law where there is one; `None` where others must be computed.
+    pub fn jump(&self, law: Option<&Hardening>, now: usize, passed: u64, trains: u64) -> Option<Jump> {
+        let known = self.known();
+        match law {
+            Some(law) if !known.is_empty() => Some(law.settled(known, now, passed, trains)),
+            _ if now as u64 >= trains => {
+                let settled = known[known.len() - now..].iter().map(|train| train.added).sum();
+                Some(Jump { settled, error: 0.0 })
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a jump is good enough: its error and those of before, over the settlement.
+    pub fn bears(&self, jump: &Jump, tolerance: f64) -> bool {
+        self.error + jump.error <= tolerance * (self.settled + jump.settled).abs()
+    }
+
+    /// Takes over what a run of trains has added.
+    pub fn settle(&mut self, jump: &Jump, trains: u64) {
+        self.settled += jump.settled;
+        self.error += jump.error;
+        self.error_added += jump.error;
+        self.rate = jump.settled / trains.max(1) as f64;
+    }
+}
+
+/// The law of the cells on each bed, as far as it is known.
+pub(super) fn laws(node: &CellsNode, books: &[Book]) -> Vec<Option<Hardening>> {
+    let of_bed = |bed: usize| {
+        let cells = node.cells.iter().zip(books).filter(|(cell, _)| cell.bed == bed);
+        let runs: Vec<&[Computed]> = cells.flat_map(|(_, book)| book.computed.iter().map(Vec::as_slice)).collect();
+        Hardening::fitted(&runs)
+    };
+    (0..node.beds.len()).map(of_bed).collect()
+}
+
+/// What every seat stands on: grains, the soil below and the pad under the sleeper, one after the other.
+pub(super) fn supports(node: &CellsNode, books: &[Book]) -> Vec<Option<Spring>> {
+    let spring = |cell: &Option<usize>| {
+        let cell = (*cell)?;
+        let plan = &node.cells[cell];
+        let series = |k: f64, other: f64| k * other / (k + other);
+        let stiffness = plan.soil.map_or(books[cell].stiffness, |soil| series(books[cell].stiffness, soil));
+        let ground = Spring { stiffness, damping: node.damping_time * stiffness, seating: None };
+        Some(plan.sleepers[plan.middle].pad.map_or(ground, |pad| pad.on(ground)))
+    };
+    node.cell_of.iter().map(spring).collect()
+}
+
+/// The value of the cell of each seat on top of what the seat had at the start, m.
+pub(super) fn settlement(node: &CellsNode, value: impl Fn(usize) -> f64) -> Vec<f64> {
+    let seats = node.settlement.iter().zip(&node.cell_of);
+    seats.map(|(start, cell)| start + cell.map_or(0.0, &value)).collect()
+}

@@ -1,0 +1,293 @@
+//! A track whose sleepers stand on periodic cells of grains: tier `cells`.
+//!
+//! Each cell is driven by the forces on the supports of its own sleepers, as the plane track finds them, and gives back how stiff it is and
+//! how much a train adds to its settlement. Of the trains of a block a cell computes as many as the accuracy asks for; the others are a
+//! jump, by a law that is fitted to what all cells have done so far. The rail joins the sleepers in the plane track only: cells do
+//! not push each other along the track, as the bays of a bed do.
+
+mod book;
+mod cell;
+mod forces;
+mod hardening;
+mod stored;
+
+use super::on_grains::{Following, Stage, Telling, Told};
+use super::turns;
+use super::{Forces, Load, Mark, NodeError, Substructure};
+use crate::graph::{CellPlan, CellsNode, Responses};
+use crate::store::{Beds, recipe_hash};
+use book::{Book, laws};
+use cell::{Cell, Passed};
+use forces::TrainForces;
+use hardening::Jump;
+use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+use std::sync::{Mutex, PoisonError};
+
+/// Grows whenever the same cells are built otherwise than before, or kept in another form.
+const METHOD: &str = "cell of grains 1";
+
+/// What cells are made of.
+#[derive(Clone, Copy)]
+pub struct Parts<'a> {
+    pub cells: &'a CellsNode,
+    pub beds: &'a Beds,
+}
+
+/// Cells as the ground of a track.
+pub struct CellGround<'a> {
+    parts: Parts<'a>,
+    responses: Responses,
+    live: Option<Live>,
+}
+
+/// The ground at work.
+struct Live {
+    cells: Vec<Cell>,
+    books: Vec<Book>,
+    /// Trains so far.
+    passed: u64,
+    /// Grows whenever a stiffness changes.
+    revision: u64,
+    underway: Option<Underway>,
+}
+
+/// A block that has begun and is not done. Its trains come in runs: of one kind, in one direction, with one passage of the plane track.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Underway {
+    /// The books as the block began: what others are told until it is done.
+    began: Vec<Book>,
+    /// Runs that are done.
+    runs: usize,
+    /// Trains of the run under way that each cell has computed; empty before its first one.
+    computed: Vec<usize>,
+}
+
+impl<'a> CellGround<'a> {
+    /// A ground that is not built yet: [`Substructure::prepare`] does that, or [`Substructure::restore`].
+    pub fn new(parts: Parts<'a>) -> CellGround<'a> {
+        CellGround { parts, responses: Responses { revision: 0, seats: Vec::new() }, live: None }
+    }
+
+    /// Takes over what the books say of the supports.
+    fn answer(&mut self) {
+        let Some(live) = &self.live else { return };
+        let seats = book::supports(self.parts.cells, live.told());
+        self.responses = Responses { revision: live.revision, seats };
+    }
+
+    fn live(&self) -> Result<&Live, NodeError> {
+        self.live.as_ref().ok_or(NodeError::NoGround)
+    }
+}
+
+impl Substructure for CellGround<'_> {
+    fn prepare(&mut self, tell: &mut Telling<'_>) -> Result<(), NodeError> {
+        self.live = Some(Live::build(self.parts, tell)?);
+        self.answer();
+        Ok(())
+    }
+
+    fn responses(&self) -> &Responses {
+        &self.responses
+    }
+
+    fn settlement(&self) -> Vec<f64> {
+        let told = self.live.as_ref().map_or(&[] as &[Book], |live| live.told());
+        book::settlement(self.parts.cells, |cell| told.get(cell).map_or(0.0, |book| book.settled))
+    }
+
+    fn forces(&self) -> Forces {
+        Forces::Histories
+    }
+
+    /// What the last train added, once more for each.
+    fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError> {
+        let trains = loads.iter().map(|load| load.trains).sum::<u64>() as f64;
+        let told = self.live()?.told();
+        Ok(book::settlement(self.parts.cells, |cell| told[cell].settled + trains * told[cell].rate))
+    }
+
+    fn advance(&mut self, loads: &[Load<'_>]) -> Result<(), NodeError> {
+        self.advance_and_follow(loads, &mut |_| ControlFlow::Continue(()))
+    }
+
+    fn advance_and_follow(&mut self, loads: &[Load<'_>], follow: &mut Following<'_>) -> Result<(), NodeError> {
+        let node = self.parts.cells;
+        let live = self.live.as_mut().ok_or(NodeError::NoGround)?;
+        let done = live.block().runs;
+        for load in loads.iter().skip(done) {
+            live.run(node, load, follow)?;
+        }
+        live.underway = None;
+        live.revision += 1;
+        self.answer();
+        Ok(())
+    }
+
+    fn error_added(&self) -> f64 {
+        let books = self.live.as_ref().map_or(&[] as &[Book], |live| &live.books);
+        books.iter().map(|book| book.error_added).fold(0.0, f64::max)
+    }
+
+    fn is_underway(&self) -> bool {
+        self.live.as_ref().is_some_and(|live| live.underway.is_some())
+    }
+
+    /// A failure of grains ends the run, and nothing goes back to before it.
+    fn mark(&self) -> Mark {
+        Mark(Box::new(()))
+    }
+
+    fn roll_back(&mut self, _: Mark) {}
+
+    fn tamp(&mut self, _: &[usize], _: f64) -> Result<(), NodeError> {
+        Err(NodeError::Other { node: "cells".into(), why: "this version cannot tamp grains".into() })
+    }
+
+    fn save(&self) -> Result<serde_json::Value, NodeError> {
+        self.live()?.save()
+    }
+
+    fn restore(&mut self, state: &serde_json::Value) -> Result<(), NodeError> {
+        self.live = Some(Live::restore(self.parts, state)?);
+        self.answer();
+        Ok(())
+    }
+}
+
+impl Live {
+    /// Builds every cell; those that are alike are built once.
+    fn build(parts: Parts<'_>, tell: &mut Telling<'_>) -> Result<Live, NodeError> {
+        let node = parts.cells;
+        let (mut cells, mut books): (Vec<Cell>, Vec<Book>) = (Vec::new(), Vec::new());
+        for (number, plan) in node.cells.iter().enumerate() {
+            let (cell, book) = match node.cells[..number].iter().position(|other| anywhere(plan) == anywhere(other)) {
+                Some(built) => (cells[built].clone(), books[built].clone()),
+                None => {
+                    let hash = recipe_hash(&(
+                        METHOD,
+                        anywhere(plan),
+                        &node.beds[plan.bed],
+                        node.gravity,
+                        node.time_step,
+                        node.added_inertia,
+                    ));
+                    let build = || {
+                        let cell = Cell::build(plan, node, parts.beds, tell)?;
+                        tell(Stage::StaticLoad, 0.0);
+                        Ok((cell.store(), cell.pressed(node.gravity)?))
+                    };
+                    // what comes later must not know whether it was built before: it goes on from what is stored in both cases
+                    let (stored, stiffness) = parts.beds.built::<_, NodeError>(&hash, build)?;
+                    (Cell::restore(stored, plan.sleepers.len())?, Book::new(stiffness))
+                }
+            };
+            cells.push(cell);
+            books.push(book);
+        }
+        Ok(Live { cells, books, passed: 0, revision: 1, underway: None })
+    }
+
+    /// The block of trains under way; begins one where there is none.
+    fn block(&mut self) -> &mut Underway {
+        if self.underway.is_none() {
+            self.books.iter_mut().for_each(|book| book.error_added = 0.0);
+        }
+        let books = &self.books;
+        self.underway.get_or_insert_with(|| Underway { began: books.clone(), runs: 0, computed: Vec::new() })
+    }
+
+    /// What others are told of the cells.
+    fn told(&self) -> &[Book] {
+        self.underway.as_ref().map_or(&self.books, |underway| &underway.began)
+    }
+
+    /// Lets the trains of one load pass; goes on with those that are under way.
+    fn run(&mut self, node: &CellsNode, load: &Load<'_>, follow: &mut Following<'_>) -> Result<(), NodeError> {
+        let trains = forces_of_cells(node, load)?;
+        if self.block().computed.is_empty() {
+            self.block().computed = vec![0; node.cells.len()];
+            for ((book, train), plan) in self.books.iter_mut().zip(&trains).zip(&node.cells) {
+                book.begin(train.load(plan.middle));
+            }
+        }
+        loop {
+            let jumps = self.jumps(node, load.trains);
+            let due: Vec<usize> = (0..jumps.len()).filter(|cell| jumps[*cell].is_none()).collect();
+            if due.is_empty() {
+                self.end_of_run(jumps.into_iter().flatten().collect(), load.trains);
+                return Ok(());
+            }
+            let share = 1.0 - due.len() as f64 / jumps.len() as f64;
+            let told = [Told::Stage(Stage::Passage, share), Told::State(&|| self.save())];
+            if told.into_iter().try_for_each(&mut *follow).is_break() {
+                return Err(NodeError::Stopped);
+            }
+            for (cell, passed) in self.pass(&due, &trains, node.gravity)? {
+                self.books[cell].note(&passed);
+                self.block().computed[cell] += 1;
+            }
+        }
+    }
+
+    /// What the run under way adds to each cell; `None` for a cell that must compute a further train first.
+    fn jumps(&self, node: &CellsNode, trains: u64) -> Vec<Option<Jump>> {
+        let laws = laws(node, &self.books);
+        let computed = self.underway.as_ref().map_or(&[] as &[usize], |underway| &underway.computed);
+        let jump = |(cell, now): (usize, &usize)| {
+            let book = &self.books[cell];
+            let all = *now as u64 >= trains;
+            let law = laws[node.cells[cell].bed].as_ref();
+            book.jump(law, *now, self.passed, trains).filter(|jump| all || book.bears(jump, node.tolerance))
+        };
+        computed.iter().enumerate().map(jump).collect()
+    }
+
+    /// Lets one train pass each of these cells, side by side.
+    fn pass(&mut self, due: &[usize], trains: &[TrainForces], gravity: f64) -> Result<Vec<(usize, Passed)>, NodeError> {
+        let threads = rayon::current_num_threads();
+        let cells: Vec<(usize, Mutex<&mut Cell>)> = self
+            .cells
+            .iter_mut()
+            .enumerate()
+            .filter(|(cell, _)| due.contains(cell))
+            .map(|(i, cell)| (i, Mutex::new(cell)))
+            .collect();
+        let one = |(number, cell): &(usize, Mutex<&mut Cell>)| {
+            let mut cell = cell.lock().unwrap_or_else(PoisonError::into_inner);
+            Ok((*number, cell.pass(&trains[*number], gravity)?))
+        };
+        let passed = turns::each(&cells, threads, threads, one);
+        let failed =
+            |error: rayon::ThreadPoolBuildError| NodeError::Other { node: "cells".into(), why: error.to_string() };
+        passed.map_err(failed)?.into_iter().collect()
+    }
+
+    fn end_of_run(&mut self, jumps: Vec<Jump>, trains: u64) {
+        for (book, jump) in self.books.iter_mut().zip(&jumps) {
+            book.settle(jump, trains);
+        }
+        self.passed += trains;
+        let block = self.block();
+        block.runs += 1;
+        block.computed.clear();
+    }
+}
+
+/// What a cell is built of, wherever its seat is and whatever lies below: cells that are alike but for these are built once.
+fn anywhere(plan: &CellPlan) -> CellPlan {
+    let mut plan = CellPlan { x: 0.0, soil: None, ..plan.clone() };
+    plan.sleepers.iter_mut().for_each(|sleeper| sleeper.seat = 0);
+    plan
+}
+
+fn forces_of_cells(node: &CellsNode, load: &Load<'_>) -> Result<Vec<TrainForces>, NodeError> {
+    let none = || NodeError::Other { node: "cells".into(), why: "a passage brings no forces of sleepers".into() };
+    let forces = load.passage.forces.as_ref().ok_or_else(none)?;
+    let of_cell = |plan: &CellPlan| {
+        let seats: Vec<usize> = plan.sleepers.iter().map(|sleeper| sleeper.seat).collect();
+        TrainForces::new(forces, &seats, plan.middle, node.headway_time).ok_or_else(none)
+    };
+    node.cells.iter().map(of_cell).collect()
+}

@@ -1,0 +1,82 @@
+//! Cells as data, to go on with in another process, bit by bit.
+
+use super::book::Book;
+use super::cell::Cell;
+use super::{Live, Parts, Underway};
+use crate::nodes::NodeError;
+use crate::solvers::granular::{Bed, Checkpoint, WallId};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde::{Deserialize, Serialize};
+
+/// What [`Live`] holds.
+#[derive(Serialize, Deserialize)]
+struct Stored {
+    cells: Vec<StoredCell>,
+    books: Vec<Book>,
+    passed: u64,
+    revision: u64,
+    underway: Option<Underway>,
+}
+
+#[derive(Serialize, Deserialize)]
+pub(super) struct StoredCell {
+    bed: Checkpoint<f32>,
+    walls: Vec<WallId>,
+    stride: f64,
+    forces: Vec<f64>,
+    weights: Vec<f64>,
+    middle: usize,
+    height: f64,
+}
+
+impl Cell {
+    pub fn store(&self) -> StoredCell {
+        let Cell { bed, walls, stride, forces, weights, middle, height } = self;
+        let (walls, forces, weights) = (walls.clone(), forces.clone(), weights.clone());
+        StoredCell { bed: bed.checkpoint(), walls, stride: *stride, forces, weights, middle: *middle, height: *height }
+    }
+
+    /// The cell that was stored; it must have so many sleepers.
+    pub fn restore(stored: StoredCell, sleepers: usize) -> Result<Cell, NodeError> {
+        let StoredCell { bed, walls, stride, forces, weights, middle, height } = stored;
+        let bed = Bed::restore(bed).map_err(foreign)?;
+        let is_whole = [walls.len(), forces.len(), weights.len()] == [sleepers; 3] && middle < sleepers;
+        if !is_whole || walls.iter().any(|wall| wall.0 as usize >= bed.walls().len()) {
+            return Err(foreign("a cell of it has other sleepers"));
+        }
+        Ok(Cell { bed, walls, stride, forces, weights, middle, height })
+    }
+}
+
+impl Live {
+    /// The state as data.
+    pub fn save(&self) -> Result<serde_json::Value, NodeError> {
+        let stored = Stored {
+            cells: self.cells.iter().map(Cell::store).collect(),
+            books: self.books.clone(),
+            passed: self.passed,
+            revision: self.revision,
+            underway: self.underway.clone(),
+        };
+        let bytes = postcard::to_stdvec(&stored).map_err(foreign)?;
+        Ok(serde_json::Value::String(STANDARD.encode(bytes)))
+    }
+
+    /// The cells of these parts that were saved.
+    pub fn restore(parts: Parts<'_>, state: &serde_json::Value) -> Result<Live, NodeError> {
+        let text = state.as_str().ok_or_else(|| foreign("it holds no cells"))?;
+        let bytes = STANDARD.decode(text).map_err(foreign)?;
+        let Stored { cells, books, passed, revision, underway } = postcard::from_bytes(&bytes).map_err(foreign)?;
+        let plans = &parts.cells.cells;
+        if cells.len() != plans.len() || books.len() != plans.len() {
+            return Err(foreign("it holds another number of cells"));
+        }
+        let cells = cells.into_iter().zip(plans).map(|(stored, plan)| Cell::restore(stored, plan.sleepers.len()));
+        Ok(Live { cells: cells.collect::<Result<_, _>>()?, books, passed, revision, underway })
+    }
+}
+
+fn foreign(why: impl ToString) -> NodeError {
+    NodeError::Foreign { node: "cells of grains", why: why.to_string() }
+}

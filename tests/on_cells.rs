@@ -1,0 +1,181 @@
+//! A track on periodic cells of grains: built, loaded by the forces of their seats, stopped and resumed.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use trackbed::check::NoModules;
+use trackbed::compile::compile;
+use trackbed::execute::{Checkpoint, Event, Executor, Listener};
+use trackbed::graph::{CellsNode, Graph, Model};
+use trackbed::store::Beds;
+
+/// Coarse spheres on soft soil before a slab, one wagon after the other: seconds to pack.
+const SCENE: &str = "use std
+grading coarse { passing = [50 mm: 0 %, 65 mm: 100 %] }
+granular stone {
+  grading = coarse, density = 2700 kg/m^3, contact_stiffness = 13 MN/m per contact, friction = 0.7, viscous_damping = 0.3
+  packing = { lifts = 1, pressure = 200 kPa, friction = 0.2 }
+}
+soil clay { youngs_modulus = 60 MPa, poisson_ratio = 0.3, density = 2000 kg/m^3 }
+trackform open {
+  rail = rails.UIC60, pad = { stiffness = 40 MN/m, damping = 5 kN s/m }
+  sleeper = sleepers.concrete { mass = 150 kg per seat, length = 2 m }, spacing = 0.6 m
+  layers = [stone: 200 mm, clay: 0.5 m], support = { stiffness = 50 MN/m per seat, damping_time = 1 ms }
+}
+trackform stiff : open { sleeper = none, slab = slabs.half_width_1600 }
+track line { sections = [open: 18 m, stiff: 15 m], transitions = [edge: soft_to_stiff] }
+vehicle wagon : vehicles.ore_wagon_20t { length = 12 m }
+train ore { vehicles = wagon, speed = 200 km/h, direction = forward }
+traffic { trains = ore, total = 80 axles }
+solve { substructure = cells, passages = continuous, update_every = 16 axles, tolerance = 20 % }
+";
+
+fn graph(text: &str) -> Graph {
+    let compiled = compile("scene.track", text, &NoModules, &[]);
+    let said = trackbed::diag::render::human(&compiled.diagnostics, &compiled.sources, false, 120);
+    compiled.runnable().cloned().unwrap_or_else(|| panic!("{said}"))
+}
+
+fn cells(graph: &Graph) -> &CellsNode {
+    let cells =
+        graph.nodes.iter().find_map(|node| if let Model::Cells(cells) = &node.model { Some(cells) } else { None });
+    cells.expect("cells")
+}
+
+/// What a run tells that the tests look at.
+#[derive(Default)]
+struct Heard {
+    /// Settlement of every seat after each block, m.
+    settlements: Vec<Vec<f64>>,
+    /// Stiffness of every support at recorded counts, N/m.
+    stiffness: Vec<Vec<f64>>,
+    /// Where to stop: at which of the moments at which a state may be kept.
+    stop_at: Option<u32>,
+    moments: u32,
+    kept: Option<Checkpoint>,
+}
+
+impl Listener for Heard {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        match event {
+            Event::Rest { state, .. } => {
+                self.stiffness.push(state.seats.iter().map(|seat| seat.support_stiffness).collect());
+            }
+            Event::Block { block: Some(_), after, .. } => self.settlements.push(after.to_vec()),
+            Event::Between(between) => {
+                if self.stop_at == Some(self.moments) {
+                    self.kept = Some(between.checkpoint().unwrap());
+                    return ControlFlow::Break(());
+                }
+                self.moments += 1;
+            }
+            _ => {}
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+fn run(graph: &Graph, beds: &Path, threads: usize, heard: &mut Heard, from: Option<Checkpoint>) {
+    let executor = Executor::default().with_beds(Beds::kept_in(beds));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| executor.run(graph, heard, from)).unwrap();
+}
+
+fn heard(text: &str, beds: &Path) -> Heard {
+    let mut heard = Heard::default();
+    run(&graph(text), beds, 2, &mut heard, None);
+    heard
+}
+
+#[test]
+fn sleepers_that_settle_alike_share_a_cell() {
+    let count = |tolerance: &str| {
+        let graph = graph(&SCENE.replace("20 %", tolerance));
+        let node = cells(&graph);
+        let ballasted = graph.track().unwrap().seats.iter().filter(|seat| seat.is_ballasted()).count();
+        assert_eq!((0..node.cells.len()).map(|cell| node.seats_of(cell)).sum::<usize>(), ballasted);
+        node.cells.len()
+    };
+    let found = ["20 %", "5 %", "1 %"].map(count);
+    assert!(found[0] < found[1] && found[1] < found[2], "less tolerance tells more sleepers apart: {found:?}");
+    assert!(found[2] < 30, "the far field shares a cell: {found:?}");
+}
+
+#[test]
+fn a_cell_of_several_bays_is_loaded_by_its_neighbours() {
+    for bays in 1..=3 {
+        let graph = graph(&SCENE.replace("cells,", &format!("cells, cell_bays = {bays},")));
+        for cell in &cells(&graph).cells {
+            assert_eq!((cell.copies as usize, cell.sleepers.len()), (bays, bays));
+            let middle = cell.seat();
+            for (bay, sleeper) in cell.sleepers.iter().enumerate() {
+                assert!(sleeper.seat.abs_diff(middle) <= 1 && (bay != cell.middle || sleeper.seat == middle));
+                assert!((sleeper.place[0] - 0.6 * (bay as f64 + 0.5)).abs() < 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn soil_and_pads_lie_in_series_with_the_grains() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = "record { at = [-2] sleepers, after = 0 axles, quantities = rail_seat_load }\n";
+    let short = format!("{}{record}", SCENE.replace("80 axles", "4 axles"));
+    let first = |text: &str| heard(text, folder.path()).stiffness[0][0];
+    let on_rock = first(&short.replace(", clay: 0.5 m", ""));
+    let on_soil = first(&short);
+    let node = graph(&short);
+    let soil = cells(&node).cells[0].soil.expect("soil");
+    // 60 MPa under 0.95 m x 0.26 m or so, 0.5 m deep
+    assert!((50e6..200e6).contains(&soil), "{soil}");
+    let series = |a: f64, b: f64| a * b / (a + b);
+    assert!((on_soil / series(on_rock, soil) - 1.0).abs() < 1e-9, "{on_soil} {on_rock} {soil}");
+    let padded = short.replace("spacing = 0.6 m", "usp = { bedding_modulus = 0.1 N/mm^3 }, spacing = 0.6 m");
+    let on_pads = first(&padded);
+    let pad = cells(&graph(&padded)).cells[0].sleepers[0].pad.unwrap().stiffness;
+    // the pad weighs a little, so the bed comes to rest a little otherwise
+    assert!((on_pads / series(on_soil, pad) - 1.0).abs() < 0.02, "{on_pads} {on_soil} {pad}");
+}
+
+#[test]
+fn cells_settle_by_less_and_less_and_a_run_that_was_stopped_ends_with_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = heard(SCENE, folder.path());
+    let graph = graph(SCENE);
+    assert_eq!(whole.settlements.len(), 5);
+    let seats = &graph.track().unwrap().seats;
+    for (seat, node) in seats.iter().enumerate() {
+        let at = |block: usize| whole.settlements[block][seat];
+        if node.is_ballasted() {
+            assert!(at(0) > 1e-6 && at(4) < 20e-3 && at(4) > at(0), "seat {seat}: {} .. {} m", at(0), at(4));
+            assert!(at(4) - at(3) < at(0), "seat {seat}: the first block settles most");
+        } else {
+            assert_eq!(at(4), 0.0, "a slab does not settle");
+        }
+    }
+    // in the first block, in a later one and between two; the other number of threads
+    for stop in [1, 4, whole.moments - 2] {
+        let mut begun = Heard { stop_at: Some(stop), ..Heard::default() };
+        run(&graph, folder.path(), 1, &mut begun, None);
+        let kept = serde_json::to_string(&begun.kept.expect("stopped")).unwrap();
+        let mut resumed = Heard::default();
+        run(&graph, folder.path(), 1, &mut resumed, Some(serde_json::from_str(&kept).unwrap()));
+        assert_eq!([begun.settlements, resumed.settlements].concat(), whole.settlements, "{stop}");
+    }
+}
+
+/// What is left out by the law against all trains computed: within what the tolerance allows, by twice.
+#[test]
+fn trains_that_are_left_out_cost_less_than_the_tolerance() {
+    let folder = tempfile::tempdir().unwrap();
+    let [all, few] = ["0.1 %", "20 %"].map(|tolerance| {
+        // one cell for all, by a law that tells no sleeper apart
+        let text = SCENE.replace("tolerance = 20 %", &format!("tolerance = {tolerance}"));
+        heard(
+            &text.replace("[open: 18 m, stiff: 15 m], transitions = [edge: soft_to_stiff]", "[open: 30 m]"),
+            folder.path(),
+        )
+    });
+    let last = |heard: &Heard| heard.settlements.last().unwrap()[25];
+    assert!(few.moments < all.moments, "{} {}", few.moments, all.moments);
+    assert!((last(&few) / last(&all) - 1.0).abs() < 0.4, "{} {} m", last(&few), last(&all));
+}
