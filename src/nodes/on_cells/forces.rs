@@ -12,7 +12,7 @@ const DIFFERS: f64 = 0.02;
 pub struct TrainForces {
     /// Time between two values, s.
     pub interval: f64,
-    /// Of each sleeper, N; the first value and the one after the last are those between two trains.
+    /// Force of each sleeper, N; the first value and the one after the last are those between two trains.
     pub sleepers: Vec<Vec<f64>>,
 }
 
