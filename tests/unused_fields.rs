@@ -170,7 +170,7 @@ fn a_study_over_a_field_that_does_nothing_is_told_once() {
     let found: Vec<&Diagnostic> = plan.diagnostics.iter().filter(|d| d.code == Code::E0429).collect();
     // the window of the scene is told there
     assert_eq!(found.len(), 1, "{found:?}");
-    assert!(found[0].message.contains("`substructure = zone` (6 of 6 points"), "{found:?}");
+    assert!(found[0].message.contains("`substructure = cells` or `zone` (6 of 6 points"), "{found:?}");
     assert_eq!(base.sources.text(found[0].labels[0].span), "solve.tolerance");
 }
 
