@@ -116,6 +116,16 @@ fn a_cell_of_several_bays_is_loaded_by_its_neighbours() {
 }
 
 #[test]
+fn every_block_weighs_alike_in_the_progress_of_a_run_on_cells() {
+    let graph = graph(SCENE);
+    let (weight, blocks) = (graph.block_weight().unwrap(), graph.blocks().unwrap());
+    assert_eq!(
+        [weight.between(blocks, 0, 40), weight.between(blocks, 0, 8), weight.between(blocks, 8, 40)],
+        [5.0, 1.0, 4.0]
+    );
+}
+
+#[test]
 fn soil_lies_in_series_with_the_grains() {
     let folder = tempfile::tempdir().unwrap();
     let record = "record { at = [-2] sleepers, after = 0 axles, quantities = rail_seat_load }\n";

@@ -82,6 +82,7 @@ fn paper(seed: u64) -> Recipe {
         layers: vec![sub, ballast],
         gravity: 9.81,
         local_damping: 0.2,
+        restored: Default::default(),
         rest: Rest::default(),
         seed,
     }

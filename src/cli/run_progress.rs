@@ -2,7 +2,7 @@
 
 use super::{pack, progress};
 use crate::execute::{Checkpoint, Event, Listener};
-use crate::graph::{Block, Blocks, Clock, Graph, Passing, Schedule};
+use crate::graph::{Block, BlockWeight, Blocks, Clock, Graph, Schedule};
 use crate::nodes::Stage;
 use crate::solvers::granular::packing::Progress;
 use std::ops::ControlFlow;
@@ -39,25 +39,25 @@ impl Shown {
     }
 }
 
-/// How far trains are on their way over grains: in the time of the scene, for blocks differ in length.
+/// How far trains are on their way over grains.
 struct Way {
-    /// Time of the blocks that are done, of the one under way, and of all, s.
+    /// Weight of the blocks that are done, of the one under way, and of all.
     done: f64,
     block: f64,
     all: f64,
-    passing: Passing,
+    weight: BlockWeight,
     blocks: Blocks,
 }
 
 impl Way {
     fn new(graph: &Graph, from: Option<&Checkpoint>) -> Option<Way> {
-        let (passing, blocks) = (graph.passing()?, graph.blocks()?.clone());
+        let (weight, blocks) = (graph.block_weight()?, graph.blocks()?.clone());
         let axles = match from.map(|checkpoint| checkpoint.clock) {
             Some(Clock::Axles(axles)) => axles,
             _ => 0,
         };
-        let (done, left) = (passing.between(&blocks, 0, axles), passing.between(&blocks, axles, blocks.total));
-        let mut way = Way { done, block: 0.0, all: done + left, passing, blocks };
+        let (done, left) = (weight.between(&blocks, 0, axles), weight.between(&blocks, axles, blocks.total));
+        let mut way = Way { done, block: 0.0, all: done + left, weight, blocks };
         way.begin(axles);
         Some(way)
     }
@@ -66,7 +66,7 @@ impl Way {
     fn begin(&mut self, axles: u64) {
         let over = axles >= self.blocks.total;
         let block = (!over).then(|| self.blocks.next_block(axles));
-        self.block = block.map_or(0.0, |block| self.passing.of_block(&self.blocks, &block));
+        self.block = block.map_or(0.0, |block| self.weight.of_block(&self.blocks, &block));
     }
 
     /// A block has come to its end.

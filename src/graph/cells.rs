@@ -24,7 +24,8 @@ pub struct CellsNode {
     pub time_step: Option<f64>,
     /// Share of the mass of a bed that may be added as inertia for the sake of a longer step.
     pub added_inertia: f64,
-    /// Error of the settlement of a cell, over this settlement, at which the other trains of a block are not computed; 0 computes all.
+    /// Error of the settlement of a cell, over the largest settlement or the compression under the train, at which the other trains of a
+    /// block are not computed; 0 computes all.
     pub tolerance: f64,
 }
 

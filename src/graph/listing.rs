@@ -207,7 +207,7 @@ fn of_cells(node: &CellsNode) -> Vec<String> {
         None => "trains run one by one, and the sleepers come to rest between them".into(),
     });
     lines.push(format!(
-        "trains are left out where a law fitted on the way is good to {} % of the settlement so far",
+        "trains are left out where a law fitted on the way is good to {} % of the largest settlement so far, or of the compression under the train",
         number((1e3 * node.tolerance).round() / 10.0)
     ));
     lines

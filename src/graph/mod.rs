@@ -31,7 +31,7 @@ pub use grains::{
 pub use ground::{LawNode, NamedLaw, SpringsNode, SupportNode};
 pub use listing::Listing;
 pub use node::{CustomNode, Model, Node};
-pub use passing::Passing;
+pub use passing::{BlockWeight, Passing};
 pub use port::{Edge, Fault, Ports, faults};
 pub use quantity::{Basis, Quantity, Rate};
 pub use record::{History, Record};
@@ -78,6 +78,12 @@ impl Graph {
         self.nodes
             .iter()
             .find_map(|node| if let Model::Grains(grains) = &node.model { Passing::over(grains) } else { None })
+    }
+
+    /// What blocks weigh in the progress of a run over grains; `None` where no grains lie under a track.
+    pub fn block_weight(&self) -> Option<BlockWeight> {
+        let cells = || self.nodes.iter().any(|node| matches!(node.model, Model::Cells(_)));
+        self.passing().map(BlockWeight::Time).or_else(|| cells().then_some(BlockWeight::Equal))
     }
 
     /// Whether grains lie under its track: all along, in part or in cells.

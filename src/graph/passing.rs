@@ -17,6 +17,30 @@ pub struct Passing {
     pub headway: Option<f64>,
 }
 
+/// What a block of trains over grains weighs in the progress of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BlockWeight {
+    /// The time in which its trains pass, for all of them are computed.
+    Time(Passing),
+    /// As much as any other: cells compute as many trains as they need, and nobody knows before how many.
+    Equal,
+}
+
+impl BlockWeight {
+    /// The weight of one block: a time, s, or 1.
+    pub fn of_block(&self, blocks: &Blocks, block: &Block) -> f64 {
+        match self {
+            BlockWeight::Time(passing) => passing.of_block(blocks, block),
+            BlockWeight::Equal => 1.0,
+        }
+    }
+
+    /// The weight of the blocks between two counts of axles.
+    pub fn between(&self, blocks: &Blocks, from: u64, to: u64) -> f64 {
+        between(blocks, [from, to], |block| self.of_block(blocks, block))
+    }
+}
+
 impl Passing {
     /// Trains over the grains of a node; `None` where it has none yet.
     pub fn over(grains: &GrainsNode) -> Option<Passing> {
@@ -41,21 +65,26 @@ impl Passing {
         block.runs.iter().map(of_run).sum()
     }
 
-    /// Time of the blocks between two counts of axles, s. Blocks that nobody knows before their forces count as a train each.
+    /// Time of the blocks between two counts of axles, s.
     pub fn between(&self, blocks: &Blocks, from: u64, to: u64) -> f64 {
-        let (mut time, mut before) = (0.0, from);
-        for followed in 0.. {
-            if before >= to {
-                break;
-            }
-            let block = blocks.next_block(before);
-            let (one, axles) = (self.of_block(blocks, &block), block.axles.max(1));
-            if followed == FOLLOWED {
-                return time + one * (to - before) as f64 / axles as f64;
-            }
-            time += one;
-            before += axles;
-        }
-        time
+        between(blocks, [from, to], |block| self.of_block(blocks, block))
     }
+}
+
+/// Sum over the blocks between two counts of axles. Blocks that nobody knows before their forces count as a train each.
+fn between(blocks: &Blocks, [from, to]: [u64; 2], of_block: impl Fn(&Block) -> f64) -> f64 {
+    let (mut sum, mut before) = (0.0, from);
+    for followed in 0.. {
+        if before >= to {
+            break;
+        }
+        let block = blocks.next_block(before);
+        let (one, axles) = (of_block(&block), block.axles.max(1));
+        if followed == FOLLOWED {
+            return sum + one * (to - before) as f64 / axles as f64;
+        }
+        sum += one;
+        before += axles;
+    }
+    sum
 }

@@ -47,7 +47,7 @@ impl Pass for Bays {
         };
         let tolerance = scenario.solve.grains.tolerance;
         let changes = changes(scenario, settlement);
-        draft.bays = windows.iter().map(|window| chosen(scenario, &changes, tolerance, *window)).collect();
+        draft.bays = differing(scenario, settlement);
         let spans = |windows: &[[f64; 2]]| {
             let span = |[a, b]: &[f64; 2]| format!("{} to {} m", number(rounded(*a)), number(rounded(*b)));
             windows.iter().map(span).collect::<Vec<_>>().join(", ")
@@ -75,6 +75,13 @@ impl Pass for Bays {
 pub(super) fn wanted(scenario: &Scenario) -> Vec<[f64; 2]> {
     let all = || vec![[scenario.track.start(), scenario.track.end()]];
     scenario.solve.grains.window.clone().unwrap_or_else(all)
+}
+
+/// The bays of each window that differ by this settlement of every seat, m.
+pub(super) fn differing(scenario: &Scenario, settlement: &[f64]) -> Vec<[f64; 2]> {
+    let changes = changes(scenario, settlement);
+    let tolerance = scenario.solve.grains.tolerance;
+    wanted(scenario).into_iter().map(|window| chosen(scenario, &changes, tolerance, window)).collect()
 }
 
 /// By how much each seat settles otherwise than the far field of its section, over the largest settlement of all.

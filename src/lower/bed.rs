@@ -45,6 +45,7 @@ pub(super) const READS: Reads = Reads {
         "packing.friction",
         "packing.local_damping",
         "packing.viscous_damping",
+        "packing.restored",
         "track.bed_width",
         "trackform.crib",
         "trackform.shoulder",
@@ -103,7 +104,7 @@ fn bed(
     let seed = scenario.solve.seed;
     let grains: Vec<(&Layer, &Granular)> =
         section.layers.iter().filter_map(|layer| Some((layer, layer.granular()?))).collect();
-    let Some((_, top)) = grains.first() else { return Ok(None) };
+    let Some((Layer { name: top_name, .. }, top)) = grains.first() else { return Ok(None) };
     let mut notes = Vec::new();
     let (mut layers, mut shapes) = (Vec::new(), Vec::new());
     // the packer begins at the bottom
@@ -134,6 +135,9 @@ fn bed(
     if grains.iter().any(|(_, granular)| granular.local_damping.value != top.local_damping.value) {
         notes.push(format!("A bed has one local damping: {} of its top layer.", *top.local_damping));
     }
+    if grains.iter().any(|(_, granular)| granular.packing.restored != top.packing.restored) {
+        notes.push(format!("Friction comes back in all layers at once, as `{top_name}` says."));
+    }
     for layer in layers.iter().filter(|layer| layer.lifts_that_fit() < layer.lifts) {
         let (name, asked, fit) = (&layer.name, layer.lifts, layer.lifts_that_fit());
         let times = if fit == 1 { "lift" } else { "lifts" };
@@ -149,6 +153,7 @@ fn bed(
         layers,
         gravity: *scenario.solve.gravity,
         local_damping: *top.local_damping,
+        restored: top.packing.restored,
         rest: Rest::default(),
         seed,
     };

@@ -2,6 +2,7 @@
 
 use super::{Given, Grading, Varying};
 use crate::solvers::granular::grains::{self, Angular, ClumpShape, Rule};
+use crate::solvers::granular::packing::Restored;
 use crate::solvers::granular::shape::Mesh;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -157,6 +158,8 @@ pub struct Packing {
     pub friction: Given,
     pub local_damping: Given,
     pub viscous_damping: Given,
+    /// When friction and damping come back.
+    pub restored: Restored,
 }
 
 /// Glue between grains.

@@ -214,6 +214,16 @@ pub(super) const PACKING: Kind = Kind {
         default("friction", number("", 0.0, 1.5), "0", "between grains, while they are packed"),
         default("local_damping", number("", 0.0, 0.9), "0.7", "while they are packed"),
         default("viscous_damping", number("", 0.0, 1.0), "0", "normal dashpot, while they are packed"),
+        default(
+            "restored",
+            Form::Words(&[
+                word("pressed", "under the whole pressure of the plate, which locks stresses in"),
+                word("eased", "under the plate once it is eased to half of the bed's own weight"),
+                word("unloaded", "after the plate has gone, on a bed at rest without friction"),
+            ]),
+            "eased",
+            "when friction and damping come back after packing; a bed goes by its top layer",
+        ),
     ],
     alternatives: &[],
     planned: &[],

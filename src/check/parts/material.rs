@@ -9,6 +9,7 @@ use crate::check::places::along::{Along, along};
 use crate::check::text::files::Files;
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{Bond, Contact, Given, Granular, Packing, Shape, Strength};
+use crate::solvers::granular::packing::Restored;
 use crate::units::number;
 
 /// A material before its layer is laid along the track.
@@ -75,6 +76,11 @@ fn granular(record: &Record, files: &mut Files<'_>, findings: &mut Findings) -> 
             friction: given(packing, "friction")?,
             local_damping: given(packing, "local_damping")?,
             viscous_damping: given(packing, "viscous_damping")?,
+            restored: match packing.word("restored")? {
+                "pressed" => Restored::Pressed,
+                "unloaded" => Restored::Unloaded,
+                _ => Restored::Eased,
+            },
         },
         bond,
         youngs_modulus: None,

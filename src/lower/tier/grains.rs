@@ -7,7 +7,7 @@ use crate::graph::{
     BedPlan, Blocks, GrainStretch, GrainsNode, Model, Node, Passing, PointLoad, Schedule, SleeperOnGrains,
     StiffnessFrom, Update,
 };
-use crate::lower::bays::wanted;
+use crate::lower::bays::{differing, wanted};
 use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
 use crate::lower::tier::rig::cost::grains_under_track;
 use crate::lower::{Draft, crib, track};
@@ -61,8 +61,13 @@ impl Tier for Zone {
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {
-        // a scene that does not ask for this tier has chosen no bays
-        let windows = if draft.bays.is_empty() { wanted(draft.scenario) } else { draft.bays.clone() };
+        // a scene that does not ask for this tier has chosen no bays, but its law may tell them
+        let seats = draft.scenario.track.seats.len();
+        let windows = match draft.by_law.filter(|settlement| settlement.len() == seats) {
+            _ if !draft.bays.is_empty() => draft.bays.clone(),
+            Some(settlement) => differing(draft.scenario, settlement),
+            None => wanted(draft.scenario),
+        };
         propose(draft, "grains under the bays that differ from the far field", windows)
     }
 }

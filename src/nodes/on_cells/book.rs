@@ -70,9 +70,11 @@ impl Book {
         }
     }
 
-    /// Whether a jump is good enough: its error and those of before, over the settlement.
-    pub fn bears(&self, jump: &Jump, tolerance: f64) -> bool {
-        self.error + jump.error <= tolerance * (self.settled + jump.settled).abs()
+    /// Whether a jump is good enough: its error and those of before, over the largest settlement of all cells, m. A settlement acts by
+    /// the forces that it moves to other sleepers; where it is small against the compression under the train it moves none, and the
+    /// compression is what an error is compared with.
+    pub fn bears(&self, jump: &Jump, largest: f64, tolerance: f64) -> bool {
+        self.error + jump.error <= tolerance * largest.max(self.load / self.stiffness)
     }
 
     /// Takes over what a run of trains has added.

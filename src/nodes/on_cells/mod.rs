@@ -219,7 +219,7 @@ impl Live {
                 self.end_of_run(jumps.into_iter().flatten().collect(), load.trains);
                 return Ok(());
             }
-            let share = 1.0 - due.len() as f64 / jumps.len() as f64;
+            let share = self.share(&jumps, load.trains);
             let told = [Told::Stage(Stage::Passage, share), Told::State(&|| self.save())];
             if told.into_iter().try_for_each(&mut *follow).is_break() {
                 return Err(NodeError::Stopped);
@@ -231,17 +231,32 @@ impl Live {
         }
     }
 
-    /// What the run under way adds to each cell; `None` for a cell that must compute a further train first.
+    /// What the run under way adds to each cell; `None` for a cell that must compute a further train first. Each computes one at least:
+    /// forces have changed since the last run, and a law that holds no more shows it there.
     fn jumps(&self, node: &CellsNode, trains: u64) -> Vec<Option<Jump>> {
         let laws = laws(node, &self.books);
         let computed = self.underway.as_ref().map_or(&[] as &[usize], |underway| &underway.computed);
         let jump = |(cell, now): (usize, &usize)| {
-            let book = &self.books[cell];
-            let all = *now as u64 >= trains;
             let law = laws[node.cells[cell].bed].as_ref();
-            book.jump(law, *now, self.passed, trains).filter(|jump| all || book.bears(jump, node.tolerance))
+            self.books[cell].jump(law, *now, self.passed, trains)
         };
-        computed.iter().enumerate().map(jump).collect()
+        let jumps: Vec<Option<Jump>> = computed.iter().enumerate().map(jump).collect();
+        let settled = |(book, jump): (&Book, &Option<Jump>)| book.settled + jump.map_or(0.0, |jump| jump.settled);
+        let largest =
+            self.books.iter().zip(&jumps).map(settled).fold(0.0, |most: f64, settled| most.max(settled.abs()));
+        let good = |((book, now), jump): ((&Book, &usize), Option<Jump>)| {
+            let bears = |jump: &Jump| *now > 0 && book.bears(jump, largest, node.tolerance);
+            jump.filter(|jump| *now as u64 >= trains || bears(jump))
+        };
+        self.books.iter().zip(computed).zip(jumps).map(good).collect()
+    }
+
+    /// Share of a run of trains that is done: of a cell that needs further ones, what it has computed.
+    fn share(&self, jumps: &[Option<Jump>], trains: u64) -> f64 {
+        let computed = self.underway.as_ref().map_or(&[] as &[usize], |underway| &underway.computed);
+        let of_cell =
+            |(jump, now): (&Option<Jump>, &usize)| if jump.is_some() { 1.0 } else { *now as f64 / trains as f64 };
+        jumps.iter().zip(computed).map(of_cell).sum::<f64>() / jumps.len() as f64
     }
 
     /// Lets one train pass each of these cells, side by side.

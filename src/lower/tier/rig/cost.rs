@@ -1,7 +1,7 @@
 //! What a rig costs, without packing it: grains from gradings, steps from the lightest grain.
 
 use super::{cycles, loads, period, rest_time};
-use crate::graph::{BedNode, Blocks, Cost, Passing, TestWork, Work};
+use crate::graph::{BedNode, BlockWeight, Blocks, Cost, Passing, TestWork, Work};
 use crate::lower::bed::{confinement, width};
 use crate::lower::{Draft, crib};
 use crate::scenario::{Contact, Granular, Scenario, Section, Shape};
@@ -150,7 +150,7 @@ pub(in crate::lower::tier) struct PassingCells {
 /// Time beside a train that runs alone, and before and behind each, s.
 const BESIDE_ALONE: f64 = 0.1;
 const BESIDE_EACH: f64 = 0.04;
-/// Trains that a cell computes: the first ones, and a share of the others (`docs/validation.md`, cells).
+/// Trains that a cell computes: the first ones, and a share of the others; one a block at least (`docs/validation.md`, cells).
 const FIRST_TRAINS: f64 = 12.0;
 const OTHER_TRAINS: f64 = 0.1;
 
@@ -169,7 +169,8 @@ pub(in crate::lower::tier) fn cells_under_track(draft: &Draft<'_>, blocks: &Bloc
     let packing_steps = STAGE * f64::from(lifts + LAST_STAGES) / (PACKING_STEP * light);
     let building = BUILDING + if section.crib.is_some() { POURING } else { 0.0 };
     let all = blocks.total as f64 / blocks.train.axles().max(1) as f64;
-    let trains = all.min(FIRST_TRAINS + OTHER_TRAINS * (all - FIRST_TRAINS).max(0.0));
+    let in_blocks = BlockWeight::Equal.between(blocks, 0, blocks.total);
+    let trains = all.min((FIRST_TRAINS + OTHER_TRAINS * (all - FIRST_TRAINS).max(0.0)).max(in_blocks));
     let train = BESIDE_EACH + passing.headway_time.unwrap_or(passing.alone + BESIDE_ALONE);
     let test_steps = passing.bays * (building + trains * train) / time_step;
     let [cell_grains, cell_pebbles] = [grains + beside_grains, pebbles + beside_pebbles];

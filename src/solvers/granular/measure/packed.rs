@@ -44,6 +44,7 @@ pub(in super::super) fn recipe() -> Recipe {
         layers: vec![layer],
         gravity: GRAVITY,
         local_damping: 0.2,
+        restored: Default::default(),
         rest: Rest::default(),
         seed: 1,
     }

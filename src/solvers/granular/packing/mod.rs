@@ -27,7 +27,7 @@ pub use pack::pack;
 pub use packed::Packed;
 pub(super) use place::{Room, put, set_loose};
 pub use progress::Progress;
-pub use recipe::{GrainLayer, Packing, Recipe, Rest, lifts_that_fit};
+pub use recipe::{GrainLayer, Packing, Recipe, Rest, Restored, lifts_that_fit};
 pub use store::StoredBed;
 pub use track::{Order, TrackAccount, TrackBed, lay};
 

@@ -13,7 +13,7 @@ use super::error::PackingError;
 use super::pace::{Pace, SAFE};
 use super::place::{Room, put, set_loose};
 use super::progress::Progress;
-use super::recipe::Recipe;
+use super::recipe::{Recipe, Restored};
 use nalgebra::Vector3;
 
 /// Steps between looks at forces and at the time step.
@@ -113,25 +113,51 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         Ok(())
     }
 
-    /// The plate is eased, friction comes back under what it still bears, and the plate goes. With friction a bed that springs back opens
-    /// a third of its contacts; without friction and without load it would flow for seconds, and lose what the plate has gained.
-    /// `weight` is that of the bed over its area, Pa: half of it is what the plate presses with, as the bed's own weight does inside.
+    /// The plate is eased and goes; friction comes back before, between or after, as the recipe says. Usually between: with friction a bed
+    /// that springs back opens a third of its contacts; without friction and without load it flows, and loses what the plate has gained.
+    /// `weight` is that of the bed over its area, Pa: the plate is eased to half of it, which the bed's own weight presses with inside.
     pub fn finish(&mut self, recipe: &Recipe, weight: f64) -> Result<(), PackingError> {
-        let pressure = recipe.layers.last().map(|layer| layer.pressure.min(0.5 * weight));
-        self.until_rest(&StageKind::Eased, Goal { pressure, unbalance: recipe.rest.lift }, self.level)?;
-        let unbalance = recipe.rest.bed;
+        let pressed = recipe.layers.last().map(|layer| layer.pressure);
+        let eased = pressed.map(|pressure| pressure.min(0.5 * weight));
+        match recipe.restored {
+            Restored::Pressed => {
+                self.restore(recipe, pressed)?;
+                self.stand(&StageKind::Eased, eased, recipe.rest.bed)?;
+                self.lift(recipe.rest.bed)
+            }
+            Restored::Eased => {
+                self.stand(&StageKind::Eased, eased, recipe.rest.lift)?;
+                self.restore(recipe, eased)?;
+                self.lift(recipe.rest.bed)
+            }
+            Restored::Unloaded => {
+                self.stand(&StageKind::Eased, eased, recipe.rest.lift)?;
+                self.lift(recipe.rest.lift)?;
+                self.restore(recipe, None)
+            }
+        }
+    }
+
+    /// Friction and damping of the finished bed come back under a pressure of the plate, Pa; `None` after it has gone.
+    fn restore(&mut self, recipe: &Recipe, pressure: Option<f64>) -> Result<(), PackingError> {
         self.pace = None;
         self.bed.unscale_masses();
         self.bed.set_laws(recipe.laws());
         self.bed.set_damping(recipe.local_damping);
-        self.until_rest(&StageKind::Restored, Goal { pressure, unbalance }, self.level)?;
-        self.level = self.height();
-        self.lift()?;
-        self.until_rest(&StageKind::Lifted, Goal { pressure: None, unbalance }, self.level)
+        self.stand(&StageKind::Restored, pressure, recipe.rest.bed)
     }
 
-    /// The plate goes up until it all but presses no more.
-    fn lift(&mut self) -> Result<(), PackingError> {
+    /// Waits for rest under a pressure of the plate, Pa, and notes where it stands.
+    fn stand(&mut self, stage: &StageKind, pressure: Option<f64>, unbalance: f64) -> Result<(), PackingError> {
+        self.until_rest(stage, Goal { pressure, unbalance }, self.level)?;
+        if pressure.is_some() {
+            self.level = self.height();
+        }
+        Ok(())
+    }
+
+    /// The plate goes up until it all but presses no more, and the bed comes to rest.
+    fn lift(&mut self, unbalance: f64) -> Result<(), PackingError> {
         let (pressure, level) = (self.pressure(), self.level);
         let up = WallMotion::Velocity { linear: Vector3::new(0.0, 0.0, LIFT), angular: Vector3::zeros() };
         self.bed.set_motion(self.plate, up);
@@ -141,7 +167,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
             self.advance(LOOK).map_err(|failure| failed(&StageKind::Lifted, failure))?;
         }
         self.away();
-        Ok(())
+        self.stand(&StageKind::Lifted, None, unbalance)
     }
 
     /// Highest point of any grain, m.

@@ -25,6 +25,8 @@ pub struct Recipe {
     pub gravity: f64,
     /// Local damping of the finished bed.
     pub local_damping: f64,
+    #[serde(default, skip_serializing_if = "Restored::is_usual")]
+    pub restored: Restored,
     pub rest: Rest,
     pub seed: u64,
 }
@@ -58,6 +60,26 @@ pub struct Packing {
     pub local_damping: f64,
     /// Share of critical damping of contacts, in the normal direction.
     pub viscous_damping: f64,
+}
+
+/// The moment at which the grains get the friction and the damping of the finished bed. The paper leaves it open (Ahmadi et al. 2026,
+/// sections 2.1.2 and 2.1.3).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Restored {
+    /// Under the whole pressure of the plate.
+    Pressed,
+    /// Under the plate once it is eased to half of the bed's own weight.
+    #[default]
+    Eased,
+    /// After the plate has gone and the bed lies still without friction.
+    Unloaded,
+}
+
+impl Restored {
+    fn is_usual(&self) -> bool {
+        *self == Restored::default()
+    }
 }
 
 /// When a stage is at its end.

@@ -34,6 +34,7 @@ fn small() -> Recipe {
         layers: vec![layer],
         gravity: 9.81,
         local_damping: 0.2,
+        restored: Default::default(),
         rest: Rest::default(),
         seed: 1,
     }
@@ -66,6 +67,25 @@ fn a_small_bed_is_dense_level_and_at_rest() {
     assert!((5.3..6.5).contains(&pressed), "{pressed}");
     assert!((restored / pressed - 1.0).abs() < 0.05, "{pressed} and {restored}");
     assert!((3.5..pressed).contains(&lifted), "{pressed} and {lifted}");
+}
+
+/// The moment at which friction comes back: the more the plate bears then, the denser the bed and the more of its contacts stay.
+#[test]
+fn friction_comes_back_when_the_recipe_says() {
+    let of = |restored| {
+        let packed = packed(&Recipe { restored, ..small() });
+        let names: Vec<String> = packed.stages[2..].iter().map(|stage| stage.name.clone()).collect();
+        let last = packed.stages.last().unwrap();
+        assert!(last.state.unbalance <= small().rest.bed, "{names:?}");
+        (names, packed.porosity([0.04, 0.16]), last.state.layers[0].coordination)
+    };
+    let [pressed, eased, unloaded] = [Restored::Pressed, Restored::Eased, Restored::Unloaded].map(of);
+    assert_eq!(pressed.0, ["friction restored", "plate eased", "plate lifted"]);
+    assert_eq!(eased.0, ["plate eased", "friction restored", "plate lifted"]);
+    assert_eq!(unloaded.0, ["plate eased", "plate lifted", "friction restored"]);
+    assert!(pressed.1 < eased.1 + 1e-3 && eased.1 < unloaded.1 + 1e-3, "{pressed:?} {eased:?} {unloaded:?}");
+    // without friction a bed at rest has the contacts that hold it and loses none when friction comes back
+    assert!(unloaded.2 > eased.2, "{eased:?} {unloaded:?}");
 }
 
 /// Spheres and clumps, between two and four grains thick, between walls and none, with friction and without: the first guess is all that one lift has.

@@ -35,6 +35,7 @@ fn recipe(plan: [f64; 2], thickness: f64, sizes: [f64; 2], friction: f64, boxed:
         }],
         gravity: 9.81,
         local_damping: 0.2,
+        restored: Default::default(),
         rest: Rest::default(),
         seed: 1,
     }
