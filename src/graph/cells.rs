@@ -12,6 +12,8 @@ pub struct CellsNode {
     pub cells: Vec<CellPlan>,
     /// The cell that answers for each seat; `None` for a seat without grains below.
     pub cell_of: Vec<Option<usize>>,
+    /// What a cell takes from the track that answers for a seat alone; `None` for a seat without grains below.
+    pub seats: Vec<Option<SeatOnCell>>,
     /// Settlement of every seat of the track at the start, m.
     pub settlement: Vec<f64>,
     /// Time between the fronts of trains that follow each other closely, s; `None` lets the track come to rest between them.
@@ -27,6 +29,17 @@ pub struct CellsNode {
     /// Error of the settlement of a cell, over the largest settlement or the compression under the train, at which the other trains of a
     /// block are not computed; 0 computes all.
     pub tolerance: f64,
+}
+
+/// A seat that may get a cell of its own on the way, where trains load it otherwise than the seats that it shares one with.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SeatOnCell {
+    /// Chainage, m.
+    pub x: f64,
+    /// Seats whose forces load the bays of its cell, from left to right.
+    pub loaded_by: Vec<usize>,
+    /// Whether every wheel of a train comes from far before it and runs on far behind it.
+    pub passed: bool,
 }
 
 /// One bay or some, without an end along the track.
@@ -61,4 +74,17 @@ impl CellsNode {
     pub fn seats_of(&self, cell: usize) -> usize {
         self.cell_of.iter().filter(|of| **of == Some(cell)).count()
     }
+}
+
+/// Seats in groups whose values are no farther apart than this, the values growing from group to group and within each.
+pub fn seats_alike(mut seats: Vec<(f64, usize)>, apart: f64) -> Vec<Vec<(f64, usize)>> {
+    seats.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    let mut groups: Vec<Vec<(f64, usize)>> = Vec::new();
+    for one in seats {
+        match groups.last_mut() {
+            Some(group) if one.0 - group[0].0 <= apart => group.push(one),
+            _ => groups.push(vec![one]),
+        }
+    }
+    groups
 }

@@ -201,6 +201,10 @@ fn of_cells(node: &CellsNode) -> Vec<String> {
         ));
         lines.extend(cell.crib.map(of_crib));
     }
+    lines.push(format!(
+        "sleepers get a cell of their own where trains load them otherwise by more than {} % of the largest load",
+        number((1e3 * node.tolerance).round() / 10.0)
+    ));
     lines.push("stiffness of supports: by the forces of the last passage that was computed".into());
     lines.push(match node.headway_time {
         Some(time) => format!("trains of a block follow each other every {} s", number(rounded_to_mm(time))),

@@ -21,7 +21,7 @@ mod track;
 mod train;
 
 pub use blocks::Due;
-pub use cells::{CellPlan, CellsNode};
+pub use cells::{CellPlan, CellsNode, SeatOnCell, seats_alike};
 pub use control::Control;
 pub use decision::{Cost, Decision, PassageWork, Rejected, TestWork, Work};
 pub use grains::{

@@ -224,7 +224,7 @@ fn supports(graph: &Graph) -> Option<String> {
     if let Some(node) = cells {
         let bays = node.cells.first().map_or(0, |cell| cell.copies);
         return Some(format!(
-            "{} periodic cells of grains of {} carry the sleepers, each under the forces of its own seat; grains do not move along the track from one cell to the next, and the soil below is a spring",
+            "{} periodic cells of grains of {} carry the sleepers at first, each under the forces of its own seat; sleepers whose forces part get cells of their own; grains do not move along the track from one cell to the next, and the soil below is a spring",
             node.cells.len(),
             if bays == 1 { "1 bay".to_owned() } else { format!("{bays} bays") },
         ));

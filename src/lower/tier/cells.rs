@@ -7,7 +7,7 @@ use super::grains::{ADDED, DAMPING_TIME, READS, headway, standing, train_by_trai
 use super::rig::cost::{PassingCells, cells_under_track};
 use super::{ExpectedError, Proposal, Tier, edges, refused, waiting};
 use crate::diag::{Diagnostic, Severity};
-use crate::graph::{BedPlan, CellPlan, CellsNode, Model, Node, Schedule, SleeperOnGrains};
+use crate::graph::{BedPlan, CellPlan, CellsNode, Model, Node, Schedule, SeatOnCell, SleeperOnGrains, seats_alike};
 use crate::lower::bays;
 use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
 use crate::lower::foundation::Foundations;
@@ -66,6 +66,7 @@ impl Tier for Cells {
         let (train, _) = blocks.kind(0);
         let headway_time = headway(scenario).map(|headway| headway / train.speed);
         let (cells, cell_of) = if beds.is_empty() { Default::default() } else { cells(draft, &beds) };
+        let seats = cell_of.iter().enumerate().map(|(seat, cell)| cell.map(|_| on_cell(draft, seat))).collect();
         let bays = cells.iter().map(|cell| f64::from(cell.copies)).sum();
         let alone = train.wheel_base() / train.speed;
         let cost = cells_under_track(draft, &blocks, PassingCells { bays, headway_time, alone });
@@ -81,6 +82,7 @@ impl Tier for Cells {
             beds,
             cells,
             cell_of,
+            seats,
             settlement: scenario.track.seats.iter().map(|seat| *seat.initial_settlement).collect(),
             headway_time,
             damping_time: DAMPING_TIME,
@@ -158,16 +160,7 @@ fn settling_alike(draft: &Draft<'_>, seats: Vec<usize>) -> Vec<Vec<(f64, usize)>
         let largest = settlement.iter().fold(0.0, |most: f64, settlement| most.max(settlement.abs()));
         2.0 * scenario.solve.grains.tolerance * largest
     });
-    let mut measured: Vec<(f64, usize)> = seats.into_iter().map(|seat| (measure(seat), seat)).collect();
-    measured.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-    let mut groups: Vec<Vec<(f64, usize)>> = Vec::new();
-    for one in measured {
-        match groups.last_mut() {
-            Some(group) if one.0 - group[0].0 <= width => group.push(one),
-            _ => groups.push(vec![one]),
-        }
-    }
-    groups
+    seats_alike(seats.into_iter().map(|seat| (measure(seat), seat)).collect(), width)
 }
 
 /// The seat that answers for a group: of those that every wheel passes and that settle as its median, nearly, the one in the middle.
@@ -188,6 +181,16 @@ fn every_wheel_passes(draft: &Draft<'_>, seat: usize) -> bool {
     let (Some(passage), Some(blocks)) = (draft.passages.first(), &draft.blocks) else { return true };
     let away = blocks.kind(0).0.wheel_base() + REACH;
     (passage.left + away..=passage.right - away).contains(&draft.scenario.track.seats[seat].x)
+}
+
+/// What the cell of a seat takes from the track.
+fn on_cell(draft: &Draft<'_>, seat: usize) -> SeatOnCell {
+    let scenario = draft.scenario;
+    SeatOnCell {
+        x: scenario.track.seats[seat].x,
+        loaded_by: around(scenario, seat, scenario.solve.grains.cell_bays),
+        passed: every_wheel_passes(draft, seat),
+    }
 }
 
 /// A cell with the sleeper of a seat in its middle; `None` for a seat without grains below.

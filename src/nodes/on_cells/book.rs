@@ -2,7 +2,8 @@
 
 use super::cell::Passed;
 use super::hardening::{Computed, Hardening, Jump};
-use crate::graph::CellsNode;
+use super::layout::Layout;
+use crate::graph::{CellPlan, CellsNode};
 use crate::solvers::track::Spring;
 use serde::{Deserialize, Serialize};
 
@@ -87,30 +88,30 @@ impl Book {
 }
 
 /// The law of the cells on each bed, as far as it is known.
-pub(super) fn laws(node: &CellsNode, books: &[Book]) -> Vec<Option<Hardening>> {
+pub(super) fn laws(beds: usize, plans: &[CellPlan], books: &[Book]) -> Vec<Option<Hardening>> {
     let of_bed = |bed: usize| {
-        let cells = node.cells.iter().zip(books).filter(|(cell, _)| cell.bed == bed);
+        let cells = plans.iter().zip(books).filter(|(plan, _)| plan.bed == bed);
         let runs: Vec<&[Computed]> = cells.flat_map(|(_, book)| book.computed.iter().map(Vec::as_slice)).collect();
         Hardening::fitted(&runs)
     };
-    (0..node.beds.len()).map(of_bed).collect()
+    (0..beds).map(of_bed).collect()
 }
 
 /// What every seat stands on: grains, the soil below and the pad under the sleeper, one after the other.
-pub(super) fn supports(node: &CellsNode, books: &[Book]) -> Vec<Option<Spring>> {
+pub(super) fn supports(node: &CellsNode, layout: &Layout, books: &[Book]) -> Vec<Option<Spring>> {
     let spring = |cell: &Option<usize>| {
         let cell = (*cell)?;
-        let plan = &node.cells[cell];
+        let plan = &layout.plans[cell];
         let series = |k: f64, other: f64| k * other / (k + other);
         let stiffness = plan.soil.map_or(books[cell].stiffness, |soil| series(books[cell].stiffness, soil));
         let ground = Spring { stiffness, damping: node.damping_time * stiffness, seating: None };
         Some(plan.sleepers[plan.middle].pad.map_or(ground, |pad| pad.on(ground)))
     };
-    node.cell_of.iter().map(spring).collect()
+    layout.cell_of.iter().map(spring).collect()
 }
 
 /// The value of the cell of each seat on top of what the seat had at the start, m.
-pub(super) fn settlement(node: &CellsNode, value: impl Fn(usize) -> f64) -> Vec<f64> {
-    let seats = node.settlement.iter().zip(&node.cell_of);
+pub(super) fn settlement(node: &CellsNode, layout: &Layout, value: impl Fn(usize) -> f64) -> Vec<f64> {
+    let seats = node.settlement.iter().zip(&layout.cell_of);
     seats.map(|(start, cell)| start + cell.map_or(0.0, &value)).collect()
 }

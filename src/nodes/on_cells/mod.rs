@@ -9,17 +9,19 @@ mod book;
 mod cell;
 mod forces;
 mod hardening;
+mod layout;
 mod stored;
 
 use super::on_grains::{Following, Stage, Telling, Told};
 use super::turns;
 use super::{Forces, Load, Mark, NodeError, Substructure};
-use crate::graph::{CellPlan, CellsNode, Responses};
+use crate::graph::{CellPlan, CellsNode, Responses, SeatOnCell};
 use crate::store::{Beds, recipe_hash};
 use book::{Book, laws};
 use cell::{Cell, Passed};
 use forces::TrainForces;
 use hardening::Jump;
+use layout::Layout;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
@@ -43,6 +45,7 @@ pub struct CellGround<'a> {
 
 /// The ground at work.
 struct Live {
+    layout: Layout,
     cells: Vec<Cell>,
     books: Vec<Book>,
     /// Trains so far.
@@ -72,7 +75,7 @@ impl<'a> CellGround<'a> {
     /// Takes over what the books say of the supports.
     fn answer(&mut self) {
         let Some(live) = &self.live else { return };
-        let seats = book::supports(self.parts.cells, live.told());
+        let seats = book::supports(self.parts.cells, &live.layout, live.told());
         self.responses = Responses { revision: live.revision, seats };
     }
 
@@ -93,8 +96,11 @@ impl Substructure for CellGround<'_> {
     }
 
     fn settlement(&self) -> Vec<f64> {
-        let told = self.live.as_ref().map_or(&[] as &[Book], |live| live.told());
-        book::settlement(self.parts.cells, |cell| told.get(cell).map_or(0.0, |book| book.settled))
+        let node = self.parts.cells;
+        match &self.live {
+            Some(live) => book::settlement(node, &live.layout, |cell| live.told()[cell].settled),
+            None => node.settlement.clone(),
+        }
     }
 
     fn forces(&self) -> Forces {
@@ -104,8 +110,9 @@ impl Substructure for CellGround<'_> {
     /// What the last train added, once more for each.
     fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError> {
         let trains = loads.iter().map(|load| load.trains).sum::<u64>() as f64;
-        let told = self.live()?.told();
-        Ok(book::settlement(self.parts.cells, |cell| told[cell].settled + trains * told[cell].rate))
+        let live = self.live()?;
+        let told = live.told();
+        Ok(book::settlement(self.parts.cells, &live.layout, |cell| told[cell].settled + trains * told[cell].rate))
     }
 
     fn advance(&mut self, loads: &[Load<'_>]) -> Result<(), NodeError> {
@@ -186,7 +193,7 @@ impl Live {
             cells.push(cell);
             books.push(book);
         }
-        Ok(Live { cells, books, passed: 0, revision: 1, underway: None })
+        Ok(Live { layout: Layout::planned(node), cells, books, passed: 0, revision: 1, underway: None })
     }
 
     /// The block of trains under way; begins one where there is none.
@@ -205,10 +212,14 @@ impl Live {
 
     /// Lets the trains of one load pass; goes on with those that are under way.
     fn run(&mut self, node: &CellsNode, load: &Load<'_>, follow: &mut Following<'_>) -> Result<(), NodeError> {
-        let trains = forces_of_cells(node, load)?;
-        if self.block().computed.is_empty() {
-            self.block().computed = vec![0; node.cells.len()];
-            for ((book, train), plan) in self.books.iter_mut().zip(&trains).zip(&node.cells) {
+        let begins = self.block().computed.is_empty();
+        if begins {
+            self.part(node, load)?;
+        }
+        let trains = forces_of_cells(node, &self.layout.plans, load)?;
+        if begins {
+            self.block().computed = vec![0; self.cells.len()];
+            for ((book, train), plan) in self.books.iter_mut().zip(&trains).zip(&self.layout.plans) {
                 book.begin(train.load(plan.middle));
             }
         }
@@ -231,13 +242,26 @@ impl Live {
         }
     }
 
+    /// Gives seats cells of their own that the trains of one load treat otherwise than the seats which they shared one with.
+    fn part(&mut self, node: &CellsNode, load: &Load<'_>) -> Result<(), NodeError> {
+        let loads = loads_of_seats(node, load)?;
+        for from in self.layout.part(node, &loads, node.tolerance) {
+            self.cells.push(self.cells[from].clone());
+            self.books.push(self.books[from].clone());
+            let began = &mut self.block().began;
+            began.push(began[from].clone());
+        }
+        Ok(())
+    }
+
     /// What the run under way adds to each cell; `None` for a cell that must compute a further train first. Each computes one at least:
     /// forces have changed since the last run, and a law that holds no more shows it there.
     fn jumps(&self, node: &CellsNode, trains: u64) -> Vec<Option<Jump>> {
-        let laws = laws(node, &self.books);
+        let plans = &self.layout.plans;
+        let laws = laws(node.beds.len(), plans, &self.books);
         let computed = self.underway.as_ref().map_or(&[] as &[usize], |underway| &underway.computed);
         let jump = |(cell, now): (usize, &usize)| {
-            let law = laws[node.cells[cell].bed].as_ref();
+            let law = laws[plans[cell].bed].as_ref();
             self.books[cell].jump(law, *now, self.passed, trains)
         };
         let jumps: Vec<Option<Jump>> = computed.iter().enumerate().map(jump).collect();
@@ -297,12 +321,25 @@ fn anywhere(plan: &CellPlan) -> CellPlan {
     plan
 }
 
-fn forces_of_cells(node: &CellsNode, load: &Load<'_>) -> Result<Vec<TrainForces>, NodeError> {
-    let none = || NodeError::Other { node: "cells".into(), why: "a passage brings no forces of sleepers".into() };
-    let forces = load.passage.forces.as_ref().ok_or_else(none)?;
+fn no_forces() -> NodeError {
+    NodeError::Other { node: "cells".into(), why: "a passage brings no forces of sleepers".into() }
+}
+
+/// What a train adds to the force on the support of each seat that it passes whole, N.
+fn loads_of_seats(node: &CellsNode, load: &Load<'_>) -> Result<Vec<Option<f64>>, NodeError> {
+    let forces = load.passage.forces.as_ref().ok_or_else(no_forces)?;
+    let of_seat = |(number, seat): (usize, &Option<SeatOnCell>)| {
+        seat.as_ref().filter(|seat| seat.passed)?;
+        Some(TrainForces::new(forces, &[number], 0, node.headway_time)?.load(0))
+    };
+    Ok(node.seats.iter().enumerate().map(of_seat).collect())
+}
+
+fn forces_of_cells(node: &CellsNode, plans: &[CellPlan], load: &Load<'_>) -> Result<Vec<TrainForces>, NodeError> {
+    let forces = load.passage.forces.as_ref().ok_or_else(no_forces)?;
     let of_cell = |plan: &CellPlan| {
         let seats: Vec<usize> = plan.sleepers.iter().map(|sleeper| sleeper.seat).collect();
-        TrainForces::new(forces, &seats, plan.middle, node.headway_time).ok_or_else(none)
+        TrainForces::new(forces, &seats, plan.middle, node.headway_time).ok_or_else(no_forces)
     };
-    node.cells.iter().map(of_cell).collect()
+    plans.iter().map(of_cell).collect()
 }

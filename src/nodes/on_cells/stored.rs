@@ -2,6 +2,7 @@
 
 use super::book::Book;
 use super::cell::Cell;
+use super::layout::Layout;
 use super::{Live, Parts, Underway};
 use crate::nodes::NodeError;
 use crate::solvers::granular::{Bed, Checkpoint, WallId};
@@ -12,6 +13,7 @@ use serde::{Deserialize, Serialize};
 /// What [`Live`] holds.
 #[derive(Serialize, Deserialize)]
 struct Stored {
+    layout: Layout,
     cells: Vec<StoredCell>,
     books: Vec<Book>,
     passed: u64,
@@ -53,6 +55,7 @@ impl Live {
     /// The state as data.
     pub fn save(&self) -> Result<serde_json::Value, NodeError> {
         let stored = Stored {
+            layout: self.layout.clone(),
             cells: self.cells.iter().map(Cell::store).collect(),
             books: self.books.clone(),
             passed: self.passed,
@@ -67,13 +70,17 @@ impl Live {
     pub fn restore(parts: Parts<'_>, state: &serde_json::Value) -> Result<Live, NodeError> {
         let text = state.as_str().ok_or_else(|| foreign("it holds no cells"))?;
         let bytes = STANDARD.decode(text).map_err(foreign)?;
-        let Stored { cells, books, passed, revision, underway } = postcard::from_bytes(&bytes).map_err(foreign)?;
-        let plans = &parts.cells.cells;
-        if cells.len() != plans.len() || books.len() != plans.len() {
+        let Stored { layout, cells, books, passed, revision, underway } =
+            postcard::from_bytes(&bytes).map_err(foreign)?;
+        let node = parts.cells;
+        let counted = [cells.len(), books.len()] == [layout.plans.len(); 2];
+        let answered = layout.cell_of.iter().flatten().all(|cell| *cell < layout.plans.len());
+        if !counted || !answered || layout.cell_of.len() != node.cell_of.len() {
             return Err(foreign("it holds another number of cells"));
         }
+        let plans = layout.plans.iter();
         let cells = cells.into_iter().zip(plans).map(|(stored, plan)| Cell::restore(stored, plan.sleepers.len()));
-        Ok(Live { cells: cells.collect::<Result<_, _>>()?, books, passed, revision, underway })
+        Ok(Live { cells: cells.collect::<Result<_, _>>()?, layout, books, passed, revision, underway })
     }
 }
 
