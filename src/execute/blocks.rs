@@ -124,6 +124,10 @@ impl Run<'_, '_> {
     fn show(&mut self, here: &Exchange) -> Going<()> {
         let Some((state, passages)) = here.recorded() else { return Ok(ControlFlow::Continue(())) };
         tell!(self, Event::Rest { axles: here.axles, state });
+        let beds = self.pair.ground.beds().map_err(|cause| RunError::node(Clock::Axles(here.axles), cause))?;
+        if !beds.is_empty() {
+            tell!(self, Event::Beds { axles: here.axles, beds: &beds });
+        }
         for (runner, passage) in passages {
             tell!(self, Event::Passage { axles: here.axles, runner, passage });
         }

@@ -2,7 +2,7 @@
 
 use super::BlockMeasures;
 use crate::graph::{BedRecipe, Block, Clock, Control, Runner};
-use crate::nodes::{NodeError, PassageOutcome, Stage, TestState, Tested, Told, Unloaded};
+use crate::nodes::{BedUnderTrack, NodeError, PassageOutcome, Stage, TestState, Tested, Told, Unloaded};
 use crate::solvers::granular::Bed;
 use crate::solvers::granular::packing::Progress;
 use crate::store::FoundBed;
@@ -15,6 +15,8 @@ pub enum Event<'a> {
     Equilibrium { unloaded: &'a Unloaded, loaded: &'a Unloaded },
     /// The track without a train, at an axle count that is recorded.
     Rest { axles: u64, state: &'a Unloaded },
+    /// The beds of grains under the track without a train, at an axle count that is recorded.
+    Beds { axles: u64, beds: &'a [BedUnderTrack<'a>] },
     /// A passage at a recorded count; there is one of each kind of train, the leading one first.
     Passage { axles: u64, runner: Runner, passage: &'a PassageOutcome },
     /// A block is done: the passages at its start, and the settlement of every seat before and after it, m. `block` is `None` for

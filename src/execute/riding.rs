@@ -39,6 +39,12 @@ pub(super) fn run(
         if shown && !told && listener.hear(&Event::Rest { axles, state: &unloaded }).is_break() {
             return Ok(Ending::Stopped);
         }
+        if shown && !told {
+            let beds = ground.look().map_err(at(axles))?;
+            if listener.hear(&Event::Beds { axles, beds: &beds }).is_break() {
+                return Ok(Ending::Stopped);
+            }
+        }
         let before = ground.settlement();
         let runs =
             if last { blocks.leading().into_iter().map(|runner| (runner, 1)).collect() } else { block.runs.clone() };

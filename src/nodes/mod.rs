@@ -22,7 +22,8 @@ pub use grains::{BedUnderActuators, TestState, Tested};
 pub use law::LawGround;
 pub use on_cells::{CellGround, Parts as CellParts};
 pub use on_grains::{
-    Following, GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling, TimedSteps, Told,
+    BedUnderTrack, Following, GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling, TimedSteps,
+    Told,
 };
 pub use outcome::{
     PassageOutcome, RailPlace, RailPoint, Sample, SampledPart, SeatForces, SeatOutcome, Unloaded, UnloadedSeat,
@@ -132,6 +133,12 @@ pub trait Substructure: Send + Sync {
     /// Whether it was restored in the middle of a block of trains. Until the block is done it answers as when it began.
     fn is_underway(&self) -> bool {
         false
+    }
+
+    /// The beds of grains under the track as they lie now; none where it stands on something else. What comes later does not know that
+    /// somebody has looked.
+    fn beds(&mut self) -> Result<Vec<BedUnderTrack<'_>>, NodeError> {
+        Ok(Vec::new())
     }
 
     /// The present state, to be rolled back to.

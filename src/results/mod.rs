@@ -12,6 +12,7 @@ mod files;
 mod gather;
 mod grains;
 mod histories;
+mod kept_beds;
 mod laws;
 mod level;
 mod recorder;
@@ -23,6 +24,8 @@ mod summarise;
 mod summary;
 mod tables;
 mod test_loads;
+mod under_track;
+mod under_track_files;
 mod vtk;
 
 #[cfg(test)]
@@ -49,6 +52,7 @@ pub use summarise::{
     RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise, worst_train,
 };
 pub use summary::{Provenance, Scalar, Summary, Verdict};
+pub use under_track::BedsAtCount;
 pub use tables::{BlockRow, HistoryRow, RailRow, Row, SleeperRow, TampingRow, TrainRow};
 pub use vtk::{bodies_vtk, contacts_vtk};
 
@@ -72,6 +76,8 @@ pub struct Run {
     /// Sleepers that were tamped; empty without tamping.
     pub tampings: Vec<TampingRow>,
     pub histories: Vec<HistoryRow>,
+    /// Beds of grains under the track at the recorded counts; empty where it stands on something else.
+    pub beds: Vec<BedsAtCount>,
     /// Tests of packed beds; a track has none.
     pub tests: Option<BedTests>,
 }

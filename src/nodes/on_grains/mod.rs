@@ -17,6 +17,7 @@ mod stored;
 #[cfg(test)]
 mod tests;
 mod timed;
+mod under_track;
 mod underway;
 mod wheels;
 
@@ -25,6 +26,7 @@ pub(super) use build::{OF_STRIDE, SHARING};
 pub use energy::PassageEnergy;
 pub use ride::Riders;
 pub use timed::{Parted, TimedSteps};
+pub use under_track::BedUnderTrack;
 pub use underway::{Following, Told};
 
 use crate::graph::{Responses, StiffnessFrom};
@@ -202,6 +204,10 @@ impl Substructure for GrainGround<'_> {
 
     fn is_underway(&self) -> bool {
         self.live.as_ref().is_some_and(|live| live.underway.is_some())
+    }
+
+    fn beds(&mut self) -> Result<Vec<BedUnderTrack<'_>>, NodeError> {
+        self.look()
     }
 
     /// A failure of grains ends the run, and nothing goes back to before it.
