@@ -6,6 +6,7 @@
 
 mod along;
 mod bed;
+mod bed_section;
 mod bed_tests;
 mod blocks;
 mod chart;
@@ -102,6 +103,7 @@ pub fn figures(run: &Run) -> Vec<Figure> {
     } else {
         let along = [
             over_axles::over_axles(run),
+            bed_section::bed_section(run),
             stiffness::rail_stiffness(run),
             along::settlement(run),
             exchanges::settlement_with_axles(run),
