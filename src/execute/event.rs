@@ -2,7 +2,7 @@
 
 use super::BlockMeasures;
 use crate::graph::{BedRecipe, Block, Clock, Control, Runner};
-use crate::nodes::{BedUnderTrack, NodeError, PassageOutcome, Stage, TestState, Tested, Told, Unloaded};
+use crate::nodes::{BedUnderTrack, NodeError, PassageOutcome, Stage, TestState, Tested, Told, Unloaded, VolumeSample};
 use crate::solvers::granular::Bed;
 use crate::solvers::granular::packing::Progress;
 use crate::store::FoundBed;
@@ -19,6 +19,8 @@ pub enum Event<'a> {
     Beds { axles: u64, beds: &'a [BedUnderTrack<'a>] },
     /// A passage at a recorded count; there is one of each kind of train, the leading one first.
     Passage { axles: u64, runner: Runner, passage: &'a PassageOutcome },
+    /// Volumes of grains in a passage at a recorded count, after the passage.
+    Volumes { axles: u64, samples: &'a [VolumeSample] },
     /// A block is done: the passages at its start, and the settlement of every seat before and after it, m. `block` is `None` for
     /// the passages after the last block.
     Block {

@@ -66,6 +66,10 @@ pub(super) fn run(
             passages.push(passage);
         }
         ground.end_rides().map_err(at(axles))?;
+        let samples = ground.recorded();
+        if !samples.is_empty() && listener.hear(&Event::Volumes { axles, samples: &samples }).is_break() {
+            return Ok(Ending::Stopped);
+        }
         let passages: Vec<&PassageOutcome> = passages.iter().collect();
         let after = if last { before.clone() } else { ground.settlement() };
         let steps = passages.iter().map(|passage| passage.time_steps).sum();

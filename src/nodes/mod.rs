@@ -22,8 +22,8 @@ pub use grains::{BedUnderActuators, TestState, Tested};
 pub use law::LawGround;
 pub use on_cells::{CellGround, Parts as CellParts};
 pub use on_grains::{
-    BedUnderTrack, Following, GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling, TimedSteps,
-    Told,
+    BedUnderTrack, Following, GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling,
+    TimedSteps, Told, VolumeSample,
 };
 pub use outcome::{
     PassageOutcome, RailPlace, RailPoint, Sample, SampledPart, SeatForces, SeatOutcome, Unloaded, UnloadedSeat,
@@ -123,6 +123,24 @@ pub trait Substructure: Send + Sync {
     /// from there.
     fn advance_and_follow(&mut self, loads: &[Load<'_>], _follow: &mut Following<'_>) -> Result<(), NodeError> {
         self.advance(loads)
+    }
+
+    /// Records the first passage of the next block, as one after so many axles, where it has volumes that are recorded then.
+    fn record(&mut self, _axles: u64) {}
+
+    /// What was recorded in the last block; it is told once.
+    fn recorded(&mut self) -> Vec<VolumeSample> {
+        Vec::new()
+    }
+
+    /// Lets a train pass only to record it, as one after so many axles, and changes nothing.
+    fn record_alone(
+        &mut self,
+        _axles: u64,
+        _load: &Load<'_>,
+        _follow: &mut Following<'_>,
+    ) -> Result<Vec<VolumeSample>, NodeError> {
+        Ok(Vec::new())
     }
 
     /// Standard error of what the last block added to the settlement, at the worst seat, m.

@@ -5,6 +5,7 @@
 //! numbers are those of the run's tables.
 
 mod along;
+mod ballast_response;
 mod bed;
 mod bed_section;
 mod bed_tests;
@@ -121,6 +122,7 @@ pub fn figures(run: &Run) -> Vec<Figure> {
     }
     figures.extend(histories::histories(run));
     figures.extend(hanging::hanging_sleeper(run));
+    figures.extend(ballast_response::ballast_response(run));
     figures
 }
 

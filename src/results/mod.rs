@@ -52,8 +52,8 @@ pub use summarise::{
     RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise, worst_train,
 };
 pub use summary::{Provenance, Scalar, Summary, Verdict};
-pub use under_track::BedsAtCount;
 pub use tables::{BlockRow, HistoryRow, RailRow, Row, SleeperRow, TampingRow, TrainRow};
+pub use under_track::BedsAtCount;
 pub use vtk::{bodies_vtk, contacts_vtk};
 
 pub use crate::store::{Beds, FoundBed, bed_hash, write_atomically};

@@ -10,10 +10,11 @@ use super::{
 };
 use crate::execute::{Between, BlockMeasures, Checkpoint, Event, Listener};
 use crate::graph::{Block, Blocks, Graph, Record, Runner, SupportNode, TrackNode};
-use crate::nodes::{self, PassageOutcome, SeatOutcome, Tested, Unloaded};
+use crate::nodes::{self, PassageOutcome, SeatOutcome, Tested, Unloaded, VolumeSample};
 use crate::scenario::response::Response;
 use crate::scenario::{Loading, Scenario, Track, Traffic};
 use crate::solvers::granular::Bed;
+use crate::solvers::track::Direction;
 use crate::store::{Directory, Piece};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -402,6 +403,7 @@ impl Listener for RunRecorder<'_> {
             Event::Equilibrium { unloaded, loaded } => self.equilibrium(unloaded, loaded),
             Event::Rest { axles, state } => self.unloaded(*axles, state),
             Event::Beds { axles, beds } => self.beds.take(*axles, beds, self.part_of_beds(*axles)),
+            Event::Volumes { axles, samples } => self.volumes(*axles, samples),
             Event::Passage { axles, runner, passage } => self.passage(*axles, *runner, passage),
             Event::Block { axles, block, passages, before, after } => {
                 self.block(*axles, *block, passages, before, after);
@@ -447,6 +449,25 @@ impl RunRecorder<'_> {
     fn unloaded(&mut self, axles: u64, state: &Unloaded) {
         self.keep_rail(axles, Response::RailLevel, state.rail.iter().map(|p| (p.x, p.deflection)));
         self.unloaded = Some(state.clone());
+    }
+
+    /// Histories of grains in volumes, and of the sleepers over them, under the leading train.
+    fn volumes(&mut self, axles: u64, samples: &[VolumeSample]) {
+        let train = self.train_name(Runner { kind: 0, direction: Direction::Forward });
+        let volumes = self.graph.volumes();
+        let row = |sample: &VolumeSample| {
+            let volume = volumes.get(sample.volume)?;
+            Some(HistoryRow {
+                axles,
+                time_s: sample.time,
+                quantity: sample.quantity.name().into(),
+                id: volume.sensor.name.clone(),
+                x_m: volume.sensor.x,
+                value: sample.value,
+                train: train.clone(),
+            })
+        };
+        self.histories.extend(samples.iter().filter_map(row));
     }
 
     fn passage(&mut self, axles: u64, runner: Runner, passage: &PassageOutcome) {

@@ -38,12 +38,7 @@ pub(super) fn reference(beds: &[BedUnderTrack<'_>]) -> Reference {
 }
 
 /// The beds as they lie now. Bodies are numbered through all beds.
-pub(super) fn beds_at_count(
-    axles: u64,
-    beds: &[BedUnderTrack<'_>],
-    reference: &Reference,
-    part: Part,
-) -> BedsAtCount {
+pub(super) fn beds_at_count(axles: u64, beds: &[BedUnderTrack<'_>], reference: &Reference, part: Part) -> BedsAtCount {
     let mut all = BedsAtCount { axles, ..BedsAtCount::default() };
     let mut first = 0;
     for (bed, from) in beds.iter().zip(reference) {
@@ -61,23 +56,25 @@ pub(super) fn beds_at_count(
         }));
         first += bed.bed.len() as u32;
     }
-    if let Part::AlongSeats(y) = part {
-        all.keep_section(y);
-    }
-    all.round();
-    all
+    let mut kept = match part {
+        Part::All => all,
+        Part::AlongSeats(y) => all.along_seats(y),
+    };
+    kept.round();
+    kept
 }
 
 impl BedsAtCount {
-    /// Keeps what lies about a line so far from the centre line (m), without the weakest contacts.
-    fn keep_section(&mut self, y: f64) {
+    /// What lies about a line so far from the centre line (m), without the weakest contacts.
+    pub fn along_seats(mut self, y: f64) -> BedsAtCount {
         let mean = self.grains.iter().map(|grain| grain.radius).sum::<f64>() / self.grains.len().max(1) as f64;
         let half = THICK * mean;
         let inside = |across: f64| (across - y).abs() <= half;
         self.grains.retain(|grain| inside(grain.place[1]));
         self.links.retain(|link| inside(0.5 * (link.from[1] + link.to[1])));
-        let mean = self.links.iter().map(Link::size).sum::<f64>() / self.links.len().max(1) as f64;
-        self.links.retain(|link| link.size() >= WEAK * mean);
+        let weakest = WEAK * self.mean_force();
+        self.links.retain(|link| link.size() >= weakest);
+        self
     }
 
     /// To single precision.

@@ -32,8 +32,19 @@ const OF_GRAINS: Columns = (
 const OF_CONTACTS: Columns = (
     &["axles", "first_body", "second_body"],
     &[
-        "from_x_m", "from_y_m", "from_z_m", "to_x_m", "to_y_m", "to_z_m", "force_x_N", "force_y_N", "force_z_N",
-        "normal_x", "normal_y", "normal_z", "overlap_m",
+        "from_x_m",
+        "from_y_m",
+        "from_z_m",
+        "to_x_m",
+        "to_y_m",
+        "to_z_m",
+        "force_x_N",
+        "force_y_N",
+        "force_z_N",
+        "normal_x",
+        "normal_y",
+        "normal_z",
+        "overlap_m",
     ],
 );
 
@@ -56,12 +67,10 @@ pub(super) fn files(beds: &[BedsAtCount], directory: &Path) -> Result<Vec<NamedB
 pub(super) fn encode(beds: &[BedsAtCount], directory: &Path) -> Result<[Vec<u8>; 2], ResultsError> {
     let grains = beds.iter().flat_map(|bed| bed.grains.iter().map(|grain| of_grain(bed.axles, grain)));
     let contacts = beds.iter().flat_map(|bed| bed.links.iter().map(|link| of_link(bed.axles, link)));
-    Ok([bytes(GRAINS, OF_GRAINS, &grains.collect::<Vec<_>>(), directory)?, bytes(
-        CONTACTS,
-        OF_CONTACTS,
-        &contacts.collect::<Vec<_>>(),
-        directory,
-    )?])
+    Ok([
+        bytes(GRAINS, OF_GRAINS, &grains.collect::<Vec<_>>(), directory)?,
+        bytes(CONTACTS, OF_CONTACTS, &contacts.collect::<Vec<_>>(), directory)?,
+    ])
 }
 
 /// The beds of a directory; none where it has none.

@@ -40,7 +40,7 @@ impl Live {
 
 impl StandingBed {
     /// Mean height of the undersides of the sleepers when the track was built, m, by how far each has come down since (m).
-    fn top(&self, lowered: impl Fn(usize) -> f64) -> f64 {
+    pub(super) fn top(&self, lowered: impl Fn(usize) -> f64) -> f64 {
         let underside = |(wall, foot): &(_, usize)| {
             let wall = self.bed.wall(*wall);
             let Shape::Block { half } = &wall.shape else { return None };

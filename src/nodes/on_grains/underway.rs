@@ -3,6 +3,7 @@
 use super::extremes::Seen;
 use super::reading::Watched;
 use super::step::HOLD;
+use super::volumes::Recording;
 use super::{Books, Live, Stage};
 use crate::nodes::{NodeError, PassageOutcome, Unloaded};
 use crate::solvers::track::LeapfrogState;
@@ -46,6 +47,8 @@ pub(super) struct Underway {
     pub watched: Vec<Watched>,
     /// Vehicles that ride on the rail of this model.
     pub ride: Option<RideUnderway>,
+    /// Volumes in the first passage, where it is recorded.
+    pub recording: Option<Recording>,
 }
 
 /// What is known of vehicles that ride in a block under way.
@@ -86,6 +89,7 @@ impl Live {
             before: books.settlement.clone(),
             watched: Vec::new(),
             ride: None,
+            recording: None,
         })
     }
 

@@ -9,14 +9,14 @@ use crate::results::{BedsAtCount, Grain, Link, RailRow, Run, SleeperRow};
 use crate::scenario::SleeperBody;
 
 /// Height of the levels, px.
-const LEVELS: f64 = 58.0;
+const LEVELS: f64 = 54.0;
 /// Between the parts, px.
-const GAP: f64 = 34.0;
+const GAP: f64 = 30.0;
 /// Widest line of a force, px, and how many widths there are.
 const WIDEST: f64 = 4.0;
 const WIDTHS: usize = 8;
-/// Room over a sleeper in which it may hang, px.
-const HANGING: f64 = 48.0;
+/// Room over the sleepers, px.
+const ROOM: f64 = 6.0;
 
 pub struct Layer<'a> {
     pub run: &'a Run,
@@ -32,7 +32,7 @@ impl Layer<'_> {
         let height = seats.iter().map(|(body, _)| body.height).fold(0.2, f64::max);
         self.draw_levels(svg, top, &seats);
         let top = top + LEVELS + GAP;
-        let base = top + HANGING + height * self.window.scale;
+        let base = top + self.scales.hanging + ROOM + height * self.window.scale;
         let bottom = base + self.window.depth * self.window.scale;
         self.draw_structure(svg, base - height * self.window.scale, bottom);
         self.draw_grains(svg, base);
@@ -102,7 +102,7 @@ impl Layer<'_> {
         let (window, scale) = (self.window, self.window.scale);
         let mut grains: Vec<&Grain> = self.beds.grains.iter().filter(|g| window.holds(g.place[0])).collect();
         grains.sort_by(|a, b| a.place[1].total_cmp(&b.place[1]));
-        let frame = self.frame(base - HANGING, base + window.depth * scale);
+        let frame = self.frame(base - ROOM, base + window.depth * scale);
         let at = |grain: &Grain| (window.x(grain.place[0]), base - grain.place[2] * scale);
         let mut raster = Raster::new(frame.width, frame.height);
         grains.retain(|grain| {
@@ -122,7 +122,7 @@ impl Layer<'_> {
         let mut tops = Vec::new();
         for (body, row) in seats {
             let (left, width) = (self.window.x(row.x_m - 0.5 * body.base_width), body.base_width * scale);
-            let lifted = (row.void_m.max(0.0) * self.scales.exaggeration * scale).min(HANGING);
+            let lifted = row.void_m.max(0.0) * self.scales.exaggeration * scale;
             let void = format!("{}: void {} mm", row.sleeper, significant(1e3 * row.void_m, 2));
             svg.titled_rect("void", Frame { x: left, y: base - lifted, width, height: lifted }, &void);
             let top = base - lifted - body.height * scale;

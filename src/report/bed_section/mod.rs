@@ -10,6 +10,7 @@ mod window;
 use super::Figure;
 use super::bed::{Bar, Colour};
 use super::number::{significant, whole};
+use super::over_axles::named;
 use super::svg::{Anchor, Svg, escape};
 use super::view::WIDTH;
 use crate::results::{BedsAtCount, Link, Run};
@@ -17,8 +18,8 @@ use layer::Layer;
 
 /// Counts that the picture holds, spread evenly where there are more.
 const MOST: usize = 6;
-const TOP: f64 = 66.0;
-const GAP: f64 = 26.0;
+const TOP: f64 = 96.0;
+const GAP: f64 = 22.0;
 /// Share of the contacts whose force is larger than the widest line shows.
 const ABOVE: f64 = 0.005;
 
@@ -29,20 +30,24 @@ struct Scales {
     exaggeration: f64,
     /// Force of the widest line, N.
     force: f64,
+    /// Height of the highest void, px.
+    hanging: f64,
 }
 
 pub fn bed_section(run: &Run) -> Option<Figure> {
-    let shown = spread(&run.beds);
+    let shown: Vec<BedsAtCount> = spread(&run.beds).into_iter().map(|beds| section(run, beds)).collect();
     let last = shown.last()?;
     let windows = window::windows(run, last);
     let largest = windows.iter().map(|window| window.scale).fold(f64::NAN, f64::max);
     if windows.is_empty() {
         return None;
     }
+    let exaggeration = window::exaggeration(run, largest);
     let scales = Scales {
         bar: Bar::new(Colour::Displacement, shown.iter().flat_map(|beds| &beds.grains)),
-        exaggeration: window::exaggeration(run, largest),
+        exaggeration,
         force: widest(&shown),
+        hanging: run.sleepers.iter().map(|row| row.void_m).fold(0.0, f64::max) * exaggeration * largest,
     };
     let mut svg = Svg::default();
     scales.bar.define(&mut svg);
@@ -71,10 +76,6 @@ fn steps(names: &[String]) -> String {
     serde_json::to_string(names).unwrap_or_default()
 }
 
-fn named(axles: u64) -> String {
-    if axles == 0 { "as built".to_owned() } else { format!("after {} axles", whole(axles)) }
-}
-
 /// The counts that the picture holds.
 fn spread(beds: &[BedsAtCount]) -> Vec<&BedsAtCount> {
     match beds.len() {
@@ -83,17 +84,28 @@ fn spread(beds: &[BedsAtCount]) -> Vec<&BedsAtCount> {
     }
 }
 
+/// The beds along the rail seats; those of a count at which the scene asks for states are kept whole.
+fn section(run: &Run, beds: &BedsAtCount) -> BedsAtCount {
+    let whole = run.scenario.records.iter().any(|record| record.states && record.after.contains(&beds.axles));
+    let sleeper = run.scenario.track.seats.iter().find_map(|seat| seat.sleeper);
+    match sleeper.filter(|_| whole) {
+        Some(sleeper) => beds.clone().along_seats(0.5 * sleeper.seat_distance),
+        None => beds.clone(),
+    }
+}
+
 /// Force of the widest line: few contacts at any count carry more, N.
-fn widest(shown: &[&BedsAtCount]) -> f64 {
+fn widest(shown: &[BedsAtCount]) -> f64 {
     let mut forces: Vec<f64> = shown.iter().flat_map(|beds| &beds.links).map(Link::size).collect();
     forces.sort_by(f64::total_cmp);
     let place = ((1.0 - ABOVE) * forces.len() as f64) as usize;
     forces.get(place).or(forces.last()).copied().unwrap_or(0.0)
 }
 
-fn caption(run: &Run, scales: &Scales, shown: &[&BedsAtCount]) -> String {
+fn caption(run: &Run, scales: &Scales, shown: &[BedsAtCount]) -> String {
     let first = shown.first().map_or(0, |beds| beds.axles);
-    let since = if first == 0 { "since the track was built".to_owned() } else { format!("since {} axles", whole(first)) };
+    let since =
+        if first == 0 { "since the track was built".to_owned() } else { format!("since {} axles", whole(first)) };
     let voids = run.sleepers.iter().any(|row| row.void_m > 0.0);
     let factor = whole(scales.exaggeration as u64);
     let voids = if voids {
