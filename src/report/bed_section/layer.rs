@@ -15,8 +15,10 @@ const GAP: f64 = 30.0;
 /// Widest line of a force, px, and how many widths there are.
 const WIDEST: f64 = 4.0;
 const WIDTHS: usize = 8;
+/// The rail lies so far above its sleepers, px.
+const RAIL: f64 = 3.0;
 /// Room over the sleepers, px.
-const ROOM: f64 = 6.0;
+const ROOM: f64 = 10.0;
 
 pub struct Layer<'a> {
     pub run: &'a Run,
@@ -127,10 +129,10 @@ impl Layer<'_> {
             svg.titled_rect("void", Frame { x: left, y: base - lifted, width, height: lifted }, &void);
             let top = base - lifted - body.height * scale;
             svg.titled_rect("sleeper", Frame { x: left, y: top, width, height: body.height * scale }, &void);
-            tops.push((left + 0.5 * width, top));
+            tops.push((left + 0.5 * width, top - RAIL));
         }
         if let (Some([from, to]), Some((body, _))) = (self.window.structure, seats.first()) {
-            let top = base - body.height * scale;
+            let top = base - body.height * scale - RAIL;
             let mut ends = vec![(self.window.x(from), top), (self.window.x(to), top)];
             match from > self.window.from {
                 true => tops.append(&mut ends),

@@ -9,6 +9,8 @@ const GRAINS: f64 = 6.0;
 const STRUCTURE: f64 = 0.9;
 /// Grains that are shown where no transition lies beside them, m.
 const ALONE: f64 = 7.0;
+/// Room at the end of the grains, m: a sleeper may stand there.
+const END: f64 = 0.2;
 /// Room for the axis, px.
 const AXIS: f64 = 40.0;
 /// Height of the largest level in the picture, px.
@@ -65,9 +67,9 @@ fn beside(transition: &Transition, beds: &BedsAtCount) -> Option<Window> {
         return None;
     }
     let (span, structure) = if length(before) > length(behind) {
-        ([before?[0], x + STRUCTURE], [x, x + STRUCTURE])
+        ([before?[0] - END, x + STRUCTURE], [x, x + STRUCTURE])
     } else {
-        ([x - STRUCTURE, behind?[1]], [x - STRUCTURE, x])
+        ([x - STRUCTURE, behind?[1] + END], [x - STRUCTURE, x])
     };
     Some(Window::new(span, Some(structure), beds))
 }
