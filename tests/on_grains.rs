@@ -166,7 +166,7 @@ fn tables_of_a_run_that_was_stopped(text: &str, beds: &std::path::Path) {
 }
 
 /// A volume under sleeper -1 at two counts.
-const VOLUME: &str = "record { at = -1 sleeper, after = [0, 4] axles, depth = 100 mm
+const VOLUME: &str = "record below { at = -1 sleeper, after = [0, 4] axles, depth = 100 mm
   volume = box(along = 300 mm, across = bed, height = 100 mm)
   quantities = [ballast_velocity, ballast_acceleration, ballast_stress, coordination_number] }
 ";

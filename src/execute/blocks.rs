@@ -129,7 +129,7 @@ impl Run<'_, '_> {
         tell!(self, Event::Rest { axles: here.axles, state });
         let beds = self.pair.ground.beds().map_err(|cause| RunError::node(Clock::Axles(here.axles), cause))?;
         if !beds.is_empty() {
-            tell!(self, Event::Beds { axles: here.axles, beds: &beds });
+            tell!(self, Event::Beds { axles: here.axles, under_train: false, beds: &beds });
         }
         for (runner, passage) in passages {
             tell!(self, Event::Passage { axles: here.axles, runner, passage });

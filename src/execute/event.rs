@@ -15,8 +15,8 @@ pub enum Event<'a> {
     Equilibrium { unloaded: &'a Unloaded, loaded: &'a Unloaded },
     /// The track without a train, at an axle count that is recorded.
     Rest { axles: u64, state: &'a Unloaded },
-    /// The beds of grains under the track without a train, at an axle count that is recorded.
-    Beds { axles: u64, beds: &'a [BedUnderTrack<'a>] },
+    /// The beds of grains under the track at an axle count that is recorded: at rest, or as the leading bogie of the next train passes.
+    Beds { axles: u64, under_train: bool, beds: &'a [BedUnderTrack<'a>] },
     /// A passage at a recorded count; there is one of each kind of train, the leading one first.
     Passage { axles: u64, runner: Runner, passage: &'a PassageOutcome },
     /// Volumes of grains in a passage at a recorded count, after the passage.
@@ -64,6 +64,7 @@ pub(super) fn tell_of_trains(
 ) -> ControlFlow<()> {
     match told {
         Told::Stage(stage, share) => tell_stage(listener, stage, share),
+        Told::Beds(beds) => listener.hear(&Event::Beds { axles, under_train: true, beds: &beds }),
         Told::State(ground) => {
             let state = || {
                 let state = ScheduleState::Blocks { blocks, control, ground: ground()? };

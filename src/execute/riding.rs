@@ -41,7 +41,7 @@ pub(super) fn run(
         }
         if shown && !told {
             let beds = ground.look().map_err(at(axles))?;
-            if listener.hear(&Event::Beds { axles, beds: &beds }).is_break() {
+            if listener.hear(&Event::Beds { axles, under_train: false, beds: &beds }).is_break() {
                 return Ok(Ending::Stopped);
             }
         }

@@ -25,10 +25,10 @@ pub(super) struct BedPieces {
 }
 
 impl KeptBeds {
-    /// Takes the beds as they lie at a count.
-    pub(super) fn take(&mut self, axles: u64, beds: &[BedUnderTrack<'_>], part: Part) {
+    /// Takes the beds as they lie at a count, without a train or under one.
+    pub(super) fn take(&mut self, when: (u64, bool), beds: &[BedUnderTrack<'_>], part: Part) {
         let reference = self.reference.get_or_insert_with(|| reference(beds));
-        self.told.push(beds_at_count(axles, beds, reference, part));
+        self.told.push(beds_at_count(when, beds, reference, part));
     }
 
     /// Copies what has none yet, and names all copies.

@@ -402,7 +402,9 @@ impl Listener for RunRecorder<'_> {
         match event {
             Event::Equilibrium { unloaded, loaded } => self.equilibrium(unloaded, loaded),
             Event::Rest { axles, state } => self.unloaded(*axles, state),
-            Event::Beds { axles, beds } => self.beds.take(*axles, beds, self.part_of_beds(*axles)),
+            Event::Beds { axles, under_train, beds } => {
+                self.beds.take((*axles, *under_train), beds, self.part_of_beds(*axles));
+            }
             Event::Volumes { axles, samples } => self.volumes(*axles, samples),
             Event::Passage { axles, runner, passage } => self.passage(*axles, *runner, passage),
             Event::Block { axles, block, passages, before, after } => {

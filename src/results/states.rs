@@ -34,7 +34,7 @@ pub(super) fn files(run: &Run, directory: &Path) -> Result<Vec<NamedBytes>, Resu
         let sleepers: Vec<&SleeperRow> = run.sleepers.iter().filter(|row| row.axles == axles).collect();
         let mut parts =
             vec![("rail", rail_vtk(&run.scenario, &rail)), ("sleepers", sleepers_vtk(&run.scenario, &sleepers))];
-        if let Some(beds) = run.beds.iter().find(|beds| beds.axles == axles) {
+        if let Some(beds) = run.beds.iter().find(|beds| beds.axles == axles && !beds.under_train) {
             parts.extend([("grains", grains_vtk(run, beds)), ("contacts", contacts_of(run, beds))]);
         }
         for (part, (name, bytes)) in parts.into_iter().enumerate() {
@@ -199,6 +199,32 @@ mod tests {
             assert!((reach(2) - (row.void_m - row.settlement_m)).abs() < 1e-12, "it hangs above its settlement");
             assert!((settled[6 * i] - row.settlement_m).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn grains_and_contacts_stand_in_the_same_series() {
+        let (mut run, directory) = (run(true), tempfile::tempdir().unwrap());
+        let axles = run.scenario.records.last().unwrap().after[1];
+        let grain = Grain {
+            place: [-3.0, 0.75, -0.125],
+            radius: 0.03125,
+            body: 0,
+            velocity: [0.0; 3],
+            displacement: Some([0.0, 0.0, -0.001953125]),
+            coordination: 0,
+            largest_force: 0.0,
+        };
+        run.beds = vec![BedsAtCount { axles, grains: vec![grain], ..BedsAtCount::default() }];
+        files::write(&run, directory.path()).unwrap();
+        let read = |name: &str| fs::read_to_string(directory.path().join(FOLDER).join(name)).unwrap();
+        let series = read("states.pvd");
+        assert_eq!(series.matches(&format!("grains_{axles:06}.vtp")).count(), 1);
+        assert_eq!(series.matches("contacts_").count(), 1, "a count without beds has none");
+        let text = read(&format!("grains_{axles:06}.vtp"));
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let sleeper = run.scenario.track.seats.iter().find_map(|seat| seat.sleeper).unwrap();
+        assert_eq!(numbers(&document, "Points"), [-3.0, 0.75, -0.125 - sleeper.height]);
+        assert_eq!(numbers(&document, "displacement"), [0.0, 0.0, -0.001953125]);
     }
 
     #[test]

@@ -17,6 +17,8 @@ const WEAK: f64 = 0.1;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct BedsAtCount {
     pub axles: u64,
+    /// Whether the leading bogie of the next train passes; without a train where not.
+    pub under_train: bool,
     /// Displacements count from the first recorded count.
     pub grains: Vec<Grain>,
     pub links: Vec<Link>,
@@ -38,8 +40,13 @@ pub(super) fn reference(beds: &[BedUnderTrack<'_>]) -> Reference {
 }
 
 /// The beds as they lie now. Bodies are numbered through all beds.
-pub(super) fn beds_at_count(axles: u64, beds: &[BedUnderTrack<'_>], reference: &Reference, part: Part) -> BedsAtCount {
-    let mut all = BedsAtCount { axles, ..BedsAtCount::default() };
+pub(super) fn beds_at_count(
+    (axles, under_train): (u64, bool),
+    beds: &[BedUnderTrack<'_>],
+    reference: &Reference,
+    part: Part,
+) -> BedsAtCount {
+    let mut all = BedsAtCount { axles, under_train, ..BedsAtCount::default() };
     let mut first = 0;
     for (bed, from) in beds.iter().zip(reference) {
         let moved = |place: [f64; 3]| [place[0] + bed.start, place[1], place[2] - bed.top];
@@ -93,7 +100,7 @@ impl BedsAtCount {
     }
 
     /// Mean of the forces of its contacts, N.
-    pub fn mean_force(&self) -> f64 {
+    fn mean_force(&self) -> f64 {
         self.links.iter().map(|link| norm(link.force)).sum::<f64>() / self.links.len().max(1) as f64
     }
 }

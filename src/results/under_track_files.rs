@@ -25,12 +25,12 @@ const CONTACTS: &str = "contacts.parquet";
 type Columns = (&'static [&'static str], &'static [&'static str]);
 
 const OF_GRAINS: Columns = (
-    &["axles", "body", "coordination"],
+    &["axles", "under_train", "body", "coordination"],
     &["x_m", "y_m", "z_m", "radius_m", "vx_m_s", "vy_m_s", "vz_m_s", "dx_m", "dy_m", "dz_m", "largest_force_N"],
 );
 /// The second body of a contact with a wall is -1.
 const OF_CONTACTS: Columns = (
-    &["axles", "first_body", "second_body"],
+    &["axles", "under_train", "first_body", "second_body"],
     &[
         "from_x_m",
         "from_y_m",
@@ -65,8 +65,8 @@ pub(super) fn files(beds: &[BedsAtCount], directory: &Path) -> Result<Vec<NamedB
 
 /// The bytes of both files.
 pub(super) fn encode(beds: &[BedsAtCount], directory: &Path) -> Result<[Vec<u8>; 2], ResultsError> {
-    let grains = beds.iter().flat_map(|bed| bed.grains.iter().map(|grain| of_grain(bed.axles, grain)));
-    let contacts = beds.iter().flat_map(|bed| bed.links.iter().map(|link| of_link(bed.axles, link)));
+    let grains = beds.iter().flat_map(|bed| bed.grains.iter().map(|grain| of_grain(bed, grain)));
+    let contacts = beds.iter().flat_map(|bed| bed.links.iter().map(|link| of_link(bed, link)));
     Ok([
         bytes(GRAINS, OF_GRAINS, &grains.collect::<Vec<_>>(), directory)?,
         bytes(CONTACTS, OF_CONTACTS, &contacts.collect::<Vec<_>>(), directory)?,
@@ -85,21 +85,29 @@ pub(super) fn read(directory: &Path) -> Result<Vec<BedsAtCount>, ResultsError> {
 
 /// The beds that the bytes of both files hold; `directory` stands in messages only.
 pub(super) fn decode([grains, contacts]: [Vec<u8>; 2], directory: &Path) -> Result<Vec<BedsAtCount>, ResultsError> {
-    let mut beds: BTreeMap<u64, BedsAtCount> = BTreeMap::new();
+    let mut beds: BTreeMap<(u64, bool), BedsAtCount> = BTreeMap::new();
     for row in rows(OF_GRAINS, grains, &directory.join(GRAINS))? {
-        beds.entry(row.0[0] as u64).or_default().grains.push(to_grain(&row));
+        beds.entry(when(&row)).or_default().grains.push(to_grain(&row));
     }
     for row in rows(OF_CONTACTS, contacts, &directory.join(CONTACTS))? {
-        beds.entry(row.0[0] as u64).or_default().links.push(to_link(&row));
+        beds.entry(when(&row)).or_default().links.push(to_link(&row));
     }
-    Ok(beds.into_iter().map(|(axles, bed)| BedsAtCount { axles, ..bed }).collect())
+    Ok(beds.into_iter().map(|((axles, under_train), bed)| BedsAtCount { axles, under_train, ..bed }).collect())
 }
 
-fn of_grain(axles: u64, grain: &Grain) -> Row {
+/// Count of a row, and whether it is under a train.
+fn when((whole, _): &Row) -> (u64, bool) {
+    (whole[0] as u64, whole[1] != 0)
+}
+
+fn of_grain(bed: &BedsAtCount, grain: &Grain) -> Row {
     let [x, y, z] = grain.place;
     let ([u, v, w], [dx, dy, dz]) = (grain.velocity, grain.displacement.unwrap_or_default());
     let numbers = [x, y, z, grain.radius, u, v, w, dx, dy, dz, grain.largest_force];
-    (vec![axles as i64, grain.body.into(), grain.coordination.into()], numbers.map(|n| n as f32).to_vec())
+    (
+        vec![bed.axles as i64, bed.under_train.into(), grain.body.into(), grain.coordination.into()],
+        numbers.map(|n| n as f32).to_vec(),
+    )
 }
 
 fn to_grain((whole, numbers): &Row) -> Grain {
@@ -107,18 +115,18 @@ fn to_grain((whole, numbers): &Row) -> Grain {
     Grain {
         place: three(0),
         radius: f64::from(numbers[3]),
-        body: whole[1] as u32,
+        body: whole[2] as u32,
         velocity: three(4),
         displacement: Some(three(7)),
-        coordination: whole[2] as u32,
+        coordination: whole[3] as u32,
         largest_force: f64::from(numbers[10]),
     }
 }
 
-fn of_link(axles: u64, link: &Link) -> Row {
+fn of_link(bed: &BedsAtCount, link: &Link) -> Row {
     let second = link.bodies.1.map_or(-1, i64::from);
     let numbers = [link.from, link.to, link.force, link.normal].into_iter().flatten().chain([link.overlap]);
-    (vec![axles as i64, link.bodies.0.into(), second], numbers.map(|n| n as f32).collect())
+    (vec![bed.axles as i64, bed.under_train.into(), link.bodies.0.into(), second], numbers.map(|n| n as f32).collect())
 }
 
 fn to_link((whole, numbers): &Row) -> Link {
@@ -126,7 +134,7 @@ fn to_link((whole, numbers): &Row) -> Link {
     Link {
         from: three(0),
         to: three(3),
-        bodies: (whole[1] as u32, u32::try_from(whole[2]).ok()),
+        bodies: (whole[2] as u32, u32::try_from(whole[3]).ok()),
         force: three(6),
         normal: three(9),
         overlap: f64::from(numbers[12]),
@@ -222,4 +230,54 @@ fn get<D: DataType>(group: &dyn RowGroupReader, column: usize) -> ParquetResult<
     }
     let message = format!("column {column} holds {} values of {count}", values.len());
     Err(parquet::errors::ParquetError::General(message))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bed(axles: u64, under_train: bool) -> BedsAtCount {
+        let grain = |body: u32| Grain {
+            place: [-3.5, 0.75, -0.25 * f64::from(body)],
+            radius: 0.03125,
+            body,
+            velocity: [0.0, 0.0, -0.5],
+            displacement: Some([0.0, 0.0, -0.001953125]),
+            coordination: 6,
+            largest_force: 1500.0,
+        };
+        let link = |second: Option<u32>| Link {
+            from: [-3.5, 0.75, 0.0],
+            to: [-3.5, 0.75, -0.25],
+            bodies: (0, second),
+            force: [0.0, 0.5, 120.0],
+            normal: [0.0, 0.0, 1.0],
+            overlap: 0.0009765625,
+        };
+        let (grains, links) = (vec![grain(0), grain(1)], vec![link(Some(1)), link(None)]);
+        BedsAtCount { axles, under_train, grains, links }
+    }
+
+    #[test]
+    fn beds_come_back_from_their_files() {
+        let directory = tempfile::tempdir().unwrap();
+        let beds = vec![bed(0, false), bed(0, true), bed(40, false)];
+        let files = files(&beds, directory.path()).unwrap();
+        super::super::write_files(&files, directory.path()).unwrap();
+        assert_eq!(read(directory.path()).unwrap(), beds);
+        let mut wrong = bed(0, false);
+        wrong.grains[1].place[2] = f64::NAN;
+        let error = super::super::under_track_files::files(&[wrong], directory.path()).unwrap_err().to_string();
+        assert!(error.contains("column `z_m` of row 2"), "{error}");
+    }
+
+    #[test]
+    fn a_damaged_file_is_told_by_name() {
+        let directory = tempfile::tempdir().unwrap();
+        assert!(read(directory.path()).unwrap().is_empty());
+        super::super::write_files(&files(&[bed(0, false)], directory.path()).unwrap(), directory.path()).unwrap();
+        fs::write(directory.path().join(CONTACTS), "PAR1 and nothing else").unwrap();
+        let error = read(directory.path()).unwrap_err().to_string();
+        assert!(error.contains("contacts.parquet"), "{error}");
+    }
 }

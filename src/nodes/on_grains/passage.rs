@@ -225,6 +225,7 @@ impl Live {
             let mut recording = self.recording(time(step) <= wheels.first_ends());
             if let Some(recording) = &mut recording {
                 recording.read_contacts(&mut self.coupled, parts, time(step))?;
+                self.tell_beds(parts, recording, wheels.leading_at(time(step)), follow)?;
             }
             step = next.end;
             let Live { coupled, underway, .. } = self;

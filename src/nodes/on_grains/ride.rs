@@ -156,6 +156,8 @@ impl Live {
             if let Some(recording) = &mut recording {
                 let time = self.coupled.rail.time() - since;
                 recording.read_contacts(&mut self.coupled, parts, time)?;
+                let leading = self.coupled.rail.view().wheel_positions().next();
+                self.tell_beds(parts, recording, leading, follow)?;
             }
             for now in next {
                 self.coupled.step(&WheelLoads::Riding)?;

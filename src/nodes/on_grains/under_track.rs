@@ -21,18 +21,25 @@ impl GrainGround<'_> {
     /// The beds as they lie now. The motion goes on afterwards as if nobody had looked.
     pub fn look(&mut self) -> Result<Vec<BedUnderTrack<'_>>, NodeError> {
         let parts = self.parts();
-        self.working()?.look(parts)
+        let live = self.working()?;
+        let tops = live.tops();
+        live.look(parts, &tops)
     }
 }
 
 impl Live {
-    fn look(&mut self, parts: Parts<'_>) -> Result<Vec<BedUnderTrack<'_>>, NodeError> {
-        let Live { coupled, books, .. } = self;
-        let beds = coupled.beds.iter_mut().zip(&parts.grains.stretches);
-        beds.map(|(standing, stretch)| {
+    /// Mean height of the undersides of the sleepers on each bed when the track was built, above the origin of the bed, m. Asked at rest.
+    pub(super) fn tops(&self) -> Vec<f64> {
+        let rest = &self.books.rest;
+        self.coupled.beds.iter().map(|standing| standing.top(|foot| rest[foot].level)).collect()
+    }
+
+    /// The beds as they lie now.
+    pub(super) fn look(&mut self, parts: Parts<'_>, tops: &[f64]) -> Result<Vec<BedUnderTrack<'_>>, NodeError> {
+        let beds = self.coupled.beds.iter_mut().zip(&parts.grains.stretches).zip(tops);
+        beds.map(|((standing, stretch), top)| {
             let snapshot = standing.bed.snapshot()?;
-            let top = standing.top(|foot| books.rest[foot].level);
-            Ok(BedUnderTrack { bed: &standing.bed, snapshot, start: stretch.start, top })
+            Ok(BedUnderTrack { bed: &standing.bed, snapshot, start: stretch.start, top: *top })
         })
         .collect()
     }
@@ -40,7 +47,7 @@ impl Live {
 
 impl StandingBed {
     /// Mean height of the undersides of the sleepers when the track was built, m, by how far each has come down since (m).
-    pub(super) fn top(&self, lowered: impl Fn(usize) -> f64) -> f64 {
+    fn top(&self, lowered: impl Fn(usize) -> f64) -> f64 {
         let underside = |(wall, foot): &(_, usize)| {
             let wall = self.bed.wall(*wall);
             let Shape::Block { half } = &wall.shape else { return None };

@@ -4,7 +4,7 @@ use super::extremes::Seen;
 use super::reading::Watched;
 use super::step::HOLD;
 use super::volumes::Recording;
-use super::{Books, Live, Stage};
+use super::{BedUnderTrack, Books, Live, Stage};
 use crate::nodes::{NodeError, PassageOutcome, Unloaded};
 use crate::solvers::track::LeapfrogState;
 use serde::{Deserialize, Serialize};
@@ -14,6 +14,8 @@ use std::ops::{ControlFlow, Range};
 pub enum Told<'a> {
     /// What is done, and the share of it that is.
     Stage(Stage, f64),
+    /// The beds as the leading bogie of a recorded train passes the sleepers beside the structure.
+    Beds(Vec<BedUnderTrack<'a>>),
     /// A run can be gone on with from here; the function gives the state.
     State(&'a dyn Fn() -> Result<serde_json::Value, NodeError>),
 }

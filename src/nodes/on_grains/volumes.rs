@@ -8,12 +8,15 @@ use super::build::Parts;
 use super::step::Coupled;
 use super::underway::Following;
 use super::{GrainGround, Live, Told};
-use crate::graph::{InVolume, VolumeUnderTrack};
+use crate::graph::{InVolume, SleeperOnGrains, VolumeUnderTrack};
 use crate::nodes::{Load, NodeError};
 use crate::solvers::granular::rig::Sensor;
 use crate::solvers::granular::{Bed, BodyId};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
+
+/// The third of some sleepers.
+const THIRD: usize = 2;
 
 /// One value of a volume.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -31,6 +34,11 @@ pub struct VolumeSample {
 pub(super) struct Recording {
     volumes: Vec<Inside>,
     samples: Vec<VolumeSample>,
+    /// Heights of the undersides of the sleepers on each bed as built, m.
+    pub tops: Vec<f64>,
+    /// Where the leading wheel was at the last look, m, before it has come to where beds are looked at under it.
+    leading: Option<f64>,
+    has_come: bool,
 }
 
 /// A volume that is recorded.
@@ -47,19 +55,27 @@ struct Inside {
 }
 
 impl Recording {
-    /// Begins the record of a passage after so many axles; `None` where no volume is recorded then.
-    pub fn begin(coupled: &Coupled, tops: &[f64], parts: Parts<'_>, axles: u64) -> Option<Recording> {
+    /// Begins the record of a passage after so many axles.
+    pub fn begin(coupled: &Coupled, tops: Vec<f64>, parts: Parts<'_>, axles: u64) -> Recording {
         let wanted = parts.grains.volumes.iter().enumerate().filter(|(_, volume)| volume.after.contains(&axles));
         let inside = |(number, volume): (usize, &VolumeUnderTrack)| {
             let (bed, top) = (&coupled.beds[volume.stretch].bed, tops[volume.stretch]);
             let region = volume.sensor.region(top)?;
-            let holds = |state: &crate::solvers::granular::BodyState| region.holds(&state.place);
-            let bodies = bed.states().filter(holds).map(|state| state.id.0).collect();
+            let inside = bed.states().filter(|state| region.holds(&state.place));
+            let bodies = inside.map(|state| state.id.0).collect();
             let foot = coupled.rail.carried().binary_search(&volume.seat).ok()?;
             Some(Inside { volume: number, foot, top, bodies, before: None })
         };
-        let volumes: Vec<Inside> = wanted.filter_map(inside).collect();
-        (!volumes.is_empty()).then(|| Recording { volumes, samples: Vec::new() })
+        let volumes = wanted.filter_map(inside).collect();
+        Recording { volumes, samples: Vec::new(), tops, leading: None, has_come: false }
+    }
+
+    /// Whether the leading wheel comes to a place (m) with this look; it is told once.
+    pub fn wheel_comes(&mut self, leading: f64, place: f64) -> bool {
+        let before = self.leading.replace(leading);
+        let comes = !self.has_come && before.is_some_and(|before| (before - place) * (leading - place) <= 0.0);
+        self.has_come |= comes;
+        comes
     }
 
     /// Looks after a step, where a sample is due.
@@ -124,10 +140,29 @@ impl Inside {
 }
 
 impl Live {
-    /// Records the passage that comes next as one after so many axles, where volumes are recorded then.
+    /// Records the passage that comes next as one after so many axles.
     pub fn begin_record(&mut self, parts: Parts<'_>, axles: u64) {
-        let tops: Vec<f64> = self.coupled.beds.iter().map(|bed| bed.top(|foot| self.books.rest[foot].level)).collect();
-        self.block().recording = Recording::begin(&self.coupled, &tops, parts, axles);
+        let recording = Recording::begin(&self.coupled, self.tops(), parts, axles);
+        self.block().recording = Some(recording);
+    }
+
+    /// Tells the beds where the leading wheel, at a place (m), comes to the sleepers beside the structure.
+    pub(super) fn tell_beds(
+        &mut self,
+        parts: Parts<'_>,
+        recording: &mut Recording,
+        leading: Option<f64>,
+        follow: &mut Following<'_>,
+    ) -> Result<(), NodeError> {
+        let Some((leading, place)) = leading.zip(parts.beside_structure()) else { return Ok(()) };
+        if !recording.wheel_comes(leading, place) {
+            return Ok(());
+        }
+        let beds = self.look(parts, &recording.tops)?;
+        match follow(Told::Beds(beds)) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(NodeError::Stopped),
+        }
     }
 
     /// The record of the passage under way, taken out for some steps: of the first one of the block only, and only where `wanted`.
@@ -150,6 +185,20 @@ impl Live {
     }
 }
 
+impl Parts<'_> {
+    /// Place of the third sleeper of the first bed from its end at the structure, m: with the leading wheel there, a bogie stands where tracks
+    /// settle most.
+    fn beside_structure(&self) -> Option<f64> {
+        let seats = &self.track.seats;
+        let sleepers = &self.grains.stretches.first()?.sleepers;
+        let x = |sleeper: &SleeperOnGrains| seats[sleeper.seat].x;
+        let behind = seats.get(sleepers.last()?.seat + 1);
+        let at_right = behind.is_some_and(|seat| !seat.is_ballasted());
+        let third = THIRD.min(sleepers.len() - 1);
+        Some(x(&sleepers[if at_right { sleepers.len() - 1 - third } else { third }]))
+    }
+}
+
 impl GrainGround<'_> {
     /// Lets a train pass over a copy, only to record it as one after so many axles.
     pub(super) fn record_copy(
@@ -166,7 +215,7 @@ impl GrainGround<'_> {
         copy.begin_record(parts, axles);
         // a run does not go on from a copy
         copy.pass(parts, load, &mut |told| match told {
-            Told::Stage(..) => follow(told),
+            Told::Stage(..) | Told::Beds(_) => follow(told),
             Told::State(_) => ControlFlow::Continue(()),
         })?;
         Ok(copy.recorded())

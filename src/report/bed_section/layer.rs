@@ -5,7 +5,7 @@ use super::window::Window;
 use crate::report::bed::Raster;
 use crate::report::number::{nice_step, significant, tick_label, ticks};
 use crate::report::svg::{Anchor, Frame, Svg};
-use crate::results::{BedsAtCount, Grain, Link, RailRow, Run, SleeperRow};
+use crate::results::{BedsAtCount, Grain, RailRow, Run, SleeperRow};
 use crate::scenario::SleeperBody;
 
 /// Height of the levels, px.
@@ -14,7 +14,9 @@ const LEVELS: f64 = 54.0;
 const GAP: f64 = 30.0;
 /// Widest line of a force, px, and how many widths there are.
 const WIDEST: f64 = 4.0;
-const WIDTHS: usize = 8;
+const WIDTHS: usize = 12;
+/// Share of the widest force below which no line is drawn.
+pub(super) const WEAKEST: f64 = 0.03;
 /// The rail lies so far above its sleepers, px.
 const RAIL: f64 = 3.0;
 /// Room over the sleepers, px.
@@ -23,6 +25,8 @@ const ROOM: f64 = 10.0;
 pub struct Layer<'a> {
     pub run: &'a Run,
     pub beds: &'a BedsAtCount,
+    /// The same under a train, where that was told.
+    pub loaded: Option<&'a BedsAtCount>,
     pub window: &'a Window,
     pub scales: &'a Scales,
 }
@@ -142,25 +146,32 @@ impl Layer<'_> {
         svg.path("rail", &tops, false, "rail");
     }
 
+    /// The beds whose forces are shown, the force of the widest line, N, and when that is.
+    fn forces(&self) -> (&BedsAtCount, f64, &'static str) {
+        let [rest, under_train] = self.scales.forces;
+        match self.loaded {
+            Some(loaded) => (loaded, under_train, "as the leading bogie of the next train passes"),
+            None => (self.beds, rest, "without a train"),
+        }
+    }
+
     fn about_forces(&self) -> String {
-        format!(
-            "Contact forces above the mean of {} N; widest line {} kN",
-            significant(self.beds.mean_force(), 2),
-            significant(self.scales.force / 1e3, 2)
-        )
+        let (_, force, when) = self.forces();
+        format!("Contact forces {when}; widest line {} kN", significant(force / 1e3, 2))
     }
 
     /// Lines of each width as one path, the thinnest first.
     fn draw_forces(&self, svg: &mut Svg, base: f64, bottom: f64) {
-        let (window, most) = (self.window, self.scales.force.max(f64::MIN_POSITIVE));
-        let mean = self.beds.mean_force();
+        let (beds, most, _) = self.forces();
+        let window = self.window;
         let mut lines: Vec<Vec<[(f64, f64); 2]>> = vec![Vec::new(); WIDTHS];
         let at = |place: [f64; 3]| (window.x(place[0]), base - place[2] * window.scale);
-        let shown = |link: &&Link| link.size() >= mean && window.holds(link.from[0]) && window.holds(link.to[0]);
-        for link in self.beds.links.iter().filter(shown) {
-            let share = (link.size() / most).min(1.0);
-            let width = ((share * WIDTHS as f64) as usize).min(WIDTHS - 1);
-            lines[width].push([at(link.from), at(link.to)]);
+        for link in beds.links.iter().filter(|link| window.holds(link.from[0]) && window.holds(link.to[0])) {
+            let share = (link.size() / most.max(f64::MIN_POSITIVE)).min(1.0);
+            if share >= WEAKEST {
+                let width = ((share * WIDTHS as f64) as usize).min(WIDTHS - 1);
+                lines[width].push([at(link.from), at(link.to)]);
+            }
         }
         svg.clipped(&format!("forces-{}-{:.0}", self.beds.axles, base), self.frame(base, bottom), |svg| {
             for (width, lines) in lines.iter().enumerate() {

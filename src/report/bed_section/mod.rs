@@ -28,14 +28,15 @@ struct Scales {
     bar: Bar,
     /// Levels and voids are drawn so many times as large as the lengths of the picture.
     exaggeration: f64,
-    /// Force of the widest line, N.
-    force: f64,
+    /// Force of the widest line, without a train and under one, N.
+    forces: [f64; 2],
     /// Height of the highest void, px.
     hanging: f64,
 }
 
 pub fn bed_section(run: &Run) -> Option<Figure> {
-    let shown: Vec<BedsAtCount> = spread(&run.beds).into_iter().map(|beds| section(run, beds)).collect();
+    let shown: Vec<BedsAtCount> = spread(run).into_iter().map(|beds| section(run, beds)).collect();
+    let under_train: Vec<Option<BedsAtCount>> = shown.iter().map(|beds| under_train(run, beds.axles)).collect();
     let last = shown.last()?;
     let windows = window::windows(run, last);
     let largest = windows.iter().map(|window| window.scale).fold(f64::NAN, f64::max);
@@ -46,7 +47,7 @@ pub fn bed_section(run: &Run) -> Option<Figure> {
     let scales = Scales {
         bar: Bar::new(Colour::Displacement, shown.iter().flat_map(|beds| &beds.grains)),
         exaggeration,
-        force: widest(&shown),
+        forces: [widest(shown.iter()), widest(under_train.iter().flatten())],
         hanging: run.sleepers.iter().map(|row| row.void_m).fold(0.0, f64::max) * exaggeration * largest,
     };
     let mut svg = Svg::default();
@@ -55,18 +56,18 @@ pub fn bed_section(run: &Run) -> Option<Figure> {
     let names: Vec<String> = shown.iter().map(|beds| named(beds.axles)).collect();
     svg.define(&format!("<metadata class=\"layers\">{}</metadata>", escape(&steps(&names))));
     let mut bottom = TOP;
-    for (step, (beds, name)) in shown.iter().zip(&names).enumerate() {
+    for (step, ((beds, loaded), name)) in shown.iter().zip(&under_train).zip(&names).enumerate() {
         let hidden = if step + 1 < shown.len() { r#" display="none""# } else { "" };
         svg.group(&format!(r#"class="layer" data-step="{step}"{hidden}"#), |svg| {
             svg.text("strong", (26.0, 24.0), Anchor::Start, name);
             let mut y = TOP;
             for window in &windows {
-                y = Layer { run, beds, window, scales: &scales }.draw(svg, y) + GAP;
+                y = Layer { run, beds, loaded: loaded.as_ref(), window, scales: &scales }.draw(svg, y) + GAP;
             }
             bottom = y;
         });
     }
-    let caption = caption(run, &scales, &shown);
+    let caption = caption(run, &scales, &shown, under_train.iter().any(Option::is_some));
     let svg = svg.finish(WIDTH, bottom, "Long section of the bed");
     Some(Figure { id: "bed_section".into(), title: "The bed under the transition".into(), caption, svg })
 }
@@ -76,12 +77,18 @@ fn steps(names: &[String]) -> String {
     serde_json::to_string(names).unwrap_or_default()
 }
 
-/// The counts that the picture holds.
-fn spread(beds: &[BedsAtCount]) -> Vec<&BedsAtCount> {
-    match beds.len() {
-        n if n <= MOST => beds.iter().collect(),
-        n => (0..MOST).map(|k| &beds[k * (n - 1) / (MOST - 1)]).collect(),
+/// The beds without a train at the counts that the picture holds.
+fn spread(run: &Run) -> Vec<&BedsAtCount> {
+    let all: Vec<&BedsAtCount> = run.beds.iter().filter(|beds| !beds.under_train).collect();
+    match all.len() {
+        n if n <= MOST => all,
+        n => (0..MOST).map(|k| all[k * (n - 1) / (MOST - 1)]).collect(),
     }
+}
+
+/// The beds under the leading bogie of the train after a count, where they were told.
+fn under_train(run: &Run, axles: u64) -> Option<BedsAtCount> {
+    run.beds.iter().find(|beds| beds.under_train && beds.axles == axles).map(|beds| section(run, beds))
 }
 
 /// The beds along the rail seats; those of a count at which the scene asks for states are kept whole.
@@ -95,14 +102,14 @@ fn section(run: &Run, beds: &BedsAtCount) -> BedsAtCount {
 }
 
 /// Force of the widest line: few contacts at any count carry more, N.
-fn widest(shown: &[BedsAtCount]) -> f64 {
-    let mut forces: Vec<f64> = shown.iter().flat_map(|beds| &beds.links).map(Link::size).collect();
+fn widest<'a>(shown: impl Iterator<Item = &'a BedsAtCount>) -> f64 {
+    let mut forces: Vec<f64> = shown.flat_map(|beds| &beds.links).map(Link::size).collect();
     forces.sort_by(f64::total_cmp);
     let place = ((1.0 - ABOVE) * forces.len() as f64) as usize;
     forces.get(place).or(forces.last()).copied().unwrap_or(0.0)
 }
 
-fn caption(run: &Run, scales: &Scales, shown: &[BedsAtCount]) -> String {
+fn caption(run: &Run, scales: &Scales, shown: &[BedsAtCount], loaded: bool) -> String {
     let first = shown.first().map_or(0, |beds| beds.axles);
     let since =
         if first == 0 { "since the track was built".to_owned() } else { format!("since {} axles", whole(first)) };
@@ -113,11 +120,17 @@ fn caption(run: &Run, scales: &Scales, shown: &[BedsAtCount]) -> String {
     } else {
         " No sleeper hangs.".to_owned()
     };
+    let train = match loaded {
+        true => {
+            "They are taken as the leading bogie of the next train passes the sleepers beside the structure, where the picture says so. "
+        }
+        false => "",
+    };
     format!(
-        "Grains of the 3D model along the rail seats, without a train, to scale. Above, the level of the rail and of the supports, drawn \
+        "Grains of the 3D model along the rail seats, to scale. They and the levels are without a train. Above, the level of the rail and of the supports, drawn \
          {factor} times too large. In the middle the grains, coloured by how far each has moved {since}.{voids} Below, the forces of the \
-         contacts as lines: their width grows with the force, up to {} kN. Forces below the mean are left out. The section is three mean \
-         pebbles thick; `grains.parquet` and `contacts.parquet` hold its numbers.",
-        significant(scales.force / 1e3, 2)
+         contacts as lines: their width grows with the force, and those below {} % of the widest are left out. {train}The section is three mean pebbles thick; \
+         `grains.parquet` and `contacts.parquet` hold its numbers.",
+        significant(100.0 * layer::WEAKEST, 2)
     )
 }

@@ -23,7 +23,7 @@ fn beds(axles: u64, moved: f64) -> BedsAtCount {
         overlap: 1e-6,
     };
     let links = grains.windows(2).map(link).collect();
-    BedsAtCount { axles, grains, links }
+    BedsAtCount { axles, under_train: false, grains, links }
 }
 
 #[test]
@@ -31,7 +31,13 @@ fn each_count_is_a_layer_and_the_last_one_is_shown() {
     let mut run = example::transition();
     let counts: std::collections::BTreeSet<u64> = run.sleepers.iter().map(|row| row.axles).collect();
     run.beds = counts.iter().map(|axles| beds(*axles, 1e-6 * *axles as f64)).collect();
+    let last = *counts.last().unwrap();
+    run.beds.insert(counts.len() - 1, BedsAtCount { under_train: true, ..beds(0, 0.0) });
+    assert!(run.beds.iter().any(|beds| beds.axles == last && !beds.under_train));
     let figure = bed_section(&run).unwrap();
+    // forces under a train where they are known, of the bed at rest elsewhere
+    assert_eq!(figure.svg.matches("as the leading bogie of the next train passes").count(), 1);
+    assert_eq!(figure.svg.matches("Contact forces without a train").count(), counts.len() - 1);
     let document = roxmltree::Document::parse(&figure.svg).unwrap();
     let layers: Vec<_> = document.descendants().filter(|node| node.attribute("class") == Some("layer")).collect();
     assert_eq!(layers.len(), counts.len());
