@@ -158,6 +158,64 @@ fn tables_of_a_run_that_was_stopped(text: &str, beds: &std::path::Path) {
     executor.run(&graph, &mut resumed, from).unwrap();
     assert_eq!(resumed.tables, whole.tables);
     assert_eq!(resumed.all_histories(), whole.all_histories());
+    assert!(!whole.beds.told.is_empty() && resumed.beds.told == whole.beds.told);
+    volumes_were_recorded(&whole);
+    let lasting = whole.beds.told.last().unwrap();
+    assert!(lasting.grains.iter().any(|grain| grain.displacement.unwrap()[2] < -1e-6), "grains go down");
+    assert!(whole.beds.told[0].grains.iter().all(|grain| grain.displacement == Some([0.0; 3])));
+}
+
+/// A volume under sleeper -1 at two counts.
+const VOLUME: &str = "record below { at = -1 sleeper, after = [0, 4] axles, depth = 100 mm
+  volume = box(along = 300 mm, across = bed, height = 100 mm)
+  quantities = [ballast_velocity, ballast_acceleration, ballast_stress, coordination_number] }
+";
+
+/// At both counts the grains go down under the wheels, and their acceleration is the change of their velocity.
+fn volumes_were_recorded(recorder: &RunRecorder<'_>) {
+    for axles in [0, 4] {
+        let rows = |quantity: &str| -> Vec<(f64, f64)> {
+            let of = |row: &&trackbed::results::HistoryRow| row.quantity == quantity && row.axles == axles;
+            let rows: Vec<_> = recorder.histories.iter().filter(of).collect();
+            assert!(rows.iter().all(|row| row.id == "-1 at 100 mm"), "{quantity}");
+            rows.iter().map(|row| (row.time_s, row.value)).collect()
+        };
+        let velocity = rows("ballast_velocity");
+        let fastest = velocity.iter().map(|(_, v)| v.abs()).fold(0.0, f64::max);
+        assert!((1e-3..1.0).contains(&fastest), "{fastest} m/s after {axles} axles");
+        let acceleration = rows("ballast_acceleration");
+        for (pair, (_, a)) in velocity.windows(2).zip(&acceleration) {
+            let change = (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0);
+            assert!((change - a).abs() <= 1e-9 * a.abs().max(1.0), "{change} {a}");
+        }
+        // half a sleeper bears a part of a wheel, and the grains below it feel that
+        let most = |quantity: &str| rows(quantity).iter().map(|(_, value)| *value).fold(0.0, f64::max);
+        assert!((10e3..120e3).contains(&most("contact_force_on_grains")), "{}", most("contact_force_on_grains"));
+        assert!((5e3..2e6).contains(&most("ballast_stress")), "{} Pa", most("ballast_stress"));
+        assert!((2.0..12.0).contains(&most("coordination_number")));
+        assert_eq!(rows("sleeper_velocity_on_grains").len(), velocity.len());
+    }
+}
+
+#[test]
+fn grains_in_volumes_and_beds_are_kept_through_a_stop() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = SCENE.replace("8 axles", "4 axles").replace("[0, 8]", "[0, 4]") + VOLUME;
+    tables_of_a_run_that_was_stopped(&text, folder.path());
+}
+
+#[test]
+fn volumes_without_grains_are_told() {
+    let compiled = compile(
+        "scene.track",
+        &(SCENE.to_owned() + &VOLUME.replace("-1 sleeper", "[-9, -1] sleepers").replace("[0, 4]", "[0, 8]")),
+        &NoModules,
+        &[],
+    );
+    let told: Vec<&str> =
+        compiled.diagnostics.iter().filter(|d| d.code == Code::L1024).map(|d| d.message.as_str()).collect();
+    assert!(told.contains(&"no grains lie under seat -9: its volume is not recorded"), "{told:?}");
+    assert_eq!(compiled.graph.unwrap().volumes().len(), 1);
 }
 
 #[test]
@@ -166,7 +224,8 @@ fn vehicles_ride_on_the_rail_over_the_grains() {
     let text = SCENE
         .replace("support_from = passage", "coupling = monolithic")
         .replace("8 axles", "4 axles")
-        .replace("[0, 8]", "[0, 4]");
+        .replace("[0, 8]", "[0, 4]")
+        + VOLUME;
     let graph = graph(&text);
     assert!(graph.is_ridden());
     let mut ridden = Heard::default();

@@ -6,7 +6,9 @@ use super::machine::{Ending, Machine, RunError};
 use super::pair::{Pair, settling};
 use super::step::{BlockMeasures, Done};
 use crate::graph::{Blocks, Clock, Control, Graph, Runner, Update};
-use crate::nodes::{Builders, Forces, Kept, NodeError, PassageOutcome, Request, Superstructure, Told};
+use crate::nodes::{
+    Builders, Forces, Kept, Load, NodeError, PassageOutcome, Request, Superstructure, Told, VolumeSample,
+};
 use crate::store::Beds;
 use std::ops::ControlFlow;
 
@@ -113,6 +115,7 @@ impl Run<'_, '_> {
             }
             here = going!(self.block(here));
         }
+        going!(self.record_last(&here));
         let passages: Vec<&PassageOutcome> = here.passages().collect();
         let (before, after) = (&here.settlement, &here.settlement);
         tell!(self, Event::Block { axles: here.axles, block: None, passages: &passages, before, after });
@@ -124,8 +127,35 @@ impl Run<'_, '_> {
     fn show(&mut self, here: &Exchange) -> Going<()> {
         let Some((state, passages)) = here.recorded() else { return Ok(ControlFlow::Continue(())) };
         tell!(self, Event::Rest { axles: here.axles, state });
+        let beds = self.pair.ground.beds().map_err(|cause| RunError::node(Clock::Axles(here.axles), cause))?;
+        if !beds.is_empty() {
+            tell!(self, Event::Beds { axles: here.axles, under_train: false, beds: &beds });
+        }
         for (runner, passage) in passages {
             tell!(self, Event::Passage { axles: here.axles, runner, passage });
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Records the passage after the last block, which settles nothing.
+    fn record_last(&mut self, here: &Exchange) -> Going<()> {
+        let leading = self.pair.blocks.leading();
+        let Some(passage) = leading.first().and_then(|runner| here.passage(*runner)) else {
+            return Ok(ControlFlow::Continue(()));
+        };
+        let (listener, load) = (&mut *self.listener, Load { passage, trains: 1 });
+        let began = (here.axles, self.done, self.pair.control);
+        let follow = &mut |told: Told<'_>| tell_of_trains(listener, began, told);
+        let samples = match self.pair.ground.record_alone(here.axles, &load, follow) {
+            Err(NodeError::Stopped) => return Ok(ControlFlow::Break(())),
+            samples => samples.map_err(|cause| RunError::node(Clock::Axles(here.axles), cause))?,
+        };
+        self.tell_volumes(here.axles, &samples)
+    }
+
+    fn tell_volumes(&mut self, axles: u64, samples: &[VolumeSample]) -> Going<()> {
+        if !samples.is_empty() {
+            tell!(self, Event::Volumes { axles, samples });
         }
         Ok(ControlFlow::Continue(()))
     }
@@ -138,6 +168,9 @@ impl Run<'_, '_> {
             here = going!(self.tamp(here.axles));
         }
         let revision = self.pair.ground.responses().revision;
+        if self.pair.blocks.recorded.binary_search(&here.axles).is_ok() {
+            self.pair.ground.record(here.axles);
+        }
         let listener = &mut *self.listener;
         let began = (here.axles, self.done, self.pair.control);
         let follow = &mut |told: Told<'_>| tell_of_trains(listener, began, told);
@@ -156,6 +189,8 @@ impl Run<'_, '_> {
         let (next, lost) = if next.as_ref().is_some_and(same) { (next, None) } else { (None, next) };
         lost.iter().for_each(|lost| work.add(lost, Work::default()));
         let measured = measured.with(&work);
+        let recorded = self.pair.ground.recorded();
+        going!(self.tell_volumes(here.axles, &recorded));
         let passed = block.runs.iter().filter_map(|(runner, _)| here.passage(*runner));
         let passages: Vec<&PassageOutcome> = passed.collect();
         let (told, before) = (Some((&block, &measured)), &here.settlement);

@@ -2,7 +2,7 @@
 
 use super::BlockMeasures;
 use crate::graph::{BedRecipe, Block, Clock, Control, Runner};
-use crate::nodes::{NodeError, PassageOutcome, Stage, TestState, Tested, Told, Unloaded};
+use crate::nodes::{BedUnderTrack, NodeError, PassageOutcome, Stage, TestState, Tested, Told, Unloaded, VolumeSample};
 use crate::solvers::granular::Bed;
 use crate::solvers::granular::packing::Progress;
 use crate::store::FoundBed;
@@ -15,8 +15,12 @@ pub enum Event<'a> {
     Equilibrium { unloaded: &'a Unloaded, loaded: &'a Unloaded },
     /// The track without a train, at an axle count that is recorded.
     Rest { axles: u64, state: &'a Unloaded },
+    /// The beds of grains under the track at an axle count that is recorded: at rest, or as the leading bogie of the next train passes.
+    Beds { axles: u64, under_train: bool, beds: &'a [BedUnderTrack<'a>] },
     /// A passage at a recorded count; there is one of each kind of train, the leading one first.
     Passage { axles: u64, runner: Runner, passage: &'a PassageOutcome },
+    /// Volumes of grains in a passage at a recorded count, after the passage.
+    Volumes { axles: u64, samples: &'a [VolumeSample] },
     /// A block is done: the passages at its start, and the settlement of every seat before and after it, m. `block` is `None` for
     /// the passages after the last block.
     Block {
@@ -60,6 +64,7 @@ pub(super) fn tell_of_trains(
 ) -> ControlFlow<()> {
     match told {
         Told::Stage(stage, share) => tell_stage(listener, stage, share),
+        Told::Beds(beds) => listener.hear(&Event::Beds { axles, under_train: true, beds: &beds }),
         Told::State(ground) => {
             let state = || {
                 let state = ScheduleState::Blocks { blocks, control, ground: ground()? };

@@ -39,6 +39,12 @@ pub(super) fn run(
         if shown && !told && listener.hear(&Event::Rest { axles, state: &unloaded }).is_break() {
             return Ok(Ending::Stopped);
         }
+        if shown && !told {
+            let beds = ground.look().map_err(at(axles))?;
+            if listener.hear(&Event::Beds { axles, under_train: false, beds: &beds }).is_break() {
+                return Ok(Ending::Stopped);
+            }
+        }
         let before = ground.settlement();
         let runs =
             if last { blocks.leading().into_iter().map(|runner| (runner, 1)).collect() } else { block.runs.clone() };
@@ -60,6 +66,10 @@ pub(super) fn run(
             passages.push(passage);
         }
         ground.end_rides().map_err(at(axles))?;
+        let samples = ground.recorded();
+        if !samples.is_empty() && listener.hear(&Event::Volumes { axles, samples: &samples }).is_break() {
+            return Ok(Ending::Stopped);
+        }
         let passages: Vec<&PassageOutcome> = passages.iter().collect();
         let after = if last { before.clone() } else { ground.settlement() };
         let steps = passages.iter().map(|passage| passage.time_steps).sum();

@@ -1,5 +1,6 @@
 //! Nodes of grains: beds to pack, what stands on them, what loads them, and the soil below.
 
+use super::record::InVolume;
 use crate::solvers::continuum::Strength;
 use crate::solvers::granular::grains::{ClumpShape, TemplatesError};
 use crate::solvers::granular::measure::Region;
@@ -191,6 +192,22 @@ pub struct GrainsNode {
     pub time_step: Option<f64>,
     /// Share of the mass of a bed that may be added as inertia for the sake of a longer step.
     pub added_inertia: f64,
+    /// Where grains are recorded in passages.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub volumes: Vec<VolumeUnderTrack>,
+}
+
+/// A volume of grains under a sleeper of a track, in which passages are recorded.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct VolumeUnderTrack {
+    pub sensor: SensorNode,
+    /// Index of the seat of the sleeper, and number of its bed among [`GrainsNode::stretches`].
+    pub seat: usize,
+    pub stretch: usize,
+    pub quantities: Vec<InVolume>,
+    /// Axle counts at which a passage is recorded, and the interval of what is recorded, s.
+    pub after: Vec<u64>,
+    pub every: f64,
 }
 
 /// From which loads grains say how stiff the support of a sleeper is.
@@ -323,7 +340,7 @@ impl BedNode {
 
 impl SensorNode {
     /// The volume in a bed whose top is at a level (m), cut at the ends and sides of the bed; `None` where nothing is left.
-    fn region(&self, top: f64) -> Option<Region> {
+    pub fn region(&self, top: f64) -> Option<Region> {
         let [x, y, depth] = self.place;
         let [length, width] = self.bed;
         let z = top - depth;

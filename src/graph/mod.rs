@@ -26,7 +26,7 @@ pub use control::Control;
 pub use decision::{Cost, Decision, PassageWork, Rejected, TestWork, Work};
 pub use grains::{
     ActuatorsNode, BedError, BedNode, BedPlan, BedRecipe, GrainStretch, GrainsNode, SensorNode, SensorVolume,
-    SleeperOnGrains, SoilBlock, SoilLayer, SoilNode, StandingBody, StiffnessFrom,
+    SleeperOnGrains, SoilBlock, SoilLayer, SoilNode, StandingBody, StiffnessFrom, VolumeUnderTrack,
 };
 pub use ground::{LawNode, NamedLaw, SpringsNode, SupportNode};
 pub use listing::Listing;
@@ -34,7 +34,7 @@ pub use node::{CustomNode, Model, Node};
 pub use passing::{BlockWeight, Passing};
 pub use port::{Edge, Fault, Ports, faults};
 pub use quantity::{Basis, Quantity, Rate};
-pub use record::{History, Record};
+pub use record::{History, InVolume, Record};
 pub use schedule::{
     AdaptiveSteps, Block, Blocks, Clock, LoadedPart, PassagePlan, PointLoad, Runner, Schedule, Tamping, Tests, Update,
 };
@@ -89,6 +89,15 @@ impl Graph {
     /// Whether grains lie under its track: all along, in part or in cells.
     pub fn has_grains_under_track(&self) -> bool {
         self.nodes.iter().any(|node| matches!(node.model, Model::Grains(_) | Model::Cells(_)))
+    }
+
+    /// Volumes of grains under the track in which passages are recorded; none without grains.
+    pub fn volumes(&self) -> &[VolumeUnderTrack] {
+        let grains = |node: &Node| matches!(node.model, Model::Grains(_));
+        match self.nodes.iter().find(|node| grains(node)).map(|node| &node.model) {
+            Some(Model::Grains(grains)) => &grains.volumes,
+            _ => &[],
+        }
     }
 
     /// Whether vehicles ride on a rail that is advanced step by step with what carries it, so that blocks exchange nothing.

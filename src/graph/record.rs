@@ -65,3 +65,48 @@ impl History {
         History::ALL.into_iter().find(|history| history.name() == name)
     }
 }
+
+/// A quantity of a volume of grains in a passage, or of the sleeper over it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InVolume {
+    /// Mean velocity of the grains, m/s, downward.
+    BallastVelocity,
+    /// Change of this velocity over the interval of the histories, m/s^2, downward.
+    BallastAcceleration,
+    /// Vertical stress, Pa, positive in compression.
+    BallastStress,
+    /// Mean number of neighbours that a grain touches.
+    CoordinationNumber,
+    /// Velocity and acceleration of the sleeper over the volume, m/s and m/s^2, downward, and its force on the grains, N.
+    SleeperVelocity,
+    SleeperAcceleration,
+    SleeperForce,
+}
+
+impl InVolume {
+    const OF_GRAINS: [InVolume; 4] = [
+        InVolume::BallastVelocity,
+        InVolume::BallastAcceleration,
+        InVolume::BallastStress,
+        InVolume::CoordinationNumber,
+    ];
+
+    /// Its name in files. Quantities of the sleeper are named apart from those of the plane track.
+    pub fn name(self) -> &'static str {
+        match self {
+            InVolume::BallastVelocity => "ballast_velocity",
+            InVolume::BallastAcceleration => "ballast_acceleration",
+            InVolume::BallastStress => "ballast_stress",
+            InVolume::CoordinationNumber => "coordination_number",
+            InVolume::SleeperVelocity => "sleeper_velocity_on_grains",
+            InVolume::SleeperAcceleration => "sleeper_acceleration_on_grains",
+            InVolume::SleeperForce => "contact_force_on_grains",
+        }
+    }
+
+    /// The quantity of the grains of a name; `None` of one that no passage keeps.
+    pub fn named(name: &str) -> Option<InVolume> {
+        InVolume::OF_GRAINS.into_iter().find(|quantity| quantity.name() == name)
+    }
+}

@@ -1,11 +1,11 @@
-//! L1024: a volume in which ballast is averaged holds few grains.
+//! L1024: a volume in which ballast is averaged holds few grains, or none.
 //!
 //! Least side of the volume over the median grain d50 of the layer at its depth. Below three the mean is that of a few grains, and the
 //! next packing has another.
 
 use super::grains::{GrainLayer, beds, mm};
 use crate::diag::{Code, Diagnostic};
-use crate::graph::Graph;
+use crate::graph::{Graph, Model, Node};
 use crate::scenario::{Scenario, Volume, VolumeRecord};
 use crate::units::number;
 
@@ -13,7 +13,8 @@ use crate::units::number;
 const FEWEST: f64 = 3.0;
 
 pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
-    let mut found = Vec::new();
+    let mut found: Vec<Diagnostic> =
+        scenario.volumes.iter().filter_map(|record| without_grains(scenario, graph, record)).collect();
     for record in &scenario.volumes {
         let Some(bed) = at_depth(scenario, graph, record) else { continue };
         let (median, side) = (bed.granular.grading.d(50.0), least_side(record.volume));
@@ -37,6 +38,27 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         });
     }
     found
+}
+
+/// Seats of a record under which a track has no grains.
+fn without_grains(scenario: &Scenario, graph: &Graph, record: &VolumeRecord) -> Option<Diagnostic> {
+    let grains =
+        |node: &Node| if let Model::Grains(grains) = &node.model { Some(!grains.stretches.is_empty()) } else { None };
+    graph.nodes.iter().find_map(grains).filter(|laid| *laid)?;
+    let on_grains = |seat: &usize| graph.volumes().iter().any(|volume| volume.seat == *seat);
+    let track = &scenario.track;
+    let seats = record.seats.iter().filter(|seat| !on_grains(seat)).filter_map(|seat| track.seats.get(*seat));
+    let names: Vec<String> = seats.map(|seat| track.seat_name(seat)).collect();
+    if names.is_empty() {
+        return None;
+    }
+    let message = format!("no grains lie under seat {}: its volume is not recorded", names.join(", "));
+    let help = "record sleepers on grains, or let `solve.window` reach there";
+    let diagnostic = Diagnostic::new(Code::L1024, message).help(help);
+    Some(match record.span {
+        Some(span) => diagnostic.label(span, "no grains in it"),
+        None => diagnostic,
+    })
 }
 
 /// m.

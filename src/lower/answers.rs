@@ -2,7 +2,7 @@
 //! expectations and of studies.
 
 use crate::diag::{Code, Diagnostic};
-use crate::graph::{BedNode, Clock, Graph, Record, Schedule};
+use crate::graph::{BedNode, Clock, Graph, Record, Schedule, VolumeUnderTrack};
 use crate::scenario::response::{Expectation, Expression, Measure, Place, Response};
 use crate::scenario::{Scenario, Track};
 
@@ -100,7 +100,8 @@ fn lack_on_track(measure: &Measure, graph: &Graph, track: &Track, counts: &[u64]
     let trains = graph.blocks().is_some();
     let ballasted = graph.supports.iter().any(|support| support.spring.is_some());
     let needs = match response.place() {
-        Place::Volume => Some("grains: a test rig whose `record` has a `volume`"),
+        Place::Volume if !graph.volumes().is_empty() => return lack_in_volumes(measure, graph),
+        Place::Volume => Some("grains: a test rig, or a track on grains, whose `record` has a `volume`"),
         Place::Wheel if !trains => Some("trains: `traffic`"),
         Place::Rail if !trains && response == Response::RailStiffness => Some("trains: `traffic`"),
         Place::Scene => match response {
@@ -142,6 +143,22 @@ fn lack_on_track(measure: &Measure, graph: &Graph, track: &Track, counts: &[u64]
     }
     let any_seat = (0..track.seats.len()).any(|seat| inside(&seat));
     if any_seat { off_the_counts(measure, counts) } else { Some(Lack::Place) }
+}
+
+/// Why volumes of grains under a track have no value of a measure.
+fn lack_in_volumes(measure: &Measure, graph: &Graph) -> Option<Lack> {
+    let name = measure.response.name();
+    let keeps = |volume: &&VolumeUnderTrack| volume.quantities.iter().any(|quantity| quantity.name() == name);
+    let keeping: Vec<&VolumeUnderTrack> = graph.volumes().iter().filter(keeps).collect();
+    let there: Vec<&&VolumeUnderTrack> = keeping.iter().filter(|volume| covers(measure, volume.sensor.x)).collect();
+    let mut counts: Vec<u64> = there.iter().flat_map(|volume| volume.after.iter().copied()).collect();
+    counts.sort_unstable();
+    counts.dedup();
+    match (keeping.is_empty(), there.is_empty()) {
+        (true, _) => Some(Lack::Record),
+        (_, true) => Some(Lack::Place),
+        _ => off_the_counts(measure, &counts),
+    }
 }
 
 fn off_the_counts(measure: &Measure, counts: &[u64]) -> Option<Lack> {

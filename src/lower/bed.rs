@@ -56,7 +56,10 @@ pub(super) const READS: Reads = Reads {
 };
 
 /// Fields of the volumes in which the answers of grains are wanted.
-pub(super) const VOLUMES: Reads = Reads { fields: &["record.depth", "record.volume"], acts_where: WITH_GRAINS };
+pub(super) const VOLUMES: Reads = Reads {
+    fields: &["record.depth", "record.volume"],
+    acts_where: "where grains are loaded step by step: on a test rig, or under a track with `substructure = zone` or `full`",
+};
 
 const WITH_GRAINS: &str = "where grains are modelled: on a test rig, or with `substructure = cells`, `zone` or `full`";
 

@@ -87,8 +87,9 @@ fn blocks(draft: &mut Draft<'_>, traffic: &Traffic) -> Option<Blocks> {
     let mut update = scenario.solve.update;
     // counts of a mix have gone to the nearest train
     let mut sound = traffic.is_mixed() || whole_trains(draft, traffic, &mut update);
-    let mut recorded: Vec<u64> =
-        scenario.records.iter().flat_map(|r| r.after.iter().copied()).chain([0, total]).collect();
+    let of_volumes = scenario.volumes.iter().flat_map(|record| record.after.iter().copied());
+    let of_track = scenario.records.iter().flat_map(|record| record.after.iter().copied());
+    let mut recorded: Vec<u64> = of_track.chain(of_volumes).chain([0, total]).collect();
     recorded.sort_unstable();
     recorded.dedup();
     if !traffic.is_mixed() {

@@ -22,7 +22,8 @@ pub use grains::{BedUnderActuators, TestState, Tested};
 pub use law::LawGround;
 pub use on_cells::{CellGround, Parts as CellParts};
 pub use on_grains::{
-    Following, GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling, TimedSteps, Told,
+    BedUnderTrack, Following, GrainGround, Parted, Parts as GrainParts, PassageEnergy, Riders, Stage, Telling,
+    TimedSteps, Told, VolumeSample,
 };
 pub use outcome::{
     PassageOutcome, RailPlace, RailPoint, Sample, SampledPart, SeatForces, SeatOutcome, Unloaded, UnloadedSeat,
@@ -124,6 +125,24 @@ pub trait Substructure: Send + Sync {
         self.advance(loads)
     }
 
+    /// Records the first passage of the next block, as one after so many axles, where it has volumes that are recorded then.
+    fn record(&mut self, _axles: u64) {}
+
+    /// What was recorded in the last block; it is told once.
+    fn recorded(&mut self) -> Vec<VolumeSample> {
+        Vec::new()
+    }
+
+    /// Lets a train pass only to record it, as one after so many axles, and changes nothing.
+    fn record_alone(
+        &mut self,
+        _axles: u64,
+        _load: &Load<'_>,
+        _follow: &mut Following<'_>,
+    ) -> Result<Vec<VolumeSample>, NodeError> {
+        Ok(Vec::new())
+    }
+
     /// Standard error of what the last block added to the settlement, at the worst seat, m.
     fn error_added(&self) -> f64 {
         0.0
@@ -132,6 +151,12 @@ pub trait Substructure: Send + Sync {
     /// Whether it was restored in the middle of a block of trains. Until the block is done it answers as when it began.
     fn is_underway(&self) -> bool {
         false
+    }
+
+    /// The beds of grains under the track as they lie now; none where it stands on something else. What comes later does not know that
+    /// somebody has looked.
+    fn beds(&mut self) -> Result<Vec<BedUnderTrack<'_>>, NodeError> {
+        Ok(Vec::new())
     }
 
     /// The present state, to be rolled back to.

@@ -5,7 +5,9 @@
 //! numbers are those of the run's tables.
 
 mod along;
+mod ballast_response;
 mod bed;
+mod bed_section;
 mod bed_tests;
 mod blocks;
 mod chart;
@@ -102,6 +104,7 @@ pub fn figures(run: &Run) -> Vec<Figure> {
     } else {
         let along = [
             over_axles::over_axles(run),
+            bed_section::bed_section(run),
             stiffness::rail_stiffness(run),
             along::settlement(run),
             exchanges::settlement_with_axles(run),
@@ -119,6 +122,7 @@ pub fn figures(run: &Run) -> Vec<Figure> {
     }
     figures.extend(histories::histories(run));
     figures.extend(hanging::hanging_sleeper(run));
+    figures.extend(ballast_response::ballast_response(run));
     figures
 }
 

@@ -59,7 +59,8 @@ fn spread(count: usize, most: usize) -> Vec<usize> {
     if count <= most { (0..count).collect() } else { (0..most).map(|k| k * (count - 1) / (most - 1)).collect() }
 }
 
-fn named(axles: u64) -> String {
+/// `after 100 axles`
+pub(super) fn named(axles: u64) -> String {
     if axles == 0 { "as built".to_owned() } else { format!("after {} axles", whole(axles)) }
 }
 

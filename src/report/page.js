@@ -232,10 +232,15 @@
 
   // ---- the slider over the axles ----
 
+  const sliders = []; // each moves one picture; those of other pictures go to the same count where they have it
+
   function slider(picture) {
     const moving = charts.filter(chart => chart.node.ownerSVGElement === picture && chart.data.steps);
-    if (!moving.length) return;
-    const { steps } = moving[0].data;
+    const layers = [...picture.querySelectorAll(".layer")];
+    const named = picture.querySelector("metadata.layers");
+    if (!moving.length && !named) return;
+    const steps = named ? JSON.parse(named.textContent) : moving[0].data.steps;
+    if (steps.length < 2) return;
     const label = html("label", "slider");
     const input = Object.assign(html("input", ""), { type: "range", min: 0, max: steps.length - 1, step: 1, value: steps.length - 1 });
     const output = html("output", "");
@@ -244,8 +249,18 @@
       output.textContent = steps[now];
       input.setAttribute("aria-valuetext", steps[now]);
       moving.forEach(chart => moveTo(chart, now));
+      for (const layer of layers) layer.setAttribute("display", Number(layer.dataset.step) === now ? "inline" : "none");
     };
-    input.addEventListener("input", move);
+    const goTo = name => {
+      if (!steps.includes(name) || output.textContent === name) return;
+      input.value = steps.indexOf(name);
+      move();
+    };
+    input.addEventListener("input", () => {
+      move();
+      sliders.forEach(other => other(output.textContent));
+    });
+    sliders.push(goTo);
     label.append("Axles", input, output);
     const scroll = picture.closest(".scroll");
     scroll.parentNode.insertBefore(label, scroll);
@@ -286,6 +301,10 @@
     switches(chart);
   }
   const pictures = new Set(charts.map(chart => chart.node.ownerSVGElement));
+  for (const named of document.querySelectorAll("metadata.layers")) {
+    const picture = named.ownerSVGElement;
+    if (!pictures.has(picture)) slider(picture);
+  }
   for (const picture of pictures) {
     picture.addEventListener("pointermove", point);
     picture.addEventListener("pointerdown", point);

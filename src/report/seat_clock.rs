@@ -34,7 +34,12 @@ pub fn window(run: &Run) -> (f64, f64) {
 
 /// A history of a seat at a count, over the seat's time; empty where there is none.
 pub fn history(run: &Run, quantity: Response, seat: &str, axles: u64) -> Vec<(f64, f64)> {
-    let rows = run.leading_histories().filter(|h| h.quantity == quantity.name() && h.id == seat && h.axles == axles);
+    named_history(run, quantity.name(), seat, axles)
+}
+
+/// The same of a quantity and a part of the track by the names that they have in files.
+pub fn named_history(run: &Run, quantity: &str, id: &str, axles: u64) -> Vec<(f64, f64)> {
+    let rows = run.leading_histories().filter(|h| h.quantity == quantity && h.id == id && h.axles == axles);
     let mut rows = rows.peekable();
     let Some(x) = rows.peek().map(|row| row.x_m) else { return vec![] };
     let zero = arrival(run, axles, x).unwrap_or(0.0);
@@ -43,7 +48,11 @@ pub fn history(run: &Run, quantity: Response, seat: &str, axles: u64) -> Vec<(f6
 
 /// When the seat's sleeper has no contact with its support at a count.
 pub fn lost(run: &Run, seat: &str, axles: u64) -> Vec<Band> {
-    let samples = history(run, Response::ContactForce, seat, axles);
+    unloaded(&history(run, Response::ContactForce, seat, axles))
+}
+
+/// When a force is not above zero.
+pub fn unloaded(samples: &[(f64, f64)]) -> Vec<Band> {
     let pieces = samples.chunk_by(|a, b| (a.1 <= 0.0) == (b.1 <= 0.0));
     let bands = pieces.filter(|piece| piece[0].1 <= 0.0).map(|piece| Band {
         from: piece[0].0,

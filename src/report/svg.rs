@@ -75,6 +75,18 @@ impl Svg {
         self.body += "\"/>";
     }
 
+    /// Many straight lines as one path.
+    pub fn strokes(&mut self, lines: &[[(f64, f64); 2]]) {
+        if lines.is_empty() {
+            return;
+        }
+        self.body += "<path d=\"";
+        for [from, to] in lines {
+            let _ = write!(self.body, "M{} {}L{} {}", px(from.0), px(from.1), px(to.0), px(to.1));
+        }
+        self.body += "\"/>";
+    }
+
     /// Ends a tag, with what it says when it is pointed at.
     fn close(&mut self, tag: &str, title: &str) {
         if title.is_empty() {

@@ -457,6 +457,7 @@ fn finished(
         trains,
         tampings: vec![],
         histories,
+        beds: vec![],
         tests: None,
     }
 }

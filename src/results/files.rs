@@ -41,8 +41,9 @@ pub fn files(run: &Run, directory: &Path) -> Result<Vec<NamedBytes>, ResultsErro
     files.push((HISTORIES, histories::encode(&run.histories, directory)?));
     let named = files.into_iter().map(|(name, bytes)| (name.to_owned(), bytes));
     let states = super::states::files(run, directory)?;
+    let beds = super::under_track_files::files(&run.beds, directory)?;
     let summary = (SUMMARY.to_owned(), summary_json(run, directory)?);
-    Ok(named.chain(states).chain([summary]).collect())
+    Ok(named.chain(beds).chain(states).chain([summary]).collect())
 }
 
 /// Writes every file of `run` into `directory`, which is made where it does not exist.
@@ -78,6 +79,7 @@ pub fn read(directory: &Path) -> Result<Run, ResultsError> {
         trains: read_table_if_any(directory)?,
         tampings: read_table_if_any(directory)?,
         histories: histories::decode(&directory.join(HISTORIES))?,
+        beds: super::under_track_files::read(directory)?,
         tests: None,
     })
 }

@@ -44,6 +44,7 @@ impl Run {
             trains: tables.trains.clone(),
             tampings: tables.tampings.clone(),
             histories,
+            beds: recorder.beds.told.clone(),
             ..Run::empty(scenario, Summary { scalars, expectations, reliance, provenance })
         }
     }
@@ -60,6 +61,7 @@ impl Run {
             trains: Vec::new(),
             tampings: Vec::new(),
             histories: Vec::new(),
+            beds: Vec::new(),
             tests: None,
         }
     }

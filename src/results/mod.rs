@@ -12,6 +12,7 @@ mod files;
 mod gather;
 mod grains;
 mod histories;
+mod kept_beds;
 mod laws;
 mod level;
 mod recorder;
@@ -23,6 +24,8 @@ mod summarise;
 mod summary;
 mod tables;
 mod test_loads;
+mod under_track;
+mod under_track_files;
 mod vtk;
 
 #[cfg(test)]
@@ -50,6 +53,7 @@ pub use summarise::{
 };
 pub use summary::{Provenance, Scalar, Summary, Verdict};
 pub use tables::{BlockRow, HistoryRow, RailRow, Row, SleeperRow, TampingRow, TrainRow};
+pub use under_track::BedsAtCount;
 pub use vtk::{bodies_vtk, contacts_vtk};
 
 pub use crate::store::{Beds, FoundBed, bed_hash, write_atomically};
@@ -72,6 +76,8 @@ pub struct Run {
     /// Sleepers that were tamped; empty without tamping.
     pub tampings: Vec<TampingRow>,
     pub histories: Vec<HistoryRow>,
+    /// Beds of grains under the track at the recorded counts; empty where it stands on something else.
+    pub beds: Vec<BedsAtCount>,
     /// Tests of packed beds; a track has none.
     pub tests: Option<BedTests>,
 }

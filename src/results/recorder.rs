@@ -1,6 +1,8 @@
 //! Listens to a run and makes its tables. What it holds between two blocks is small and goes into the checkpoint;
 //! histories go into their own file as soon as they exist.
 
+use super::kept_beds::{BedPieces, KeptBeds};
+use super::under_track::Part;
 use super::{
     BedSummary, BedTest, BedTests, BlockRow, HistoryRow, LawCount, RailMaxima, RailRow, ResultsError, Run, Scalar,
     SleeperRow, SleeperTable, SoFar, Source, Tables, TampingRow, TrainRow, bed_summary, histories, static_wheel_load,
@@ -8,10 +10,11 @@ use super::{
 };
 use crate::execute::{Between, BlockMeasures, Checkpoint, Event, Listener};
 use crate::graph::{Block, Blocks, Graph, Record, Runner, SupportNode, TrackNode};
-use crate::nodes::{self, PassageOutcome, SeatOutcome, Tested, Unloaded};
+use crate::nodes::{self, PassageOutcome, SeatOutcome, Tested, Unloaded, VolumeSample};
 use crate::scenario::response::Response;
 use crate::scenario::{Loading, Scenario, Track, Traffic};
 use crate::solvers::granular::Bed;
+use crate::solvers::track::Direction;
 use crate::store::{Directory, Piece};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -63,6 +66,9 @@ struct Saved {
     /// The track before the passages of a block under way.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     unloaded: Option<Unloaded>,
+    /// Beds under the track, which stand in pieces too.
+    #[serde(default)]
+    beds: BedPieces,
     #[serde(default)]
     spent: Spent,
 }
@@ -99,6 +105,8 @@ pub struct RunRecorder<'a> {
     kept: Vec<Piece>,
     written: usize,
     unloaded: Option<Unloaded>,
+    /// Beds under the track at the recorded counts.
+    pub beds: KeptBeds,
     /// The bed under test, before its test is over.
     bed: Option<BedSummary>,
     /// The bed of the last test, as it ended.
@@ -135,6 +143,7 @@ impl<'a> RunRecorder<'a> {
             kept: Vec::new(),
             written: 0,
             unloaded: None,
+            beds: KeptBeds::default(),
             bed: None,
             last_bed: None,
             failure: None,
@@ -181,6 +190,7 @@ impl<'a> RunRecorder<'a> {
         }
         self.written = self.histories.len();
         self.spent = saved.spent;
+        self.beds = KeptBeds::restore(saved.beds, directory)?;
         (self.kept, self.tables, self.unloaded) = (saved.histories, saved.tables, saved.unloaded);
         Ok(Some(saved.checkpoint))
     }
@@ -206,8 +216,10 @@ impl<'a> RunRecorder<'a> {
         let clock = checkpoint.clock;
         let (tables, histories, unloaded) = (self.tables.clone(), self.kept.clone(), self.unloaded.clone());
         let spent = Spent { seconds: self.seconds(), parts: self.parts() };
-        let bytes = directory.write_checkpoint(&Saved { checkpoint, tables, histories, unloaded, spent })?;
-        SoFar::keep(self, clock, &self.kept, directory)?;
+        let beds = self.beds.save(directory)?;
+        let saved = Saved { checkpoint, tables, histories, unloaded, beds: beds.clone(), spent };
+        let bytes = directory.write_checkpoint(&saved)?;
+        SoFar::keep(self, clock, (&self.kept, beds), directory)?;
         let of_size = Duration::from_secs(bytes as u64 / BYTES_A_SECOND);
         self.due = Some(Instant::now() + KEEP.max(SHARE * started.elapsed()).max(of_size));
         Ok(())
@@ -390,6 +402,10 @@ impl Listener for RunRecorder<'_> {
         match event {
             Event::Equilibrium { unloaded, loaded } => self.equilibrium(unloaded, loaded),
             Event::Rest { axles, state } => self.unloaded(*axles, state),
+            Event::Beds { axles, under_train, beds } => {
+                self.beds.take((*axles, *under_train), beds, self.part_of_beds(*axles));
+            }
+            Event::Volumes { axles, samples } => self.volumes(*axles, samples),
             Event::Passage { axles, runner, passage } => self.passage(*axles, *runner, passage),
             Event::Block { axles, block, passages, before, after } => {
                 self.block(*axles, *block, passages, before, after);
@@ -422,9 +438,38 @@ impl RunRecorder<'_> {
         self.last_bed = Some(bed.clone());
     }
 
+    /// All of the beds where the scene asks for states at a count, else a section along the rail seats.
+    fn part_of_beds(&self, axles: u64) -> Part {
+        let states = self.scenario.records.iter().any(|record| record.states && record.after.contains(&axles));
+        let sleeper = self.track().seats.iter().find_map(|seat| seat.sleeper);
+        match sleeper.filter(|_| !states) {
+            Some(sleeper) => Part::AlongSeats(0.5 * sleeper.seat_distance),
+            None => Part::All,
+        }
+    }
+
     fn unloaded(&mut self, axles: u64, state: &Unloaded) {
         self.keep_rail(axles, Response::RailLevel, state.rail.iter().map(|p| (p.x, p.deflection)));
         self.unloaded = Some(state.clone());
+    }
+
+    /// Histories of grains in volumes, and of the sleepers over them, under the leading train.
+    fn volumes(&mut self, axles: u64, samples: &[VolumeSample]) {
+        let train = self.train_name(Runner { kind: 0, direction: Direction::Forward });
+        let volumes = self.graph.volumes();
+        let row = |sample: &VolumeSample| {
+            let volume = volumes.get(sample.volume)?;
+            Some(HistoryRow {
+                axles,
+                time_s: sample.time,
+                quantity: sample.quantity.name().into(),
+                id: volume.sensor.name.clone(),
+                x_m: volume.sensor.x,
+                value: sample.value,
+                train: train.clone(),
+            })
+        };
+        self.histories.extend(samples.iter().filter_map(row));
     }
 
     fn passage(&mut self, axles: u64, runner: Runner, passage: &PassageOutcome) {

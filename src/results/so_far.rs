@@ -1,6 +1,7 @@
 //! What a run that is not finished has so far: kept beside its checkpoints, and read by others while it goes on.
 
 use super::files::json;
+use super::kept_beds::BedPieces;
 use super::{ResultsError, Run, RunRecorder, histories};
 use crate::graph::Clock;
 use crate::store::{Directory, Piece, Unfinished};
@@ -22,23 +23,27 @@ pub struct SoFar {
     pub seconds: f64,
     /// Histories of recorded passages: they are kept once, and are not in `run` while this is on a disk.
     recorded: Vec<Piece>,
+    /// The same of beds under the track.
+    #[serde(default)]
+    beds: BedPieces,
 }
 
 impl SoFar {
-    /// Keeps what a recorder has, of which so many histories are kept as these pieces.
+    /// Keeps what a recorder has, of which these histories and beds are kept as pieces.
     pub(super) fn keep(
         recorder: &RunRecorder<'_>,
         clock: Clock,
-        recorded: &[Piece],
+        (recorded, beds): (&[Piece], BedPieces),
         directory: &Directory,
     ) -> Result<(), ResultsError> {
         // tests of beds are shown when they are over
         let Some(mut run) = recorder.gather().filter(|run| run.tests.is_none()) else { return Ok(()) };
         run.histories.clone_from(&recorder.tables.settlements);
+        run.beds.clear();
         run.summary.expectations.clear();
         run.summary.scalars.retain(|_, scalar| scalar.value.is_finite());
         let (stage, seconds, recorded) = (recorder.stage().cloned(), recorder.seconds(), recorded.to_vec());
-        let so_far = SoFar { run, clock, stage, seconds, recorded };
+        let so_far = SoFar { run, clock, stage, seconds, recorded, beds };
         directory.keep(KEY, &json(&so_far, directory.path())?)?;
         Ok(())
     }
@@ -54,6 +59,7 @@ impl SoFar {
         }
         let settlements = std::mem::take(&mut so_far.run.histories);
         so_far.run.histories = [recorded, settlements].concat();
+        so_far.run.beds = so_far.beds.read(from.path(), |piece| from.read_piece(piece))?;
         Ok(Some(so_far))
     }
 }

@@ -1,11 +1,12 @@
-//! Rail and sleepers at a recorded count as VTK files of polygonal data, which ParaView opens: `states/rail_000500.vtp` and
-//! `states/sleepers_000500.vtp`, and `states/states.pvd`, which holds all of them over axles.
+//! Rail, sleepers and grains at a recorded count as VTK files of polygonal data, which ParaView opens: `states/rail_000500.vtp`,
+//! `states/sleepers_000500.vtp`, and with grains under the track `states/grains_000500.vtp` and `states/contacts_000500.vtp`. All
+//! stand over axles in `states/states.pvd`.
 //!
 //! Places are as the track lies unloaded, z up, the rails at 0 where they have not settled; sleepers are boxes in their true size. What
 //! traffic does stands beside as data: warp by `displacement` to see the rail under the passage.
 
-use super::vtk::File;
-use super::{NamedBytes, RailRow, ResultsError, Run, SleeperRow};
+use super::vtk::{File, bodies_vtk, contacts_vtk};
+use super::{BedsAtCount, Grain, Link, NamedBytes, RailRow, ResultsError, Run, SleeperRow};
 use crate::scenario::{Scenario, SleeperBody};
 use std::fs;
 use std::io;
@@ -31,7 +32,11 @@ pub(super) fn files(run: &Run, directory: &Path) -> Result<Vec<NamedBytes>, Resu
     for axles in counts {
         let rail: Vec<&RailRow> = run.rail.iter().filter(|row| row.axles == axles).collect();
         let sleepers: Vec<&SleeperRow> = run.sleepers.iter().filter(|row| row.axles == axles).collect();
-        let parts = [("rail", rail_vtk(&run.scenario, &rail)), ("sleepers", sleepers_vtk(&run.scenario, &sleepers))];
+        let mut parts =
+            vec![("rail", rail_vtk(&run.scenario, &rail)), ("sleepers", sleepers_vtk(&run.scenario, &sleepers))];
+        if let Some(beds) = run.beds.iter().find(|beds| beds.axles == axles && !beds.under_train) {
+            parts.extend([("grains", grains_vtk(run, beds)), ("contacts", contacts_of(run, beds))]);
+        }
         for (part, (name, bytes)) in parts.into_iter().enumerate() {
             let file = format!("{name}_{axles:06}.vtp");
             let path = format!("{FOLDER}/{file}");
@@ -56,6 +61,31 @@ pub fn remove(directory: &Path) -> Result<(), ResultsError> {
         }
     }
     Ok(())
+}
+
+/// The pebbles of the beds under the track.
+fn grains_vtk(run: &Run, beds: &BedsAtCount) -> io::Result<Vec<u8>> {
+    let depth = depth_of_bed(&run.scenario);
+    let place = |[x, y, z]: [f64; 3]| [x, y, z - depth];
+    let grains: Vec<Grain> = beds.grains.iter().map(|g| Grain { place: place(g.place), ..*g }).collect();
+    let mut bytes = Vec::new();
+    bodies_vtk(&grains, &mut bytes)?;
+    Ok(bytes)
+}
+
+/// Their contacts.
+fn contacts_of(run: &Run, beds: &BedsAtCount) -> io::Result<Vec<u8>> {
+    let depth = depth_of_bed(&run.scenario);
+    let place = |[x, y, z]: [f64; 3]| [x, y, z - depth];
+    let link = |link: &Link| Link { from: place(link.from), to: place(link.to), ..*link };
+    let mut bytes = Vec::new();
+    contacts_vtk(&beds.links.iter().map(link).collect::<Vec<_>>(), &mut bytes)?;
+    Ok(bytes)
+}
+
+/// Height of the rails, at 0, over the undersides of the sleepers, m.
+fn depth_of_bed(scenario: &Scenario) -> f64 {
+    scenario.track.seats.iter().find_map(|seat| seat.sleeper).map_or(0.0, |sleeper| sleeper.height)
 }
 
 /// Both rails, one line each, as they lie unloaded.
@@ -169,6 +199,32 @@ mod tests {
             assert!((reach(2) - (row.void_m - row.settlement_m)).abs() < 1e-12, "it hangs above its settlement");
             assert!((settled[6 * i] - row.settlement_m).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn grains_and_contacts_stand_in_the_same_series() {
+        let (mut run, directory) = (run(true), tempfile::tempdir().unwrap());
+        let axles = run.scenario.records.last().unwrap().after[1];
+        let grain = Grain {
+            place: [-3.0, 0.75, -0.125],
+            radius: 0.03125,
+            body: 0,
+            velocity: [0.0; 3],
+            displacement: Some([0.0, 0.0, -0.001953125]),
+            coordination: 0,
+            largest_force: 0.0,
+        };
+        run.beds = vec![BedsAtCount { axles, grains: vec![grain], ..BedsAtCount::default() }];
+        files::write(&run, directory.path()).unwrap();
+        let read = |name: &str| fs::read_to_string(directory.path().join(FOLDER).join(name)).unwrap();
+        let series = read("states.pvd");
+        assert_eq!(series.matches(&format!("grains_{axles:06}.vtp")).count(), 1);
+        assert_eq!(series.matches("contacts_").count(), 1, "a count without beds has none");
+        let text = read(&format!("grains_{axles:06}.vtp"));
+        let document = roxmltree::Document::parse(&text).unwrap();
+        let sleeper = run.scenario.track.seats.iter().find_map(|seat| seat.sleeper).unwrap();
+        assert_eq!(numbers(&document, "Points"), [-3.0, 0.75, -0.125 - sleeper.height]);
+        assert_eq!(numbers(&document, "displacement"), [0.0, 0.0, -0.001953125]);
     }
 
     #[test]

@@ -64,7 +64,7 @@ pub(super) const RECORD: Kind = Kind {
             "states",
             Form::Words(&[word("none", "tables and histories only"), word("vtk", "files that ParaView opens")]),
             "none",
-            "rail and sleepers whole, at the counts of `after`",
+            "rail, sleepers and grains whole, at the counts of `after`",
         ),
     ],
     alternatives: &[],

@@ -40,7 +40,7 @@ impl Tier for Cells {
     }
 
     fn reads(&self) -> &'static [&'static Reads] {
-        &[&track::READS, &bed::READS, &bed::VOLUMES, &READS, &CELLS, &bays::READS]
+        &[&track::READS, &bed::READS, &READS, &CELLS, &bays::READS]
     }
 
     fn propose(&self, draft: &Draft<'_>) -> Result<Proposal, String> {

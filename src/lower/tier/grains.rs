@@ -1,6 +1,7 @@
 //! Tiers `zone` and `full`: grains under the sleepers of a track, under the bays that differ, or under all of the window.
 
 use super::soil::{self, soil};
+use super::volumes::{self, volumes};
 use super::{ExpectedError, Proposal, Tier, edges, refused, waiting};
 use crate::diag::{Diagnostic, Severity};
 use crate::graph::{
@@ -124,11 +125,14 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>) -> Result<Prop
     if runs {
         refusals.extend(refused::of_traffic(scenario));
         refusals.extend(refused::few_sleepers(&stretches));
+        refusals.extend(volumes::refusals(scenario));
         refusals.extend(soil::refusals(scenario, &extents(&beds, &stretches)));
     } else {
         refusals.extend(waiting::refusal(scenario));
     }
+    let sampled = draft.passages.first().map_or(0.0, |plan| plan.sample_every as f64 * plan.time_step);
     let grains = GrainsNode {
+        volumes: volumes(scenario, &beds, &stretches, sampled),
         beds,
         window: windows,
         stretches,

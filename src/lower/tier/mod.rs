@@ -11,6 +11,7 @@ mod loads;
 mod refused;
 mod rig;
 mod soil;
+mod volumes;
 mod waiting;
 
 pub use cells::Cells;

@@ -68,7 +68,7 @@ pub(super) fn ridden(scenario: &Scenario) -> Option<Diagnostic> {
 /// Sleepers on grains, at least.
 const FEWEST: usize = 2;
 
-fn waits(message: String, at: Option<Span>, help: &str) -> Diagnostic {
+pub(super) fn waits(message: String, at: Option<Span>, help: &str) -> Diagnostic {
     let diagnostic = Diagnostic::new(Code::E0604, message);
     let diagnostic = match at {
         Some(span) => diagnostic.label(span, "asked for here"),

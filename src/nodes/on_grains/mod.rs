@@ -17,7 +17,9 @@ mod stored;
 #[cfg(test)]
 mod tests;
 mod timed;
+mod under_track;
 mod underway;
+mod volumes;
 mod wheels;
 
 pub use build::Parts;
@@ -25,7 +27,9 @@ pub(super) use build::{OF_STRIDE, SHARING};
 pub use energy::PassageEnergy;
 pub use ride::Riders;
 pub use timed::{Parted, TimedSteps};
+pub use under_track::BedUnderTrack;
 pub use underway::{Following, Told};
+pub use volumes::VolumeSample;
 
 use crate::graph::{Responses, StiffnessFrom};
 use crate::nodes::{Forces, Load, Mark, NodeError, Substructure};
@@ -75,6 +79,10 @@ pub struct GrainGround<'a> {
     parts: Parts<'a>,
     responses: Responses,
     live: Option<Live>,
+    /// Axles after which the next block begins, where its first passage is recorded.
+    record: Option<u64>,
+    /// What was recorded in the last block.
+    recorded: Vec<VolumeSample>,
 }
 
 /// The ground at work.
@@ -118,7 +126,8 @@ impl Books {
 impl<'a> GrainGround<'a> {
     /// A ground that is not built yet: [`Substructure::prepare`] does that, or [`Substructure::restore`].
     pub fn new(parts: Parts<'a>) -> GrainGround<'a> {
-        GrainGround { parts, responses: Responses { revision: 0, seats: Vec::new() }, live: None }
+        let responses = Responses { revision: 0, seats: Vec::new() };
+        GrainGround { parts, responses, live: None, record: None, recorded: Vec::new() }
     }
 
     /// Times steps under the wheels of a passage, on a copy.
@@ -184,11 +193,16 @@ impl Substructure for GrainGround<'_> {
 
     fn advance_and_follow(&mut self, loads: &[Load<'_>], follow: &mut Following<'_>) -> Result<(), NodeError> {
         let parts = self.parts;
+        let record = self.record.take();
         let live = self.working()?;
+        if let Some(axles) = record.filter(|_| live.underway.is_none()) {
+            live.begin_record(parts, axles);
+        }
         let done = live.block().runs;
         for load in loads.iter().skip(done) {
             live.pass(parts, load, follow)?;
         }
+        let recorded = live.recorded();
         live.underway = None;
         if parts.grains.stiffness_from == StiffnessFrom::StaticLoad {
             live.press(parts, &mut |stage, share| {
@@ -196,12 +210,34 @@ impl Substructure for GrainGround<'_> {
                 let _ = follow(Told::Stage(stage, share));
             })?;
         }
+        self.recorded = recorded;
         self.answer();
         Ok(())
     }
 
+    fn record(&mut self, axles: u64) {
+        self.record = Some(axles);
+    }
+
+    fn recorded(&mut self) -> Vec<VolumeSample> {
+        std::mem::take(&mut self.recorded)
+    }
+
+    fn record_alone(
+        &mut self,
+        axles: u64,
+        load: &Load<'_>,
+        follow: &mut Following<'_>,
+    ) -> Result<Vec<VolumeSample>, NodeError> {
+        self.record_copy(axles, load, follow)
+    }
+
     fn is_underway(&self) -> bool {
         self.live.as_ref().is_some_and(|live| live.underway.is_some())
+    }
+
+    fn beds(&mut self) -> Result<Vec<BedUnderTrack<'_>>, NodeError> {
+        self.look()
     }
 
     /// A failure of grains ends the run, and nothing goes back to before it.

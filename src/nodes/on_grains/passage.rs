@@ -221,15 +221,27 @@ impl Live {
         while step < steps {
             self.block().step = step;
             let next = self.next_steps(step, steps, follow)?;
+            let time = |step: u64| begin + step as f64 * time_step;
+            let mut recording = self.recording(time(step) <= wheels.first_ends());
+            if let Some(recording) = &mut recording {
+                recording.read_contacts(&mut self.coupled, parts, time(step))?;
+                self.tell_beds(parts, recording, wheels.leading_at(time(step)), follow)?;
+            }
             step = next.end;
             let Live { coupled, underway, .. } = self;
             let mut nobody = Vec::new();
             let watched = underway.as_mut().map_or(&mut nobody, |underway| &mut underway.watched);
+            let mut now = next.start;
             coupled.run_steps(
                 next,
                 &mut |time, loads| wheels.loads_at(begin + time, begin, loads),
-                &mut |_, coupled| coupled.look(watched),
+                &mut |_, coupled| {
+                    coupled.look(watched);
+                    recording.iter_mut().for_each(|recording| recording.see(coupled, parts, now, time(now)));
+                    now += 1;
+                },
             )?;
+            self.go_on_recording(recording);
         }
         self.come_to_rest_after(parts)
     }

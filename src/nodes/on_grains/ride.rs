@@ -42,7 +42,10 @@ impl GrainGround<'_> {
 
     /// Ends a block of trains that ride.
     pub fn end_rides(&mut self) -> Result<(), NodeError> {
-        self.working()?.underway = None;
+        let live = self.working()?;
+        let recorded = live.recorded();
+        live.underway = None;
+        self.recorded = recorded;
         self.answer();
         Ok(())
     }
@@ -52,6 +55,10 @@ impl GrainGround<'_> {
     pub fn ride(&mut self, riders: &Riders<'_>, follow: &mut Following<'_>) -> Result<PassageOutcome, NodeError> {
         let parts = self.parts();
         let live = self.working()?;
+        let underway = live.block();
+        if riders.records.is_some() && (underway.runs, underway.passages, underway.step) == (0, 0, 0) {
+            live.begin_record(parts, riders.axles);
+        }
         let passages = if parts.grains.headway.is_some() { 1 } else { riders.trains };
         let train = following(riders, parts.grains.headway, riders.trains.div_ceil(passages.max(1)));
         for number in live.block().passages..passages {
@@ -144,13 +151,25 @@ impl Live {
             let next = self.next_steps(step, steps, follow)?;
             extremes.seen = std::mem::take(&mut self.underway_ride()?.seen);
             step = next.end;
+            let mut recording = self.recording(true);
             self.coupled.hold()?;
-            for _ in next {
+            if let Some(recording) = &mut recording {
+                let time = self.coupled.rail.time() - since;
+                recording.read_contacts(&mut self.coupled, parts, time)?;
+                let leading = self.coupled.rail.view().wheel_positions().next();
+                self.tell_beds(parts, recording, leading, follow)?;
+            }
+            for now in next {
                 self.coupled.step(&WheelLoads::Riding)?;
                 let Some(underway) = &mut self.underway else { continue };
                 self.coupled.look(&mut underway.watched);
-                extremes.see(&self.coupled.rail.view(), time_step, since);
+                let view = self.coupled.rail.view();
+                extremes.see(&view, time_step, since);
+                recording
+                    .iter_mut()
+                    .for_each(|recording| recording.see(&self.coupled, parts, now, view.time() - since));
             }
+            self.go_on_recording(recording);
         }
         self.coupled.rail.dismiss();
         self.underway_ride()?.on_rail = false;

@@ -3,7 +3,8 @@
 use super::extremes::Seen;
 use super::reading::Watched;
 use super::step::HOLD;
-use super::{Books, Live, Stage};
+use super::volumes::Recording;
+use super::{BedUnderTrack, Books, Live, Stage};
 use crate::nodes::{NodeError, PassageOutcome, Unloaded};
 use crate::solvers::track::LeapfrogState;
 use serde::{Deserialize, Serialize};
@@ -13,6 +14,8 @@ use std::ops::{ControlFlow, Range};
 pub enum Told<'a> {
     /// What is done, and the share of it that is.
     Stage(Stage, f64),
+    /// The beds as the leading bogie of a recorded train passes the sleepers beside the structure.
+    Beds(Vec<BedUnderTrack<'a>>),
     /// A run can be gone on with from here; the function gives the state.
     State(&'a dyn Fn() -> Result<serde_json::Value, NodeError>),
 }
@@ -46,6 +49,8 @@ pub(super) struct Underway {
     pub watched: Vec<Watched>,
     /// Vehicles that ride on the rail of this model.
     pub ride: Option<RideUnderway>,
+    /// Volumes in the first passage, where it is recorded.
+    pub recording: Option<Recording>,
 }
 
 /// What is known of vehicles that ride in a block under way.
@@ -86,6 +91,7 @@ impl Live {
             before: books.settlement.clone(),
             watched: Vec::new(),
             ride: None,
+            recording: None,
         })
     }
 

@@ -28,6 +28,19 @@ impl<'a> WheelRun<'a> {
         Some([self.starts.first()? + time(first), self.starts.last()? + time(last)])
     }
 
+    /// When the first train has passed, s.
+    pub fn first_ends(&self) -> f64 {
+        let start = self.starts.first().copied().unwrap_or(0.0);
+        start + self.histories.instants().saturating_sub(1) as f64 * self.histories.interval
+    }
+
+    /// Chainage of the leading wheel of the first train at a time (s), m.
+    pub fn leading_at(&self, time: f64) -> Option<f64> {
+        let place = (time - self.starts.first()?) / self.histories.interval;
+        let instant = (0.0..self.histories.instants() as f64).contains(&place).then_some(place as usize)?;
+        self.histories.instant(instant).first().map(|(x, _)| *x)
+    }
+
     /// Chainage (m) and force (N) of every wheel at a time (s), into `out`, which is emptied first; straight between two instants. The
     /// first forces grow from the time `begin` on.
     pub fn loads_at(&self, time: f64, begin: f64, out: &mut Vec<(f64, f64)>) {

@@ -3,7 +3,7 @@
 use super::super::colour_map::{colours, hex, shade};
 use super::super::number::{nice_step, significant, tick_label, ticks};
 use super::super::svg::{Anchor, Frame, Svg};
-use super::{BedView, Colour, RIGHT, WIDTH};
+use super::{Colour, RIGHT, WIDTH};
 use crate::results::Grain;
 
 /// Colours of the bar.
@@ -12,7 +12,7 @@ const SHADES: usize = 24;
 const ABOVE: f64 = 0.01;
 
 /// The colours and what they stand for.
-pub(super) struct Bar {
+pub struct Bar {
     name: &'static str,
     unit: &'static str,
     /// The unit in SI.
@@ -25,8 +25,9 @@ pub(super) struct Bar {
 }
 
 impl Bar {
-    pub fn for_bed(bed: &BedView) -> Bar {
-        let mut values: Vec<f64> = bed.grains.iter().filter_map(|g| value(g, bed.colour)).collect();
+    /// The bar of these grains.
+    pub fn new<'a>(colour: Colour, grains: impl IntoIterator<Item = &'a Grain>) -> Bar {
+        let mut values: Vec<f64> = grains.into_iter().filter_map(|g| value(g, colour)).collect();
         values.sort_by(f64::total_cmp);
         let largest = values.last().copied().unwrap_or(0.0);
         let usual = values.get(((1.0 - ABOVE) * values.len() as f64) as usize).copied().unwrap_or(largest);
@@ -34,14 +35,14 @@ impl Bar {
         let most = if largest > 1.5 * usual && usual > 0.0 { usual } else { largest };
         let step = nice_step(most.max(f64::MIN_POSITIVE) / 10.0);
         let most = if most > 0.0 { (most / step - 1e-9).ceil() * step } else { 1.0 };
-        let (name, units): (_, &[(&str, f64)]) = match bed.colour {
+        let (name, units): (_, &[(&str, f64)]) = match colour {
             Colour::Displacement => ("displacement", &[("m", 1.0), ("mm", 1e-3), ("\u{b5}m", 1e-6), ("nm", 1e-9)]),
             Colour::Speed => ("speed", &[("m/s", 1.0), ("mm/s", 1e-3), ("\u{b5}m/s", 1e-6)]),
             Colour::Force => ("largest contact force", &[("MN", 1e6), ("kN", 1e3), ("N", 1.0), ("mN", 1e-3)]),
         };
         let fits = units.iter().find(|(_, size)| most >= *size).or(units.last());
         let (unit, size) = fits.copied().unwrap_or(("", 1.0));
-        Bar { name, unit, size, most, largest, colour: bed.colour }
+        Bar { name, unit, size, most, largest, colour }
     }
 
     /// Balls of every colour, lit from above; one name for each, so that a grain takes few bytes.

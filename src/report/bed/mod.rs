@@ -14,8 +14,8 @@ use super::svg::{Anchor, Frame, Svg};
 use crate::results::{Grain, Link};
 use crate::solvers::granular::shape::Shape;
 use crate::solvers::granular::{Domain, Wall};
-use bar::Bar;
-use raster::Raster;
+pub(super) use bar::Bar;
+pub(super) use raster::Raster;
 
 const WIDTH: f64 = 900.0;
 const LEFT: f64 = 52.0;
@@ -61,7 +61,7 @@ pub fn bed_svg(bed: &BedView) -> String {
     let mut svg = Svg::default();
     let view = View::for_bed(bed);
     let seen = seen(bed, &view);
-    let bar = Bar::for_bed(bed);
+    let bar = Bar::new(bed.colour, bed.grains);
     svg.text("strong", (LEFT, 24.0), Anchor::Start, bed.title);
     let bodies = bed.grains.last().map_or(0, |g| u64::from(g.body) + 1);
     let count = match bodies == bed.grains.len() as u64 {

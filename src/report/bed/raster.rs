@@ -4,7 +4,7 @@
 const CELLS: f64 = 2e7;
 
 /// What is covered already.
-pub(super) struct Raster {
+pub struct Raster {
     /// Cells a pixel.
     fine: f64,
     width: usize,

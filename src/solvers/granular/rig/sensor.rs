@@ -33,7 +33,7 @@ pub struct SensorReading {
 
 impl Sensor {
     /// Reads the bed, all but its porosity, which costs more than all the rest.
-    pub(super) fn read<R: Real>(&self, bed: &Bed<R>, snapshot: &Snapshot) -> SensorReading {
+    pub fn read<R: Real>(&self, bed: &Bed<R>, snapshot: &Snapshot) -> SensorReading {
         let domain = bed.domain();
         let contacts = snapshot.contacts.iter().map(|contact| Contact {
             force: contact.force,
