@@ -5,6 +5,7 @@ use super::curves::Chart;
 use super::panels::{Names, panels, share_scale};
 use super::seat_clock::{panel, seats, shown};
 use super::{Figure, counts};
+use crate::graph::InVolume;
 use crate::results::{Run, SleeperRow};
 use crate::scenario::response::Response;
 
@@ -46,6 +47,10 @@ pub fn hanging_sleeper(run: &Run) -> Option<Figure> {
     }
     if others > 0 {
         caption += " The other recorded sleepers are in histories.parquet.";
+    }
+    let in_grains = run.histories.iter().any(|row| row.quantity == InVolume::SleeperForce.name());
+    if in_grains && !run.scenario.solve.grains.monolithic {
+        caption += " All of it is of the plane track; the next figure shows sleepers of the 3D model.";
     }
     let names = Names { id: "hanging_sleeper", title: "Sleeper and ballast during a passage", caption: &caption };
     panels(&names, &charts, chosen.len())

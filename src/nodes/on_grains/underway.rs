@@ -2,8 +2,8 @@
 
 use super::extremes::Seen;
 use super::reading::Watched;
+use super::recording::Recording;
 use super::step::HOLD;
-use super::volumes::Recording;
 use super::{BedUnderTrack, Books, Live, Stage};
 use crate::nodes::{NodeError, PassageOutcome, Unloaded};
 use crate::solvers::track::LeapfrogState;
