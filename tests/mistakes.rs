@@ -112,7 +112,7 @@ const PLANTED: &[Planted] = &[
     breaks("vt", plant("an unknown word", "direction = forward", "direction = forwards", Code::E0408)),
     plant("an unknown response", "rail_seat_load, contact_force]", "rail_seat_force, contact_force]", Code::E0408),
     plant("an unknown rule", "allow = [stiffness_jump:", "allow = [stiffness_jumps:", Code::E0408),
-    needs("*", plant("vehicles on cells", "substructure     = law", "substructure     = cells, coupling = monolithic", Code::E0604)),
+    needs("*", plant("cells that are tamped", "substructure     = law", "substructure     = cells", Code::E0604)),
     needs("pl", plant("a narrow bed", "rail_ends   = clamped", "bed_width   = 2 m per track", Code::E0420)),
     plant("a profile without basis", "support = { stiffness = 50 MN/m per seat,", "support = { stiffness = ramp(50 .. 80 MN/m),", Code::E0304),
     breaks("b", needs("p", plant("a gap in the spacing", "  spacing = bay", "  spacing = [-20 m: 0.6 m, 24 m: 0.6 m]", Code::E0506))),

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use trackbed::check::NoModules;
 use trackbed::compile::compile;
+use trackbed::diag::Code;
 use trackbed::execute::{Checkpoint, Event, Executor, Listener};
 use trackbed::graph::{CellsNode, Graph, Model};
 use trackbed::store::Beds;
@@ -123,6 +124,16 @@ fn every_block_weighs_alike_in_the_progress_of_a_run_on_cells() {
         [weight.between(blocks, 0, 40), weight.between(blocks, 0, 8), weight.between(blocks, 8, 40)],
         [5.0, 1.0, 4.0]
     );
+}
+
+#[test]
+fn vehicles_that_would_ride_over_cells_are_told_where_the_scene_asks_for_cells() {
+    let text = SCENE.replace("cells,", "cells, coupling = monolithic,");
+    let compiled = compile("scene.track", &text, &NoModules, &[]);
+    let told: Vec<_> = compiled.diagnostics.iter().filter(|d| d.code == Code::E0604).collect();
+    assert!(told.len() == 1 && told[0].message.contains("no rail joins the cells"), "{told:?}");
+    assert_eq!(compiled.sources.text(told[0].labels[0].span), "cells");
+    assert!(compiled.runnable().is_none());
 }
 
 #[test]

@@ -22,7 +22,7 @@ pub struct Passing {
 pub enum BlockWeight {
     /// The time in which its trains pass, for all of them are computed.
     Time(Passing),
-    /// As much as any other: cells compute as many trains as they need, and nobody knows before how many.
+    /// All blocks weigh the same: cells compute as many trains as they need, and nobody knows before how many.
     Equal,
 }
 

@@ -21,7 +21,8 @@ pub(super) fn of_traffic(scenario: &Scenario) -> Vec<Diagnostic> {
         found.push(waits(message.into(), traffic.total.origin.span(), "name one train in `traffic`"));
     }
     if !scenario.tampings.is_empty() {
-        found.push(waits("grains cannot be tamped in this version".into(), None, "leave the `tamping` out"));
+        let message = "grains cannot be tamped in this version";
+        found.push(waits(message.into(), grains.tier.origin.span(), "leave the `tamping` out"));
     }
     if scenario.track.bed.base == Base::Quiet {
         found.push(waits(
@@ -61,7 +62,8 @@ pub(super) fn few_sleepers(stretches: &[GrainStretch]) -> Option<Diagnostic> {
 pub(super) fn ridden(scenario: &Scenario) -> Option<Diagnostic> {
     scenario.solve.grains.monolithic.then(|| {
         let message = "vehicles cannot ride over cells of grains: no rail joins the cells".to_owned();
-        waits(message, None, "leave out `coupling = monolithic`, or write `substructure = zone`")
+        let tier = scenario.solve.grains.tier;
+        waits(message, tier.origin.span(), "leave out `coupling = monolithic`, or write `substructure = zone`")
     })
 }
 

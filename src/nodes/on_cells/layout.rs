@@ -95,7 +95,7 @@ mod tests {
         assert_eq!(layout.part(&node, &loads([40.0, 40.0, 40.0, 44.0, 25.0, 27.0]), 0.05), [0, 0]);
         assert_eq!(layout.cell_of, [Some(0), Some(0), Some(0), Some(2), Some(1), Some(1)]);
         assert_eq!((layout.plans[1].seat(), layout.plans[2].seat()), (5, 3));
-        assert_eq!(layout.plans[2].x, 1.8);
+        assert!((layout.plans[2].x - 1.8).abs() < 1e-9);
         // a cell that has parted may part again
         assert_eq!(layout.part(&node, &loads([40.0, 40.0, 40.0, 44.0, 5.0, 27.0]), 0.05), [1]);
         assert_eq!(layout.cell_of[4..], [Some(3), Some(1)]);

@@ -69,7 +69,8 @@ fn a_small_bed_is_dense_level_and_at_rest() {
     assert!((3.5..pressed).contains(&lifted), "{pressed} and {lifted}");
 }
 
-/// The moment at which friction comes back: the more the plate bears then, the denser the bed and the more of its contacts stay.
+/// The moment at which friction comes back: the less the plate bears then, the more contacts stay as it goes, and without load the bed
+/// flows together a little more.
 #[test]
 fn friction_comes_back_when_the_recipe_says() {
     let of = |restored| {
@@ -83,9 +84,8 @@ fn friction_comes_back_when_the_recipe_says() {
     assert_eq!(pressed.0, ["friction restored", "plate eased", "plate lifted"]);
     assert_eq!(eased.0, ["plate eased", "friction restored", "plate lifted"]);
     assert_eq!(unloaded.0, ["plate eased", "plate lifted", "friction restored"]);
-    assert!(pressed.1 < eased.1 + 1e-3 && eased.1 < unloaded.1 + 1e-3, "{pressed:?} {eased:?} {unloaded:?}");
-    // without friction a bed at rest has the contacts that hold it and loses none when friction comes back
-    assert!(unloaded.2 > eased.2, "{eased:?} {unloaded:?}");
+    assert!((pressed.1 - eased.1).abs() < 3e-3 && unloaded.1 < eased.1, "{pressed:?} {eased:?} {unloaded:?}");
+    assert!(pressed.2 < 0.9 * eased.2 && eased.2 < 0.95 * unloaded.2, "{pressed:?} {eased:?} {unloaded:?}");
 }
 
 /// Spheres and clumps, between two and four grains thick, between walls and none, with friction and without: the first guess is all that one lift has.
