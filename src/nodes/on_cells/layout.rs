@@ -4,17 +4,42 @@ use crate::graph::{CellPlan, CellsNode, seats_alike};
 use serde::{Deserialize, Serialize};
 
 /// The cells of now. Those behind the ones of the plan have parted from others on the way.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Layout {
     pub plans: Vec<CellPlan>,
     /// The cell that answers for each seat; `None` for a seat without grains below.
     pub cell_of: Vec<Option<usize>>,
+    /// For each cell behind those of the plan the one that it has parted from, and its seat.
+    parted: Vec<[usize; 2]>,
+}
+
+/// What makes the layout of now from the plan.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct StoredLayout {
+    cell_of: Vec<Option<usize>>,
+    parted: Vec<[usize; 2]>,
 }
 
 impl Layout {
     /// The cells as planned.
     pub fn planned(node: &CellsNode) -> Layout {
-        Layout { plans: node.cells.clone(), cell_of: node.cell_of.clone() }
+        Layout { plans: node.cells.clone(), cell_of: node.cell_of.clone(), parted: Vec::new() }
+    }
+
+    pub fn store(&self) -> StoredLayout {
+        StoredLayout { cell_of: self.cell_of.clone(), parted: self.parted.clone() }
+    }
+
+    /// The layout that was stored; `None` of another track.
+    pub fn restore(node: &CellsNode, stored: StoredLayout) -> Option<Layout> {
+        let mut layout = Layout::planned(node);
+        for [from, seat] in stored.parted {
+            layout.add(node, from, seat)?;
+        }
+        let is_whole = stored.cell_of.len() == node.cell_of.len()
+            && stored.cell_of.iter().flatten().all(|cell| *cell < layout.plans.len());
+        layout.cell_of = stored.cell_of;
+        is_whole.then_some(layout)
     }
 
     /// Gives seats a cell of their own whose load differs from that of the seat which answers for them by more than `tolerance` of the
@@ -27,9 +52,8 @@ impl Layout {
         for cell in 0..self.plans.len() {
             for group in seats_alike(self.parted(cell, loads, apart), 2.0 * apart) {
                 let (_, typical) = group[group.len() / 2];
-                let Some(plan) = self.plan_at(node, cell, typical) else { continue };
-                group.iter().for_each(|(_, seat)| self.cell_of[*seat] = Some(self.plans.len()));
-                self.plans.push(plan);
+                let Some(added) = self.add(node, cell, typical) else { continue };
+                group.iter().for_each(|(_, seat)| self.cell_of[*seat] = Some(added));
                 from.push(cell);
             }
         }
@@ -44,12 +68,14 @@ impl Layout {
         with_load.filter(|(load, _)| (load - own).abs() > apart).collect()
     }
 
-    /// A cell at another seat.
-    fn plan_at(&self, node: &CellsNode, cell: usize, seat: usize) -> Option<CellPlan> {
+    /// Adds a cell that parts from another one, at a seat; gives its number, `None` where there is no such cell or seat.
+    fn add(&mut self, node: &CellsNode, from: usize, seat: usize) -> Option<usize> {
         let at = node.seats.get(seat)?.as_ref()?;
-        let mut plan = CellPlan { x: at.x, ..self.plans[cell].clone() };
+        let mut plan = CellPlan { x: at.x, ..self.plans.get(from)?.clone() };
         plan.sleepers.iter_mut().zip(&at.loaded_by).for_each(|(sleeper, seat)| sleeper.seat = *seat);
-        Some(plan)
+        self.plans.push(plan);
+        self.parted.push([from, seat]);
+        Some(self.plans.len() - 1)
     }
 }
 
@@ -99,6 +125,9 @@ mod tests {
         // a cell that has parted may part again
         assert_eq!(layout.part(&node, &loads([40.0, 40.0, 40.0, 44.0, 5.0, 27.0]), 0.05), [1]);
         assert_eq!(layout.cell_of[4..], [Some(3), Some(1)]);
+        // what is stored makes the same layout, and none of another track
+        assert_eq!(Layout::restore(&node, layout.store()), Some(layout.clone()));
+        assert_eq!(Layout::restore(&self::node(5), layout.store()), None);
     }
 
     #[test]

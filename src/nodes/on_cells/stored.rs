@@ -2,7 +2,7 @@
 
 use super::book::Book;
 use super::cell::Cell;
-use super::layout::Layout;
+use super::layout::{Layout, StoredLayout};
 use super::{Live, Parts, Underway};
 use crate::nodes::NodeError;
 use crate::solvers::granular::{Bed, Checkpoint, WallId};
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 /// What [`Live`] holds.
 #[derive(Serialize, Deserialize)]
 struct Stored {
-    layout: Layout,
+    layout: StoredLayout,
     cells: Vec<StoredCell>,
     books: Vec<Book>,
     passed: u64,
@@ -55,7 +55,7 @@ impl Live {
     /// The state as data.
     pub fn save(&self) -> Result<serde_json::Value, NodeError> {
         let stored = Stored {
-            layout: self.layout.clone(),
+            layout: self.layout.store(),
             cells: self.cells.iter().map(Cell::store).collect(),
             books: self.books.clone(),
             passed: self.passed,
@@ -72,11 +72,10 @@ impl Live {
         let bytes = STANDARD.decode(text).map_err(foreign)?;
         let Stored { layout, cells, books, passed, revision, underway } =
             postcard::from_bytes(&bytes).map_err(foreign)?;
-        let node = parts.cells;
-        let counted = [cells.len(), books.len()] == [layout.plans.len(); 2];
-        let answered = layout.cell_of.iter().flatten().all(|cell| *cell < layout.plans.len());
-        if !counted || !answered || layout.cell_of.len() != node.cell_of.len() {
-            return Err(foreign("it holds another number of cells"));
+        let other = || foreign("it holds another number of cells");
+        let layout = Layout::restore(parts.cells, layout).ok_or_else(other)?;
+        if [cells.len(), books.len()] != [layout.plans.len(); 2] {
+            return Err(other());
         }
         let plans = layout.plans.iter();
         let cells = cells.into_iter().zip(plans).map(|(stored, plan)| Cell::restore(stored, plan.sleepers.len()));
