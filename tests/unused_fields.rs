@@ -79,12 +79,12 @@ fn with_a_law_fields_of_grains_are_told_once_for_each_reason() {
     let expected = [
         (format!("`coupling` acts only {UNDER_A_TRACK}"), 1),
         ("`repeats` acts only where a test rig is loaded".to_owned(), 1),
+        ("`support_from`, `soil_element` and `window` act only where grains lie under bays of a track: `substructure = zone` or `full`".to_owned(), 3),
         (
             "`symmetry` acts only where grains are modelled: on a test rig, or with `substructure = cells`, `zone` or `full`"
                 .to_owned(),
             1,
         ),
-        ("`support_from`, `soil_element` and `window` act only where grains lie under bays of a track: `substructure = zone` or `full`".to_owned(), 3),
         ("`tolerance` acts only where grains lie under some sleepers of a track: `substructure = cells` or `zone`".to_owned(), 1),
     ];
     assert_eq!(found, expected, "{}", shown(&compiled));
