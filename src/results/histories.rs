@@ -3,16 +3,16 @@
 //! Columns `axles` INT64, `time_s` DOUBLE, `quantity` UTF8, `id` UTF8, `x_m` DOUBLE, `value` DOUBLE, `train` UTF8; dictionaries
 //! where values repeat, compressed with Snappy. Equal rows make equal bytes: nothing of the file depends on the clock.
 
+use super::columns::{read_column, write_column};
 use super::error::check_finite;
 use super::{HistoryRow, ResultsError};
 use bytes::Bytes;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
-use parquet::column::reader::get_typed_column_reader;
-use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::Result as ParquetResult;
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{ChunkReader, FileReader, RowGroupReader, SerializedFileReader};
-use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::{Type, TypePtr};
 use std::fs::File;
 use std::path::Path;
@@ -106,17 +106,6 @@ fn write_groups(rows: &[HistoryRow]) -> ParquetResult<Vec<u8>> {
     Ok(bytes)
 }
 
-fn write_column<D: DataType, W: std::io::Write + Send>(
-    group: &mut SerializedRowGroupWriter<'_, W>,
-    values: Vec<D::T>,
-) -> ParquetResult<()> {
-    let Some(mut column) = group.next_column()? else {
-        return Err(parquet::errors::ParquetError::General("the schema has too few columns".to_owned()));
-    };
-    column.typed::<D>().write_batch(&values, None, None)?;
-    column.close()
-}
-
 fn read_group(group: &dyn RowGroupReader, rows: &mut Vec<HistoryRow>) -> ParquetResult<()> {
     let axles = read_column::<Int64Type>(group, 0)?;
     let time = read_column::<DoubleType>(group, 1)?;
@@ -137,16 +126,4 @@ fn read_group(group: &dyn RowGroupReader, rows: &mut Vec<HistoryRow>) -> Parquet
         });
     }
     Ok(())
-}
-
-fn read_column<D: DataType>(group: &dyn RowGroupReader, column: usize) -> ParquetResult<Vec<D::T>> {
-    let count = group.metadata().num_rows() as usize;
-    let mut reader = get_typed_column_reader::<D>(group.get_column_reader(column)?);
-    let mut values = Vec::with_capacity(count);
-    reader.read_records(count, None, None, &mut values)?;
-    if values.len() == count {
-        return Ok(values);
-    }
-    let message = format!("column {column} holds {} values of {count}", values.len());
-    Err(parquet::errors::ParquetError::General(message))
 }

@@ -6,6 +6,7 @@
 mod bed;
 mod bed_readings;
 mod bed_tests;
+mod columns;
 mod error;
 mod evaluate;
 mod files;

@@ -2,16 +2,16 @@
 //!
 //! Columns that count are INT64, all others FLOAT, compressed with Snappy. Equal rows make equal bytes.
 
+use super::columns::{read_column, write_column};
 use super::error::check_finite;
 use super::{BedsAtCount, Grain, Link, NamedBytes, ResultsError};
 use bytes::Bytes;
 use parquet::basic::{Compression, Repetition, Type as Physical};
-use parquet::column::reader::get_typed_column_reader;
-use parquet::data_type::{DataType, FloatType, Int64Type};
+use parquet::data_type::{FloatType, Int64Type};
 use parquet::errors::Result as ParquetResult;
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
-use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 use std::collections::BTreeMap;
 use std::fs;
@@ -171,26 +171,15 @@ fn write(columns: Columns, rows: &[Row]) -> ParquetResult<Vec<u8>> {
     for rows in rows.chunks(GROUP_ROWS) {
         let mut group = writer.next_row_group()?;
         for index in 0..columns.0.len() {
-            put::<Int64Type, _>(&mut group, rows.iter().map(|row| row.0[index]).collect())?;
+            write_column::<Int64Type, _>(&mut group, rows.iter().map(|row| row.0[index]).collect())?;
         }
         for index in 0..columns.1.len() {
-            put::<FloatType, _>(&mut group, rows.iter().map(|row| row.1[index]).collect())?;
+            write_column::<FloatType, _>(&mut group, rows.iter().map(|row| row.1[index]).collect())?;
         }
         group.close()?;
     }
     writer.close()?;
     Ok(bytes)
-}
-
-fn put<D: DataType, W: std::io::Write + Send>(
-    group: &mut SerializedRowGroupWriter<'_, W>,
-    values: Vec<D::T>,
-) -> ParquetResult<()> {
-    let Some(mut column) = group.next_column()? else {
-        return Err(parquet::errors::ParquetError::General("the schema has too few columns".to_owned()));
-    };
-    column.typed::<D>().write_batch(&values, None, None)?;
-    column.close()
 }
 
 fn rows(columns: Columns, bytes: Vec<u8>, path: &Path) -> Result<Vec<Row>, ResultsError> {
@@ -213,23 +202,12 @@ fn rows(columns: Columns, bytes: Vec<u8>, path: &Path) -> Result<Vec<Row>, Resul
 
 fn read_group(columns: Columns, group: &dyn RowGroupReader, rows: &mut Vec<Row>) -> ParquetResult<()> {
     let count = columns.0.len();
-    let whole = (0..count).map(|c| get::<Int64Type>(group, c)).collect::<ParquetResult<Vec<_>>>()?;
-    let others = (0..columns.1.len()).map(|c| get::<FloatType>(group, count + c)).collect::<ParquetResult<Vec<_>>>()?;
+    let whole = (0..count).map(|c| read_column::<Int64Type>(group, c)).collect::<ParquetResult<Vec<_>>>()?;
+    let others =
+        (0..columns.1.len()).map(|c| read_column::<FloatType>(group, count + c)).collect::<ParquetResult<Vec<_>>>()?;
     let row = |r: usize| (whole.iter().map(|c| c[r]).collect(), others.iter().map(|c| c[r]).collect());
     rows.extend((0..group.metadata().num_rows() as usize).map(row));
     Ok(())
-}
-
-fn get<D: DataType>(group: &dyn RowGroupReader, column: usize) -> ParquetResult<Vec<D::T>> {
-    let count = group.metadata().num_rows() as usize;
-    let mut reader = get_typed_column_reader::<D>(group.get_column_reader(column)?);
-    let mut values = Vec::with_capacity(count);
-    reader.read_records(count, None, None, &mut values)?;
-    if values.len() == count {
-        return Ok(values);
-    }
-    let message = format!("column {column} holds {} values of {count}", values.len());
-    Err(parquet::errors::ParquetError::General(message))
 }
 
 #[cfg(test)]

@@ -31,8 +31,8 @@ pub(super) fn volumes(
     seats.filter_map(volume).collect()
 }
 
-/// The volume under a seat in a bed that begins at a chainage (m) and has a length and a width, m. It lies below the rail seat, as near as
-/// it fits between the sides of the bed.
+/// The volume under a seat. `start` is the chainage at which the bed begins, `bed` its length and width, m. The volume lies below the rail
+/// seat, or beside it where the sides of the bed are too near.
 fn sensor(scenario: &Scenario, record: &VolumeRecord, seat: usize, (start, bed): (f64, [f64; 2])) -> SensorNode {
     let track = &scenario.track;
     let seat = &track.seats[seat];

@@ -58,8 +58,8 @@ impl Live {
 }
 
 impl Parts<'_> {
-    /// Place of the third sleeper of the first bed from its end at the structure, m: with the leading wheel there, a bogie stands where tracks
-    /// settle most.
+    /// Chainage of the third sleeper before the structure, m. Forces are kept when the leading wheel is there: a bogie then stands where
+    /// tracks settle most.
     fn beside_structure(&self) -> Option<f64> {
         let seats = &self.track.seats;
         let sleepers = &self.grains.stretches.first()?.sleepers;

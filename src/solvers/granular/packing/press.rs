@@ -113,9 +113,9 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         Ok(())
     }
 
-    /// The plate is eased and goes; friction comes back before, between or after, as the recipe says. Usually between: with friction a bed
-    /// that springs back opens a third of its contacts; without friction and without load it flows, and loses what the plate has gained.
-    /// `weight` is that of the bed over its area, Pa: the plate is eased to half of it, which the bed's own weight presses with inside.
+    /// Eases the plate and takes it away. Friction comes back before, between or after, as the recipe says; usually between. With friction a
+    /// bed that springs back opens a third of its contacts. Without friction it comes to rest a third as stiff. `weight`: weight of the bed
+    /// over its area, Pa. The plate is eased to half of it, the mean pressure of the bed's own weight.
     pub fn finish(&mut self, recipe: &Recipe, weight: f64) -> Result<(), PackingError> {
         let pressed = recipe.layers.last().map(|layer| layer.pressure);
         let eased = pressed.map(|pressure| pressure.min(0.5 * weight));
