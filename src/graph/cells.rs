@@ -1,7 +1,7 @@
 //! Periodic cells of grains, each under the forces of its own sleepers: the nodes of tier `cells`.
 
 use super::{BedPlan, SleeperOnGrains};
-use crate::solvers::granular::rig::Crib;
+use crate::solvers::granular::rig::{Crib, Glued};
 use serde::{Deserialize, Serialize};
 
 /// A cell of grains for each sleeper that is loaded otherwise than the others.
@@ -60,6 +60,9 @@ pub struct CellPlan {
     /// Grains between and beside the sleepers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crib: Option<Crib>,
+    /// Layers whose grains are glued.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub glued: Vec<Glued>,
 }
 
 impl CellPlan {

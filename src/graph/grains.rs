@@ -6,7 +6,7 @@ use crate::solvers::granular::grains::{ClumpShape, TemplatesError};
 use crate::solvers::granular::measure::Region;
 use crate::solvers::granular::packing::{PackingError, Recipe};
 use crate::solvers::granular::probe::Plate;
-use crate::solvers::granular::rig::{Crib, Load, Rig, Sensor, Sleeper, Specimen};
+use crate::solvers::granular::rig::{Crib, Glued, Load, Rig, Sensor, Sleeper, Specimen};
 use crate::solvers::track::{Pitch, UnderPad};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -106,6 +106,9 @@ pub struct BedNode {
     /// Grains between and beside the sleepers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crib: Option<Crib>,
+    /// Layers whose grains are glued.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub glued: Vec<Glued>,
     /// Pressure on the sides of a specimen, Pa.
     pub confinement: Option<f64>,
     /// Whether an actuator gives the velocity of the plate instead of a force.
@@ -233,6 +236,9 @@ pub struct GrainStretch {
     /// Grains between and beside the sleepers.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crib: Option<Crib>,
+    /// Layers whose grains are glued, all along or between places from its left end.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub glued: Vec<Glued>,
 }
 
 /// A sleeper, or half of it, on grains.
@@ -326,6 +332,7 @@ impl BedNode {
         Rig {
             sleepers: self.bodies.iter().zip(&actuators.loads).map(body).collect(),
             specimen: specimen.map(|(pressure, sides)| Specimen { floor: recipe.floor(), sides, pressure }),
+            glued: self.glued.clone(),
             filling: self.crib.and_then(|crib| crib.filling(recipe, self.copies)),
             period: actuators.period,
             cycles: actuators.cycles,

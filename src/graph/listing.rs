@@ -1,10 +1,11 @@
 //! The graph as a person reads it: text, JSON and DOT, generated from the ports of its nodes and from its edges.
 
 use super::{
-    ActuatorsNode, BedNode, Blocks, CellsNode, Cost, Decision, Edge, GrainsNode, Graph, LawNode, Model, Node, Quantity,
-    Schedule, SoilNode, StiffnessFrom, TestWork, Tests, TrackNode, Update, Work,
+    ActuatorsNode, BedNode, BedPlan, Blocks, CellsNode, Cost, Decision, Edge, GrainsNode, Graph, LawNode, Model, Node,
+    Quantity, Schedule, SoilNode, StiffnessFrom, TestWork, Tests, TrackNode, Update, Work,
 };
-use crate::solvers::granular::rig::{Crib, Load};
+use crate::solvers::granular::Glue;
+use crate::solvers::granular::rig::{Crib, Glued, Load};
 use crate::solvers::track::Integrator;
 use crate::units::number;
 use serde::Serialize;
@@ -165,6 +166,7 @@ fn of_grains(grains: &GrainsNode) -> Vec<String> {
             stretch.sleepers.len()
         ));
         lines.extend(stretch.crib.map(of_crib));
+        lines.extend(stretch.glued.iter().map(|glued| of_glued(glued, bed, stretch.start)));
     }
     let stiffness = match grains.stiffness_from {
         StiffnessFrom::StaticLoad => "static loads on a copy of the grains",
@@ -200,6 +202,7 @@ fn of_cells(node: &CellsNode) -> Vec<String> {
             number(rounded_to_mm(cell.x))
         ));
         lines.extend(cell.crib.map(of_crib));
+        lines.extend(cell.glued.iter().map(|glued| of_glued(glued, bed, 0.0)));
     }
     lines.push(format!(
         "sleepers get a cell of their own where trains load them otherwise by more than {} % of the largest load",
@@ -222,6 +225,16 @@ fn of_crib(crib: Crib) -> String {
     let beyond =
         if crib.shoulder > 0.0 { format!(", and {} mm beyond their ends", mm(crib.shoulder)) } else { String::new() };
     format!("grains between the sleepers up to {} mm above their underside{beyond}", mm(crib.height))
+}
+
+/// A glued layer of a bed that begins at a chainage, m.
+fn of_glued(glued: &Glued, bed: &BedPlan, start: f64) -> String {
+    let layer = bed.numbers().layers.get(usize::from(glued.surface)).map_or("", |layer| &layer.name);
+    let along = glued.along.map(|along| along.map(|place| number(rounded_to_mm(start + place))));
+    let along = along.map(|[from, to]| format!(" from {from} m to {to} m")).unwrap_or_default();
+    let Glue { tensile_strength, shear_strength, .. } = glued.glue;
+    let [tensile, shear] = [tensile_strength, shear_strength].map(|strength| number(strength / 1e3));
+    format!("grains of `{layer}` are glued{along}: bonds break at {tensile} kN pulled, {shear} kN sheared")
 }
 
 fn rounded_to_mm(length: f64) -> f64 {

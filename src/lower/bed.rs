@@ -40,6 +40,10 @@ pub(super) const READS: Reads = Reads {
         "granular.shear_damping",
         "granular.dashpots",
         "granular.packing",
+        "granular.bond",
+        "bond.stiffness",
+        "bond.tensile_strength",
+        "bond.shear_strength",
         "packing.lifts",
         "packing.pressure",
         "packing.friction",
@@ -230,12 +234,12 @@ pub(super) fn confinement(scenario: &Scenario) -> Option<f64> {
     loads.iter().find_map(|load| load.confinement).map(|pressure| *pressure)
 }
 
-/// Width of the bed of one rail, or of both, m: from the centre line to the wall.
+/// Width of the bed of one rail, or of both, m: from the centre line to the wall, which no sleeper reaches beyond.
 pub(super) fn width(scenario: &Scenario, section: usize) -> f64 {
     let track = &scenario.track;
-    let sleeper = track.seats[track.seats_of(section)].iter().find_map(|seat| seat.sleeper);
+    let lengths = track.seats[track.seats_of(section)].iter().filter_map(|seat| Some(seat.sleeper?.length));
     let shoulder = track.sections[section].crib.map_or(0.0, |crib| crib.beyond());
-    let least = sleeper.map(|sleeper| 0.5 * sleeper.length + shoulder);
+    let least = lengths.reduce(f64::max).map(|longest| 0.5 * longest + shoulder);
     let stated = track.bed.half_width.map(|half| half.max(least.unwrap_or(0.0)));
     let half = stated.or(least).unwrap_or(HALF_WIDTH);
     if scenario.solve.grains.both_rails { 2.0 * half } else { half }
@@ -279,6 +283,24 @@ fn filling(layer: &Layer, granular: &Granular, x: f64, templates: Vec<Template>)
         },
     })
 }
+
+/// Whether the layers of grains at one place (m) pack the same bed as those at another, glued or not.
+pub(super) fn packs_alike(one: (&[Layer], f64), other: (&[Layer], f64)) -> bool {
+    let filled = |(layers, x): (&[Layer], f64)| -> Option<Vec<_>> {
+        let grains = layers.iter().filter_map(|layer| Some((layer, layer.granular()?)));
+        let of_one = |(layer, granular): (&Layer, &Granular)| {
+            let filling = filling(layer, granular, x, Vec::new()).ok()?;
+            let thickness = (filling.thickness / TINY).round() * TINY;
+            let alike = Filling { name: String::new(), thickness, ..filling };
+            Some((alike, granular.shape.clumps(), *granular.local_damping, granular.packing.restored))
+        };
+        grains.map(of_one).collect()
+    };
+    filled(one) == filled(other)
+}
+
+/// Thicknesses closer than this are one, m.
+const TINY: f64 = 1e-6;
 
 /// A length in mm.
 fn mm(length: f64) -> String {

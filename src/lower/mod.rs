@@ -9,6 +9,7 @@ mod cost;
 mod crib;
 mod dry_run;
 mod foundation;
+mod glue;
 mod origins;
 mod outlook;
 mod pass;

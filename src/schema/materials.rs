@@ -1,6 +1,6 @@
 //! Kinds of what lies under the sleepers: gradings, granular materials, soils.
 
-use super::fields::{NONE, along, default, either, measure, number, optional, per, required, unread, way, word};
+use super::fields::{NONE, along, default, either, measure, number, optional, per, required, way, word};
 use super::{Basis, Form, Kind, Role, Word};
 
 /// A contact is two particles in series.
@@ -128,12 +128,12 @@ pub(super) const GRANULAR: Kind = Kind {
             "of contacts",
         ),
         default("packing", Form::Object("packing"), "{}", "recipe by which the periodic cell is packed"),
-        unread(default(
+        default(
             "bond",
             Form::OneOf(&[Form::Object("bond"), Form::Words(NONE)]),
             "none",
-            "glue between grains that touch after packing",
-        )),
+            "glue between grains that touch once sleepers stand on them",
+        ),
     ],
     alternatives: &[],
     planned: &[],
@@ -234,9 +234,13 @@ pub(super) const BOND: Kind = Kind {
     doc: "Glue between grains: a spring that also pulls, until it breaks.",
     role: Role::Nested,
     fields: &[
-        unread(required("stiffness", per("MN/m", 0.1, 1000.0, &CONTACT_OR_PARTICLE), "normal")),
-        unread(required("tensile_strength", number("kN", 1e-3, 1000.0), "force at which it breaks when pulled")),
-        unread(required("shear_strength", number("kN", 1e-3, 1000.0), "force at which it breaks when sheared")),
+        required(
+            "stiffness",
+            per("MN/m", 0.1, 1000.0, &CONTACT_OR_PARTICLE),
+            "of a bond beside the contact, normal; along it times `shear_ratio`",
+        ),
+        required("tensile_strength", number("kN", 1e-3, 1000.0), "force at which it breaks when pulled"),
+        required("shear_strength", number("kN", 1e-3, 1000.0), "force at which it breaks when sheared"),
     ],
     alternatives: &[],
     planned: &[],

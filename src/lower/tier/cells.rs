@@ -11,7 +11,7 @@ use crate::graph::{BedPlan, CellPlan, CellsNode, Model, Node, Schedule, SeatOnCe
 use crate::lower::bays;
 use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
 use crate::lower::foundation::Foundations;
-use crate::lower::{Draft, crib, track};
+use crate::lower::{Draft, crib, glue, track};
 use crate::scenario::{Base, Given, Layer, Loading, Scenario, Stack};
 use crate::schema::Reads;
 use crate::solvers::foundation::{self, Method};
@@ -71,7 +71,11 @@ impl Tier for Cells {
         let alone = train.wheel_base() / train.speed;
         let cost = cells_under_track(draft, &blocks, PassingCells { bays, headway_time, alone });
         refusals.extend(match asked {
-            true => refused::of_traffic(scenario).into_iter().chain(refused::ridden(scenario)).collect(),
+            true => refused::of_traffic(scenario)
+                .into_iter()
+                .chain(refused::ridden(scenario))
+                .chain(refused::other_grains(scenario, &[[f64::NEG_INFINITY, f64::INFINITY]]))
+                .collect(),
             false => waiting::refusal(scenario).into_iter().collect::<Vec<_>>(),
         });
         let what = match cells.len() {
@@ -217,6 +221,7 @@ fn plan(scenario: &Scenario, beds: &[BedPlan], seat: usize) -> Option<CellPlan> 
         sleepers,
         soil: soil(scenario, seat),
         crib: crib::planned(section),
+        glued: glue::at(scenario, here.section, here.x),
     })
 }
 

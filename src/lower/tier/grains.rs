@@ -11,7 +11,7 @@ use crate::graph::{
 use crate::lower::bays::{differing, wanted};
 use crate::lower::bed::{self, BedUse, beds, beds_of_spheres};
 use crate::lower::tier::rig::cost::grains_under_track;
-use crate::lower::{Draft, crib, track};
+use crate::lower::{Draft, crib, glue, track};
 use crate::scenario::{Foot, Loading, Scenario, Seat, Section, SleeperBody, Track};
 use crate::schema::Reads;
 use crate::solvers::track::{Pitch, UnderPad};
@@ -125,6 +125,7 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>) -> Result<Prop
     if runs {
         refusals.extend(refused::of_traffic(scenario));
         refusals.extend(refused::few_sleepers(&stretches));
+        refusals.extend(refused::other_grains(scenario, &extents(&beds, &stretches)));
         refusals.extend(volumes::refusals(scenario));
         refusals.extend(soil::refusals(scenario, &extents(&beds, &stretches)));
     } else {
@@ -226,7 +227,9 @@ fn stretch(scenario: &Scenario, beds: &[BedPlan], window: [f64; 2], windows: &[[
         Some(SleeperOnGrains { buffer: !fits(seat, read), ..standing(scenario, number, seat, all[0])? })
     });
     let copies = ((all[1] - all[0]) / cell).round() as u32;
-    Some(GrainStretch { bed, start: all[0], copies, sleepers: sleepers.collect(), crib: crib::planned(section) })
+    let glued = glue::along(scenario, first.section, all);
+    let sleepers = sleepers.collect();
+    Some(GrainStretch { bed, start: all[0], copies, sleepers, crib: crib::planned(section), glued })
 }
 
 /// Chainages between which as many cells fit as a window and a section have room for, one at least: they begin at the structure, and the

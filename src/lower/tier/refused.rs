@@ -2,7 +2,9 @@
 
 use crate::diag::{Code, Diagnostic, Span};
 use crate::graph::GrainStretch;
+use crate::lower::bed;
 use crate::scenario::{Base, Loading, Scenario};
+use crate::units::number;
 
 /// Why a track on grains cannot run this traffic, whatever lies where; nothing where it can.
 pub(super) fn of_traffic(scenario: &Scenario) -> Vec<Diagnostic> {
@@ -49,6 +51,34 @@ pub(super) fn of_traffic(scenario: &Scenario) -> Vec<Diagnostic> {
     }
     found
 }
+
+/// Grains that change along a section, where beds lie between these ends (m): a bed is one from end to end. Glue may change.
+pub(super) fn other_grains(scenario: &Scenario, beds: &[[f64; 2]]) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for (number_of, section) in scenario.track.sections.iter().enumerate() {
+        let middle = 0.5 * (section.start + section.end);
+        if !section.layers.iter().any(|layer| layer.granular().is_some()) {
+            continue;
+        }
+        for part in scenario.track.ground(number_of) {
+            let inside = beds.iter().any(|[left, right]| part.start < right - TINY && part.end > left + TINY);
+            let alike = |x: f64| bed::packs_alike((&section.layers, middle), (&part.layers, x));
+            if !inside || [part.start + TINY, part.end - TINY].into_iter().all(alike) {
+                continue;
+            }
+            let [from, to] = [part.start, part.end].map(number);
+            let name = &section.name;
+            let message =
+                format!("from {from} to {to} m other layers of grains lie than in the rest of section `{name}`");
+            let help = "let the grains be the same there but for their `bond`, and change the soil below them; or run `substructure = law`";
+            found.push(Diagnostic::new(Code::E0604, message).help(help));
+        }
+    }
+    found
+}
+
+/// Lengths closer than this are one, m.
+const TINY: f64 = 1e-6;
 
 /// Too few sleepers on grains.
 pub(super) fn few_sleepers(stretches: &[GrainStretch]) -> Option<Diagnostic> {

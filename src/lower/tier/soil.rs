@@ -36,8 +36,7 @@ pub(super) fn soil(scenario: &Scenario) -> SoilNode {
     }
 }
 
-/// Why the layers along a track cannot lie under its grains: each of the beds, given by its ends (m), is one from end to end, and a slab needs
-/// soil around it.
+/// Why the layers along a track cannot lie under its grains, beds given by their ends (m): a slab needs soil around it.
 pub(super) fn refusals(scenario: &Scenario, beds: &[[f64; 2]]) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (number_of, section) in scenario.track.sections.iter().enumerate() {
@@ -47,17 +46,9 @@ pub(super) fn refusals(scenario: &Scenario, beds: &[[f64; 2]]) -> Vec<Diagnostic
             if !inside || grains.is_empty() {
                 continue;
             }
-            let over = format!("from {} to {} m", number(part.start), number(part.end));
-            let changed = [part.start + TINY, part.end - TINY].iter().any(|x| granular(&part.layers, *x) != grains);
-            if changed {
-                let message =
-                    format!("{over} other layers of grains lie than in the rest of section `{}`", section.name);
-                let help =
-                    "let the grains be the same there, and change the soil below them; or run `substructure = law`";
-                found.push(Diagnostic::new(Code::E0604, message).help(help));
-            }
             let thickness: f64 = grains.iter().map(|(_, thickness)| thickness).sum();
             if let Some(slab) = part.approach_slab.filter(|slab| *slab.depth < thickness - TINY) {
+                let over = format!("from {} to {} m", number(part.start), number(part.end));
                 let message = format!(
                     "{over} an approach slab lies {} m below the sleepers, among grains that are {} m thick",
                     number(*slab.depth),

@@ -7,7 +7,7 @@ use super::forces::TrainForces;
 use crate::graph::{BedPlan, CellPlan, CellsNode, SleeperOnGrains};
 use crate::nodes::NodeError;
 use crate::nodes::on_grains::{OF_STRIDE, SHARING, Stage, Telling};
-use crate::solvers::granular::rig::{Load, Sleeper, fill, stand};
+use crate::solvers::granular::rig::{Load, Sleeper, fill, glue, stand};
 use crate::solvers::granular::{Bed, Push, Stride, WallId, WallMotion};
 use crate::store::Beds;
 use nalgebra::Vector3;
@@ -72,6 +72,7 @@ impl Cell {
         if let Some(filling) = plan.crib.and_then(|crib| crib.filling(&ready.recipe, plan.copies)) {
             fill(&mut bed, (&sleepers, &walls), &filling, |share| tell(Stage::Cribs, share))?;
         }
+        glue(&mut bed, &plan.glued)?;
         let stride = match node.time_step {
             Some(step) => step / OF_STRIDE,
             None => Stride::with_added(&mut bed, SHARING, node.added_inertia)?.step,

@@ -95,7 +95,16 @@ mod tests {
             pitch: None,
             buffer: false,
         };
-        let plan = CellPlan { bed: 0, x: 0.0, copies: 1, sleepers: vec![sleeper], middle: 0, soil: None, crib: None };
+        let plan = CellPlan {
+            bed: 0,
+            x: 0.0,
+            copies: 1,
+            sleepers: vec![sleeper],
+            middle: 0,
+            soil: None,
+            crib: None,
+            glued: Vec::new(),
+        };
         let seat = |seat: usize| Some(SeatOnCell { x: 0.6 * seat as f64, loaded_by: vec![seat], passed: true });
         CellsNode {
             beds: Vec::new(),

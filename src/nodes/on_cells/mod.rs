@@ -27,7 +27,7 @@ use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
 /// Grows whenever the same cells are built otherwise than before, or kept in another form.
-const METHOD: &str = "cell of grains 1";
+const METHOD: &str = "cell of grains 2";
 
 /// What cells are made of.
 #[derive(Clone, Copy)]

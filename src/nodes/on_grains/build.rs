@@ -1,5 +1,5 @@
 //! How a track comes to stand on grains, as in the paper (sections 2.1.3, 2.3 and 2.4): cells are packed, laid side by side, sleepers set
-//! down, cribs filled where the scene asks for it, the soil put below, the rail laid on. Each stage is at rest before the next one begins.
+//! down, cribs filled and layers glued where the scene asks for it, the soil put below, the rail laid on. Each stage is at rest before the next one begins.
 
 use super::soil::{Plan, SoilBelow};
 use super::step::{Coupled, Spent, StandingBed};
@@ -7,7 +7,7 @@ use super::{Stage, Telling};
 use crate::graph::{GrainStretch, GrainsNode, Responses, SleeperOnGrains, SoilNode, TrackNode};
 use crate::nodes::NodeError;
 use crate::solvers::granular::packing::{Order, lay};
-use crate::solvers::granular::rig::{Load, Sleeper, fill, stand};
+use crate::solvers::granular::rig::{Load, Sleeper, fill, glue, stand};
 use crate::solvers::granular::{Bed, Sharing, Stride, WallId, WallMotion};
 use crate::solvers::track::{Foot, Leapfrog, Spring, Track, TrackLevel};
 use crate::store::{Beds, recipe_hash};
@@ -20,7 +20,7 @@ pub const OF_STRIDE: f64 = 0.9;
 pub const SHARING: Sharing = Sharing::ByNeed;
 
 /// Grows whenever the same parts are built otherwise than before, or kept in another form.
-const METHOD: &str = "track on grains 8";
+const METHOD: &str = "track on grains 9";
 
 /// What a track on grains is made of.
 #[derive(Clone, Copy)]
@@ -72,6 +72,7 @@ impl Parts<'_> {
         if let Some(filling) = stretch.crib.and_then(|crib| crib.filling(recipe, stretch.copies)) {
             fill(&mut bed, (&sleepers, &walls), &filling, |share| tell(Stage::Cribs, share))?;
         }
+        glue(&mut bed, &stretch.glued)?;
         walls.iter().for_each(|wall| bed.set_motion(*wall, WallMotion::Guided));
         let time_step = self.time_step(&mut bed)?;
         bed.set_time_step(time_step);

@@ -1,6 +1,7 @@
 //! A bed of grains: what there is, and how to make it.
 
 use super::body::{Body, BodyId, Clump, SPHERE};
+use super::bonds::Bonds;
 use super::clump::Template;
 use super::contacts::Contacts;
 use super::domain::Domain;
@@ -50,6 +51,7 @@ pub struct Bed<R: Real = f32> {
     pub(super) walls: Vec<Wall>,
     pub(super) contacts: Contacts<R>,
     pub(super) wall_contacts: WallContacts<R>,
+    pub(super) bonds: Bonds<R>,
     pub(super) incidence: Incidence,
     pub(super) lists: Lists,
     pub(super) tally: Tally,
@@ -134,6 +136,7 @@ impl<R: Real> Bed<R> {
             walls: Vec::new(),
             contacts: Contacts::default(),
             wall_contacts: WallContacts::default(),
+            bonds: Bonds::default(),
             incidence: Incidence::default(),
             lists: Lists::default(),
             tally: Tally::default(),

@@ -154,6 +154,7 @@ impl<R: Real> Bed<R> {
         self.wall_contacts = wall_contacts;
         self.fill(pairs, &histories);
         drop(histories);
+        self.rebind()?;
         self.connect();
         self.remember();
         Ok(())
@@ -328,8 +329,16 @@ impl<R: Real> Bed<R> {
                 }
             }
         }
-        contacts.outcomes = vec![Outcome::default(); contacts.len() + self.wall_contacts.slots.len()];
         self.contacts = contacts;
+    }
+
+    /// Binds the bonds that hold by the new order, drops the broken ones, and makes room for what all contacts do.
+    fn rebind(&mut self) -> Result<(), CellTooSmall> {
+        self.bonds.dropped = self.broken_bonds();
+        self.bind(self.bonds.held())?;
+        let places = self.contacts.len() + self.wall_contacts.slots.len() + self.bonds.places();
+        self.contacts.outcomes = vec![Outcome::default(); places];
+        Ok(())
     }
 
     /// Where tasks begin; blocks are not known yet.
@@ -371,6 +380,8 @@ impl<R: Real> Bed<R> {
             count(contacts.second[place], 1);
         }
         self.wall_contacts.entries.iter().for_each(|e| count(e.pebble, e.slots.1 - e.slots.0));
+        let bonds = || (0..self.bonds.places()).filter_map(|place| Some((place as u32, self.bonds.pebbles(place)?)));
+        bonds().flat_map(|(_, both)| both).for_each(|pebble| count(pebble, 1));
         (0..pebbles).for_each(|p| start[p + 1] += start[p]);
         let mut entries = vec![0u32; start[pebbles] as usize];
         let mut next = start.clone();
@@ -386,6 +397,11 @@ impl<R: Real> Bed<R> {
         for entry in &self.wall_contacts.entries {
             (entry.slots.0..entry.slots.1).for_each(|slot| put(entry.pebble, 2 * (walls + slot)));
         }
+        let behind = walls + self.wall_contacts.slots.len() as u32;
+        for (place, [first, second]) in bonds() {
+            put(first, 2 * (behind + place));
+            put(second, 2 * (behind + place) + 1);
+        }
         let key = |entry: u32| self.order_of(entry);
         let mut rest = &mut entries[..];
         let mut lists = Vec::with_capacity(pebbles);
@@ -398,7 +414,8 @@ impl<R: Real> Bed<R> {
         self.incidence = Incidence { start, entries };
     }
 
-    /// Where a contact stands among those of its pebble: first the neighbours' cells as seen from here, then their ranks.
+    /// Where a contact stands among those of its pebble: first the neighbours' cells as seen from here, then their ranks; behind them walls
+    /// and bonds, which have an order of their own.
     fn order_of(&self, entry: u32) -> (u8, u32, u32) {
         let (place, second) = ((entry >> 1) as usize, entry & 1 == 1);
         if place >= self.contacts.len() {

@@ -5,6 +5,7 @@
 
 use super::bed::Bed;
 use super::body::{Body, BodyId, SPHERE};
+use super::bonds::Glue;
 use super::fault::{Fault, NOT_NEGATIVE, POSITIVE, Subject};
 use super::gravity::Gravity;
 use super::lanes::Real;
@@ -74,7 +75,10 @@ impl<R: Real> Bed<R> {
                 return Err(Fault { of, quantity, value, expected });
             }
         }
-        Ok(())
+        match self.bonds.glues.iter().flat_map(Glue::faults).next() {
+            Some(LawError { quantity, value, expected }) => Err(Fault { of: Subject::Bed, quantity, value, expected }),
+            None => Ok(()),
+        }
     }
 
     fn check_surface(&self, of: Subject, surface: u16) -> Result<(), Fault> {

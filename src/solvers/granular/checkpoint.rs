@@ -2,6 +2,7 @@
 
 use super::bed::Bed;
 use super::body::{Body, Clump};
+use super::bonds::{Bond, Bonds, Glue};
 use super::build::Carried;
 use super::domain::Domain;
 use super::energy::Ledger;
@@ -32,6 +33,9 @@ pub struct Checkpoint<R: Real> {
     walls: Vec<Wall>,
     shear: Vec<Carried<R>>,
     kept: Vec<Kept<R>>,
+    glues: Vec<Glue>,
+    bonds: Vec<Bond<R>>,
+    broken_bonds: u64,
     tally: Tally,
     ledger: Ledger,
     time: f64,
@@ -54,7 +58,7 @@ struct Grain<R: Real> {
 }
 
 /// Layout of a checkpoint; another one is refused.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// A checkpoint that cannot be restored.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,6 +109,9 @@ impl<R: Real> Bed<R> {
             walls: self.walls.clone(),
             shear: self.carried(),
             kept: self.kept(),
+            glues: self.bonds.glues.clone(),
+            bonds: self.bonds.held(),
+            broken_bonds: self.broken_bonds(),
             tally: self.tally,
             ledger: self.ledger.clone(),
             time: self.time,
@@ -140,7 +147,9 @@ impl<R: Real> Bed<R> {
         (bed.tally, bed.ledger, bed.limits) = (from.tally, from.ledger, from.limits);
         (bed.time, bed.steps, bed.fresh) = (from.time, from.steps, from.fresh);
         (bed.lists.skin, bed.lists.fixed_skin, bed.lists.outdated) = (from.skin, from.fixed_skin, true);
+        bed.bonds = Bonds::none(from.glues, from.broken_bonds);
         bed.check().map_err(|fault| RestoreError::Failure(fault.into()))?;
+        bed.bind(from.bonds).map_err(|e| RestoreError::Failure(e.into()))?;
         bed.rebuild_with(from.shear, from.kept).map_err(|e| RestoreError::Failure(e.into()))?;
         Ok(bed)
     }
@@ -158,6 +167,7 @@ impl<R: Real> Checkpoint<R> {
         }
         let mut named = vec![false; self.bodies.len()];
         let (mut pebbles, mut clumps) = (0, 0);
+        let mut parts = vec![0; self.bodies.len()];
         for body in &self.bodies {
             match named.get_mut(body.id as usize) {
                 Some(name) if !*name => *name = true,
@@ -167,6 +177,7 @@ impl<R: Real> Checkpoint<R> {
                 return Err(Inconsistent("pebbles do not follow their bodies"));
             }
             pebbles += u32::from(body.pebbles);
+            parts[body.id as usize] = body.pebbles;
             if body.clump != super::body::SPHERE {
                 let arms = self.clumps.get(body.clump as usize).map(|c| c.arms as usize + usize::from(body.pebbles));
                 if body.clump != clumps || arms.is_none_or(|end| end > self.arms.len()) {
@@ -179,6 +190,8 @@ impl<R: Real> Checkpoint<R> {
             }
         }
         let bodies = self.bodies.len() as u32;
+        let named = |(body, part): (u32, u16)| parts.get(body as usize).is_some_and(|parts| part < *parts);
+        let bound = |bond: &Bond<R>| named(bond.low) && named(bond.high) && usize::from(bond.glue) < self.glues.len();
         let known = |c: &Carried<R>| c.low.0 < bodies && c.high.0 < bodies;
         if pebbles as usize != self.pebbles.len() || clumps as usize != self.clumps.len() {
             return Err(Inconsistent("pebbles or clumps are missing"));
@@ -186,6 +199,9 @@ impl<R: Real> Checkpoint<R> {
         if !self.shear.iter().all(known) || self.walls.iter().any(|w| usize::from(w.surface()) >= self.laws.surfaces())
         {
             return Err(Inconsistent("a contact or a wall belongs to nothing"));
+        }
+        if !self.bonds.iter().all(bound) {
+            return Err(Inconsistent("a bond belongs to nothing"));
         }
         Ok(())
     }

@@ -168,7 +168,8 @@ impl<R: Real> Pass<'_, R> {
             let places = block * BLOCK + at..block * BLOCK + at + L::WIDTH;
             let a = lanes.gather(self.around.records, &self.first[places.clone()]);
             let b = lanes.gather(self.around.records, &self.second[places.clone()]);
-            let meeting = Meeting::between(lanes, &a, &b, self.shift(lanes, places.clone()));
+            let shift = shift_of(lanes, &self.image[places.clone()], self.around.shifts);
+            let meeting = Meeting::between(lanes, &a, &b, shift);
             let shear = &mut self.shear[block];
             let contact = rule.force(lanes, &meeting, Vector::load(lanes, shear, at));
             contact.shear.store(shear, at);
@@ -178,36 +179,35 @@ impl<R: Real> Pass<'_, R> {
                 let dashpot = (Vector::load(lanes, before, at) + contact.damping).dot(meeting.velocity) * half;
                 contact.damping.store(before, at);
                 for (sum, energy) in sums.iter_mut().zip([contact.strain, contact.slip, dashpot]) {
-                    add(&mut sum[at..at + L::WIDTH], energy);
+                    add_lanes(&mut sum[at..at + L::WIDTH], energy);
                 }
             }
         }
     }
+}
 
-    /// Shift of the first pebbles; none where all are in the cell of the second.
-    #[inline(always)]
-    fn shift<L: Lanes<Real = R>>(&self, lanes: L, places: std::ops::Range<usize>) -> Option<[Fine<L>; 3]> {
-        let images = &self.image[places];
-        let mut any = 0;
-        for &image in images {
-            any |= image;
-        }
-        if any == 0 {
-            return None;
-        }
-        let mut columns = [[0.0; BLOCK]; 3];
-        for (l, &image) in images.iter().enumerate() {
-            for (column, shift) in columns.iter_mut().zip(self.around.shifts[usize::from(image)]) {
-                column[l] = shift;
-            }
-        }
-        let [x, y, z] = &columns;
-        Some([Fine::load(lanes, x), Fine::load(lanes, y), Fine::load(lanes, z)])
+/// Shift of the first pebbles; none where all are in the cell of the second.
+#[inline(always)]
+pub(super) fn shift_of<L: Lanes>(lanes: L, images: &[Image], shifts: &[[f64; 3]; 64]) -> Option<[Fine<L>; 3]> {
+    let mut any = 0;
+    for &image in images {
+        any |= image;
     }
+    if any == 0 {
+        return None;
+    }
+    let mut columns = [[0.0; BLOCK]; 3];
+    for (l, &image) in images.iter().enumerate() {
+        for (column, shift) in columns.iter_mut().zip(shifts[usize::from(image)]) {
+            column[l] = shift;
+        }
+    }
+    let [x, y, z] = &columns;
+    Some([Fine::load(lanes, x), Fine::load(lanes, y), Fine::load(lanes, z)])
 }
 
 #[inline(always)]
-fn add<L: Lanes>(sums: &mut [f64], energy: Num<L>) {
+pub(super) fn add_lanes<L: Lanes>(sums: &mut [f64], energy: Num<L>) {
     let mut parts = [L::Real::default(); BLOCK];
     energy.store(&mut parts[..L::WIDTH]);
     for (sum, part) in sums.iter_mut().zip(parts) {

@@ -238,7 +238,7 @@ impl<L: Lanes> Springs<L> {
 
 /// Shear force carried along as the contact plane turns: into the new plane at equal size, and round its normal.
 #[inline(always)]
-fn carry<L: Lanes>(shear: Vector<L>, normal: Vector<L>, angle: Num<L>, tiny: Num<L>) -> Vector<L> {
+pub fn carry<L: Lanes>(shear: Vector<L>, normal: Vector<L>, angle: Num<L>, tiny: Num<L>) -> Vector<L> {
     let flat = normal.fma(-shear.dot(normal), shear);
     let stretch = (shear.dot(shear) / flat.dot(flat).max(tiny)).sqrt();
     let flat = flat.scale(stretch);

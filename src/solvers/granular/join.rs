@@ -2,6 +2,7 @@
 
 use super::bed::Bed;
 use super::body::{Body, BodyId, SPHERE};
+use super::bonds::Bonds;
 use super::build::Carried;
 use super::failure::Failure;
 use super::lanes::Real;
@@ -36,6 +37,7 @@ impl<R: Real> Bed<R> {
         cells.iter_mut().try_for_each(|cell| cell.refresh())?;
         let mut bed = cells[order[0]].clone();
         bed.domain = bed.domain.bays(length);
+        bed.bonds = Bonds::default();
         bed.clear_bodies();
         let mut bays = Vec::with_capacity(order.len());
         for (bay, &cell) in order.iter().enumerate() {

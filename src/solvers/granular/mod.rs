@@ -29,6 +29,7 @@
 
 mod bed;
 mod body;
+mod bonds;
 mod build;
 mod check;
 mod checkpoint;
@@ -76,6 +77,7 @@ mod watch;
 
 pub use bed::{Bed, BodyState, PebbleState, Placed, Sphere};
 pub use body::BodyId;
+pub use bonds::Glue;
 pub use checkpoint::{Checkpoint, RestoreError};
 pub use critical::{CriticalStep, Limit, LimitSeat};
 pub use domain::Domain;

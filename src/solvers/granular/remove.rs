@@ -2,6 +2,7 @@
 
 use super::bed::Bed;
 use super::body::BodyId;
+use super::bonds::Bond;
 use super::build::Carried;
 use super::failure::Failure;
 use super::lanes::Real;
@@ -30,7 +31,11 @@ impl<R: Real> Bed<R> {
             .filter_map(|near| Some(Carried { low: renamed(near.low)?, high: renamed(near.high)?, ..near }));
         let kept =
             before.kept().into_iter().filter_map(|touch| Some(Kept { body: numbers[touch.body as usize]?, ..touch }));
+        let bonds = before.bonds.held().into_iter();
+        let bonds = bonds.filter_map(|bond| Some(Bond { low: renamed(bond.low)?, high: renamed(bond.high)?, ..bond }));
+        self.bonds.dropped = before.broken_bonds();
         self.lists.outdated = true;
+        self.bind(bonds.collect())?;
         self.rebuild_with(carried.collect(), kept.collect())?;
         Ok(before.len() - self.len())
     }

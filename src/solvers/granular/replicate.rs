@@ -1,6 +1,7 @@
 //! Copies of a periodic cell side by side (periodic cell replication, methods 1.7).
 
 use super::bed::Bed;
+use super::bonds::Bonds;
 use super::build::Carried;
 use super::domain::steps_of;
 use super::failure::Failure;
@@ -21,6 +22,7 @@ impl<R: Real> Bed<R> {
         self.refresh()?;
         let mut copy: Bed<R> = self.clone();
         copy.domain = self.domain.periodic_bays(length, count);
+        copy.bonds = Bonds::default();
         self.copy_bodies(&mut copy, count);
         let walls = self.copy_walls(&mut copy, count);
         let (bodies, bays) = (self.bodies.len() as u32, count as i32);

@@ -101,10 +101,12 @@ impl<R: Real> Bed<R> {
         }
         self.refresh()?;
         let histories = (self.contacts.shear.clone(), self.contacts.damping.clone(), self.wall_contacts.slots.clone());
+        let bonds = self.bonds.clone();
         let felt: Vec<_> = self.walls.iter().map(|w| (w.felt, w.moment)).collect();
         self.sweep(None);
         let seen = look(self);
         (self.contacts.shear, self.contacts.damping, self.wall_contacts.slots) = histories;
+        self.bonds = bonds;
         for (wall, felt) in self.walls.iter_mut().zip(felt) {
             (wall.felt, wall.moment) = felt;
         }
@@ -166,6 +168,7 @@ impl<R: Real> Bed<R> {
                 });
             }
         }
+        self.add_bonds(&mut states);
         // in an order that depends on who meets only: sums over contacts must not know how lists were made
         states.sort_by_key(|contact: &ContactState| {
             let walled = contact.second.body().is_none();
@@ -196,22 +199,22 @@ impl<R: Real> Bed<R> {
         }
     }
 
-    fn party(&self, pebble: u32) -> Party {
+    pub(super) fn party(&self, pebble: u32) -> Party {
         let (body, part) = self.name(pebble);
         Party::Body(BodyId(body), part)
     }
 
-    fn offset(&self, pebble: u32) -> Vec3 {
+    pub(super) fn offset(&self, pebble: u32) -> Vec3 {
         self.records[pebble as usize].position()
     }
 
     /// Centroid of a pebble's body, in the body's cell \[m\].
-    fn centre(&self, pebble: u32) -> Vec3 {
+    pub(super) fn centre(&self, pebble: u32) -> Vec3 {
         let body = &self.bodies[self.owner[pebble as usize] as usize];
         if body.clump == SPHERE { self.offset(pebble) } else { self.clumps[body.clump as usize].centre }
     }
 
-    fn place_of(&self, pebble: u32) -> Vec3 {
+    pub(super) fn place_of(&self, pebble: u32) -> Vec3 {
         let body = &self.bodies[self.owner[pebble as usize] as usize];
         self.domain.place(body.cell, self.offset(pebble))
     }

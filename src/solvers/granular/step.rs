@@ -108,6 +108,7 @@ impl<R: Real> Bed<R> {
         let laws: Vec<Prepared> = self.laws.all().iter().map(|law| Prepared::new(law, self.dt)).collect();
         let shifts = shifts(&self.domain);
         let mut energy = self.wall_forces(&laws, &shifts);
+        energy += self.bond_forces(&laws, &shifts);
         let mut tally = Tally::default();
         let window = if rayon::current_num_threads() == 1 { ALONE } else { TOGETHER * rayon::current_num_threads() };
         let last = self.lists.tasks.len().saturating_sub(1);
@@ -142,10 +143,23 @@ impl<R: Real> Bed<R> {
         }
         let start = Instant::now();
         let around = Surroundings { records: &self.records, laws, shifts, dt: self.dt };
-        let outcomes = &mut self.contacts.outcomes[self.contacts.first.len()..];
+        let from = self.contacts.first.len();
+        let outcomes = &mut self.contacts.outcomes[from..from + self.wall_contacts.slots.len()];
         let (walls, watched) = (&mut self.walls, self.ledger.watched);
         let energy = self.wall_contacts.evaluate(walls, &self.laws, &self.domain, around, outcomes, watched);
         self.timings.walls += start.elapsed();
+        energy
+    }
+
+    fn bond_forces(&mut self, laws: &[Prepared], shifts: &[[f64; 3]; 64]) -> ContactEnergy {
+        if self.bonds.places() == 0 {
+            return ContactEnergy::default();
+        }
+        let start = Instant::now();
+        let around = Surroundings { records: &self.records, laws, shifts, dt: self.dt };
+        let before = self.contacts.first.len() + self.wall_contacts.slots.len();
+        let energy = self.bonds.evaluate(around, &mut self.contacts.outcomes[before..]);
+        self.timings.forces += start.elapsed();
         energy
     }
 

@@ -7,7 +7,7 @@ use super::{ExpectedError, Proposal, Tier, edges};
 use crate::graph::{ActuatorsNode, BedNode, Model, Node, Schedule, SensorNode, SensorVolume, StandingBody, Tests};
 use crate::lower::bed::{self, BedUse, beds, confinement};
 use crate::lower::blocks::COUNTS;
-use crate::lower::{Draft, crib};
+use crate::lower::{Draft, crib, glue};
 use crate::scenario::{Foot, Force, Given, Loading, RigLoad, Scenario, Seat, Section, SleeperBody, Target, Volume};
 use crate::schema::Reads;
 use crate::solvers::granular::packing::{GrainLayer, Recipe};
@@ -104,6 +104,7 @@ impl TestRig {
             bodies,
             plate: pressed.map(|_| length * across),
             crib: crib::planned(section),
+            glued: glue::at(scenario, 0, 0.5 * (section.start + section.end)),
             confinement,
             driven: forces.iter().any(|load| matches!(load, Load::Strain(_))),
             gravity: *scenario.solve.gravity,

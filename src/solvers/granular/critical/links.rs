@@ -127,6 +127,7 @@ impl<R: Real> Bed<R> {
             (self.name(entry.pebble), entry.wall)
         });
         entries.into_iter().for_each(|entry| self.walled(entry, gap, &mut links));
+        links.extend((0..self.bonds.places()).filter_map(|place| self.bond_link(place)));
         Ok(links)
     }
 
@@ -141,14 +142,20 @@ impl<R: Real> Bed<R> {
     pub(in super::super) fn own_links(&self, body: u32) -> Vec<Link> {
         let mut pairs: Vec<(PairName, Link)> = Vec::new();
         let mut walls: Vec<(PebbleName, u32, usize)> = Vec::new();
+        let mut bonds: Vec<usize> = Vec::new();
         let Body { first, pebbles, .. } = self.bodies[body as usize];
         for pebble in first as usize..first as usize + usize::from(pebbles) {
             let range = self.incidence.start[pebble] as usize..self.incidence.start[pebble + 1] as usize;
             for entry in &self.incidence.entries[range] {
                 let place = (entry >> 1) as usize;
                 if let Some(slot) = place.checked_sub(self.contacts.len()) {
-                    let entry = self.wall_contacts.entries.partition_point(|e| e.slots.1 as usize <= slot);
-                    walls.push((self.name(pebble as u32), self.wall_contacts.entries[entry].wall, entry));
+                    match slot.checked_sub(self.wall_contacts.slots.len()) {
+                        Some(bond) => bonds.push(bond),
+                        None => {
+                            let entry = self.wall_contacts.entries.partition_point(|e| e.slots.1 as usize <= slot);
+                            walls.push((self.name(pebble as u32), self.wall_contacts.entries[entry].wall, entry));
+                        }
+                    }
                     continue;
                 }
                 // a body that touches its own image has both ends of the contact
@@ -164,6 +171,9 @@ impl<R: Real> Bed<R> {
         walls.dedup();
         let mut links: Vec<Link> = pairs.into_iter().map(|(_, link)| link).collect();
         walls.into_iter().for_each(|(.., entry)| self.walled(entry, 0.0, &mut links));
+        bonds.sort_unstable();
+        bonds.dedup();
+        links.extend(bonds.into_iter().filter_map(|place| self.bond_link(place)));
         links
     }
 
@@ -179,6 +189,10 @@ impl<R: Real> Bed<R> {
                     links.extend(self.pair(place, gap));
                     continue;
                 };
+                if let Some(bond) = slot.checked_sub(self.wall_contacts.slots.len()) {
+                    links.extend(self.bond_link(bond));
+                    continue;
+                }
                 // an entry has room for several contacts
                 let entry = self.wall_contacts.entries.partition_point(|e| e.slots.1 as usize <= slot);
                 if last.replace(entry) != Some(entry) {
@@ -235,9 +249,19 @@ impl<R: Real> Bed<R> {
         if overlap <= 0.0 && overlap <= -gap {
             return None;
         }
-        let normal = scale(apart, 1.0 / distance);
         let mass = reduced(one.mass().to_f64(), other.mass().to_f64());
         let law = &self.laws.all()[usize::from(self.contacts.law[place / BLOCK])];
+        let tangent = Tangent::from_law(law, overlap, mass, reduced(one.radius(), other.radius()));
+        Some(self.link(a, b, self.contacts.image[place], tangent))
+    }
+
+    /// A spring between two pebbles, the first one shifted by the image.
+    pub(in super::super) fn link(&self, a: u32, b: u32, image: Image, tangent: Tangent) -> Link {
+        let (one, other) = (&self.records[a as usize], &self.records[b as usize]);
+        let apart = add(sub(one.position(), other.position()), self.domain.shift(image));
+        let distance = norm(apart);
+        let overlap = one.radius() + other.radius() - distance;
+        let normal = scale(apart, 1.0 / distance);
         let link = Link {
             bodies: [a, b].map(|pebble| self.name(pebble).0),
             normal,
@@ -245,11 +269,11 @@ impl<R: Real> Bed<R> {
                 self.arm(a, scale(normal, -(one.radius() - 0.5 * overlap))),
                 self.arm(b, scale(normal, other.radius() - 0.5 * overlap)),
             ],
-            tangent: Tangent::from_law(law, overlap, mass, reduced(one.radius(), other.radius())),
-            mass,
+            tangent,
+            mass: reduced(one.mass().to_f64(), other.mass().to_f64()),
         };
         // which of two comes first in a list is chance
-        Some(if self.name(a) < self.name(b) { link } else { link.turned() })
+        if self.name(a) < self.name(b) { link } else { link.turned() }
     }
 
     /// From the centroid of a pebble's body to a point given from the pebble's centre.

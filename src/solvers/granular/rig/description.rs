@@ -1,6 +1,7 @@
 //! What a test is: the sleepers, what acts on them and what is kept.
 
 use super::filling::Filling;
+use super::glued::Glued;
 use super::sensor::Sensor;
 use super::specimen::Specimen;
 use serde::{Deserialize, Serialize};
@@ -13,6 +14,8 @@ pub struct Rig {
     pub specimen: Option<Specimen>,
     /// Grains between and beside the sleepers; `None` leaves that space empty.
     pub filling: Option<Filling>,
+    /// Glued once all of it is at rest.
+    pub glued: Vec<Glued>,
     /// Time of a cycle, s; of a history its length.
     pub period: f64,
     pub cycles: u64,

@@ -10,6 +10,7 @@ use super::calm::{AT_REST, DAMPING};
 use super::crib::fill;
 use super::description::{Load, Rig};
 use super::error::{Resting, RigError, in_cycle};
+use super::glued::glue;
 use super::sensor::SensorReading;
 use super::set_down::{motion, place, until_rest};
 use super::specimen::{Size, SpecimenState};
@@ -74,6 +75,7 @@ impl<'a, R: Real> Trial<'a, R> {
             fill(&mut bed, (&rig.sleepers, &walls), filling, &mut tell)?;
         }
         let size = consolidated(&mut bed, rig, &walls, tell)?;
+        glue(&mut bed, &rig.glued).map_err(in_cycle(0))?;
         let rest = walls.iter().map(|wall| bed.wall(*wall).pose(bed.domain()).position.z).collect();
         let state = TrialState {
             start: bed.time(),

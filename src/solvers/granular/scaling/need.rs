@@ -191,8 +191,12 @@ impl<'a, R: Real> Acting<'a, R> {
             for &entry in bed.entries_of(pebble) {
                 let at = (entry >> 1) as usize;
                 let Some(&Spot { normal, along, across }) = self.spots.get(at) else {
-                    // an entry has room for several contacts
                     let slot = at - self.spots.len();
+                    if let Some(bond) = slot.checked_sub(bed.wall_contacts.slots.len()) {
+                        self.add_bond(bond, body.id, &count, &mut sums);
+                        continue;
+                    }
+                    // an entry has room for several contacts
                     let walled = bed.wall_contacts.entries.partition_point(|e| e.slots.1 as usize <= slot);
                     if last.replace(walled) != Some(walled) {
                         self.add_walled(walled, &mut sums);
@@ -220,6 +224,14 @@ impl<'a, R: Real> Acting<'a, R> {
             let [along, across] = in_step(&tangent, self.step);
             sums.add(normal, arms[0], along, across);
         }
+    }
+
+    fn add_bond(&self, place: usize, body: u32, count: &impl Fn(u32) -> f64, sums: &mut Sums) {
+        let Some(Link { bodies, normal, arms, tangent, .. }) = self.bed.bond_link(place) else { return };
+        let end = usize::from(bodies[0] != body);
+        let share = count(self.bed.index[bodies[1 - end] as usize]);
+        let [along, across] = in_step(&tangent, self.step);
+        sums.add(normal, arms[end], share * along, share * across);
     }
 
     /// Places of the bodies that are listed near one.

@@ -7,6 +7,7 @@ use crate::solvers::granular::{Bed, DashpotMode, Surface, clump::Template, grain
 use std::sync::OnceLock;
 
 mod crib;
+mod glued;
 
 /// Spheres of these sizes on a plan, in a box with smooth walls or in a cell with rough ones.
 fn recipe(plan: [f64; 2], thickness: f64, sizes: [f64; 2], friction: f64, boxed: bool) -> Recipe {
@@ -55,6 +56,7 @@ fn rig(load: Load, cycles: u64) -> Rig {
         sleepers: vec![sleeper],
         specimen: None,
         filling: None,
+        glued: Vec::new(),
         period: 0.04,
         cycles,
         gravity: 9.81,
@@ -157,6 +159,7 @@ fn specimen(friction: f64) -> (Bed<f32>, Rig) {
         sleepers: vec![plate],
         specimen: Some(Specimen { floor: recipe.floor(), sides: recipe.sides().unwrap(), pressure: 100e3 }),
         filling: None,
+        glued: Vec::new(),
         period: 0.9,
         cycles: 1,
         gravity: 9.81,

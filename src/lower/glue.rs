@@ -1,0 +1,42 @@
+//! Grains that are glued, where a scene says so: what of them a plan holds.
+
+use crate::scenario::{Granular, Layer, Scenario};
+use crate::solvers::granular::Glue;
+use crate::solvers::granular::rig::Glued;
+
+/// Lengths closer than this are one, m.
+const TINY: f64 = 1e-6;
+
+/// Glued parts of a bed that lies between two chainages (m) of a section.
+pub(super) fn along(scenario: &Scenario, section: usize, [left, right]: [f64; 2]) -> Vec<Glued> {
+    let parts = scenario.track.ground(section);
+    let inside = parts.iter().filter(|part| part.start < right - TINY && part.end > left + TINY);
+    let of_part = |part: &crate::scenario::Groundwork| {
+        let along = [part.start.max(left) - left, part.end.min(right) - left];
+        of_layers(&part.layers).map(|glued| Glued { along: Some(along), ..glued }).collect::<Vec<_>>()
+    };
+    inside.flat_map(of_part).collect()
+}
+
+/// Glued layers at a chainage (m) of a section, which are so all along their bed.
+pub(super) fn at(scenario: &Scenario, section: usize, x: f64) -> Vec<Glued> {
+    let parts = scenario.track.ground(section);
+    let here = parts.iter().find(|part| (part.start..=part.end).contains(&x));
+    here.map_or_else(Vec::new, |part| of_layers(&part.layers).collect())
+}
+
+/// Layers with bonds; grains are numbered from the floor upwards.
+fn of_layers(layers: &[Layer]) -> impl Iterator<Item = Glued> {
+    let grains = layers.iter().rev().filter_map(Layer::granular).enumerate();
+    grains.filter_map(|(number, grains)| Some(Glued { surface: number as u16, along: None, glue: glue(grains)? }))
+}
+
+fn glue(grains: &Granular) -> Option<Glue> {
+    let bond = grains.bond?;
+    Some(Glue {
+        normal_stiffness: *bond.stiffness,
+        shear_stiffness: *bond.stiffness * *grains.shear_ratio,
+        tensile_strength: *bond.tensile_strength,
+        shear_strength: *bond.shear_strength,
+    })
+}
