@@ -431,3 +431,48 @@ fn a_silenced_rule_is_silent_and_the_report_says_why() {
     let denied = write(dir.path(), "denied.track", &format!("scenario {{ deny = track_too_short }}\n{SMALL}"));
     assert_eq!(code(&trackbed(&["check", denied.to_str().unwrap()])), 1);
 }
+
+/// A track on cells, on two packings.
+const PACKINGS: &str = "use std
+grading coarse { passing = [50 mm: 0 %, 65 mm: 100 %] }
+granular stone {
+  grading = coarse, density = 2700 kg/m^3, contact_stiffness = 13 MN/m per contact, friction = 0.7, viscous_damping = 0.3
+  packing = { lifts = 1, pressure = 200 kPa, friction = 0.2 }
+}
+trackform open {
+  rail = rails.UIC60, pad = { stiffness = 40 MN/m, damping = 5 kN s/m }
+  sleeper = sleepers.concrete { mass = 150 kg per seat, length = 2 m }, spacing = 0.6 m, layers = [stone: 200 mm]
+}
+trackform stiff : open { sleeper = none, slab = slabs.half_width_1600 }
+track line { sections = [open: 18 m, stiff: 15 m], transitions = [edge: soft_to_stiff] }
+vehicle wagon : vehicles.ore_wagon_20t { length = 12 m }
+train ore { vehicles = wagon, speed = 200 km/h, direction = forward }
+traffic { trains = ore, total = 4 axles }
+solve { substructure = cells, repeats = 2, update_every = 4 axles }
+record { at = [-2, -1, +1] sleepers, after = [0, 4] axles, quantities = rail_seat_load }
+";
+
+#[test]
+fn a_track_on_two_packings_shows_both_and_their_scatter() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = write(folder.path(), "scene.track", PACKINGS);
+    let (out, beds) = (folder.path().join("out"), folder.path().join("beds"));
+    let run = |further: &[&str]| {
+        let [scene, out, beds] = [&scene, &out, &beds].map(|path| path.to_str().unwrap());
+        trackbed(&[&["run", scene, "--out", out, "--cache", beds], further].concat())
+    };
+    let first = run(&[]);
+    assert_eq!(code(&first), 0, "{}", said(&first));
+    let [a, b] = [&out, &out.join("packings/2")].map(|folder| scalar(folder, "max_settlement"));
+    assert!(a != b, "two packings settle otherwise: {a} {b}");
+    assert!((scalar(&out, "max_settlement_mean") / (0.5 * (a + b)) - 1.0).abs() < 1e-9);
+    assert!((scalar(&out, "max_settlement_deviation") / ((a - b).abs() / 2f64.sqrt()) - 1.0).abs() < 1e-9);
+    let page = fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("Over packings") && page.contains("another packing of the same grains"));
+    // what is finished is not computed again, and the page can be made anew
+    let again = run(&["--resume"]);
+    assert!(said(&again).contains("finished before"), "{}", said(&again));
+    let report = trackbed(&["report", out.to_str().unwrap()]);
+    assert_eq!(code(&report), 0, "{}", said(&report));
+    assert_eq!(fs::read_to_string(out.join("report.html")).unwrap(), page);
+}

@@ -178,3 +178,21 @@ fn cells_settle_by_less_and_less_and_a_run_that_was_stopped_ends_with_the_same_b
         assert_eq!([begun.settlements, resumed.settlements].concat(), whole.settlements, "{stop}");
     }
 }
+
+#[test]
+fn glued_grains_get_cells_of_their_own_and_other_grains_are_refused() {
+    let stretch = |layers: &str| {
+        let glued = "granular glued : stone { bond = { stiffness = 50 MN/m per contact, tensile_strength = 5 kN, shear_strength = 5 kN } }";
+        let stretch =
+            format!("{glued}\nstretch bonded {{ over = -1.2 .. 0 m, layers = [{layers}, clay: rest] }}\ntrack line {{");
+        SCENE.replace("track line {", &stretch).replace("transitions =", "stretches = [bonded], transitions =")
+    };
+    let graph = graph(&stretch("glued: 200 mm"));
+    let cells = cells(&graph);
+    let glued: Vec<usize> = (0..cells.cells.len()).filter(|cell| !cells.cells[*cell].glued.is_empty()).collect();
+    assert_eq!(glued.iter().map(|cell| cells.seats_of(*cell)).sum::<usize>(), 2, "sleepers -2 and -1");
+    assert_eq!(cells.beds.len(), 1, "glued or not, the grains are packed once");
+    let compiled = compile("scene.track", &stretch("glued: 150 mm"), &NoModules, &[]);
+    let told = compiled.diagnostics.iter().find(|d| d.code == Code::E0604).expect("told");
+    assert!(told.message.contains("other layers of grains"), "{}", told.message);
+}

@@ -328,6 +328,37 @@ fn layers_along_the_track_lie_in_the_soil_below_the_grains() {
     assert!(told.message.contains("other layers of grains"), "{}", told.message);
 }
 
+/// The last 1.2 m before the slab are glued, whole or as long as the glue bears nothing.
+fn with_glue(strength: &str) -> String {
+    let bond = format!(
+        "bond = {{ stiffness = 50 MN/m per contact, tensile_strength = {strength}, shear_strength = {strength} }}"
+    );
+    let glued = format!(
+        "granular glued : stone {{ {bond} }}\nstretch bonded {{ over = -1.2 .. 0 m, layers = [glued: 200 mm, clay: 0.5 m] }}\ntrack line {{"
+    );
+    SCENE
+        .replace("track line {", &glued)
+        .replace("transitions =", "stretches = [bonded], transitions =")
+        .replace("8 axles", "4 axles")
+        .replace("[0, 8]", "[0, 4]")
+}
+
+#[test]
+fn a_stretch_of_glued_grains_settles_less_and_changes_nothing_else_of_the_bed() {
+    let folder = tempfile::tempdir().unwrap();
+    let (strong, weak) = (graph(&with_glue("5 kN")), graph(&with_glue("1 N")));
+    let listing = strong.listing().text();
+    assert!(listing.contains("grains of `stone` are glued from -1.2 m to 0 m"), "{listing}");
+    let settled = |graph: &Graph| {
+        let mut heard = Heard::default();
+        run(graph, folder.path(), 2, &mut heard, None);
+        carried(graph).iter().map(|seat| heard.settlements[0].1[*seat]).collect::<Vec<f64>>()
+    };
+    let (strong, weak) = (settled(&strong), settled(&weak));
+    let last = strong.len() - 1;
+    assert!(strong[last] < 0.7 * weak[last], "sleeper -1: {strong:?} {weak:?}");
+}
+
 #[test]
 fn a_track_whose_cribs_are_filled_runs() {
     let folder = tempfile::tempdir().unwrap();

@@ -69,13 +69,45 @@ fn run_here(arguments: &Arguments) -> Outcome {
     let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else {
         return not_yet(&compiled);
     };
-    let sha256 = fingerprint(&compiled.sources);
-    let work = Work { name: arguments.name(), scene_sha256: sha256.clone() };
-    match Directory::open(&arguments.out, work, arguments.mode()) {
+    let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph };
+    match Directory::open(&arguments.out, running.work(arguments), arguments.mode()) {
         Ok(directory) if directory.finished().is_some() => again(directory.path(), &compiled),
-        Ok(directory) => compute(arguments, directory, &Running { compiled: &compiled, sha256, scenario, graph }),
+        Ok(directory) => further_packings(arguments, &running)
+            .and_then(|()| compute(arguments, directory, &running))
+            .map_or_else(|outcome| outcome, |run| verdicts(&run.summary.expectations, scenario, &compiled)),
         Err(error) => stop(&compiled, stored::diagnostic(&error)),
     }
+}
+
+/// Runs the scene of a track on grains on the further packings that it asks for, each in a directory of its own below that of the run.
+fn further_packings(arguments: &Arguments, running: &Running<'_>) -> Result<(), Outcome> {
+    let solve = &running.scenario.solve;
+    let further = if running.graph.has_grains_under_track() { solve.grains.repeats - 1 } else { 0 };
+    for number in 1..=u64::from(further) {
+        let seed = solve.seed + number;
+        terminal::note(&format!("packing {number} of {}: seed {seed}\n", further + 1));
+        one_packing(arguments, seed)?;
+    }
+    if further > 0 {
+        terminal::note(&format!("packing {0} of {0}: seed {1}\n", further + 1, solve.seed));
+    }
+    Ok(())
+}
+
+/// Runs the scene on the packing of another seed, or goes on with it.
+fn one_packing(arguments: &Arguments, seed: u64) -> Result<(), Outcome> {
+    let scene = arguments.scene.with_seed(&SeedArgument::of(seed));
+    let compiled = scene.compile_without(&arguments.passes).map(Compiled::to_run).ok_or(Outcome::Usage)?;
+    let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else {
+        show(&compiled);
+        return Err(not_yet(&compiled));
+    };
+    let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph };
+    let mode = if arguments.force { Mode::Force } else { Mode::Resume };
+    let out = results::packing_directory(&arguments.out, seed);
+    let directory = Directory::open(&out, running.work(arguments), mode)
+        .map_err(|error| stop(&compiled, stored::diagnostic(&error)))?;
+    if directory.finished().is_some() { Ok(()) } else { compute(arguments, directory, &running).map(drop) }
 }
 
 impl Arguments {
@@ -102,14 +134,22 @@ struct Running<'a> {
     graph: &'a Graph,
 }
 
-fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -> Outcome {
+impl Running<'_> {
+    fn work(&self, arguments: &Arguments) -> Work {
+        Work { name: arguments.name(), scene_sha256: self.sha256.clone() }
+    }
+}
+
+/// Runs a scene into its directory, to its report.
+fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -> Result<Run, Outcome> {
     let Running { compiled, sha256, scenario, graph } = running;
+    let out = directory.path().to_owned();
     let refused = |error: &ResultsError| stop(compiled, results_diagnostic(error));
     let source = Source { sources: &compiled.sources, sha256, diagnostics: &compiled.diagnostics };
     let mut recorder = RunRecorder::new(scenario, graph).kept_in(&directory).made_by(source);
     let from = match recorder.resume() {
         Ok(from) => from,
-        Err(error) => return refused(&error),
+        Err(error) => return Err(refused(&error)),
     };
     if let Some(checkpoint) = &from {
         terminal::note(&format!("goes on after {}: what is left is told from here\n", checkpoint.clock));
@@ -120,23 +160,19 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
     drop(shown);
     match (ended, recorder.failure()) {
         (Ok(Ending::Finished), _) => {}
-        (Ok(Ending::Stopped), Some(error)) => return refused(&error),
-        (Ok(Ending::Stopped), None) => return Outcome::Failed,
-        (Err(error), _) => return stop(compiled, execute::diagnose(&error, graph, &compiled.origins)),
+        (Ok(Ending::Stopped), Some(error)) => return Err(refused(&error)),
+        (Ok(Ending::Stopped), None) => return Err(Outcome::Failed),
+        (Err(error), _) => return Err(stop(compiled, execute::diagnose(&error, graph, &compiled.origins))),
     }
     let timed = Timed { solve: recorder.seconds(), parts: recorder.parts(), after: Instant::now() };
-    let run = Run::gather(&recorder, scenario, graph, source);
-    let files = match files(&run, recorder.last_bed.take(), &arguments.out) {
-        Ok(files) => files,
-        Err(error) => return refused(&error),
-    };
+    let packings = results::read_packings(&out).map_err(|error| refused(&error))?;
+    let run = Run::gather(&recorder, scenario, graph, source).with_packings(packings);
+    let files = files(&run, recorder.last_bed.take(), &out).map_err(|error| refused(&error))?;
     drop(recorder);
-    if let Err(error) = put_in_place(directory, &files, &timed) {
-        return refused(&error);
-    }
-    summary(&run, &arguments.out.join(report::PAGE), timed.solve);
+    put_in_place(directory, &files, &timed).map_err(|error| refused(&error))?;
+    summary(&run, &out.join(report::PAGE), timed.solve);
     warn(&run, compiled);
-    verdicts(&run.summary.expectations, scenario, compiled)
+    Ok(run)
 }
 
 /// Says what a run found that is finished already.
@@ -263,14 +299,18 @@ const OF_TESTS: [Line; 10] = [
     ("grains", "grains", "", 1.0),
 ];
 
-/// A line for each scalar that there is, in its unit of so many SI units, with the band of its mean where it has one.
+/// A line for each scalar that there is, in its unit of so many SI units, with the band of its mean where it has one, and its scatter over packings.
 fn headline(out: &mut String, scalars: &BTreeMap<String, Scalar>, lines: &[Line]) {
     for (name, label, unit, size) in lines {
         let rounded = |value: f64| number((value / size * 1e4).round() / 1e4);
         let Some(scalar) = scalars.get(*name) else { continue };
         let band = scalars.get(&format!("{name}_confidence"));
         let band = band.map_or(String::new(), |half| format!(" +- {}", rounded(half.value)));
-        out.push_str(&format!("  {label:<26}{}{band} {unit}\n", rounded(scalar.value)));
+        let over = scalars.get(&format!("{name}_mean")).zip(scalars.get(&format!("{name}_deviation")));
+        let over = over.map_or(String::new(), |(mean, deviation)| {
+            format!(" (over packings {}, standard deviation {})", rounded(mean.value), rounded(deviation.value))
+        });
+        out.push_str(&format!("  {label:<26}{}{band} {unit}{over}\n", rounded(scalar.value)));
     }
 }
 

@@ -26,6 +26,13 @@ pub(super) struct SeedArgument {
     seed: Option<u32>,
 }
 
+impl SeedArgument {
+    /// That seed.
+    pub fn of(seed: u64) -> SeedArgument {
+        SeedArgument { seed: u32::try_from(seed).ok() }
+    }
+}
+
 /// Which passes of the planner are left out.
 #[derive(clap::Args)]
 pub(super) struct PassArguments {

@@ -4,6 +4,7 @@ use super::Figure;
 use super::counts::{self, Count};
 use super::curves::{Axis, Chart, Mark, Series};
 use super::number::{shown_unit, significant, whole};
+use super::packings::with_thin_curves;
 use super::svg::{Frame, Svg};
 use super::view::WIDTH;
 use crate::results::{RailRow, Run, SleeperRow};
@@ -19,7 +20,7 @@ pub fn settlement(run: &Run) -> Option<Figure> {
     let caption = "Permanent settlement of each sleeper's support, downward as in the track; seats are numbered from the \
          transition (dashed), negative on its softer side; shaded where no ballast carries the seats. Lighter near \
          the ends: not every wheel of a train passes these sleepers, and they take the mean of ten neighbours.";
-    figure(&chart, "settlement", "Settlement along the track", caption)
+    figure(&chart, "settlement", "Settlement along the track", &with_thin_curves(run, caption))
 }
 
 /// Level of the rail without a vehicle.
@@ -37,7 +38,7 @@ pub fn seat_loads(run: &Run) -> Option<Figure> {
     chart.series = per_seat(run, false, |row| row.max_rail_seat_load_N);
     let caption = "Largest force of the rail on each pad during one passage, per seat, in compression positive. The seat on \
                    the stiff edge takes what its hanging neighbours leave.";
-    figure(&chart, "rail_seat_load", "Rail seat loads along the track", caption)
+    figure(&chart, "rail_seat_load", "Rail seat loads along the track", &with_thin_curves(run, caption))
 }
 
 /// How the dead load of the track rests on the ballast.
@@ -46,7 +47,8 @@ pub fn gravity_contact(run: &Run) -> Option<Figure> {
     chart.series = per_seat(run, true, |row| row.gravity_contact_force_N);
     let caption = "Force of each half sleeper on its support under dead load alone: a sleeper at zero hangs, and its \
                    neighbours carry its weight.";
-    figure(&chart, "gravity_contact_force", "Sleeper\u{2013}ballast contact under dead load", caption)
+    let title = "Sleeper\u{2013}ballast contact under dead load";
+    figure(&chart, "gravity_contact_force", title, &with_thin_curves(run, caption))
 }
 
 /// Rail deflection of a static check.
@@ -113,7 +115,7 @@ pub fn along_profile(run: &Run, count: &Count, value: fn(&RailRow) -> f64) -> Se
 }
 
 /// One series a count over the seats, of the ballasted ones only where the quantity is the ballast's; seats that not every train passes
-/// whole in a paler one.
+/// whole in a paler one, further packings in thin ones.
 fn per_seat(run: &Run, ballasted: bool, value: fn(&SleeperRow) -> f64) -> Vec<Series> {
     let names = ballasted_names(&run.scenario);
     let trains = match &run.scenario.loading {
@@ -135,7 +137,12 @@ fn per_seat(run: &Run, ballasted: bool, value: fn(&SleeperRow) -> f64) -> Vec<Se
         // the last whole seat begins the paler curve, so that both meet
         let beside = |i: usize| i > 0 && !whole[i - 1] || whole.get(i + 1) == Some(&false);
         let pale = Series { pale: true, name: String::new(), ..series(&|i| !whole[i] || beside(i)) };
-        [series(&|i| whole[i]), pale]
+        let shown = |row: &&SleeperRow| row.axles == count.axles && (!ballasted || names.contains(&row.sleeper));
+        let thin = run.packings.iter().map(|packing| {
+            let points = packing.sleepers.iter().filter(shown).map(|row| (row.x_m, value(row))).collect();
+            Series::new("", &count.class, Mark::Faint, points)
+        });
+        [series(&|i| whole[i]), pale].into_iter().chain(thin.collect::<Vec<_>>())
     };
     let all = counts::shown(run).iter().flat_map(of_count).collect::<Vec<Series>>();
     all.into_iter().filter(|series| series.points.iter().any(|point| point.1.is_finite())).collect()

@@ -4,6 +4,7 @@ use super::Figure;
 use super::along::ballasted_names;
 use super::curves::{Axis, Chart, Mark, Series};
 use super::number::shown_unit;
+use super::packings::with_thin_curves;
 use super::panels::{Names, panels};
 use crate::results::{Run, SleeperRow};
 
@@ -19,7 +20,13 @@ pub fn settlement_with_axles(run: &Run) -> Option<Figure> {
     let mut chart = Chart::new(Axis::new("Axles", ("", 1.0)), y);
     for (index, (row, why)) in telling_seats(run).into_iter().enumerate() {
         let name = format!("{}{why}", row.sleeper.replace('-', "\u{2212}"));
-        chart.series.push(Series::new(&name, &format!("s{index}"), Mark::Dots, of_sleeper(run, &row.sleeper)));
+        let class = format!("s{index}");
+        chart.series.push(Series::new(&name, &class, Mark::Dots, of_sleeper(run, &row.sleeper)));
+        chart.series.extend(run.packings.iter().map(|packing| {
+            let rows = packing.sleepers.iter().filter(|other| other.sleeper == row.sleeper);
+            let points = rows.map(|row| (row.axles as f64, row.settlement_m)).collect();
+            Series::new("", &class, Mark::Faint, points)
+        }));
     }
     chart.uprights = run.tampings.iter().map(|row| row.axles as f64).collect();
     chart.uprights.dedup();
@@ -47,6 +54,7 @@ pub fn settlement_with_axles(run: &Run) -> Option<Figure> {
         caption += " Right, the same over the logarithm of the axles: a straight line there is settlement that grows by \
                     equal steps with every tenfold of axles.";
     }
+    let caption = with_thin_curves(run, &caption);
     let columns = charts.len();
     let names = Names { id: "settlement_with_axles", title: "Settlement with the axles", caption: &caption };
     panels(&names, &charts, columns)

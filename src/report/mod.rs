@@ -31,6 +31,7 @@ mod number;
 mod over_axles;
 mod packed;
 mod packed_readings;
+mod packings;
 mod page;
 mod panels;
 mod pebbles;

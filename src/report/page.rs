@@ -2,6 +2,7 @@
 
 use super::headline::headline;
 use super::number::{plain, significant, whole};
+use super::packings::packings;
 use super::prose::{computed, prose, unmarked};
 use super::reliance::reliance;
 use super::scene::force;
@@ -55,6 +56,7 @@ fn page_with(run: &Run, notice: &str) -> String {
     html += notice;
     let figures = figures(run);
     headline(&mut html, run);
+    packings(&mut html, run);
     reliance(&mut html, &run.summary.reliance);
     laws::remarks(&mut html, run);
     expectations(&mut html, &run.summary.expectations);

@@ -459,5 +459,6 @@ fn finished(
         histories,
         beds: vec![],
         tests: None,
+        packings: Vec::new(),
     }
 }

@@ -81,7 +81,18 @@ pub fn read(directory: &Path) -> Result<Run, ResultsError> {
         histories: histories::decode(&directory.join(HISTORIES))?,
         beds: super::under_track_files::read(directory)?,
         tests: None,
+        packings: super::packings::read_packings(directory)?,
     })
+}
+
+/// Whether a directory holds the summary of a finished run.
+pub(super) fn is_finished(directory: &Path) -> bool {
+    directory.join(SUMMARY).is_file()
+}
+
+/// Reads the table of sleepers alone.
+pub(super) fn read_sleepers(directory: &Path) -> Result<Vec<super::SleeperRow>, ResultsError> {
+    read_table(directory)
 }
 
 /// `timings.json`: seconds, rates and whatever else differs between two equal runs.

@@ -63,6 +63,7 @@ impl Run {
             histories: Vec::new(),
             beds: Vec::new(),
             tests: None,
+            packings: Vec::new(),
         }
     }
 

@@ -16,6 +16,7 @@ mod histories;
 mod kept_beds;
 mod laws;
 mod level;
+mod packings;
 mod recorder;
 mod reliance;
 mod so_far;
@@ -45,6 +46,7 @@ pub use gather::Source;
 pub use grains::{Grain, Link, grains, links, places};
 pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};
 pub use level::{LongitudinalLevel, longitudinal_level};
+pub use packings::{OVER_PACKINGS, Packing, Scatter, packing_directory, read_packings};
 pub use recorder::{RunRecorder, RunTables};
 pub use reliance::{Reliance, Silenced, Unchecked, Warned};
 pub use so_far::SoFar;
@@ -81,6 +83,8 @@ pub struct Run {
     pub beds: Vec<BedsAtCount>,
     /// Tests of packed beds; a track has none.
     pub tests: Option<BedTests>,
+    /// The same on further packings of the grains under the track; empty where there is one.
+    pub packings: Vec<Packing>,
 }
 
 impl Run {

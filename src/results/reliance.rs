@@ -106,9 +106,12 @@ fn confidence(
     let mut told = Vec::new();
     if graph.has_grains_under_track() {
         let seed = scenario.solve.seed;
-        told.push(format!(
-            "one packing of the grains under the track, seed {seed}: `--seed` shows others, and their scatter"
-        ));
+        told.push(match scenario.solve.grains.repeats {
+            1 => format!(
+                "one packing of the grains under the track, seed {seed}: `repeats = 5` runs others too, and shows their scatter"
+            ),
+            count => format!("figures and tables are of one packing, seed {seed}, of {count} that were asked for"),
+        });
         told.extend(risen(tables));
     }
     if graph.nodes.iter().any(|node| matches!(node.model, Model::Cells(_))) {

@@ -30,6 +30,7 @@ pub(super) const READS: Reads = Reads {
         "solve.coupling",
         "solve.passages",
         "solve.grain_step",
+        "solve.repeats",
         "track.base",
         "usp.bedding_modulus",
         "approach_slab.density",

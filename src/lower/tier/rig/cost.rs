@@ -133,7 +133,9 @@ pub(in crate::lower::tier) fn grains_under_track(draft: &Draft<'_>, blocks: Opti
     let time = building + blocks.map_or(0.0, |blocks| passing.between(blocks, 0, blocks.total));
     let test_steps = time / time_step;
     let seconds = 0.5 * cell * packing_steps / PEBBLE_STEPS[0] + pebbles * test_steps / TRACK_PEBBLE_STEPS;
-    cost(seconds, TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings: 1 })
+    let packings = scenario.solve.grains.repeats;
+    let work = TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings };
+    cost(f64::from(packings) * seconds, work)
 }
 
 /// Trains over cells of grains.
@@ -176,7 +178,9 @@ pub(in crate::lower::tier) fn cells_under_track(draft: &Draft<'_>, blocks: &Bloc
     let [cell_grains, cell_pebbles] = [grains + beside_grains, pebbles + beside_pebbles];
     let seconds = 0.5 * pebbles * packing_steps / PEBBLE_STEPS[0] + cell_pebbles * test_steps / TRACK_PEBBLE_STEPS;
     let [grains, pebbles] = [cell_grains, cell_pebbles].map(|count| passing.bays * count);
-    cost(seconds, TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings: 1 })
+    let packings = scenario.solve.grains.repeats;
+    let work = TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings };
+    cost(f64::from(packings) * seconds, work)
 }
 
 fn pebbles_of(shape: &Shape) -> f64 {

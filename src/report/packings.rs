@@ -1,0 +1,53 @@
+//! What scatters from packing to packing: a table of the page.
+
+use super::number::significant;
+use crate::results::Run;
+use std::fmt::Write;
+
+/// Scalars of the table: name, how it is called, its unit and that unit in SI.
+const ROWS: [(&str, &str, &str, f64); 9] = [
+    ("settlement_step", "Step at the structure", "mm", 1e-3),
+    ("max_settlement", "Largest settlement", "mm", 1e-3),
+    ("far_field_settlement", "Far-field settlement", "mm", 1e-3),
+    ("max_void", "Largest void", "mm", 1e-3),
+    ("voided_sleepers", "Voided sleepers", "", 1.0),
+    ("max_rail_seat_load", "Largest rail seat load", "kN", 1e3),
+    ("max_contact_force", "Largest contact force", "kN", 1e3),
+    ("max_wheel_force", "Largest wheel force", "kN", 1e3),
+    ("max_rail_displacement", "Largest rail displacement", "mm", 1e-3),
+];
+
+/// The table over packings; nothing where there is one.
+pub fn packings(html: &mut String, run: &Run) {
+    if run.packings.is_empty() {
+        return;
+    }
+    let seeds: Vec<String> = run.packings.iter().map(|packing| packing.seed.to_string()).collect();
+    let _ = write!(
+        html,
+        "<section id=\"packings\"><h2>Over packings</h2><p class=\"caption\">The same scene on {} packings of its grains: this page shows \
+         seed {}, thin curves those of seed {}. A standard deviation is that of one packing.</p><div class=\"scroll\"><table>\
+         <tr><th class=\"text\"></th><th></th><th>this packing</th><th>mean</th><th>standard deviation</th><th>least</th><th>largest</th></tr>",
+        run.packings.len() + 1,
+        run.scenario.solve.seed,
+        seeds.join(", ")
+    );
+    for (name, label, unit, size) in ROWS {
+        let (Some(scatter), Some(own)) = (run.scatter(name), run.scalar(name)) else { continue };
+        let _ = write!(html, "<tr><td class=\"text\">{label}</td><td class=\"text\">{unit}</td>");
+        for value in [own, scatter.mean, scatter.deviation, scatter.least, scatter.largest] {
+            let _ = write!(html, "<td>{}</td>", significant(value / size, 3));
+        }
+        *html += "</tr>";
+    }
+    *html += "</table></div></section>\n";
+}
+
+/// A caption with a word on the thin curves, where there are some.
+pub fn with_thin_curves(run: &Run, caption: &str) -> String {
+    match run.packings.len() {
+        0 => caption.to_owned(),
+        1 => format!("{caption} Thin: another packing of the same grains."),
+        count => format!("{caption} Thin: {count} other packings of the same grains."),
+    }
+}
