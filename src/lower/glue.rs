@@ -18,11 +18,11 @@ pub(super) fn along(scenario: &Scenario, section: usize, [left, right]: [f64; 2]
     inside.flat_map(of_part).collect()
 }
 
-/// Glued layers at a chainage (m) of a section, which are so all along their bed.
+/// Glued layers at a chainage (m) of a section, which are so all along their bed; at the end of a glued part those of that part.
 pub(super) fn at(scenario: &Scenario, section: usize, x: f64) -> Vec<Glued> {
     let parts = scenario.track.ground(section);
-    let here = parts.iter().find(|part| (part.start..=part.end).contains(&x));
-    here.map_or_else(Vec::new, |part| of_layers(&part.layers).collect())
+    let here = parts.iter().filter(|part| (part.start - TINY..=part.end + TINY).contains(&x));
+    here.map(|part| of_layers(&part.layers).collect()).find(|glued: &Vec<Glued>| !glued.is_empty()).unwrap_or_default()
 }
 
 /// Layers with bonds; grains are numbered from the floor upwards.

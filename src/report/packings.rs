@@ -1,6 +1,6 @@
 //! What scatters from packing to packing: a table of the page.
 
-use super::number::significant;
+use super::number::plain;
 use crate::results::Run;
 use std::fmt::Write;
 
@@ -36,7 +36,7 @@ pub fn packings(html: &mut String, run: &Run) {
         let (Some(scatter), Some(own)) = (run.scatter(name), run.scalar(name)) else { continue };
         let _ = write!(html, "<tr><td class=\"text\">{label}</td><td class=\"text\">{unit}</td>");
         for value in [own, scatter.mean, scatter.deviation, scatter.least, scatter.largest] {
-            let _ = write!(html, "<td>{}</td>", significant(value / size, 3));
+            let _ = write!(html, "<td>{}</td>", plain(value / size, 3));
         }
         *html += "</tr>";
     }
