@@ -328,6 +328,14 @@ fn layers_along_the_track_lie_in_the_soil_below_the_grains() {
     assert!(told.message.contains("other layers of grains"), "{}", told.message);
 }
 
+#[test]
+fn a_bed_is_as_wide_as_its_longest_sleeper() {
+    let longer = "stretch longer { over = -2 .. -1 sleepers, sleeper.length = 2.6 m }\ntrack line {";
+    let scene = SCENE.replace("track line {", longer).replace("transitions =", "stretches = [longer], transitions =");
+    let [before, behind] = [SCENE, scene.as_str()].map(|text| planned(text, &[]).1.beds[0].numbers().plan[1]);
+    assert_eq!((before, behind), (1.0, 1.3));
+}
+
 /// The last 1.2 m before the slab are glued, whole or as long as the glue bears nothing.
 fn with_glue(strength: &str) -> String {
     let bond = format!(
