@@ -27,7 +27,7 @@ pub(super) struct SeedArgument {
 }
 
 impl SeedArgument {
-    /// That seed.
+    /// The argument that names a seed.
     pub fn of(seed: u64) -> SeedArgument {
         SeedArgument { seed: u32::try_from(seed).ok() }
     }

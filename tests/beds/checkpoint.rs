@@ -47,7 +47,7 @@ fn a_damaged_checkpoint_is_refused() {
         let message = Bed::restore(read).unwrap_err().to_string();
         assert!(message.contains(expected) && message.contains("run from the start"), "{message}");
     };
-    refused("\"version\":1", "\"version\":9", "has layout 9");
+    refused("\"version\":2", "\"version\":9", "has layout 9");
     refused("\"id\":0,", "\"id\":1,", "not numbered");
     refused("\"surface\":0", "\"surface\":5", "without laws");
     refused("\"pebbles\":3", "\"pebbles\":2", "pebbles");
