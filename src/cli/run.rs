@@ -96,7 +96,7 @@ fn further_packings(arguments: &Arguments, running: &Running<'_>) -> Result<(), 
 
 /// Runs the scene on the packing of another seed, or goes on with it.
 fn one_packing(arguments: &Arguments, seed: u64) -> Result<(), Outcome> {
-    let scene = arguments.scene.with_seed(&SeedArgument::of(seed));
+    let scene = arguments.scene.with_seed(&SeedArgument::with(seed));
     let compiled = scene.compile_without(&arguments.passes).map(Compiled::to_run).ok_or(Outcome::Usage)?;
     let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else {
         show(&compiled);

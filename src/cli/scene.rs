@@ -28,7 +28,7 @@ pub(super) struct SeedArgument {
 
 impl SeedArgument {
     /// The argument that names a seed.
-    pub fn of(seed: u64) -> SeedArgument {
+    pub fn with(seed: u64) -> SeedArgument {
         SeedArgument { seed: u32::try_from(seed).ok() }
     }
 }

@@ -55,6 +55,7 @@ pub(super) const READS: Reads = Reads {
         "trackform.shoulder",
         "solve.gravity",
         "solve.symmetry",
+        "solve.repeats",
     ],
     acts_where: WITH_GRAINS,
 };

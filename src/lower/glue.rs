@@ -19,7 +19,7 @@ pub(super) fn along(scenario: &Scenario, section: usize, [left, right]: [f64; 2]
 }
 
 /// Glued layers at a chainage (m) of a section, which are so all along their bed; at the end of a glued part those of that part.
-pub(super) fn at(scenario: &Scenario, section: usize, x: f64) -> Vec<Glued> {
+pub(super) fn at_place(scenario: &Scenario, section: usize, x: f64) -> Vec<Glued> {
     let parts = scenario.track.ground(section);
     let here = parts.iter().filter(|part| (part.start - TINY..=part.end + TINY).contains(&x));
     here.map(|part| of_layers(&part.layers).collect()).find(|glued: &Vec<Glued>| !glued.is_empty()).unwrap_or_default()

@@ -221,7 +221,7 @@ fn plan(scenario: &Scenario, beds: &[BedPlan], seat: usize) -> Option<CellPlan> 
         sleepers,
         soil: soil(scenario, seat),
         crib: crib::planned(section),
-        glued: glue::at(scenario, here.section, here.x),
+        glued: glue::at_place(scenario, here.section, here.x),
     })
 }
 

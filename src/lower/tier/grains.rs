@@ -30,7 +30,6 @@ pub(super) const READS: Reads = Reads {
         "solve.coupling",
         "solve.passages",
         "solve.grain_step",
-        "solve.repeats",
         "track.base",
         "usp.bedding_modulus",
         "approach_slab.density",

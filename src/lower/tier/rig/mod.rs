@@ -29,8 +29,7 @@ const HELD: f64 = 0.5;
 pub struct TestRig;
 
 /// Fields of the test itself.
-const READS: Reads =
-    Reads { fields: &["solve.repeats", "load.total", "sleeper.mass"], acts_where: "where a test rig is loaded" };
+const READS: Reads = Reads { fields: &["load.total", "sleeper.mass"], acts_where: "where a test rig is loaded" };
 
 impl Tier for TestRig {
     fn name(&self) -> &'static str {
@@ -104,7 +103,7 @@ impl TestRig {
             bodies,
             plate: pressed.map(|_| length * across),
             crib: crib::planned(section),
-            glued: glue::at(scenario, 0, 0.5 * (section.start + section.end)),
+            glued: glue::at_place(scenario, 0, 0.5 * (section.start + section.end)),
             confinement,
             driven: forces.iter().any(|load| matches!(load, Load::Strain(_))),
             gravity: *scenario.solve.gravity,
