@@ -26,7 +26,7 @@ use std::collections::HashMap;
 /// What bonds are made of.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Glue {
-    /// Of a bond, beside the contact \[N/m\].
+    /// Stiffness of a bond, beside that of the contact \[N/m\].
     pub normal_stiffness: f64,
     /// \[N/m\]
     pub shear_stiffness: f64,
