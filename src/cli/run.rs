@@ -165,7 +165,7 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
         (Err(error), _) => return Err(stop(compiled, execute::diagnose(&error, graph, &compiled.origins))),
     }
     let timed = Timed { solve: recorder.seconds(), parts: recorder.parts(), after: Instant::now() };
-    let packings = results::read_packings(&out).map_err(|error| refused(&error))?;
+    let packings = results::read_packings(&out, &scenario.solve).map_err(|error| refused(&error))?;
     let run = Run::gather(&recorder, scenario, graph, source).with_packings(packings);
     let files = files(&run, recorder.last_bed.take(), &out).map_err(|error| refused(&error))?;
     drop(recorder);
@@ -299,7 +299,7 @@ const OF_TESTS: [Line; 10] = [
     ("grains", "grains", "", 1.0),
 ];
 
-/// A line for each scalar that there is, in its unit of so many SI units, with the band of its mean where it has one, and its scatter over packings.
+/// A line for each scalar that there is, in its unit. Its band of confidence or its scatter over packings follows where it has one.
 fn headline(out: &mut String, scalars: &BTreeMap<String, Scalar>, lines: &[Line]) {
     for (name, label, unit, size) in lines {
         let rounded = |value: f64| number((value / size * 1e4).round() / 1e4);

@@ -69,9 +69,9 @@ pub fn read_summary(directory: &Path) -> Result<super::Summary, ResultsError> {
 
 /// Reads a run back from its directory.
 pub fn read(directory: &Path) -> Result<Run, ResultsError> {
+    let scenario: crate::scenario::Scenario = read_json(&directory.join(SCENARIO))?;
     Ok(Run {
         summary: read_json(&directory.join(SUMMARY))?,
-        scenario: read_json(&directory.join(SCENARIO))?,
         sleepers: read_table(directory)?,
         blocks: read_table(directory)?,
         laws: read_table_if_any(directory)?,
@@ -81,7 +81,8 @@ pub fn read(directory: &Path) -> Result<Run, ResultsError> {
         histories: histories::decode(&directory.join(HISTORIES))?,
         beds: super::under_track_files::read(directory)?,
         tests: None,
-        packings: super::packings::read_packings(directory)?,
+        packings: super::packings::read_packings(directory, &scenario.solve)?,
+        scenario,
     })
 }
 

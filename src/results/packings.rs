@@ -2,6 +2,7 @@
 
 use super::summary::Scalar;
 use super::{ResultsError, Run, SleeperRow};
+use crate::scenario::Solve;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -45,13 +46,10 @@ pub fn packing_directory(run: &Path, seed: u64) -> PathBuf {
     run.join(FOLDER).join(seed.to_string())
 }
 
-/// Runs on further packings that are finished, by their seeds.
-pub fn read_packings(run: &Path) -> Result<Vec<Packing>, ResultsError> {
-    let Ok(entries) = std::fs::read_dir(run.join(FOLDER)) else { return Ok(Vec::new()) };
-    let seed = |entry: std::io::Result<std::fs::DirEntry>| entry.ok()?.file_name().to_str()?.parse::<u64>().ok();
-    let mut seeds: Vec<u64> = entries.filter_map(seed).collect();
-    seeds.sort_unstable();
-    let directories = seeds.into_iter().map(|seed| (seed, packing_directory(run, seed)));
+/// Runs on the further packings that a scene asks for, as far as they are finished, by their seeds.
+pub fn read_packings(run: &Path, solve: &Solve) -> Result<Vec<Packing>, ResultsError> {
+    let seeds = (1..u64::from(solve.grains.repeats)).map(|number| solve.seed + number);
+    let directories = seeds.map(|seed| (seed, packing_directory(run, seed)));
     let finished = directories.filter(|(_, directory)| super::files::is_finished(directory));
     finished.map(|(seed, directory)| read_packing(seed, &directory)).collect()
 }
@@ -117,8 +115,10 @@ mod tests {
     #[test]
     fn a_directory_without_packings_has_none() {
         let folder = tempfile::tempdir().unwrap();
-        assert_eq!(read_packings(folder.path()).unwrap(), Vec::new());
-        std::fs::create_dir_all(packing_directory(folder.path(), 2)).unwrap();
-        assert_eq!(read_packings(folder.path()).unwrap(), Vec::new(), "not finished");
+        let mut solve = example::transition().scenario.solve;
+        solve.grains.repeats = 3;
+        assert_eq!(read_packings(folder.path(), &solve).unwrap(), Vec::new());
+        std::fs::create_dir_all(packing_directory(folder.path(), solve.seed + 1)).unwrap();
+        assert_eq!(read_packings(folder.path(), &solve).unwrap(), Vec::new(), "not finished");
     }
 }
