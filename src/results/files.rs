@@ -69,9 +69,11 @@ pub fn read_summary(directory: &Path) -> Result<super::Summary, ResultsError> {
 
 /// Reads a run back from its directory.
 pub fn read(directory: &Path) -> Result<Run, ResultsError> {
+    // The summary first: without it the directory holds no run, and the message is to say so.
+    let summary = read_json(&directory.join(SUMMARY))?;
     let scenario: crate::scenario::Scenario = read_json(&directory.join(SCENARIO))?;
     Ok(Run {
-        summary: read_json(&directory.join(SUMMARY))?,
+        summary,
         sleepers: read_table(directory)?,
         blocks: read_table(directory)?,
         laws: read_table_if_any(directory)?,
