@@ -278,10 +278,18 @@ fn zone_has_grains_where_the_law_differs_from_the_far_field() {
     let full = buffers.len();
     let found = ["20 %", "2 %", "0.2 %"].map(|tolerance| sleepers(tolerance, &[]));
     assert!(found.windows(2).all(|pair| pair[0].1 <= pair[1].1), "less tolerance needs more bays: {found:?}");
-    assert!(found[0].1 >= 3 && found[0].1 < found[2].1 && found[2].1 < full, "{found:?}");
+    // grains are joined over 6 m at least, ten sleepers, with three beyond and the buffer
+    assert!(found[0].1 == 14 && found[2].1 < full, "{found:?}");
     assert!(found[1].0.starts_with("grains from -"), "{found:?}");
     // the pass left out: all of the window
     assert_eq!(sleepers("5 %", &["bays"]).1, full);
+    // where the law differs farther away, grains reach there
+    let stiff_there = wide
+        .replace("track line {", "stretch there { over = -11 .. -9 m, pad.stiffness = 400 MN/m }\ntrack line {")
+        .replace("transitions =", "stretches = [there], transitions =")
+        .replace("substructure = full", "substructure = zone, tolerance = 0.2 %");
+    let (said, grains) = planned(&stiff_there, &[]);
+    assert!((15..=full).contains(&grains.stretches[0].sleepers.len()), "{said:?}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Which bays of a window get grains in the tier `zone`: those in which the track differs from the far field, and an edge beside them that
-//! tells springs beyond how to settle.
+//! tells springs beyond how to settle. A settlement law says where forces differ. Beside a transition grains differ further: sleepers hang, and
+//! grains under the next ones move towards the room where nothing presses, which no law of one sleeper knows.
 
 use super::{Draft, Pass};
 use crate::scenario::{Scenario, Tier};
@@ -8,6 +9,9 @@ use crate::units::number;
 
 /// Sleepers on grains beyond the last that differs: those beyond the grains settle as these do.
 const EDGE: usize = 3;
+/// Beside a transition grains that join the bays settle otherwise than the far field up to here, m (docs/statements.md: sleepers -5 to -8 of 16
+/// on grains, where the law differs at the last two).
+const JOINED: f64 = 6.0;
 /// Length of track beside a transition that gets grains where no law can tell, m.
 const NEAR: f64 = 10.0;
 
@@ -57,7 +61,8 @@ impl Pass for Bays {
         let what = format!("grains from {} of the window from {}", spans(&draft.bays), spans(&windows));
         let why = format!(
             "by law `{}` no sleeper beyond settles otherwise than the far field by more than {} % of the largest settlement (`tolerance`), \
-             {} % at most; the outermost {EDGE} on grains tell how springs beyond settle",
+             {} % at most; within {JOINED} m of a transition grains move from bay to bay, which no law knows; the outermost {EDGE} on grains tell how \
+             springs beyond settle",
             scenario.solve.law.name,
             number((1e3 * tolerance).round() / 10.0),
             number((1e3 * most).round() / 10.0),
@@ -115,13 +120,14 @@ fn on_any(scenario: &Scenario, windows: &[[f64; 2]], seat: usize) -> bool {
     seat.is_ballasted() && windows.iter().any(|window| is_inside(*window, seat.x))
 }
 
-/// The part of a window around its transitions beyond which no sleeper changes by more than the tolerance, with an edge of a few bays.
+/// The part of a window with all that is joined to its transitions, beyond which no sleeper changes by more than the tolerance, and an edge of a few bays.
 fn chosen(scenario: &Scenario, changes: &[f64], tolerance: f64, [left, right]: [f64; 2]) -> [f64; 2] {
     let track = &scenario.track;
     let inside: Vec<usize> = (0..changes.len()).filter(|seat| on_any(scenario, &[[left, right]], *seat)).collect();
     let transitions = || track.transitions.iter().map(|t| t.x).filter(|x| is_inside([left, right], *x));
     let differs = || inside.iter().copied().filter(|seat| changes[*seat] > tolerance);
-    let places = || transitions().chain(differs().map(|seat| track.seats[seat].x));
+    let joined = || transitions().flat_map(|x| [(x - JOINED).max(left), (x + JOINED).min(right)]);
+    let places = || joined().chain(differs().map(|seat| track.seats[seat].x));
     let (Some(first), Some(last)) = (places().reduce(f64::min), places().reduce(f64::max)) else {
         return [left, right];
     };
