@@ -45,6 +45,8 @@ struct Heard {
     settlements: Vec<(u64, Vec<f64>)>,
     /// Forces of the sleepers on the ground without a train, N, and voids, m, at recorded counts.
     at_rest: Vec<(u64, Vec<f64>, Vec<f64>)>,
+    /// Stiffness of the support of every seat at recorded counts, N/m.
+    supports: Vec<Vec<f64>>,
     /// Largest seat load of every seat at recorded counts, N.
     seat_loads: Vec<Vec<f64>>,
     /// Where to stop: after so many blocks, at which of the moments from then on at which a state may be kept.
@@ -58,6 +60,7 @@ impl Listener for Heard {
         match event {
             Event::Rest { axles, state } => {
                 let forces = state.seats.iter().map(|seat| seat.contact_force).collect();
+                self.supports.push(state.seats.iter().map(|seat| seat.support_stiffness).collect());
                 self.at_rest.push((*axles, forces, state.seats.iter().map(|seat| seat.void).collect()));
             }
             Event::Passage { passage, .. } => {
@@ -105,6 +108,10 @@ fn a_track_on_grains_settles_and_a_run_that_was_stopped_ends_with_the_same_bits(
     }
     // a sleeper beyond the grains goes with the median of the nearest third of those on them
     assert_eq!(first[0], first[on_grains[0]]);
+    // and its support is as stiff as theirs, now as at the beginning
+    let [built, now] = [0, 1].map(|count| [whole.supports[count][0], whole.supports[count][on_grains[1]]]);
+    assert_eq!((built[0], now[0]), (built[1], now[1]));
+    assert_ne!(built[0], now[0]);
     assert!(second[on_grains[0]] - first[on_grains[0]] < first[on_grains[0]], "the first train settles most");
     let (structure, _) = graph.track().unwrap().seats.iter().enumerate().find(|(_, seat)| seat.x >= 0.0).unwrap();
     assert_eq!(second[structure], 0.0, "a slab does not settle");

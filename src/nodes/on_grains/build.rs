@@ -20,7 +20,7 @@ pub const OF_STRIDE: f64 = 0.9;
 pub const SHARING: Sharing = Sharing::ByNeed;
 
 /// Grows whenever the same parts are built otherwise than before, or kept in another form.
-const METHOD: &str = "track on grains 9";
+const METHOD: &str = "track on grains 10";
 
 /// What a track on grains is made of.
 #[derive(Clone, Copy)]

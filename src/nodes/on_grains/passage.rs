@@ -10,7 +10,7 @@ use crate::graph::{GrainStretch, SleeperOnGrains, StiffnessFrom};
 use crate::nodes::{Load, NodeError};
 use crate::solvers::granular::measure::unbalance;
 use crate::solvers::granular::{Fading, Stride};
-use crate::solvers::track::WheelLoads;
+use crate::solvers::track::{Spring, WheelLoads};
 use std::ops::Range;
 
 /// Local damping of grains (Cundall), and drag of the rail (1/s), on the way to rest.
@@ -156,7 +156,7 @@ impl Live {
         copy.come_to_rest(LONGEST, &mut |share| tell(Stage::Rail, share))?;
         let stiffness = copy.press(parts, &mut |share| tell(Stage::StaticLoad, share))?;
         drop(copy);
-        let beyond = parts.beyond(median(parts.read(&stiffness)));
+        let beyond = parts.beyond_as_near(&stiffness);
         coupled.rail = parts.rail(&beyond, coupled.time_step())?;
         let away = coupled.come_to_rest(LONGEST, &mut |share| tell(Stage::Rail, share))?;
         if away > 1.0 {
@@ -179,7 +179,7 @@ impl Live {
         let stiffness = self.coupled.clone().press(parts, &mut |share| tell(Stage::StaticLoad, share))?;
         self.books.stiffness = parts.with_buffers(stiffness);
         self.books.revision += 1;
-        Ok(())
+        self.lay_beyond(parts)
     }
 
     /// Lets trains pass, with the wheel forces of the plane track; goes on with those that are under way.
@@ -293,9 +293,22 @@ impl Live {
             };
             *settlement = started[seat] + settled;
         }
+        self.lay_beyond(parts)
+    }
+
+    /// Makes the springs beyond the grains as stiff as the supports that are read near them, and lays them at their level. What moves goes on.
+    fn lay_beyond(&mut self, parts: Parts<'_>) -> Result<(), NodeError> {
+        let Live { coupled, books, .. } = self;
+        let beyond = parts.beyond_as_near(&books.stiffness);
+        if beyond != books.beyond {
+            let mut rail = parts.rail(&beyond, coupled.time_step())?;
+            rail.restore(coupled.rail.state())?;
+            coupled.rail = rail;
+            books.beyond = beyond;
+        }
+        let started = &parts.grains.settlement;
         let added: Vec<f64> = books.settlement.iter().zip(started).map(|(now, start)| now - start).collect();
-        let level = parts.level(&books.beyond, &added);
-        Ok(coupled.rail.set_level(&level)?)
+        Ok(coupled.rail.set_level(&parts.level(&books.beyond, &added))?)
     }
 }
 
@@ -304,18 +317,19 @@ impl Parts<'_> {
         self.grains.stretches.iter().flat_map(|stretch| &stretch.sleepers)
     }
 
-    /// Those of the values of the carried feet that are read: not of the buffers.
-    fn read(&self, values: &[f64]) -> Vec<f64> {
-        let read = self.sleepers().zip(values).filter(|(sleeper, _)| !sleeper.buffer);
-        read.map(|(_, value)| *value).collect()
-    }
-
     /// The values of the carried feet, where those over buffers have what is read near them.
     fn with_buffers(&self, mut values: Vec<f64>) -> Vec<f64> {
         for (foot, sleeper) in self.sleepers().enumerate().filter(|(_, sleeper)| sleeper.buffer) {
             values[foot] = self.as_near(&values, sleeper.seat);
         }
         values
+    }
+
+    /// Springs under the sleepers beyond the grains, as stiff as the supports of the carried feet near them, N/m.
+    fn beyond_as_near(&self, stiffness: &[f64]) -> Vec<Option<Spring>> {
+        let seats = self.track.seats.iter().enumerate();
+        let spring = |number: usize| self.support(number, self.as_near(stiffness, number));
+        seats.map(|(number, seat)| seat.is_ballasted().then(|| spring(number))).collect()
     }
 
     /// Median of the values of those carried feet that are read and in the third of the nearest bed that is next to a seat.
