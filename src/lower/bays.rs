@@ -9,8 +9,8 @@ use crate::units::number;
 
 /// Sleepers on grains beyond the last that differs: those beyond the grains settle as these do.
 const EDGE: usize = 3;
-/// Beside a transition grains that join the bays settle otherwise than the far field up to here, m (docs/statements.md: sleepers -5 to -8 of 16
-/// on grains, where the law differs at the last two).
+/// Length of track beside a transition that gets grains even where the law sees no difference, m. On 16 bays of grains sleepers up to -8
+/// (4.8 m) settle otherwise than the far field; by the law only the last two do (docs/statements.md).
 const JOINED: f64 = 6.0;
 /// Length of track beside a transition that gets grains where no law can tell, m.
 const NEAR: f64 = 10.0;
@@ -61,7 +61,7 @@ impl Pass for Bays {
         let what = format!("grains from {} of the window from {}", spans(&draft.bays), spans(&windows));
         let why = format!(
             "by law `{}` no sleeper beyond settles otherwise than the far field by more than {} % of the largest settlement (`tolerance`), \
-             {} % at most; within {JOINED} m of a transition grains move from bay to bay, which no law knows; the outermost {EDGE} on grains tell how \
+             {} % at most; grains reach {JOINED} m from a transition at least, because they move from bay to bay, which no law computes; the outermost {EDGE} on grains tell how \
              springs beyond settle",
             scenario.solve.law.name,
             number((1e3 * tolerance).round() / 10.0),
@@ -120,7 +120,8 @@ fn on_any(scenario: &Scenario, windows: &[[f64; 2]], seat: usize) -> bool {
     seat.is_ballasted() && windows.iter().any(|window| is_inside(*window, seat.x))
 }
 
-/// The part of a window with all that is joined to its transitions, beyond which no sleeper changes by more than the tolerance, and an edge of a few bays.
+/// The part of a window that gets grains: [`JOINED`] beside its transitions, every sleeper that changes by more than the tolerance, and an
+/// edge of a few bays.
 fn chosen(scenario: &Scenario, changes: &[f64], tolerance: f64, [left, right]: [f64; 2]) -> [f64; 2] {
     let track = &scenario.track;
     let inside: Vec<usize> = (0..changes.len()).filter(|seat| on_any(scenario, &[[left, right]], *seat)).collect();

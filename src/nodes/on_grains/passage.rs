@@ -296,7 +296,7 @@ impl Live {
         self.lay_beyond(parts)
     }
 
-    /// Makes the springs beyond the grains as stiff as the supports that are read near them, and lays them at their level. What moves goes on.
+    /// Updates the springs beyond the grains: stiffness of the supports near them (N/m), and level (m). The motion of the rail goes on.
     fn lay_beyond(&mut self, parts: Parts<'_>) -> Result<(), NodeError> {
         let Live { coupled, books, .. } = self;
         let beyond = parts.beyond_as_near(&books.stiffness);
