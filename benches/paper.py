@@ -25,6 +25,8 @@ def row(directory):
 
 
 def main():
+    if len(sys.argv) < 2 or not Path(sys.argv[1]).is_dir():
+        sys.exit("usage: paper.py DIR [PATTERN]; DIR is the folder that benches/paper.sh filled")
     folder, pattern = Path(sys.argv[1]), re.compile(sys.argv[2] if len(sys.argv) > 2 else ".")
     heads = ["run", "axles", "far, mm", *(f"{s}, mm" for s in NEAR), "void of -1, mm", "-3 bears, kN", "seat load, kN", "support, MN/m", "seconds"]
     print("| " + " | ".join(heads) + " |\n|" + "---|" * len(heads))

@@ -7,6 +7,7 @@
 # DIR keeps one directory a run, its output (NAME.log) and what it took (NAME.time). What is finished there is not run again, what was begun goes on by
 # `--resume`. PATTERN chooses runs by name, such as `tier_` or `bays_|cell_`. `benches/paper.py DIR` makes the tables of docs/validation.md of them.
 set -uo pipefail
+[[ $# -ge 2 && -x $1 ]] || { echo "usage: benches/paper.sh BINARY DIR [PATTERN]; BINARY is a program that was built" >&2; exit 2; }
 binary=$(realpath "$1") dir=$2 pattern=${3:-.}
 here=$(cd "$(dirname "$0")/.." && pwd)
 mkdir -p "$dir" && dir=$(realpath "$dir")
