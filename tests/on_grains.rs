@@ -7,6 +7,7 @@ use trackbed::diag::Code;
 use trackbed::execute::{Both, Checkpoint, Event, Executor, Listener, Measured, time_steps};
 use trackbed::graph::{GrainsNode, Graph, Model};
 use trackbed::lower::Planner;
+use trackbed::nodes::Bonds;
 use trackbed::results::RunRecorder;
 use trackbed::store::{Beds, Directory, Mode, Work};
 
@@ -49,6 +50,8 @@ struct Heard {
     supports: Vec<Vec<f64>>,
     /// Largest seat load of every seat at recorded counts, N.
     seat_loads: Vec<Vec<f64>>,
+    /// Bonds of glued grains after the last block.
+    bonds: Bonds,
     /// Where to stop: after so many blocks, at which of the moments from then on at which a state may be kept.
     stop_after: Option<(usize, u32)>,
     moments: u32,
@@ -66,7 +69,10 @@ impl Listener for Heard {
             Event::Passage { passage, .. } => {
                 self.seat_loads.push(passage.seats.iter().map(|seat| seat.max_rail_seat_load).collect());
             }
-            Event::Block { axles, block: Some(_), after, .. } => self.settlements.push((*axles, after.to_vec())),
+            Event::Block { axles, block: Some((_, measured)), after, .. } => {
+                self.settlements.push((*axles, after.to_vec()));
+                self.bonds = measured.bonds;
+            }
             Event::Between(between) => match self.stop_after {
                 Some((blocks, moment)) if blocks == self.settlements.len() && moment == self.moments => {
                     self.kept = Some(between.checkpoint().unwrap());
@@ -375,9 +381,13 @@ fn a_stretch_of_glued_grains_settles_less_and_changes_nothing_else_of_the_bed() 
     let settled = |graph: &Graph| {
         let mut heard = Heard::default();
         run(graph, folder.path(), 2, &mut heard, None);
-        carried(graph).iter().map(|seat| heard.settlements[0].1[*seat]).collect::<Vec<f64>>()
+        let settled = carried(graph).iter().map(|seat| heard.settlements[0].1[*seat]).collect::<Vec<f64>>();
+        (settled, heard.bonds)
     };
-    let (strong, weak) = (settled(&strong), settled(&weak));
+    let ((strong, hold), (weak, torn)) = (settled(&strong), settled(&weak));
+    assert!(hold.intact > 100 && hold.broken == 0, "5 kN are not reached: {hold:?}");
+    assert_eq!(torn.made(), hold.made(), "the same contacts are glued");
+    assert!(torn.broken > torn.made() / 10, "1 N is what grains weigh: {torn:?}");
     let last = strong.len() - 1;
     assert!(strong[last] < 0.7 * weak[last], "sleeper -1: {strong:?} {weak:?}");
 }

@@ -270,7 +270,7 @@ fn summary(run: &Run, page: &Path, seconds: f64) {
 /// A scalar, how it is called, its unit, and that unit in SI.
 type Line = (&'static str, &'static str, &'static str, f64);
 
-const OF_TRACKS: [Line; 13] = [
+const OF_TRACKS: [Line; 14] = [
     ("settlement_step", "step at the structure", "mm", 1e-3),
     ("level_change_wheelbase", "level change, wheelbase", "mm", 1e-3),
     ("level_change_3m", "level change over 3 m", "mm", 1e-3),
@@ -278,6 +278,7 @@ const OF_TRACKS: [Line; 13] = [
     ("max_settlement_x", "  at", "m", 1.0),
     ("far_field_settlement", "far-field settlement", "mm", 1e-3),
     ("voided_sleepers", "voided sleepers", "", 1.0),
+    ("broken_bonds_share", "broken bonds", "%", 0.01),
     ("max_wheel_force", "largest wheel force", "kN", 1e3),
     ("dynamic_amplification", "dynamic amplification", "", 1.0),
     ("wheel_unloading", "wheel load missing", "%", 0.01),
@@ -286,7 +287,7 @@ const OF_TRACKS: [Line; 13] = [
     ("max_rail_displacement", "largest rail displacement", "mm", 1e-3),
 ];
 
-const OF_TESTS: [Line; 10] = [
+const OF_TESTS: [Line; 11] = [
     ("max_settlement", "settlement", "mm", 1e-3),
     ("first_settlement", "  after one cycle", "mm", 1e-3),
     ("support_stiffness", "resilient stiffness", "MN/m", 1e6),
@@ -294,6 +295,7 @@ const OF_TESTS: [Line; 10] = [
     ("peak_deviator", "largest deviator", "kPa", 1e3),
     ("peak_friction_angle", "largest angle of friction", "deg", std::f64::consts::PI / 180.0),
     ("peak_strain", "  at a strain of", "%", 0.01),
+    ("broken_bonds_share", "broken bonds", "%", 0.01),
     ("cycles", "cycles", "", 1.0),
     ("repeats", "packings", "", 1.0),
     ("grains", "grains", "", 1.0),

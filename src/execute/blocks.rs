@@ -188,7 +188,7 @@ impl Run<'_, '_> {
         let same = |next: &Exchange| next.settlement == after && self.pair.ground.responses().revision == revision;
         let (next, lost) = if next.as_ref().is_some_and(same) { (next, None) } else { (None, next) };
         lost.iter().for_each(|lost| work.add(lost, Work::default()));
-        let measured = measured.with(&work);
+        let measured = BlockMeasures { bonds: self.pair.ground.bonds(), ..measured.with(&work) };
         let recorded = self.pair.ground.recorded();
         going!(self.tell_volumes(here.axles, &recorded));
         let passed = block.runs.iter().filter_map(|(runner, _)| here.passage(*runner));

@@ -5,7 +5,7 @@ use super::machine::RunError;
 use super::oscillation::{amplification, sawtooth};
 use super::pair::Pair;
 use crate::graph::Block;
-use crate::nodes::Following;
+use crate::nodes::{Bonds, Following};
 
 /// What the exchange of a block was worth, and what it took.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -22,6 +22,8 @@ pub struct BlockMeasures {
     pub rejected: u64,
     /// Those of them that overshot.
     pub overshot: u64,
+    /// Bonds of glued grains after it.
+    pub bonds: Bonds,
     /// All passages for it, those of blocks thrown away too, and their work.
     pub passages: u64,
     pub time_steps: u64,

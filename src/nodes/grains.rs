@@ -1,6 +1,6 @@
 //! A bed of grains under actuators: the node of a test rig, advanced piece by piece of a cycle.
 
-use super::NodeError;
+use super::{Bonds, NodeError};
 use crate::solvers::granular::Bed;
 use crate::solvers::granular::packing::Packed;
 use crate::solvers::granular::rig::{
@@ -19,6 +19,9 @@ pub struct Tested {
     pub specimen: Vec<SpecimenState>,
     /// Time steps of the test.
     pub steps: u64,
+    /// Bonds of glued grains at its end.
+    #[serde(default)]
+    pub bonds: Bonds,
 }
 
 /// A test that is not finished, as data.
@@ -74,6 +77,7 @@ impl<'a> BedUnderActuators<'a> {
             readings: trial.readings().to_vec(),
             specimen: trial.specimen().to_vec(),
             steps: trial.steps(),
+            bonds: Bonds::in_bed(&trial.bed),
         };
         (tested, trial.bed)
     }

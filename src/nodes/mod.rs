@@ -34,6 +34,8 @@ pub use steps::Steps;
 pub use track::{RUNAWAY, TrackSystem};
 
 use crate::graph::{PointLoad, Responses, Runner};
+use crate::solvers::granular::{Bed, Real};
+use serde::{Deserialize, Serialize};
 use std::any::Any;
 
 /// What a passage keeps beside its outcome.
@@ -85,6 +87,32 @@ pub trait Superstructure: Sync {
 pub struct Load<'a> {
     pub passage: &'a PassageOutcome,
     pub trains: u64,
+}
+
+/// Bonds between glued grains since they were glued.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct Bonds {
+    /// Bonds that still hold.
+    pub intact: u64,
+    pub broken: u64,
+}
+
+impl Bonds {
+    /// Bonds of a bed.
+    pub fn in_bed<R: Real>(bed: &Bed<R>) -> Bonds {
+        Bonds { intact: bed.bonds() as u64, broken: bed.broken_bonds() }
+    }
+
+    /// All that were made.
+    pub fn made(self) -> u64 {
+        self.intact + self.broken
+    }
+}
+
+impl std::iter::Sum for Bonds {
+    fn sum<I: Iterator<Item = Bonds>>(beds: I) -> Bonds {
+        beds.fold(Bonds::default(), |a, b| Bonds { intact: a.intact + b.intact, broken: a.broken + b.broken })
+    }
 }
 
 /// A state to which a substructure can be rolled back.
@@ -141,6 +169,11 @@ pub trait Substructure: Send + Sync {
         _follow: &mut Following<'_>,
     ) -> Result<Vec<VolumeSample>, NodeError> {
         Ok(Vec::new())
+    }
+
+    /// Bonds of all glued grains under the track.
+    fn bonds(&self) -> Bonds {
+        Bonds::default()
     }
 
     /// Standard error of what the last block added to the settlement, at the worst seat, m.

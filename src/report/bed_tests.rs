@@ -45,7 +45,7 @@ impl<'a> BedTestsPage<'a> {
     }
 
     fn headline(&self, html: &mut String) {
-        let lines: [(&str, &str, &str, f64); 17] = [
+        let lines: [(&str, &str, &str, f64); 18] = [
             ("Settlement after the last cycle", "max_settlement", "mm", 1e-3),
             ("Settlement after the first cycle", "first_settlement", "mm", 1e-3),
             ("Resilient stiffness, last cycle", "support_stiffness", "MN/m", 1e6),
@@ -59,6 +59,7 @@ impl<'a> BedTestsPage<'a> {
             ("Least volume strain", "least_volume_strain", "%", 0.01),
             ("Greatest volume strain", "greatest_volume_strain", "%", 0.01),
             ("Largest force of the bed on a sleeper or plate", "max_contact_force", "kN", 1e3),
+            ("Broken bonds, of those between glued grains", "broken_bonds_share", "%", 0.01),
             ("Grains", "grains", "", 1.0),
             ("Porosity inside the top layer, as packed", "porosity", "", 1.0),
             ("Coordination number inside the top layer, as packed", "coordination_number", "", 1.0),

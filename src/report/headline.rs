@@ -117,8 +117,22 @@ fn settlement_lines(run: &Run) -> Vec<Line> {
         line("Largest settlement", scalar(run, "max_settlement"), "m", at_largest(run, |row| row.settlement_m)),
         line("Dip below the far field", scalar(run, "differential_settlement"), "m", far.unwrap_or_default()),
         voids,
+        broken_bonds(run),
     ];
     lines.into_iter().flatten().collect()
+}
+
+/// How many bonds of glued grains have broken, where there are any.
+fn broken_bonds(run: &Run) -> Option<Line> {
+    let bonds = run.blocks.last()?.bonds();
+    let share = scalar(run, "broken_bonds_share")?;
+    Some(Line {
+        name: "Broken bonds",
+        value: whole(bonds.broken),
+        place: format!("{} % of {} bonds between glued grains", significant(100.0 * share, 2), whole(bonds.made())),
+        limit: String::new(),
+        kept: None,
+    })
 }
 
 /// What the step says: which side lies lower, and at which transition where several have one.

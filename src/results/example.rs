@@ -256,6 +256,8 @@ fn filled(scenario: Scenario) -> Run {
             passages: 2,
             time_steps: 15_000,
             newton_iterations: 32_100 + axles,
+            bonds: 0,
+            broken_bonds: 0,
         });
         for seat in &scenario.track.seats {
             if seat.is_ballasted() {

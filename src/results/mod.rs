@@ -51,6 +51,7 @@ pub use recorder::{RunRecorder, RunTables};
 pub use reliance::{Reliance, Silenced, Unchecked, Warned};
 pub use so_far::SoFar;
 pub use states::remove as remove_states;
+use summarise::{broken_bonds, broken_share};
 pub use summarise::{
     RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise, worst_train,
 };

@@ -509,6 +509,7 @@ impl RunRecorder<'_> {
             passages: passages.len() as u64,
             time_steps: sum(|p| p.time_steps),
             newton_iterations: sum(|p| p.newton_iterations),
+            bonds: self.tables.blocks.last().map(BlockRow::bonds).unwrap_or_default(),
             ..BlockMeasures::default()
         };
         let measured = block.map_or_else(last, |(_, measured)| *measured);
@@ -533,6 +534,8 @@ impl RunRecorder<'_> {
             passages: measured.passages,
             time_steps: measured.time_steps,
             newton_iterations: measured.newton_iterations,
+            bonds: measured.bonds.intact,
+            broken_bonds: measured.bonds.broken,
         });
         if axles == 0 {
             self.keep_settlements(0, before);

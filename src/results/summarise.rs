@@ -4,6 +4,7 @@ use super::evaluate::subgrade_pressures;
 use super::steps::{LONG_BASE, largest_change, settlement_steps};
 use super::{BlockRow, LongitudinalLevel, RailRow, Scalar, SleeperRow, TrainRow, longitudinal_level};
 use crate::graph::SupportNode;
+use crate::nodes::Bonds;
 use crate::scenario::{Loading, Scenario, Seat, Train, Vehicle};
 use std::collections::{BTreeMap, HashMap};
 
@@ -143,12 +144,24 @@ fn of_blocks(blocks: &[BlockRow], trains: &[TrainRow]) -> Vec<Entry> {
         entry("update_error", Some(blocks.iter().map(|b| b.error_m).sum()), "m"),
         entry("max_overshoot", largest(blocks.iter().map(|b| b.overshoot)), "1"),
         entry("max_sawtooth", largest(blocks.iter().map(|b| b.sawtooth)), "1"),
+        entry("broken_bonds", broken_bonds(block.bonds()), "1"),
+        entry("broken_bonds_share", broken_share(block.bonds()), "1"),
         entry("overshot_blocks", Some(blocks.iter().map(|b| b.overshot).sum::<u64>() as f64), "1"),
         entry("max_wheel_force", Some(block.max_wheel_force_N), "N"),
         entry("min_wheel_force", Some(block.min_wheel_force_N), "N"),
         entry("dynamic_amplification", worst(|row| row.dynamic_amplification), "1"),
         entry("wheel_unloading", worst(|row| row.wheel_unloading), "1"),
     ]
+}
+
+/// Bonds of glued grains that have broken; `None` where none were made.
+pub(super) fn broken_bonds(bonds: Bonds) -> Option<f64> {
+    (bonds.made() > 0).then_some(bonds.broken as f64)
+}
+
+/// The same, as a share of all that were made.
+pub(super) fn broken_share(bonds: Bonds) -> Option<f64> {
+    broken_bonds(bonds).map(|broken| broken / bonds.made() as f64)
 }
 
 /// Distance of the wheelsets in a bogie of the leading vehicle, m.

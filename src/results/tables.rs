@@ -1,5 +1,6 @@
 //! The rows of a run's tables: one struct a file, one field a column. Values are SI.
 
+use crate::nodes::Bonds;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
@@ -182,12 +183,22 @@ pub struct BlockRow {
     pub passages: u64,
     pub time_steps: u64,
     pub newton_iterations: u64,
+    /// Bonds of glued grains after the block: those that hold, and those that have broken since the grains were glued.
+    #[serde(default)]
+    pub bonds: u64,
+    #[serde(default)]
+    pub broken_bonds: u64,
 }
 
 /// From here on a sawtooth is more than sleepers of unlike loads make.
 const SAWTOOTH: f64 = 0.1;
 
 impl BlockRow {
+    /// Bonds of glued grains after the block.
+    pub fn bonds(&self) -> Bonds {
+        Bonds { intact: self.bonds, broken: self.broken_bonds }
+    }
+
     /// What the exchanges of a run show of overshooting, in a sentence; `None` where all is well.
     pub fn overshoot(blocks: &[BlockRow]) -> Option<String> {
         let cured: Vec<&BlockRow> = blocks.iter().filter(|b| b.overshot > 0).collect();
@@ -228,6 +239,8 @@ impl Row for BlockRow {
         "passages",
         "time_steps",
         "newton_iterations",
+        "bonds",
+        "broken_bonds",
     ];
 }
 

@@ -14,7 +14,7 @@ mod stored;
 
 use super::on_grains::{Following, Stage, Telling, Told};
 use super::turns;
-use super::{Forces, Load, Mark, NodeError, Substructure};
+use super::{Bonds, Forces, Load, Mark, NodeError, Substructure};
 use crate::graph::{CellPlan, CellsNode, Responses, SeatOnCell};
 use crate::store::{Beds, recipe_hash};
 use book::{Book, laws};
@@ -130,6 +130,10 @@ impl Substructure for CellGround<'_> {
         live.revision += 1;
         self.answer();
         Ok(())
+    }
+
+    fn bonds(&self) -> Bonds {
+        self.live.iter().flat_map(|live| &live.cells).map(|cell| Bonds::in_bed(&cell.bed)).sum()
     }
 
     fn error_added(&self) -> f64 {

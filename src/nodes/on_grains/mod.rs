@@ -33,7 +33,7 @@ pub use under_track::BedUnderTrack;
 pub use underway::{Following, Told};
 
 use crate::graph::{Responses, StiffnessFrom};
-use crate::nodes::{Forces, Load, Mark, NodeError, Substructure};
+use crate::nodes::{Bonds, Forces, Load, Mark, NodeError, Substructure};
 use crate::solvers::track::Spring;
 use reading::Reading;
 use serde::{Deserialize, Serialize};
@@ -231,6 +231,11 @@ impl Substructure for GrainGround<'_> {
         follow: &mut Following<'_>,
     ) -> Result<Vec<VolumeSample>, NodeError> {
         self.record_copy(axles, load, follow)
+    }
+
+    fn bonds(&self) -> Bonds {
+        let beds = self.live.iter().flat_map(|live| &live.coupled.beds);
+        beds.map(|standing| Bonds::in_bed(&standing.bed)).sum()
     }
 
     fn is_underway(&self) -> bool {

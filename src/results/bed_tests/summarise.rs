@@ -1,6 +1,6 @@
 //! The few numbers of a test, over its packings, and what the scene expects of it.
 
-use super::super::{HistoryRow, Scalar, SleeperTable, Tables};
+use super::super::{HistoryRow, Scalar, SleeperTable, Tables, broken_bonds, broken_share};
 use super::{BedTest, BedTests};
 use crate::scenario::Track;
 use crate::scenario::response::Response;
@@ -79,6 +79,8 @@ fn scalars(tests: &[BedTest], plate: Option<f64>) -> BTreeMap<String, Scalar> {
         });
     }
     put("max_contact_force", "N", &|test| test.answer.cycles.iter().map(|cycle| cycle.contact_force).reduce(f64::max));
+    put("broken_bonds", "1", &|test| broken_bonds(test.answer.bonds));
+    put("broken_bonds_share", "1", &|test| broken_share(test.answer.bonds));
     put("steps", "1", &|test| Some(test.answer.steps as f64));
     put("grains", "1", &|test| Some(test.bed.bodies as f64));
     put("porosity", "1", &|test| Some(test.bed.layers.last()?.inner_porosity));
