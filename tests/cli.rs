@@ -2,6 +2,7 @@
 
 use serde_json::Value;
 use std::fs;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
@@ -202,6 +203,39 @@ fn a_killed_run_resumes_with_the_same_bits() {
         timings["parts"].as_f64()
     };
     assert_eq!((parts(&whole), parts(&killed)), (Some(1.0), Some(2.0)));
+}
+
+/// Ctrl-C in a terminal, SIGTERM of a scheduler.
+#[cfg(unix)]
+#[test]
+fn a_run_that_is_asked_to_stop_keeps_what_it_has_and_says_how_to_go_on() {
+    let dir = tempfile::tempdir().unwrap();
+    let scene = write(dir.path(), "small.track", &SMALL.replace("40 axles", "2000 axles"));
+    let (scene, out) = (scene.to_str().unwrap(), dir.path().join("out"));
+    for (signal, more) in [("-INT", None), ("-TERM", Some("--resume"))] {
+        let arguments = ["run", scene, "--out", out.to_str().unwrap()].into_iter().chain(more);
+        let mut child = Command::new(env!("CARGO_BIN_EXE_trackbed"));
+        let mut child = child.args(arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let (mut stderr, mut said) = (BufReader::new(child.stderr.take().unwrap()), String::new());
+        let listens = |said: &str| match more {
+            Some(_) => said.contains("goes on after "),
+            None => out.join(".trackbed/pieces/so-far").exists(),
+        };
+        while !listens(&said) {
+            if more.is_some() {
+                assert!(stderr.read_line(&mut said).unwrap() > 0, "{said}");
+            }
+        }
+        Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        stderr.read_to_string(&mut said).unwrap();
+        assert_eq!(child.wait().unwrap().code(), Some(1), "it ends by itself: {said}");
+        assert!(said.contains("the same command with `--resume` goes on"), "{said}");
+        assert!(!out.join("summary.json").exists());
+        // the page of what there is so far shows that something was kept
+        let told = trackbed(&["report", out.to_str().unwrap()]);
+        let told = String::from_utf8(told.stdout).unwrap();
+        assert!(told.contains(" of 2000 axles after "), "{told}");
+    }
 }
 
 #[test]

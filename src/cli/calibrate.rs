@@ -2,7 +2,7 @@
 
 use super::scene::{SceneArguments, failed, not_yet, show};
 use super::{Format, Outcome, terminal};
-use crate::check::{MeasuredCurve, measured_curve};
+use crate::check::{self, MeasuredCurve, measured_curve};
 use crate::compile::Compiled;
 use crate::diag::{Code, Diagnostic, FileId, Span, nearest::nearest, or_list, render};
 use crate::execute::passage_as_built;
@@ -126,7 +126,7 @@ fn read(
 ) -> Result<(MeasuredCurve, FileId), Vec<Diagnostic>> {
     let name = arguments.measured.display().to_string();
     let refused = |message: String| vec![Diagnostic::new(Code::E0805, message)];
-    let bytes = std::fs::read(&arguments.measured).map_err(|e| refused(format!("cannot read `{name}`: {e}")))?;
+    let bytes = check::read_bounded(&arguments.measured).map_err(|e| refused(format!("cannot read `{name}`: {e}")))?;
     let text = crate::syntax::decode(&name, &bytes).map_err(|mistake| refused(mistake.message))?;
     let file = compiled.sources.add(name, text.as_str(), false);
     let (curve, diagnostics) = measured_curve(file, &text, least);

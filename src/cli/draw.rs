@@ -3,7 +3,6 @@
 use super::scene::{SceneArguments, failed, show};
 use super::{Outcome, terminal};
 use crate::report::drawing_svg;
-use crate::results::write_atomically;
 use std::path::PathBuf;
 
 /// Draw the scene to scale: long section, layers, cross-sections, gradings
@@ -29,13 +28,13 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         let stem = arguments.scene.file.file_stem().unwrap_or_default();
         PathBuf::from(stem).with_extension("svg")
     });
-    match write_atomically(&out, drawing_svg(scenario).as_bytes()) {
+    match arguments.scene.write_beside(&out, drawing_svg(scenario).as_bytes()) {
         Ok(()) => {
             terminal::out(&format!("drew {}\n", out.display()));
             Outcome::Fine
         }
-        Err(error) => {
-            terminal::error(&format!("cannot write `{}`: {error}", out.display()));
+        Err(why) => {
+            terminal::error(&why);
             Outcome::Failed
         }
     }

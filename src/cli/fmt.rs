@@ -1,7 +1,9 @@
 //! `trackbed fmt`: the one layout of a file.
 
 use super::{Outcome, terminal};
+use crate::check;
 use crate::diag::{Sources, render};
+use crate::store::rewrite_atomically;
 use crate::syntax;
 use std::path::PathBuf;
 
@@ -20,7 +22,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     let mut outcome = Outcome::Fine;
     for file in &arguments.files {
         let name = file.display().to_string();
-        let text = match std::fs::read(file).map_err(|e| e.to_string()) {
+        let text = match check::read_bounded(file).map_err(|e| e.to_string()) {
             Ok(bytes) => match syntax::decode(&name, &bytes) {
                 Ok(text) => text,
                 Err(mistake) => {
@@ -46,7 +48,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
                 outcome = Outcome::Failed;
             }
             Ok(laid_out) => {
-                if let Err(error) = crate::results::write_atomically(file, laid_out.as_bytes()) {
+                if let Err(error) = rewrite_atomically(file, laid_out.as_bytes()) {
                     terminal::error(&format!("cannot write `{name}`: {error}"));
                     return Outcome::Usage;
                 }

@@ -10,6 +10,8 @@ mod docs;
 mod draw;
 mod explain;
 mod fmt;
+mod interrupt;
+mod memory;
 mod new;
 mod pack;
 mod pack_track;
@@ -109,7 +111,12 @@ pub fn main() -> ExitCode {
         Command::Docs(arguments) => docs::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
     };
+    let lost = terminal::lost();
+    if let Some(cause) = lost {
+        terminal::error(&format!("what was written to standard output is not whole: {cause}"));
+    }
     ExitCode::from(match outcome {
+        Outcome::Fine if lost.is_some() => 1,
         Outcome::Fine => 0,
         Outcome::Failed => 1,
         Outcome::Usage => 2,

@@ -2,7 +2,6 @@
 
 use super::scene::{SceneArguments, failed, show};
 use super::{Outcome, terminal};
-use crate::results;
 use std::path::PathBuf;
 
 /// Write the scene out with every default and library value, and where each comes from
@@ -28,8 +27,8 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     match &arguments.out {
         None => terminal::out(&text),
         Some(file) => {
-            if let Err(error) = results::write_atomically(file, text.as_bytes()) {
-                terminal::error(&format!("cannot write `{}`: {error}", file.display()));
+            if let Err(why) = arguments.scene.write_beside(file, text.as_bytes()) {
+                terminal::error(&why);
                 return Outcome::Usage;
             }
         }

@@ -1,8 +1,9 @@
 //! `trackbed run`: runs a scene into a directory, with checkpoints, a report and the verdict on its expectations.
 
+use super::memory::MemoryArgument;
 use super::run_progress::Shown;
 use super::scene::{PassArguments, SceneArguments, SeedArgument, failed, not_yet, show};
-use super::{Outcome, pack, report, stored, terminal};
+use super::{Outcome, interrupt, pack, report, stored, terminal};
 use crate::compile::{Compiled, fingerprint};
 use crate::diag::{Code, Diagnostic, render};
 use crate::execute::{self, Both, Ending, Executor};
@@ -17,6 +18,7 @@ use crate::store::{Directory, Mode, Work};
 use crate::units::number;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 /// Run a scene and write its results and report
@@ -40,6 +42,8 @@ pub(super) struct Arguments {
     /// Replace the results of another run in that directory.
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    memory: MemoryArgument,
     /// Where the packed beds of test rigs are kept, by what made them
     #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]
     cache: Option<PathBuf>,
@@ -69,7 +73,11 @@ fn run_here(arguments: &Arguments) -> Outcome {
     let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else {
         return not_yet(&compiled);
     };
-    let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph };
+    if let Some(refusal) = arguments.memory.refusal(graph) {
+        return stop(&compiled, refusal);
+    }
+    let asked = interrupt::asked();
+    let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph, asked };
     match Directory::open(&arguments.out, running.work(arguments), arguments.mode()) {
         Ok(directory) if directory.finished().is_some() => again(directory.path(), &compiled),
         Ok(directory) => further_packings(arguments, &running)
@@ -86,7 +94,7 @@ fn further_packings(arguments: &Arguments, running: &Running<'_>) -> Result<(), 
     for number in 1..=u64::from(further) {
         let seed = solve.seed + number;
         terminal::note(&format!("packing {number} of {}: seed {seed}\n", further + 1));
-        one_packing(arguments, seed)?;
+        one_packing(arguments, seed, running.asked)?;
     }
     if further > 0 {
         terminal::note(&format!("packing {0} of {0}: seed {1}\n", further + 1, solve.seed));
@@ -95,14 +103,14 @@ fn further_packings(arguments: &Arguments, running: &Running<'_>) -> Result<(), 
 }
 
 /// Runs the scene on the packing of another seed, or goes on with it.
-fn one_packing(arguments: &Arguments, seed: u64) -> Result<(), Outcome> {
+fn one_packing(arguments: &Arguments, seed: u64, asked: &'static AtomicBool) -> Result<(), Outcome> {
     let scene = arguments.scene.with_seed(&SeedArgument::with(seed));
     let compiled = scene.compile_without(&arguments.passes).map(Compiled::to_run).ok_or(Outcome::Usage)?;
     let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else {
         show(&compiled);
         return Err(not_yet(&compiled));
     };
-    let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph };
+    let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph, asked };
     let mode = if arguments.force { Mode::Force } else { Mode::Resume };
     let out = results::packing_directory(&arguments.out, seed);
     let directory = Directory::open(&out, running.work(arguments), mode)
@@ -132,6 +140,8 @@ struct Running<'a> {
     sha256: String,
     scenario: &'a Scenario,
     graph: &'a Graph,
+    /// Whether somebody wants it to stop.
+    asked: &'static AtomicBool,
 }
 
 impl Running<'_> {
@@ -142,11 +152,12 @@ impl Running<'_> {
 
 /// Runs a scene into its directory, to its report.
 fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -> Result<Run, Outcome> {
-    let Running { compiled, sha256, scenario, graph } = running;
+    let asked = running.asked;
+    let Running { compiled, sha256, scenario, graph, .. } = running;
     let out = directory.path().to_owned();
     let refused = |error: &ResultsError| stop(compiled, results_diagnostic(error));
     let source = Source { sources: &compiled.sources, sha256, diagnostics: &compiled.diagnostics };
-    let mut recorder = RunRecorder::new(scenario, graph).kept_in(&directory).made_by(source);
+    let mut recorder = RunRecorder::new(scenario, graph).kept_in(&directory).made_by(source).interrupted_by(asked);
     let from = match recorder.resume() {
         Ok(from) => from,
         Err(error) => return Err(refused(&error)),
@@ -161,7 +172,7 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
     match (ended, recorder.failure()) {
         (Ok(Ending::Finished), _) => {}
         (Ok(Ending::Stopped), Some(error)) => return Err(refused(&error)),
-        (Ok(Ending::Stopped), None) => return Err(Outcome::Failed),
+        (Ok(Ending::Stopped), None) => return Err(stopped(&out)),
         (Err(error), _) => return Err(stop(compiled, execute::diagnose(&error, graph, &compiled.origins))),
     }
     let timed = Timed { solve: recorder.seconds(), parts: recorder.parts(), after: Instant::now() };
@@ -173,6 +184,15 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
     summary(&run, &out.join(report::PAGE), timed.solve);
     warn(&run, compiled);
     Ok(run)
+}
+
+/// Says how a run that was asked to stop goes on.
+fn stopped(out: &Path) -> Outcome {
+    terminal::note(&format!(
+        "stopped: what is done is kept in `{}`; the same command with `--resume` goes on, with the same answer\n",
+        out.display()
+    ));
+    Outcome::Failed
 }
 
 /// Says what a run found that is finished already.

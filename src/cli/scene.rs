@@ -5,6 +5,7 @@ use crate::check::{self, Folder, Modules, Override, Remembered};
 use crate::compile::{Compiled, compile_with};
 use crate::diag::{self, render};
 use crate::lower::{NoSuchPass, Planner};
+use crate::store::write_atomically;
 use crate::syntax;
 use std::path::{Path, PathBuf};
 
@@ -63,6 +64,16 @@ impl SceneArguments {
         SceneArguments { file: self.file.clone(), set: self.set.iter().cloned().chain(seed).collect() }
     }
 
+    /// Writes an answer to a file, which must not be the scene; or says why not.
+    pub fn write_beside(&self, out: &Path, bytes: &[u8]) -> Result<(), String> {
+        let name = out.display();
+        let is_scene = self.file.canonicalize().is_ok_and(|scene| out.canonicalize().is_ok_and(|out| out == scene));
+        if is_scene {
+            return Err(format!("`{name}` is the scene itself; name another file after `--out`"));
+        }
+        write_atomically(out, bytes).map_err(|error| format!("cannot write `{name}`: {error}"))
+    }
+
     /// Where its modules and data lie.
     fn folder(&self) -> Folder {
         Folder(self.file.parent().unwrap_or(Path::new("")).to_path_buf())
@@ -76,7 +87,7 @@ impl SceneArguments {
     /// The scene as one file; `None` where there is none.
     pub fn resolve(&self) -> Option<String> {
         let name = self.file.display().to_string();
-        let text = syntax::decode(&name, &std::fs::read(&self.file).ok()?).ok()?;
+        let text = syntax::decode(&name, &check::read_bounded(&self.file).ok()?).ok()?;
         check::resolve(&name, &text, &self.folder(), &self.set)
     }
 
@@ -97,7 +108,7 @@ impl SceneArguments {
 
     fn compile_by(&self, planner: &Planner, modules: &dyn Modules) -> Option<Compiled> {
         let name = self.file.display().to_string();
-        let bytes = match std::fs::read(&self.file) {
+        let bytes = match check::read_bounded(&self.file) {
             Ok(bytes) => bytes,
             Err(error) => {
                 terminal::error(&format!("cannot read `{name}`: {error}"));

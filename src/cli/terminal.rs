@@ -1,10 +1,25 @@
 //! What a person sees: plain text where it is piped, colour on a terminal that wants it.
 
-use std::io::{IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::sync::OnceLock;
 
-/// Writes to standard output; a reader that has gone away is no mistake.
+/// Why standard output has not taken all that was written, once it has not.
+static LOST: OnceLock<String> = OnceLock::new();
+
+/// Writes to standard output; a reader that has gone away is no mistake. What else goes wrong is told by [`lost`].
 pub(super) fn out(text: &str) {
-    let _ = std::io::stdout().lock().write_all(text.as_bytes());
+    let mut stdout = std::io::stdout().lock();
+    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            LOST.get_or_init(|| error.to_string());
+        }
+        _ => {}
+    }
+}
+
+/// Why something that was written to standard output is lost; `None` where all has arrived.
+pub(super) fn lost() -> Option<&'static str> {
+    LOST.get().map(String::as_str)
 }
 
 /// Writes to standard error.

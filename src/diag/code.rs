@@ -131,6 +131,7 @@ codes! {
     E0810 Error "bed that does not come to rest"
     E0811 Error "rig that does not come to rest"
     E0812 Error "rig whose bed gives way"
+    E0813 Error "run larger than the memory"
     L1001 Warning "stiffness jump without mitigation"
     L1002 Warning "speed near the critical speed"
     L1003 Warning "track too short for its train"

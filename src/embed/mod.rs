@@ -1,6 +1,6 @@
 //! A scene as a program uses it: a text, edits by path, a run, in memory.
 
-use crate::check::{self, DataError, Folder, Modules, Override};
+use crate::check::{self, Folder, Modules, Override};
 use crate::compile::{Compiled, compile, fingerprint};
 use crate::diag::{Diagnostic, Sources, render};
 use crate::execute::{self, Both, Executor, Listener};
@@ -60,7 +60,8 @@ impl Scene {
     pub fn open(path: impl AsRef<Path>) -> Result<Scene, Stopped> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        let bytes = std::fs::read(path).map_err(|error| Stopped::NotRead(format!("cannot read `{name}`: {error}")))?;
+        let bytes =
+            check::read_bounded(path).map_err(|error| Stopped::NotRead(format!("cannot read `{name}`: {error}")))?;
         let text =
             syntax::decode(&name, &bytes).map_err(|mistake| Stopped::refused(vec![mistake], &Sources::default()))?;
         let folder = Folder(path.parent().unwrap_or(Path::new("")).to_path_buf());
@@ -163,9 +164,5 @@ struct InMemory(BTreeMap<PathBuf, Vec<u8>>);
 impl Modules for InMemory {
     fn read(&self, relative: &Path) -> Option<Vec<u8>> {
         self.0.get(relative).cloned()
-    }
-
-    fn data(&self, relative: &Path) -> Result<Vec<u8>, DataError> {
-        self.read(relative).ok_or(DataError::Missing)
     }
 }

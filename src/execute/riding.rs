@@ -74,8 +74,7 @@ pub(super) fn run(
         let after = if last { before.clone() } else { ground.settlement() };
         let steps = passages.iter().map(|passage| passage.time_steps).sum();
         let (passages_done, bonds) = (passages.len() as u64, ground.bonds());
-        let measured =
-            BlockMeasures { passages: passages_done, time_steps: steps, bonds, ..BlockMeasures::default() };
+        let measured = BlockMeasures { passages: passages_done, time_steps: steps, bonds, ..BlockMeasures::default() };
         let told = (!last).then_some((&block, &measured));
         let event = Event::Block { axles, block: told, passages: &passages, before: &before, after: &after };
         let all = blocks.planned().map_or(done + 1, |planned| planned.len() as u64 + 1);

@@ -372,14 +372,15 @@ fn cost_lines(cost: &Cost) -> String {
         Work::Tests(TestWork { grains, pebbles, time_step, packing_steps, test_steps, packings }) => format!(
             "\nestimate: about {} grains of {} pebbles in all, step {} us\n\
              estimate: about {} steps to pack the bed, {} to test it{}\n\
-             estimate: about {} on two cores, within a factor of two\n",
+             estimate: about {} on two cores, within a factor of two, {} MB\n",
             rounded(grains),
             rounded(pebbles),
             number((time_step * 1e7).round() / 10.0),
             rounded(packing_steps),
             rounded(test_steps),
             if packings > 1 { format!(", {packings} times") } else { String::new() },
-            duration(cost.seconds_on_two_cores)
+            duration(cost.seconds_on_two_cores),
+            rounded(cost.bytes as f64 / 1e6)
         ),
     }
 }

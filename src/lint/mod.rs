@@ -45,6 +45,7 @@ mod wheel_unloading;
 mod wide_void;
 mod winkler;
 
+pub(crate) use over_budget::LESS_MEMORY;
 pub use reads::readers;
 pub use winkler::Winkler;
 

@@ -15,9 +15,13 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let grains = &scenario.solve.grains;
     let found = match graph.cost.work {
         Work::Passages(work) => {
-            [of_passages(&graph.cost, work, grains.budget), memory(&graph.cost, work, grains.memory)]
+            let unknowns = format!("{} unknowns", work.unknowns);
+            [of_passages(&graph.cost, work, grains.budget), memory(&graph.cost, &unknowns, grains.memory)]
         }
-        Work::Tests(work) => [of_tests(&graph.cost, work, grains.budget), None],
+        Work::Tests(work) => {
+            let pebbles = format!("{} pebbles", about(work.pebbles));
+            [of_tests(&graph.cost, work, grains.budget), memory(&graph.cost, &pebbles, grains.memory)]
+        }
     };
     found.into_iter().flatten().collect()
 }
@@ -34,22 +38,20 @@ fn of_passages(cost: &Cost, work: PassageWork, budget: Option<Given>) -> Option<
     Some(said(message, budget, "fewer axles, longer blocks, a longer step or fewer elements cost less"))
 }
 
-fn memory(cost: &Cost, work: PassageWork, memory: Option<Given>) -> Option<Diagnostic> {
+fn memory(cost: &Cost, holds: &str, memory: Option<Given>) -> Option<Diagnostic> {
     let bytes = cost.bytes as f64;
     let memory = memory.filter(|memory| bytes > **memory)?;
     let message = format!(
-        "the run is expected to take {} MiB for {} unknowns, it may take {} MiB",
+        "the run is expected to take {} MiB for {holds}, it may take {} MiB",
         number((bytes / MIB).ceil()),
-        work.unknowns,
         number((*memory / MIB).floor())
     );
-    Some(said(message, memory, "a shorter track or fewer elements take less"))
+    Some(said(message, memory, LESS_MEMORY))
 }
 
 fn of_tests(cost: &Cost, work: TestWork, budget: Option<Given>) -> Option<Diagnostic> {
     let seconds = cost.seconds_on_two_cores;
     let budget = budget.filter(|budget| seconds > **budget)?;
-    let about = |value: f64| number(format!("{value:.1e}").parse().unwrap_or(value));
     let message = format!(
         "the test is expected to take {} on two cores, its budget is {}: {} grains, {} steps, {}",
         duration(seconds),
@@ -63,6 +65,15 @@ fn of_tests(cost: &Cost, work: TestWork, budget: Option<Given>) -> Option<Diagno
     );
     Some(said(message, budget, "fewer cycles or packings, a larger `cut_below` or larger grains (`scale`) cost less"))
 }
+
+/// Two digits of it.
+fn about(value: f64) -> String {
+    number(format!("{value:.1e}").parse().unwrap_or(value))
+}
+
+/// What makes a run smaller.
+pub(crate) const LESS_MEMORY: &str =
+    "a shorter track, fewer elements, a shorter `window` or larger grains (`scale`, `cut_below`) take less";
 
 const MIB: f64 = (1u64 << 20) as f64;
 

@@ -51,10 +51,10 @@ pub use recorder::{RunRecorder, RunTables};
 pub use reliance::{Reliance, Silenced, Unchecked, Warned};
 pub use so_far::SoFar;
 pub use states::remove as remove_states;
-use summarise::{broken_bonds, broken_share};
 pub use summarise::{
     RailMaxima, VOID_THRESHOLD, loaded_level, mean_wheel_load, static_wheel_load, summarise, worst_train,
 };
+use summarise::{broken_bonds, broken_share};
 pub use summary::{Provenance, Scalar, Summary, Verdict};
 pub use tables::{BlockRow, HistoryRow, RailRow, Row, SleeperRow, TampingRow, TrainRow};
 pub use under_track::BedsAtCount;

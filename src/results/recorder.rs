@@ -19,6 +19,7 @@ use crate::store::{Directory, Piece};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 /// The small tables of a run.
@@ -97,6 +98,8 @@ pub struct RunRecorder<'a> {
     /// Chainages between which every wheel of a train passes, m, for each kind of train.
     passed: Vec<Range<f64>>,
     directory: Option<&'a Directory>,
+    /// Becomes true where somebody wants the run to keep its state and stop.
+    interrupted: Option<&'a AtomicBool>,
     /// When a checkpoint is due.
     due: Option<Instant>,
     pub tables: RunTables,
@@ -137,6 +140,7 @@ impl<'a> RunRecorder<'a> {
             supports: &graph.supports,
             passed: graph.blocks().map(Blocks::passed_by_kind).unwrap_or_default(),
             directory: None,
+            interrupted: None,
             due: None,
             tables: RunTables { tests, ..RunTables::default() },
             histories: Vec::new(),
@@ -153,6 +157,11 @@ impl<'a> RunRecorder<'a> {
     /// The same, that keeps in a directory what a run needs to be resumed.
     pub fn kept_in(self, directory: &'a Directory) -> Self {
         RunRecorder { directory: Some(directory), ..self }
+    }
+
+    /// The same, that keeps the state and ends the run soon after `asked` has become true.
+    pub fn interrupted_by(self, asked: &'a AtomicBool) -> Self {
+        RunRecorder { interrupted: Some(asked), ..self }
     }
 
     /// The same, that shows beside its checkpoints what there is so far of a run that these texts made.
@@ -200,11 +209,16 @@ impl<'a> RunRecorder<'a> {
         self.failure.take()
     }
 
+    fn is_interrupted(&self) -> bool {
+        self.interrupted.is_some_and(|asked| asked.load(Ordering::Relaxed))
+    }
+
     /// Keeps the state of now, where it is time.
     fn keep(&mut self, between: &Between<'_>) -> Result<(), ResultsError> {
         let Some(directory) = self.directory else { return Ok(()) };
         let started = Instant::now();
-        if !between.is_last && self.due.is_some_and(|due| started < due) {
+        let is_due = between.is_last || self.is_interrupted() || self.due.is_none_or(|due| started >= due);
+        if !is_due {
             return Ok(());
         }
         if self.written < self.histories.len() {
@@ -421,8 +435,17 @@ impl Listener for RunRecorder<'_> {
                     self.failure = Some(error);
                     return ControlFlow::Break(());
                 }
+                if self.is_interrupted() && !between.is_last {
+                    return ControlFlow::Break(());
+                }
             }
-            Event::Packing(progress) => self.stage = Some((progress.stage.clone(), progress.share)),
+            Event::Packing(progress) => {
+                self.stage = Some((progress.stage.clone(), progress.share));
+                // a bed on its way cannot be kept
+                if self.is_interrupted() {
+                    return ControlFlow::Break(());
+                }
+            }
             Event::Custom { .. } | Event::Progress { .. } => {}
         }
         ControlFlow::Continue(())

@@ -12,7 +12,21 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     })
 }
 
-/// The same on a disk, by way of a temporary file beside it.
+/// Replaces the content of a file that is there, and leaves the file what it is: a link leads to the same file afterwards, and whoever could read
+/// it still can.
+pub fn rewrite_atomically(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+    let failed = |cause| StoreError::io(path, "write", cause);
+    let path = path.canonicalize().map_err(failed)?;
+    let permissions = path.metadata().map_err(failed)?.permissions();
+    let temporary = temporary_name(&path);
+    let written = FileSystem.write(&temporary, bytes).and_then(|()| std::fs::set_permissions(&temporary, permissions));
+    written.and_then(|()| FileSystem.rename(&temporary, &path)).map_err(|cause| {
+        let _ = FileSystem.remove_file(&temporary); // the first failure is the one to report
+        failed(cause)
+    })
+}
+
+/// Replaces `path` on a disk, by way of a temporary file beside it.
 pub(super) fn replace(disk: &impl Disk, path: &Path, temporary: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     let written = disk.write(temporary, bytes).and_then(|()| disk.rename(temporary, path));
     let synced = written.and_then(|()| path.parent().map_or(Ok(()), |folder| disk.sync_folder(folder)));

@@ -24,7 +24,7 @@ mod shelf;
 mod tests;
 mod unfinished;
 
-pub use atomic::write_atomically;
+pub use atomic::{rewrite_atomically, write_atomically};
 pub use beds::{Beds, BedsError, FoundBed, bed_hash, recipe_hash};
 pub use directory::{Directory, Mode};
 pub use disk::{Disk, FileSystem};

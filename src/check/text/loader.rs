@@ -3,7 +3,7 @@
 use super::files::Files;
 use super::headers;
 use super::library::{self, Part};
-use super::modules::{Modules, Parsed};
+use super::modules::{DataError, LARGEST_DATA_FILE, Modules, Parsed};
 use super::overrides::{self, Override};
 use super::scope::{Scope, ScopeId};
 use crate::diag::nearest::nearest;
@@ -49,6 +49,36 @@ fn missing_file(name: &str) -> Option<String> {
     }
     let module = library::MODULES.iter().any(|(module, _)| *module == name);
     module.then(|| format!("it is a module of the standard library: write `use std` or `use std.{name}`"))
+}
+
+/// What is said of a module whose file is not read.
+fn unread(relative: &str, names: &[&str], error: &DataError, span: Span) -> Diagnostic {
+    let (message, label, help) = match error {
+        DataError::Missing => (
+            format!("there is no file `{relative}` below the main file's folder"),
+            "not found",
+            match names {
+                [path @ .., "track"] => Some(format!("write `use {}`, without the ending", path.join("."))),
+                _ => missing_file(names[0]),
+            },
+        ),
+        DataError::Outside => (
+            format!("`{relative}` is a link to a file outside the main file's folder"),
+            "not read",
+            Some("copy the file into the folder of the scene".into()),
+        ),
+        DataError::TooLarge(bytes) => (
+            format!("`{relative}` has {} MiB, more than {} MiB", bytes.div_ceil(1 << 20), LARGEST_DATA_FILE >> 20),
+            "not read",
+            Some("keep long tables of numbers in a data file: `file(\"level.csv\")`".into()),
+        ),
+        DataError::Unreadable(cause) => (
+            format!("`{relative}` cannot be read: {cause}"),
+            "not read",
+            Some("make it a file that can be read".into()),
+        ),
+    };
+    Diagnostic::new(Code::E0204, message).label(span, label).maybe_help(help)
 }
 
 /// The modules that a file brings in.
@@ -259,16 +289,12 @@ impl<'a> Loader<'a> {
             }
             None => {}
         }
-        let Some(bytes) = self.modules.read(Path::new(&relative)) else {
-            self.diagnostics.push(
-                Diagnostic::new(Code::E0204, format!("there is no file `{relative}` below the main file's folder"))
-                    .label(span, "not found")
-                    .maybe_help(match names {
-                        [path @ .., "track"] => Some(format!("write `use {}`, without the ending", path.join("."))),
-                        _ => missing_file(names[0]),
-                    }),
-            );
-            return None;
+        let bytes = match self.modules.data(Path::new(&relative)) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                self.diagnostics.push(unread(&relative, names, &error, span));
+                return None;
+            }
         };
         match decode(&relative, &bytes) {
             Ok(text) => Some(self.load(&relative, text, &[])),

@@ -4,6 +4,8 @@ use crate::diag::{Diagnostic, FileId};
 use crate::syntax::parse;
 use crate::syntax::tree::Tree;
 use std::collections::HashMap;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -12,8 +14,8 @@ pub trait Modules {
     /// The bytes of a file below the main file's folder; `None` where there is none.
     fn read(&self, relative: &Path) -> Option<Vec<u8>>;
 
-    /// The bytes of a data file. `relative` has plain names only, no `..`; what a link makes of them is for the
-    /// implementation to refuse.
+    /// The same, with the reason where it is not read. `relative` has plain names only, no `..`; what a link makes of them is for
+    /// the implementation to refuse.
     fn data(&self, relative: &Path) -> Result<Vec<u8>, DataError> {
         self.read(relative).ok_or(DataError::Missing)
     }
@@ -38,7 +40,7 @@ impl Parsed {
     }
 }
 
-/// Why a data file is not read.
+/// Why a file is not read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum DataError {
     Missing,
@@ -50,15 +52,28 @@ pub enum DataError {
     Unreadable(String),
 }
 
-/// Bytes of a data file, as of a text of the language.
+/// Bytes of a file that a scene reads, at most.
 pub const LARGEST_DATA_FILE: u64 = 8 << 20;
+
+/// Bytes after which nobody goes on reading a file that is named on the command line: a pipe or a device may have no end.
+const ENDLESS: u64 = 8 * LARGEST_DATA_FILE;
+
+/// The bytes of a file, or of a pipe.
+pub fn read_bounded(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let read = File::open(path)?.take(ENDLESS + 1).read_to_end(&mut bytes)? as u64;
+    if read > ENDLESS {
+        return Err(io::Error::other(format!("it has more than {} MiB", ENDLESS >> 20)));
+    }
+    Ok(bytes)
+}
 
 /// Modules in a folder.
 pub struct Folder(pub PathBuf);
 
 impl Modules for Folder {
     fn read(&self, relative: &Path) -> Option<Vec<u8>> {
-        std::fs::read(self.0.join(relative)).ok()
+        self.data(relative).ok()
     }
 
     fn data(&self, relative: &Path) -> Result<Vec<u8>, DataError> {
@@ -74,7 +89,7 @@ impl Modules for Folder {
         }
         let about = path.metadata().map_err(fail)?;
         if !about.is_file() {
-            return Err(DataError::Unreadable("it is no file".into()));
+            return Err(DataError::Unreadable("it is a folder or a device".into()));
         }
         if about.len() > LARGEST_DATA_FILE {
             return Err(DataError::TooLarge(about.len()));
