@@ -58,6 +58,16 @@ run bays_12 $full "${twenty[@]}" "${volume[@]}" --set 'solve.window=-7.2 .. 1.2 
 run bays_18 $full "${twenty[@]}" "${volume[@]}" --set 'solve.window=-10.8 .. 1.2 m'
 run bays_40 $full "${twenty[@]}" "${volume[@]}"
 
+# what the paper leaves open, one reading a line (docs/readings.md)
+hundred=(--set 'traffic.total=100 axles' --set 'solve.update_every=20 axles' --set 'track_response.after=[0, 20, 40, 60, 80, 100] axles'
+    --set 'ballast_response.after=100 axles' --set solve.substructure=cells)
+run reading_pressed $full "${hundred[@]}"
+run reading_eased $full "${hundred[@]}" --set ballast.packing.restored=eased
+run reading_unloaded $full "${hundred[@]}" --set ballast.packing.restored=unloaded
+run reading_tamped $full "${hundred[@]}" --set ballast.packing.restored=eased --set ballast.packing.friction=0.2 --set subballast.packing.friction=0
+run reading_half_stiffness $full "${hundred[@]}" --set 'ballast.contact_stiffness=6.5 MN/m per contact' \
+    --set 'subballast.contact_stiffness=2.5 MN/m per contact'
+
 # the paper's 500 axles
 counts=(--set 'track_response.after=[0, 20, 100, 200, 300, 400, 500] axles')
 run axles_cells $full "${counts[@]}" --set solve.substructure=cells

@@ -274,6 +274,14 @@ fn every_mistake_of_a_file_has_its_line_and_column() {
 }
 
 #[test]
+fn here_may_be_written_in_front_of_a_name() {
+    for name in ["./level.csv", "././level.csv"] {
+        let files = Files(BTreeMap::from([("level.csv", survey(|_| 0.0))]));
+        sound_with(&scene("", &format!("irregularity = file(\"{name}\")"), ""), files);
+    }
+}
+
+#[test]
 fn data_lies_below_the_scene() {
     for name in [
         "../level.csv",
@@ -284,7 +292,7 @@ fn data_lies_below_the_scene() {
         "~/level.csv",
         "",
         "a//b",
-        "./level.csv",
+        ".",
     ] {
         let compiled = with(&scene("", &format!("irregularity = file(\"{name}\")"), ""), Files::default());
         assert_eq!(codes(&compiled), [Code::E0508], "{name}: {}", told(&compiled));

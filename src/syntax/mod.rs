@@ -24,6 +24,7 @@ mod prepare;
 mod quotes;
 mod token;
 pub mod tree;
+mod unfit;
 mod uses;
 mod value;
 

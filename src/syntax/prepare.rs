@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use super::draft::Draft;
 use super::token::tokens;
-use super::{balance, declared, foreign, header, indented, limits, quotes, uses};
+use super::{balance, declared, foreign, header, indented, limits, quotes, unfit, uses};
 use crate::diag::{Code, Diagnostic, FileId, Span};
 
 /// A text that the grammar can read whole.
@@ -66,6 +66,7 @@ pub(super) fn prepare(file: FileId, original: &str) -> (Option<Prepared<'_>>, Ve
         poisoned: BTreeSet::new(),
         diagnostics: Vec::new(),
     };
+    unfit::tell(&mut draft);
     uses::mend(&mut draft, &mut tokens);
     quotes::mend(&mut draft, &mut tokens);
     declared::mend(&mut draft, &mut tokens);

@@ -80,11 +80,12 @@ impl<'m> Files<'m> {
 
     /// The bytes of a data file, if its name stays below the main file's folder.
     fn data(&self, name: &str) -> Result<Vec<u8>, DataError> {
-        let plain = |part: &str| !matches!(part, "" | "." | ".." | "~");
-        if name.contains(['\\', ':', '\0']) || !name.split('/').all(plain) {
+        let plain = |part: &str| !matches!(part, "" | ".." | "~");
+        let parts: Vec<&str> = name.split('/').filter(|part| *part != ".").collect();
+        if name.contains(['\\', ':', '\0']) || parts.is_empty() || !parts.iter().all(|part| plain(part)) {
             return Err(DataError::Outside);
         }
-        let bytes = self.modules.data(Path::new(name))?;
+        let bytes = self.modules.data(Path::new(&parts.join("/")))?;
         let size = bytes.len() as u64;
         if size > LARGEST_DATA_FILE { Err(DataError::TooLarge(size)) } else { Ok(bytes) }
     }
