@@ -62,7 +62,7 @@ fn output_that_is_lost_is_told() {
     let output = trackbed(&["docs"]).stdout(full()).stderr(Stdio::piped()).spawn().unwrap().wait_with_output().unwrap();
     let (code, said) = told(output);
     assert_eq!(code, Some(1));
-    assert!(said.contains("what was written to standard output is not whole: No space left on device"), "{said}");
+    assert!(said.contains("standard output is incomplete: No space left on device"), "{said}");
 }
 
 #[test]

@@ -229,7 +229,7 @@ fn a_run_that_is_asked_to_stop_keeps_what_it_has_and_says_how_to_go_on() {
         Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
         stderr.read_to_string(&mut said).unwrap();
         assert_eq!(child.wait().unwrap().code(), Some(1), "it ends by itself: {said}");
-        assert!(said.contains("the same command with `--resume` goes on"), "{said}");
+        assert!(said.contains("to go on, run the same command with `--resume`"), "{said}");
         assert!(!out.join("summary.json").exists());
         // the page of what there is so far shows that something was kept
         let told = trackbed(&["report", out.to_str().unwrap()]);

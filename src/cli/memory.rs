@@ -32,7 +32,7 @@ fn refusal(needed: u64, memory: u64) -> Diagnostic {
     Diagnostic::new(Code::E0813, message).help(format!("{LESS_MEMORY}; `--over-memory` starts the run all the same"))
 }
 
-/// Memory of this machine, or what its container may take of it, bytes; 0 where nobody knows.
+/// Memory of this machine or, where that is less, the limit of its container, bytes; 0 where it is unknown.
 fn memory() -> u64 {
     let mut system = System::new();
     system.refresh_memory();

@@ -113,7 +113,7 @@ pub fn main() -> ExitCode {
     };
     let lost = terminal::lost();
     if let Some(cause) = lost {
-        terminal::error(&format!("what was written to standard output is not whole: {cause}"));
+        terminal::error(&format!("standard output is incomplete: {cause}"));
     }
     ExitCode::from(match outcome {
         Outcome::Fine if lost.is_some() => 1,

@@ -172,7 +172,7 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
     match (ended, recorder.failure()) {
         (Ok(Ending::Finished), _) => {}
         (Ok(Ending::Stopped), Some(error)) => return Err(refused(&error)),
-        (Ok(Ending::Stopped), None) => return Err(stopped(&out)),
+        (Ok(Ending::Stopped), None) => return Err(stopped(&out, recorder.has_kept())),
         (Err(error), _) => return Err(stop(compiled, execute::diagnose(&error, graph, &compiled.origins))),
     }
     let timed = Timed { solve: recorder.seconds(), parts: recorder.parts(), after: Instant::now() };
@@ -186,12 +186,16 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
     Ok(run)
 }
 
-/// Says how a run that was asked to stop goes on.
-fn stopped(out: &Path) -> Outcome {
-    terminal::note(&format!(
-        "stopped: what is done is kept in `{}`; the same command with `--resume` goes on, with the same answer\n",
-        out.display()
-    ));
+/// Says how to go on with a run that Ctrl-C or SIGTERM has stopped.
+fn stopped(out: &Path, has_kept: bool) -> Outcome {
+    let out = out.display();
+    terminal::note(&match has_kept {
+        true => format!(
+            "stopped: the state is kept in `{out}`\nto go on, run the same command with `--resume`: the answer will be the same\n"
+        ),
+        false => "stopped before there was a state to keep\nto start again, run the same command with `--resume`\n"
+            .to_owned(),
+    });
     Outcome::Failed
 }
 

@@ -66,12 +66,12 @@ fn of_tests(cost: &Cost, work: TestWork, budget: Option<Given>) -> Option<Diagno
     Some(said(message, budget, "fewer cycles or packings, a larger `cut_below` or larger grains (`scale`) cost less"))
 }
 
-/// Two digits of it.
+/// The value with two significant digits.
 fn about(value: f64) -> String {
     number(format!("{value:.1e}").parse().unwrap_or(value))
 }
 
-/// What makes a run smaller.
+/// Advice for a run that needs too much memory.
 pub(crate) const LESS_MEMORY: &str =
     "a shorter track, fewer elements, a shorter `window` or larger grains (`scale`, `cut_below`) take less";
 

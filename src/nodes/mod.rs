@@ -89,11 +89,11 @@ pub struct Load<'a> {
     pub trains: u64,
 }
 
-/// Bonds between glued grains since they were glued.
+/// Number of bonds between glued grains, by their state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Bonds {
-    /// Bonds that still hold.
     pub intact: u64,
+    /// Since the grains were glued.
     pub broken: u64,
 }
 

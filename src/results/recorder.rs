@@ -209,6 +209,11 @@ impl<'a> RunRecorder<'a> {
         self.failure.take()
     }
 
+    /// Whether there is a state to go on from.
+    pub fn has_kept(&self) -> bool {
+        self.due.is_some() || self.parts() > 1
+    }
+
     fn is_interrupted(&self) -> bool {
         self.interrupted.is_some_and(|asked| asked.load(Ordering::Relaxed))
     }

@@ -12,8 +12,8 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     })
 }
 
-/// Replaces the content of a file that is there, and leaves the file what it is: a link leads to the same file afterwards, and whoever could read
-/// it still can.
+/// Replaces the content of an existing file and keeps its permissions; of a link, that of the file it leads to. Fails where the operating
+/// system refuses.
 pub fn rewrite_atomically(path: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     let failed = |cause| StoreError::io(path, "write", cause);
     let path = path.canonicalize().map_err(failed)?;

@@ -55,10 +55,10 @@ pub enum DataError {
 /// Bytes of a file that a scene reads, at most.
 pub const LARGEST_DATA_FILE: u64 = 8 << 20;
 
-/// Bytes after which nobody goes on reading a file that is named on the command line: a pipe or a device may have no end.
+/// Bytes read of a file that is named on the command line, at most: a pipe or a device may have no end.
 const ENDLESS: u64 = 8 * LARGEST_DATA_FILE;
 
-/// The bytes of a file, or of a pipe.
+/// The bytes of a file or a pipe; fails above 64 MiB, and where the operating system refuses.
 pub fn read_bounded(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let read = File::open(path)?.take(ENDLESS + 1).read_to_end(&mut bytes)? as u64;
