@@ -67,6 +67,12 @@ run reading_unloaded $full "${hundred[@]}" --set ballast.packing.restored=unload
 run reading_tamped $full "${hundred[@]}" --set ballast.packing.restored=eased --set ballast.packing.friction=0.2 --set subballast.packing.friction=0
 run reading_half_stiffness $full "${hundred[@]}" --set 'ballast.contact_stiffness=6.5 MN/m per contact' \
     --set 'subballast.contact_stiffness=2.5 MN/m per contact'
+run reading_loaded_again $full "${hundred[@]}" --set ballast.packing.reloads=1
+run reading_loaded_three_times $full "${hundred[@]}" --set ballast.packing.reloads=3
+run reading_eased_loaded_again $full "${hundred[@]}" --set ballast.packing.restored=eased --set ballast.packing.reloads=1
+run reading_smooth_walls $full "${hundred[@]}" --set ballast.wall_friction=0 --set subballast.wall_friction=0
+run reading_heavy $full "${hundred[@]}" --set 'wagon.axle_load=29.5 t'
+run reading_crib $full "${hundred[@]}" --set 'open.crib=150 mm' --set 'stiff.crib=none'
 
 # the paper's 500 axles
 counts=(--set 'track_response.after=[0, 20, 100, 200, 300, 400, 500] axles')

@@ -255,9 +255,18 @@ fn vehicles_ride_on_the_rail_over_the_grains() {
     let weight: f64 =
         ballasted.iter().map(|seat| 9.81 * (track.seats[*seat].foot.mass() + 0.6 * track.rail[0].mass)).sum();
     let carried: f64 = ballasted.iter().map(|seat| forces[*seat]).sum();
-    assert!((carried / weight - 1.0).abs() < 0.01, "{carried} of {weight} N");
+    // the rail carries what is left over to the stiff side
+    assert!((carried / weight - 1.0).abs() < 0.015, "{carried} of {weight} N");
     assert!(voids.iter().all(|void| *void < 50e-6), "{voids:?}");
     let loads = &ridden.seat_loads[0];
+    // vehicles come onto the rail as if it went on: only the two seats at its end feel that the track beyond is another model
+    assert_eq!(ridden.seat_loads.len(), 2, "before the axles and after");
+    for (far, when) in ridden.seat_loads.iter().map(|loads| &loads[..15]).zip(["before", "after"]) {
+        for (seat, load) in far.iter().enumerate() {
+            let tolerance = if seat < 2 { 0.15 } else { 0.05 };
+            assert!((load / far[14] - 1.0).abs() < tolerance, "{when}, seat {seat}: {far:.0?}");
+        }
+    }
     for seat in &on_grains {
         assert!((15e3..80e3).contains(&loads[*seat]), "seat {seat}: {} N", loads[*seat]);
         let settled = ridden.settlements[0].1[*seat];

@@ -50,6 +50,7 @@ pub(super) const READS: Reads = Reads {
         "packing.local_damping",
         "packing.viscous_damping",
         "packing.restored",
+        "packing.reloads",
         "track.bed_width",
         "trackform.crib",
         "trackform.shoulder",
@@ -146,6 +147,10 @@ fn bed(
     if grains.iter().any(|(_, granular)| granular.packing.restored != top.packing.restored) {
         notes.push(format!("Friction comes back in all layers at once, as `{top_name}` says."));
     }
+    if grains.iter().any(|(_, granular)| granular.packing.reloads != top.packing.reloads) {
+        let times = top.packing.reloads;
+        notes.push(format!("Loadings of the finished bed (`packing.reloads`): {times}, as `{top_name}` says."));
+    }
     for layer in layers.iter().filter(|layer| layer.lifts_that_fit() < layer.lifts) {
         let (name, asked, fit) = (&layer.name, layer.lifts, layer.lifts_that_fit());
         let times = if fit == 1 { "lift" } else { "lifts" };
@@ -162,6 +167,7 @@ fn bed(
         gravity: *scenario.solve.gravity,
         local_damping: *top.local_damping,
         restored: top.packing.restored,
+        reloads: top.packing.reloads,
         rest: Rest::default(),
         seed,
     };
@@ -293,7 +299,8 @@ pub(super) fn packs_alike(one: (&[Layer], f64), other: (&[Layer], f64)) -> bool 
             let filling = filling(layer, granular, x, Vec::new()).ok()?;
             let thickness = (filling.thickness / TINY).round() * TINY;
             let alike = Filling { name: String::new(), thickness, ..filling };
-            Some((alike, granular.shape.clumps(), *granular.local_damping, granular.packing.restored))
+            let packing = granular.packing;
+            Some((alike, granular.shape.clumps(), *granular.local_damping, packing.restored, packing.reloads))
         };
         grains.map(of_one).collect()
     };

@@ -160,6 +160,8 @@ pub struct Packing {
     pub viscous_damping: Given,
     /// When friction and damping come back.
     pub restored: Restored,
+    /// Times that the plate presses the finished bed again.
+    pub reloads: u32,
 }
 
 /// Glue between grains.

@@ -224,6 +224,12 @@ pub(super) const PACKING: Kind = Kind {
             "eased",
             "when friction and damping come back after packing; a bed goes by its top layer",
         ),
+        default(
+            "reloads",
+            Form::Integer { min: 0, max: 20 },
+            "0",
+            "times that the plate presses the finished bed again; a bed goes by its top layer",
+        ),
     ],
     alternatives: &[],
     planned: &[],

@@ -81,6 +81,7 @@ fn granular(record: &Record, files: &mut Files<'_>, findings: &mut Findings) -> 
                 "unloaded" => Restored::Unloaded,
                 _ => Restored::Eased,
             },
+            reloads: packing.number("reloads")?.value as u32,
         },
         bond,
         youngs_modulus: None,

@@ -14,7 +14,7 @@ use crate::lower::tier::rig::cost::grains_under_track;
 use crate::lower::{Draft, crib, glue, track};
 use crate::scenario::{Foot, Loading, Scenario, Seat, Section, SleeperBody, Track};
 use crate::schema::Reads;
-use crate::solvers::track::{Pitch, UnderPad};
+use crate::solvers::track::{Pitch, RailEnds, UnderPad};
 
 pub struct Zone;
 pub struct Full;
@@ -151,8 +151,12 @@ fn propose(draft: &Draft<'_>, what: &str, windows: Vec<[f64; 2]>) -> Result<Prop
         time_step: scenario.solve.grains.step.map(|step| *step),
         added_inertia: ADDED,
     };
-    let track = Box::new(track::track(scenario));
     let ridden = scenario.solve.grains.monolithic;
+    let mut track = Box::new(track::track(scenario));
+    if ridden && track.rail_ends == RailEnds::Clamped {
+        // wheels that come over a held end fall from its level, and shake the first ten seats by three quarters of their load
+        track.rail_ends = RailEnds::Absorbing;
+    }
     let mut nodes = vec![
         Node::new("track", if ridden { Model::Riding(track) } else { Model::Track(track) }),
         Node::new("grains", Model::Grains(grains)),

@@ -10,9 +10,6 @@ use crate::graph::{Blocks, Record, Runner, Train};
 use crate::nodes::{NodeError, PassageOutcome, RailPoint, Unloaded, UnloadedSeat};
 use crate::solvers::track::{Direction, WheelLoads};
 
-/// Room that the first wheel has before the rail, m.
-const BEFORE: f64 = 0.5;
-
 /// Trains of a block that ride over the grains.
 pub struct Riders<'a> {
     pub blocks: &'a Blocks,
@@ -181,9 +178,11 @@ impl Live {
     fn set_out(&mut self, parts: Parts<'_>, riders: &Riders<'_>, train: &Train) -> Result<f64, NodeError> {
         let ([left, right], [start, end]) = (parts.ends(), parts.track.ends());
         let direction = riders.runner.direction;
-        let (from, way) = match direction {
-            Direction::Forward => (start - BEFORE, right + REACH - (start - BEFORE)),
-            Direction::Backward => (end + BEFORE, end + BEFORE - (left - REACH)),
+        let from = self.coupled.rail.approach(direction);
+        // the last wheel goes behind the grains, or to the end of the track
+        let way = match direction {
+            Direction::Forward => (right + REACH).min(end) - from,
+            Direction::Backward => from - (left - REACH).max(start),
         };
         self.watch();
         let motion = self.underway_ride()?.motion.take();
@@ -194,7 +193,6 @@ impl Live {
             None => self.underway_ride()?.since = now,
         }
         self.underway_ride()?.on_rail = true;
-        // the last wheel goes behind the grains, or to the end of the track
-        Ok(way.min(end - start + BEFORE) + train.wheel_base())
+        Ok(way + train.wheel_base())
     }
 }

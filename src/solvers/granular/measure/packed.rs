@@ -45,6 +45,7 @@ pub(in super::super) fn recipe() -> Recipe {
         gravity: GRAVITY,
         local_damping: 0.2,
         restored: Default::default(),
+        reloads: 0,
         rest: Rest::default(),
         seed: 1,
     }

@@ -18,6 +18,8 @@ pub enum StageKind {
     Restored,
     /// The plate goes.
     Lifted,
+    /// The plate presses the finished bed again; times count from 1.
+    Reloaded { number: u32, of: u32 },
     /// Cells stand side by side as the bed of a track.
     SideBySide,
 }
@@ -29,6 +31,7 @@ impl fmt::Display for StageKind {
             StageKind::Eased => write!(f, "plate eased"),
             StageKind::Restored => write!(f, "friction restored"),
             StageKind::Lifted => write!(f, "plate lifted"),
+            StageKind::Reloaded { number, of } => write!(f, "loaded again, {number} of {of}"),
             StageKind::SideBySide => write!(f, "cells side by side"),
         }
     }

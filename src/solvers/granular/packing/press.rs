@@ -77,7 +77,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
             area: length * width,
             level: 0.0,
             pace: Some(Pace::without_friction(recipe)),
-            count: lifts as usize + LAST,
+            count: lifts as usize + LAST + 3 * recipe.reloads as usize,
             tell,
         };
         press.away();
@@ -113,7 +113,7 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         Ok(())
     }
 
-    /// Eases the plate and takes it away. Friction comes back before, between or after, as the recipe says; usually between. With friction a
+    /// Eases the plate and takes it away. Friction comes back before, between or after, as the recipe says; usually between. Then the plate loads the bed again, as often as it says. With friction a
     /// bed that springs back opens a third of its contacts. Without friction it comes to rest a third as stiff. `weight`: weight of the bed
     /// over its area, Pa. The plate is eased to half of it, the mean pressure of the bed's own weight.
     pub fn finish(&mut self, recipe: &Recipe, weight: f64) -> Result<(), PackingError> {
@@ -123,19 +123,29 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
             Restored::Pressed => {
                 self.restore(recipe, pressed)?;
                 self.stand(&StageKind::Eased, eased, recipe.rest.bed)?;
-                self.lift(recipe.rest.bed)
+                self.lift(recipe.rest.bed)?;
             }
             Restored::Eased => {
                 self.stand(&StageKind::Eased, eased, recipe.rest.lift)?;
                 self.restore(recipe, eased)?;
-                self.lift(recipe.rest.bed)
+                self.lift(recipe.rest.bed)?;
             }
             Restored::Unloaded => {
                 self.stand(&StageKind::Eased, eased, recipe.rest.lift)?;
                 self.lift(recipe.rest.lift)?;
-                self.restore(recipe, None)
+                self.restore(recipe, None)?;
             }
         }
+        (1..=recipe.reloads).try_for_each(|number| self.reload(recipe, number, [pressed, eased]))
+    }
+
+    /// The plate comes down on the finished bed, presses and goes again.
+    fn reload(&mut self, recipe: &Recipe, number: u32, [pressed, eased]: [Option<f64>; 2]) -> Result<(), PackingError> {
+        let Some(pressure) = pressed else { return Ok(()) };
+        self.lower_from(self.top(), pressure, SLOW);
+        self.stand(&StageKind::Reloaded { number, of: recipe.reloads }, pressed, recipe.rest.bed)?;
+        self.stand(&StageKind::Eased, eased, recipe.rest.bed)?;
+        self.lift(recipe.rest.bed)
     }
 
     /// Friction and damping of the finished bed come back under a pressure of the plate, Pa; `None` after it has gone.

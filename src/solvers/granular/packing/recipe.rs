@@ -27,6 +27,9 @@ pub struct Recipe {
     pub local_damping: f64,
     #[serde(default, skip_serializing_if = "Restored::is_usual")]
     pub restored: Restored,
+    /// Times that the plate presses the finished bed again.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub reloads: u32,
     pub rest: Rest,
     pub seed: u64,
 }
@@ -80,6 +83,10 @@ impl Restored {
     fn is_usual(&self) -> bool {
         *self == Restored::default()
     }
+}
+
+fn is_none(times: &u32) -> bool {
+    *times == 0
 }
 
 /// When a stage is at its end.

@@ -35,6 +35,7 @@ fn small() -> Recipe {
         gravity: 9.81,
         local_damping: 0.2,
         restored: Default::default(),
+        reloads: 0,
         rest: Rest::default(),
         seed: 1,
     }
@@ -86,6 +87,29 @@ fn friction_comes_back_when_the_recipe_says() {
     assert_eq!(unloaded.0, ["plate eased", "plate lifted", "friction restored"]);
     assert!((pressed.1 - eased.1).abs() < 3e-3 && unloaded.1 < eased.1, "{pressed:?} {eased:?} {unloaded:?}");
     assert!(pressed.2 < 0.9 * eased.2 && eased.2 < 0.95 * unloaded.2, "{pressed:?} {eased:?} {unloaded:?}");
+}
+
+/// A bed that is loaded again under the pressure that it was packed with sinks a little, once.
+#[test]
+fn the_plate_loads_a_finished_bed_again() {
+    let recipe = Recipe { restored: Restored::Pressed, reloads: 2, ..small() };
+    let packed = packed(&recipe);
+    let again: Vec<_> = packed.stages[5..].iter().map(|stage| (stage.name.as_str(), stage.level)).collect();
+    let names =
+        ["loaded again, 1 of 2", "plate eased", "plate lifted", "loaded again, 2 of 2", "plate eased", "plate lifted"];
+    assert_eq!(again.iter().map(|(name, _)| *name).collect::<Vec<_>>(), names);
+    for stage in packed.stages.iter().filter(|stage| stage.name.starts_with("loaded")) {
+        assert!(
+            (stage.pressure / recipe.layers[0].pressure - 1.0).abs() < 0.02,
+            "{}: {} Pa",
+            stage.name,
+            stage.pressure
+        );
+    }
+    let [eased, once, twice] = [packed.stages[3].level, again[1].1, again[4].1].map(Option::unwrap);
+    let sunk = [eased - once, once - twice];
+    assert!(sunk[0] > 0.0 && sunk[0] < 0.05 * recipe.layers[0].thickness, "{sunk:?} m");
+    assert!(sunk[1].abs() < sunk[0], "{sunk:?} m");
 }
 
 /// Spheres and clumps, between two and four grains thick, between walls and none, with friction and without: the first guess is all that one lift has.

@@ -37,6 +37,7 @@ fn recipe(plan: [f64; 2], thickness: f64, sizes: [f64; 2], friction: f64, boxed:
         gravity: 9.81,
         local_damping: 0.2,
         restored: Default::default(),
+        reloads: 0,
         rest: Rest::default(),
         seed: 1,
     }
