@@ -1,6 +1,7 @@
 //! Files that are not what they seem, and outputs that take nothing: refused with a reason, never followed, never waited for.
 #![cfg(unix)]
 
+use std::fs;
 use std::fs::Permissions;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
@@ -114,6 +115,15 @@ fn a_run_larger_than_the_memory_is_not_started() {
     assert!(said.contains("E0813") && said.contains("GB of memory, and this machine has"), "{said}");
     assert!(said.contains("`--over-memory` starts the"), "{said}");
     assert!(!out.exists(), "nothing is begun");
+    let text = fs::read_to_string("scenarios/box_test.track").unwrap()
+        + "study wide { vary = [stone.friction: [0.5, 0.7]], minimise = max(settlement) }\n";
+    let several = folder.path().join("several.track");
+    fs::write(&several, text).unwrap();
+    let study = [&["study", several.to_str().unwrap(), "--jobs", "2"], &scene[1..], &["--out", out.to_str().unwrap()]];
+    let (code, said) = told(trackbed(&study.concat()).output().unwrap());
+    assert_eq!(code, Some(1));
+    assert!(said.contains("E0813") && said.contains("2 points at a time need about"), "{said}");
+    assert!(said.contains("run fewer points at a time with `--jobs`") && !out.exists(), "{said}");
     let limited = [&["check"], &scene[..], &["--set", "solve.memory=1 GiB"]].concat();
     let (_, said) = told(trackbed(&limited).output().unwrap());
     assert!(

@@ -509,6 +509,34 @@ fn a_killed_study_goes_on_to_the_same_answer() {
     }
 }
 
+/// Ctrl-C in a terminal, SIGTERM of a scheduler.
+#[cfg(unix)]
+#[test]
+fn a_study_that_is_asked_to_stop_says_how_to_go_on() {
+    let dir = tempfile::tempdir().unwrap();
+    // a thousand axles a point: it is in the middle of one when the signal comes
+    let file = write(dir.path(), &with(PADS).replace("8 axles", "1000 axles"));
+    let out = dir.path().join("out");
+    let mut study = Command::new(env!("CARGO_BIN_EXE_trackbed"));
+    study.args(["study", file.to_str().unwrap(), "--jobs", "1", "--out", out.to_str().unwrap()]);
+    for signal in ["-INT", "-TERM"] {
+        let before = pieces(&out).len();
+        let mut child = study.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        while pieces(&out).len() == before {
+            assert!(child.try_wait().unwrap().is_none(), "it ended before a point was kept");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+        let output = child.wait_with_output().unwrap();
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(1), "it ends by itself: {said}");
+        let kept = format!("stopped: {} of 6 points are kept in `{}`", pieces(&out).len(), out.display());
+        assert!(said.contains(&kept) && said.contains("run the same command with `--resume`"), "{said}");
+        assert!(!out.join("study.csv").exists());
+        study.arg("--resume");
+    }
+}
+
 /// Files of points that an unfinished study has kept.
 fn pieces(out: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(out.join(".trackbed/pieces")).map(|entries| entries.flatten().map(|e| e.path()));

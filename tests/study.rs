@@ -145,3 +145,20 @@ fn a_run_that_fails_names_the_block_of_the_scene() {
     assert!(text.contains("E0703") && text.contains("at this speed") && text.contains("225 km/h"), "{text}");
     assert!(!out.join("summary.json").exists());
 }
+
+/// A support that is damped so much that it does not come back between two wheels: no shorter step helps.
+#[test]
+fn a_support_that_its_damper_holds_down_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = SMALL.replace(
+        "stiffness = 50 MN/m per seat, damping_time = 1 ms",
+        "stiffness = 1.9 MN/m per seat, damping = 3433 kN s/m per seat",
+    );
+    assert_ne!(text, SMALL);
+    let file = scene(dir.path(), &text);
+    let output = trackbed(&["run", file.to_str().unwrap(), "--out", dir.path().join("out").to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(1));
+    let text = said(&output);
+    assert!(text.contains("needs 1.81 s to let 1.9 MN/m come back") && text.contains("damping_time = 1 ms"), "{text}");
+    assert!(!text.contains("write `time_step"), "{text}");
+}

@@ -83,6 +83,7 @@ fn paper(seed: u64) -> Recipe {
         gravity: 9.81,
         local_damping: 0.2,
         restored: Default::default(),
+        reloads: 0,
         rest: Rest::default(),
         seed,
     }

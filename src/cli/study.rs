@@ -1,7 +1,8 @@
 //! `trackbed study`: runs the points of a study, several at once, and says which design is best.
 
+use super::memory::MemoryArgument;
 use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
-use super::{Outcome, pack, progress, stored, study_summary, terminal};
+use super::{Outcome, interrupt, pack, progress, stored, study_summary, terminal};
 use crate::check::{Folder, Remembered};
 use crate::compile::Compiled;
 use crate::diag::nearest::nearest;
@@ -15,7 +16,7 @@ use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Repeat, Scene,
 use crate::units::number;
 use clap::ValueEnum;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
@@ -41,6 +42,8 @@ pub(super) struct Arguments {
     /// Replace the results of another study in that directory.
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    memory: MemoryArgument,
     /// Where the packed beds of test rigs are kept, by what made them
     #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]
     cache: Option<PathBuf>,
@@ -126,6 +129,11 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
     if has_errors(&plan.diagnostics) {
         return Outcome::Failed;
     }
+    let jobs = arguments.jobs.map_or_else(turns::cores, usize::from);
+    if let Some(refusal) = arguments.memory.refusal_of_study(&plan, jobs) {
+        say(&[refusal], compiled);
+        return Outcome::Failed;
+    }
     let folder = match StudyFolder::open(&arguments.out, &plan, compiled, mode(arguments)) {
         Ok(folder) => folder,
         Err(error) => {
@@ -133,7 +141,6 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
             return Outcome::Failed;
         }
     };
-    let jobs = arguments.jobs.map_or_else(turns::cores, usize::from);
     let known = known(&plan, &folder);
     let missing = known.iter().filter(|result| result.is_none()).count();
     match (folder.is_finished(), missing) {
@@ -148,10 +155,11 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
     let executor = execute::Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
     let results = match perform(scene, &plan, known, &folder, &executor, jobs) {
         Ok(results) => results,
-        Err(message) => {
+        Err(Unfinished::Broken(message)) => {
             say(&[Diagnostic::new(Code::E0802, message).help("go on with `--resume`")], compiled);
             return Outcome::Failed;
         }
+        Err(Unfinished::Asked { kept }) => return stopped(&arguments.out, kept, plan.points.len()),
     };
     let title = compiled.scenario.as_ref().map_or("", |s| s.title.as_str());
     let answer = Answer::new(title, &plan, results);
@@ -190,7 +198,7 @@ fn say(diagnostics: &[Diagnostic], compiled: &Compiled) {
 
 /// What is about to run.
 fn announce(plan: &Plan, jobs: usize) {
-    let runs = plan.points.len() * plan.study.repeats as usize;
+    let runs = plan.runs();
     let left_out = match plan.left_out {
         0 => String::new(),
         n => format!(" ({n} of the design break a condition and are left out)"),
@@ -228,6 +236,23 @@ fn known(plan: &Plan, folder: &StudyFolder) -> Vec<Option<PointResult>> {
     plan.points.iter().map(one).collect()
 }
 
+/// Why a study has ended before its last point.
+enum Unfinished {
+    /// A result could not be written.
+    Broken(String),
+    /// Ctrl-C or SIGTERM, with so many points kept.
+    Asked { kept: usize },
+}
+
+/// Says how to go on with a study that Ctrl-C or SIGTERM has stopped.
+fn stopped(out: &Path, kept: usize, all: usize) -> Outcome {
+    terminal::note(&format!(
+        "stopped: {kept} of {all} points are kept in `{}`\nto go on, run the same command with `--resume`: the answer will be the same\n",
+        out.display()
+    ));
+    Outcome::Failed
+}
+
 /// Runs what has not run yet, repeat by repeat, and keeps each point as soon as it is there. The order of the answer is that of the
 /// plan.
 fn perform(
@@ -237,25 +262,29 @@ fn perform(
     folder: &StudyFolder,
     executor: &execute::Executor,
     jobs: usize,
-) -> Result<Vec<PointResult>, String> {
+) -> Result<Vec<PointResult>, Unfinished> {
     let missing = known.iter().enumerate().filter(|(_, result)| result.is_none());
     let tasks: Vec<(usize, u32)> =
         missing.flat_map(|(index, _)| (0..plan.study.repeats).map(move |repeat| (index, repeat))).collect();
     let work = Mutex::new(Work { plan, known, runs: BTreeMap::new(), bar: progress::Patient::seen("the study") });
     // what cannot be written would be computed for nothing
-    let broken = AtomicBool::new(false);
+    let (broken, asked) = (AtomicBool::new(false), interrupt::asked());
     let one = |(index, repeat): &(usize, u32)| {
-        if broken.load(Ordering::Relaxed) {
+        if broken.load(Ordering::Relaxed) || asked.load(Ordering::Relaxed) {
             return Ok(());
         }
-        let run = study::perform(scene, &plan.study, &plan.points[*index], *repeat, executor);
+        let run = study::perform(scene, &plan.study, &plan.points[*index], *repeat, executor, asked);
+        let Some(run) = run else { return Ok(()) };
         let taken = work.lock().unwrap_or_else(PoisonError::into_inner).take(*index, *repeat, run, folder);
         taken.inspect_err(|_| broken.store(true, Ordering::Relaxed))
     };
-    let kept =
-        turns::each(&tasks, jobs, turns::cores(), one).map_err(|error| format!("cannot start threads: {error}"))?;
-    kept.into_iter().collect::<Result<(), String>>()?;
-    Ok(work.into_inner().unwrap_or_else(PoisonError::into_inner).known.into_iter().flatten().collect())
+    let taken = turns::each(&tasks, jobs, turns::cores(), one)
+        .map_err(|error| Unfinished::Broken(format!("cannot start threads: {error}")))?;
+    taken.into_iter().collect::<Result<(), String>>().map_err(Unfinished::Broken)?;
+    let known = work.into_inner().unwrap_or_else(PoisonError::into_inner).known;
+    let results: Vec<PointResult> = known.into_iter().flatten().collect();
+    // a signal after the last run changes nothing
+    if results.len() < plan.points.len() { Err(Unfinished::Asked { kept: results.len() }) } else { Ok(results) }
 }
 
 /// What there is of a study while it runs.

@@ -6,7 +6,7 @@ use crate::graph::{Clock, Graph, Schedule, TrackSection, Train, Update};
 use crate::lower::{Origins, Parameter};
 use crate::nodes::NodeError;
 use crate::solvers::granular::rig::RigError;
-use crate::solvers::track::{TrackError, TrackParameter};
+use crate::solvers::track::{Spring, TrackError, TrackParameter};
 use crate::units::number;
 
 /// The diagnostic of a run's failure, with the declaration that it is about.
@@ -51,6 +51,11 @@ fn of_track(clock: Clock, cause: &TrackError, graph: &Graph, origins: &Origins) 
     labels.fold(Diagnostic::new(code, message).help(help), |d, (span, text)| d.label(span, text))
 }
 
+/// Time in which a support comes back, s, that is longer than a bogie needs to pass.
+const SLOW: f64 = 0.05;
+const LESS_DAMPING: &str =
+    "write less `damping` for that support: published ones need 1 to 5 ms (`damping_time = 1 ms`)";
+
 struct Scene<'a> {
     graph: &'a Graph,
     origins: &'a Origins,
@@ -61,9 +66,10 @@ type Labels = Vec<(Option<Span>, String)>;
 impl Scene<'_> {
     fn blame(&self, axles: u64, cause: &TrackError) -> (Labels, String) {
         match cause {
-            TrackError::StepNotConverged { x, .. } | TrackError::Unstable { x, .. } => {
-                (vec![self.time_step(), self.contact(), self.place(*x)], self.half_a_step())
-            }
+            TrackError::StepNotConverged { x, .. } | TrackError::Unstable { x, .. } => match self.slow_support(*x) {
+                Some(slow) => (vec![slow, self.place(*x)], LESS_DAMPING.into()),
+                None => (vec![self.time_step(), self.contact(), self.place(*x)], self.half_a_step()),
+            },
             TrackError::StepTooLong { x, limit, .. } => (
                 vec![self.time_step(), self.place(*x)],
                 format!("write a `time_step` of at most {} us", number((1e6 * limit * 10.0).floor() / 10.0)),
@@ -139,10 +145,27 @@ impl Scene<'_> {
 
     /// The support nearest to a place.
     fn support(&self, x: f64) -> (Option<Span>, String) {
+        let nearest = self.nearest_seat(x);
+        (nearest.and_then(|seat| self.span_of(Parameter::Support(seat))), "the nearest support".into())
+    }
+
+    fn nearest_seat(&self, x: f64) -> Option<usize> {
         let seats = self.graph.track().map_or(&[][..], |track| &track.seats);
         let distance = |seat: usize| (seats[seat].x - x).abs();
-        let nearest = (0..seats.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
-        (nearest.and_then(|seat| self.span_of(Parameter::Support(seat))), "the nearest support".into())
+        (0..seats.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
+    }
+
+    /// The support nearest to a place, where its damper holds it down long after a wheel has passed. No step is short enough for that.
+    fn slow_support(&self, x: f64) -> Option<(Option<Span>, String)> {
+        let seat = self.nearest_seat(x)?;
+        let Spring { stiffness, damping, .. } = self.graph.supports.get(seat)?.spring?;
+        let time = damping / stiffness;
+        let text = format!(
+            "the damper of this support needs {} s to let {} MN/m come back",
+            number((time * 1e2).round() / 1e2),
+            number((stiffness / 1e4).round() / 1e2)
+        );
+        (time > SLOW).then(|| (self.span_of(Parameter::Support(seat)), text))
     }
 
     fn time_step(&self) -> (Option<Span>, String) {

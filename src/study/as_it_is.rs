@@ -28,8 +28,16 @@ impl AsItIs {
             (None, Some(run), Some(scenario)) => {
                 let levels = study.axes.iter().map(level).collect();
                 let fingerprint = content(study, &compiled);
-                let (seconds, seed) = (run.cost.seconds, scenario.solve.seed);
-                let point = PlannedPoint { number: 0, as_it_is: true, levels, overrides, fingerprint, seconds, seed };
+                let point = PlannedPoint {
+                    number: 0,
+                    as_it_is: true,
+                    levels,
+                    overrides,
+                    fingerprint,
+                    seconds: run.cost.seconds,
+                    bytes: run.cost.bytes,
+                    seed: scenario.solve.seed,
+                };
                 Ok(AsItIs { point, compiled })
             }
             (mistake, ..) => Err(cannot_run(study, mistake)),

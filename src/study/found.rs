@@ -5,6 +5,11 @@ use super::compared::Difference;
 use crate::scenario::{Sampling, Values};
 use serde_json::{Value, json};
 
+/// A text that no program of tables takes for a formula: what begins with a sign stands in brackets.
+fn no_formula(text: &str) -> String {
+    if text.starts_with(['-', '+', '=', '@']) { format!("({text})") } else { text.to_owned() }
+}
+
 impl Answer {
     /// `study.csv`: a row a point, the scene as it is first; values in the units of their headers.
     pub fn csv(&self) -> Result<String, String> {
@@ -20,7 +25,10 @@ impl Answer {
 
     fn header(&self) -> Vec<String> {
         let study = &self.study;
-        let with_unit = |name: &str, unit: &str| if unit.is_empty() { name.into() } else { format!("{name} [{unit}]") };
+        let with_unit = |name: &str, unit: &str| {
+            let name = no_formula(name);
+            if unit.is_empty() { name } else { format!("{name} [{unit}]") }
+        };
         let mut header = vec!["point".to_string(), "as_it_is".to_string()];
         header.extend(study.axes.iter().map(|axis| with_unit(&axis.path, &axis.unit)));
         for m in study.measured() {
@@ -40,7 +48,9 @@ impl Answer {
         let yes = |yes: bool| if yes { "yes" } else { "no" }.to_string();
         let shown = |value: Option<f64>, size: f64| value.map_or(String::new(), |v| (v / size).to_string());
         let mut cells = vec![row.number.to_string(), yes(row.as_it_is)];
-        cells.extend(row.levels.iter().map(|level| level.number.map_or(level.text.clone(), |n| n.to_string())));
+        cells.extend(
+            row.levels.iter().map(|level| level.number.map_or_else(|| no_formula(&level.text), |n| n.to_string())),
+        );
         for (i, m) in study.measured().iter().enumerate() {
             let at = |values: Option<&[f64]>| values.and_then(|values| values.get(i)).copied();
             cells.push(shown(at(row.values()), m.unit.1));
@@ -128,5 +138,16 @@ impl Answer {
             "point": point, "as_it_is": as_it_is, "lines": lines, "values": values,
             "missed": missed.collect::<Vec<_>>(),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_header_is_no_formula() {
+        assert_eq!(no_formula("-max(settlement)"), "(-max(settlement))");
+        assert_eq!(no_formula("max(void)"), "max(void)");
     }
 }

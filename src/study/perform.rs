@@ -3,11 +3,12 @@
 use super::miss::Miss;
 use super::point::{PlannedPoint, Scene};
 use crate::diag::Diagnostic;
-use crate::execute::{self, Executor};
+use crate::execute::{self, Ending, Executor};
 use crate::results::{self, RunRecorder, Tables, TestTables};
 use crate::scenario::Study;
 use crate::scenario::response::Expression;
 use serde::{Deserialize, Serialize};
+use std::sync::atomic::AtomicBool;
 
 /// A point that has run.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,9 +39,20 @@ pub enum PointOutcome {
 #[derive(Debug, Clone)]
 pub struct Repeat(Result<OneRun, PointOutcome>);
 
-/// Runs one repeat of a point. The beds of the executor are shared: of points that pack alike one packs.
-pub fn perform(scene: Scene<'_>, study: &Study, point: &PlannedPoint, repeat: u32, executor: &Executor) -> Repeat {
-    Repeat(run(scene, study, point, repeat, executor))
+/// Runs one repeat of a point; `None` where it has ended early because `asked` became true. The beds of the executor are shared: of
+/// points that pack alike one packs.
+pub fn perform(
+    scene: Scene<'_>,
+    study: &Study,
+    point: &PlannedPoint,
+    repeat: u32,
+    executor: &Executor,
+    asked: &AtomicBool,
+) -> Option<Repeat> {
+    match run(scene, study, point, repeat, executor, asked) {
+        Ok(run) => run.map(|run| Repeat(Ok(run))),
+        Err(failed) => Some(Repeat(Err(failed))),
+    }
 }
 
 impl PointResult {
@@ -60,7 +72,8 @@ fn run(
     point: &PlannedPoint,
     repeat: u32,
     executor: &Executor,
-) -> Result<OneRun, PointOutcome> {
+    asked: &AtomicBool,
+) -> Result<Option<OneRun>, PointOutcome> {
     let compiled = scene.compile(&point.overrides_of(repeat));
     if let Some(mistake) = compiled.diagnostics.iter().find(|d| d.is_error()) {
         return Err(failed(mistake));
@@ -70,16 +83,19 @@ fn run(
     let own = compiled.studies.iter().find(|s| s.name == study.name).ok_or_else(nothing)?;
     let scenario = compiled.scenario.as_ref().ok_or_else(nothing)?;
     let graph = compiled.runnable().ok_or_else(nothing)?;
-    let mut recorder = RunRecorder::new(scenario, graph);
+    let mut recorder = RunRecorder::new(scenario, graph).interrupted_by(asked);
     let ended = executor.run(graph, &mut recorder, None);
-    ended.map_err(|error| failed(&execute::diagnose(&error, graph, &compiled.origins)))?;
+    let ended = ended.map_err(|error| failed(&execute::diagnose(&error, graph, &compiled.origins)))?;
+    if ended == Ending::Stopped {
+        return Ok(None);
+    }
     let tables = &recorder.tables;
     if let Some(tests) = &tables.tests {
-        return answered(own, TestTables::new(tests).view(&scenario.track));
+        return answered(own, TestTables::new(tests).view(&scenario.track)).map(Some);
     }
     let histories = recorder.all_histories();
     let scalars = recorder.scalars();
-    answered(own, tables.view(&histories, &scalars, &scenario.track, &graph.supports))
+    answered(own, tables.view(&histories, &scalars, &scenario.track, &graph.supports)).map(Some)
 }
 
 /// What a study asks of the tables of a run.

@@ -9,6 +9,7 @@ use super::point::{PlannedPoint, Scene, content, leaves_open, settings};
 use crate::check::Override;
 use crate::compile::Compiled;
 use crate::diag::{Code, Diagnostic, has_errors};
+use crate::graph::Cost;
 use crate::results;
 use crate::scenario::Study;
 use crate::scenario::response::Expectation;
@@ -33,16 +34,29 @@ impl Plan {
         self.points.iter().filter(|point| point.number > 0).count()
     }
 
+    /// Runs of all points.
+    pub fn runs(&self) -> usize {
+        self.points.len() * self.study.repeats as usize
+    }
+
     /// Time of all runs on one core, estimated, s.
     pub fn seconds(&self) -> f64 {
         self.points.iter().map(|p| p.seconds).sum::<f64>() * f64::from(self.study.repeats)
+    }
+
+    /// The most memory that so many runs at a time take, estimated, bytes.
+    pub fn bytes(&self, at_a_time: usize) -> u64 {
+        let each = self.points.iter().flat_map(|p| (0..self.study.repeats).map(|_| p.bytes));
+        let mut each: Vec<u64> = each.collect();
+        each.sort_unstable_by(|a, b| b.cmp(a));
+        each.iter().take(at_a_time).fold(0, |sum, bytes| sum.saturating_add(*bytes))
     }
 }
 
 /// What became of a point when it was checked.
 enum Checked {
     LeftOut,
-    Legal { fingerprint: String, seconds: f64, seed: u64, as_it_is: bool, remarks: Vec<(Diagnostic, Option<Place>)> },
+    Legal { fingerprint: String, cost: Cost, seed: u64, as_it_is: bool, remarks: Vec<(Diagnostic, Option<Place>)> },
     Illegal(Vec<(Diagnostic, Option<Place>)>),
 }
 
@@ -67,9 +81,10 @@ pub fn plan(scene: Scene<'_>, base: &Compiled, study: &Study) -> Plan {
         let number = index + 1;
         match checked {
             Checked::LeftOut => plan.left_out += 1,
-            Checked::Legal { fingerprint, seconds, seed, as_it_is, remarks } => {
+            Checked::Legal { fingerprint, cost: Cost { seconds, bytes, .. }, seed, as_it_is, remarks } => {
                 remarks.into_iter().for_each(|(d, place)| found.add(d, place, number, &levels));
-                plan.points.push(PlannedPoint { number, as_it_is, levels, overrides, fingerprint, seconds, seed });
+                let point = PlannedPoint { number, as_it_is, levels, overrides, fingerprint, seconds, bytes, seed };
+                plan.points.push(point);
             }
             Checked::Illegal(mistakes) => {
                 mistakes.into_iter().for_each(|(d, place)| found.add(d, place, number, &levels));
@@ -135,7 +150,7 @@ fn check(
             let remarks = compiled.diagnostics.iter().filter(new).map(placed).chain(idle).collect();
             let fingerprint = content(study, &compiled);
             let as_it_is = as_it_is.zip(own).is_some_and(|(as_it_is, own)| as_it_is.is(run, own));
-            Checked::Legal { fingerprint, seconds: run.cost.seconds, seed: scenario.solve.seed, as_it_is, remarks }
+            Checked::Legal { fingerprint, cost: run.cost, seed: scenario.solve.seed, as_it_is, remarks }
         }
         _ if errors.is_empty() => {
             // a hole of the scene itself is told there
@@ -162,7 +177,7 @@ fn against_the_whole(plan: &Plan, all: usize) -> Option<Diagnostic> {
     let seconds = plan.seconds();
     (seconds > budget).then(|| {
         let hours = |s: f64| number((s / 36.0).round() / 100.0);
-        let runs = plan.points.len() * study.repeats as usize;
+        let runs = plan.runs();
         let message = format!(
             "study `{}` takes about {} h of computing for {runs} runs, more than its {} h",
             study.name,

@@ -33,6 +33,8 @@ pub struct PlannedPoint {
     pub fingerprint: String,
     /// Time of one run on one core, estimated, s.
     pub seconds: f64,
+    /// Memory of one run, estimated, bytes.
+    pub bytes: u64,
     pub seed: u64,
 }
 

@@ -98,6 +98,9 @@ pub fn lay_out(plans: &[Plan], sides: &[(String, Side)], seed: u64, findings: &m
     Some(places)
 }
 
+/// Share of a bay by which a section may miss a whole number of bays: a tenth of a millimetre that nobody lays.
+const WHOLE: f64 = 2e-4;
+
 /// Length of a section and the seats in it, as distances from its left end.
 fn lay_section(plan: &Plan, (left, right): (Edge, Edge), findings: &mut Findings) -> Option<(f64, Vec<f64>)> {
     let alone = left == Edge::End && right == Edge::End;
@@ -141,7 +144,7 @@ fn lay_section(plan: &Plan, (left, right): (Edge, Edge), findings: &mut Findings
         _ => {
             let usual =
                 (length - from_left.reach(from_left.changed()) - from_right.reach(from_right.changed())) / plan.spacing;
-            if (usual - usual.round()).abs() > 1e-6 || usual < -1e-6 {
+            if (usual - usual.round()).abs() > WHOLE || usual < -WHOLE {
                 does_not_meet(plan, usual, findings);
                 return None;
             }
@@ -196,10 +199,13 @@ fn does_not_meet(plan: &Plan, usual: f64, findings: &mut Findings) {
     let [bay, length] = [plan.spacing, plan.length.value];
     let fits = |n: f64| number(tidy(length + (n - usual) * bay));
     let more = if plan.bays.iter().all(Vec::is_empty) { "" } else { " beside those that stretches change" };
+    let over = (usual - usual.floor().max(0.0)) * bay * 1e3;
     let message = format!(
-        "{} m do not hold a whole number of bays of {} m{more} between two transitions",
-        number(length),
-        number(bay)
+        "section `{}` lies between two transitions and holds {} bays of {} m{more} and {} mm, not a whole number",
+        plan.name,
+        number(usual.floor().max(0.0)),
+        number(bay),
+        number((over * 10.0).round() / 10.0)
     );
     let plain = plan.bays.iter().all(Vec::is_empty) && plan.first == [None; 2];
     // a structure has the length that it has
