@@ -13,6 +13,8 @@ const PLACE: f64 = 3e-8;
 const PER_BAY: f64 = 4.0;
 /// Seconds of a recorded value: kept, written and drawn.
 const VALUE: f64 = 1.5e-6;
+/// Bytes of a recorded value: in its row, and in the columns of the file while it is written.
+const VALUE_BYTES: f64 = 260.0;
 /// Seconds of a state of rest, and of tables and pages of any run.
 const AT_REST: f64 = 0.01;
 const WRITING: f64 = 0.06;
@@ -87,6 +89,7 @@ pub(super) fn with_records(cost: &mut Cost, blocks: &Blocks, records: &[Record])
     let values: f64 = records.iter().map(|record| blocks.kinds().map(|kind| of(record, kind)).sum::<f64>()).sum();
     cost.seconds += values * VALUE;
     cost.seconds_on_two_cores += values * VALUE;
+    cost.bytes += (values * VALUE_BYTES) as u64;
 }
 
 /// Nothing of it runs side by side.

@@ -5,7 +5,7 @@ use super::counts::{self, Count};
 use super::curves::{Axis, Chart, Mark, Series};
 use super::number::shown_unit;
 use super::panels::{Names, panels, share_scale};
-use super::seat_clock::{named_history, shown, unloaded, window};
+use super::seat_clock::{Passages, shown, unloaded, window};
 use super::{Figure, over_axles};
 use crate::graph::InVolume;
 use crate::results::Run;
@@ -25,10 +25,10 @@ const SHOWN: [(InVolume, &str, &str); 5] = [
 
 pub fn ballast_response(run: &Run) -> Option<Figure> {
     let chosen = chosen(run);
-    let counts = recorded(run);
+    let (counts, passages) = (recorded(run), Passages::of(run));
     let mut charts: Vec<(Chart, f64)> = Vec::new();
     for (quantity, title, unit) in SHOWN {
-        let chart = |volume: &String| chart(run, quantity, (volume, title, unit), &counts);
+        let chart = |volume: &String| chart((run, &passages), quantity, (volume, title, unit), &counts);
         let mut row: Vec<Chart> = chosen.iter().map(chart).collect();
         if row.iter().any(|chart| !chart.is_empty()) {
             share_scale(row.iter_mut(), HEIGHT - 70.0);
@@ -76,20 +76,25 @@ fn recorded(run: &Run) -> Vec<Count> {
     counts::shown(run).into_iter().filter(|count| of_volume(count.axles)).collect()
 }
 
-fn chart(run: &Run, quantity: InVolume, (volume, title, unit): (&str, &str, &str), counts: &[Count]) -> Chart {
+fn chart(
+    (run, passages): (&Run, &Passages<'_>),
+    quantity: InVolume,
+    (volume, title, unit): (&str, &str, &str),
+    counts: &[Count],
+) -> Chart {
     let downwards = quantity != InVolume::BallastStress;
     let name = format!("{}: {title}", shown(volume));
     let y = Axis { downwards, ..Axis::new(&name, shown_unit(unit)) };
     let x = Axis { range: Some(window(run)), ..Axis::new("Time after the leading wheel", ("s", 1.0)) };
     let mut chart = Chart::new(x, y);
     for count in counts {
-        let points = named_history(run, quantity.name(), volume, count.axles);
+        let points = passages.history(quantity.name(), volume, count.axles);
         if !points.is_empty() {
             chart.series.push(Series::new(count.short(), &count.class, Mark::Line, points));
         }
     }
     if let Some(last) = counts.last() {
-        chart.bands = unloaded(&named_history(run, InVolume::SleeperForce.name(), volume, last.axles));
+        chart.bands = unloaded(&passages.history(InVolume::SleeperForce.name(), volume, last.axles));
     }
     chart
 }

@@ -3,7 +3,7 @@
 
 use super::curves::Chart;
 use super::panels::{Names, panels, share_scale};
-use super::seat_clock::{panel, seats, shown};
+use super::seat_clock::{Passages, seats, shown};
 use super::{Figure, counts};
 use crate::graph::InVolume;
 use crate::results::{Run, SleeperRow};
@@ -23,10 +23,12 @@ pub fn hanging_sleeper(run: &Run) -> Option<Figure> {
     if chosen.is_empty() {
         return None;
     }
+    let passages = Passages::of(run);
     let mut charts: Vec<(Chart, f64)> = Vec::new();
     for (quantity, title) in SHOWN {
         let title = |seat: &str| format!("{}: {title}", shown(seat));
-        let mut row: Vec<Chart> = chosen.iter().map(|seat| panel(run, quantity, seat, &title(seat), &counts)).collect();
+        let mut row: Vec<Chart> =
+            chosen.iter().map(|seat| passages.panel(quantity, seat, &title(seat), &counts)).collect();
         if row.iter().all(|chart| !chart.is_empty()) {
             share_scale(row.iter_mut(), HEIGHT - 70.0);
             charts.extend(row.into_iter().map(|chart| (chart, HEIGHT)));

@@ -2,7 +2,7 @@
 
 use super::curves::Chart;
 use super::panels::{Names, panels, share_scale};
-use super::seat_clock::{panel, seats, shown};
+use super::seat_clock::{Passages, seats, shown};
 use super::{Figure, counts};
 use crate::results::Run;
 use crate::scenario::response::Response;
@@ -37,15 +37,16 @@ const SHOWN: [(Response, &str, &str); 4] = [
 
 /// One figure a quantity, one panel a seat, one curve a count.
 pub fn histories(run: &Run) -> Vec<Figure> {
-    SHOWN.iter().filter_map(|(quantity, title, what)| history(run, *quantity, title, what)).collect()
+    let passages = Passages::of(run);
+    SHOWN.iter().filter_map(|(quantity, title, what)| history((run, &passages), *quantity, title, what)).collect()
 }
 
-fn history(run: &Run, quantity: Response, title: &str, what: &str) -> Option<Figure> {
+fn history((run, passages): (&Run, &Passages<'_>), quantity: Response, title: &str, what: &str) -> Option<Figure> {
     let counts = counts::shown(run);
     let seats = seats(run, quantity);
     let mut charts: Vec<Chart> = seats
         .iter()
-        .map(|(seat, _)| panel(run, quantity, seat, &format!("Seat {}", shown(seat)), &counts))
+        .map(|(seat, _)| passages.panel(quantity, seat, &format!("Seat {}", shown(seat)), &counts))
         .filter(|chart| !chart.is_empty())
         .collect();
     share_scale(charts.iter_mut(), HEIGHT - 70.0);

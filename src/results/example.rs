@@ -411,11 +411,11 @@ fn push(rows: &mut Vec<HistoryRow>, axles: u64, time_s: f64, what: (&str, &str),
     rows.push(HistoryRow {
         axles,
         time_s,
-        quantity: what.0.to_owned(),
-        id: what.1.to_owned(),
+        quantity: what.0.into(),
+        id: what.1.into(),
         x_m,
         value,
-        train: String::new(),
+        train: Default::default(),
     });
 }
 

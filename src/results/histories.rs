@@ -118,11 +118,11 @@ fn read_group(group: &dyn RowGroupReader, rows: &mut Vec<HistoryRow>) -> Parquet
         rows.push(HistoryRow {
             axles: axles[row] as u64,
             time_s: time[row],
-            quantity: quantity[row].as_utf8()?.to_owned(),
-            id: id[row].as_utf8()?.to_owned(),
+            quantity: quantity[row].as_utf8()?.into(),
+            id: id[row].as_utf8()?.into(),
             x_m: x[row],
             value: value[row],
-            train: train[row].as_utf8()?.to_owned(),
+            train: train[row].as_utf8()?.into(),
         });
     }
     Ok(())

@@ -17,6 +17,7 @@ use crate::solvers::granular::Bed;
 use crate::solvers::track::Direction;
 use crate::store::{Directory, Piece};
 use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
 use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -275,10 +276,10 @@ impl<'a> RunRecorder<'a> {
             axles,
             time_s: 0.0,
             quantity: Response::Settlement.name().into(),
-            id: track.seat_name(seat),
+            id: track.seat_name(seat).into(),
             x_m: seat.x,
             value: *value,
-            train: String::new(),
+            train: SmolStr::default(),
         }));
     }
 
@@ -391,9 +392,9 @@ impl<'a> RunRecorder<'a> {
         });
     }
 
-    fn train_name(&self, runner: Runner) -> String {
+    fn train_name(&self, runner: Runner) -> SmolStr {
         let train = self.traffic().and_then(|traffic| traffic.trains().nth(runner.kind));
-        train.map(|train| train.name.clone()).unwrap_or_default()
+        train.map(|train| train.name.as_str().into()).unwrap_or_default()
     }
 
     fn keep_rail(&mut self, axles: u64, quantity: Response, points: impl Iterator<Item = (f64, f64)>) {
@@ -404,7 +405,7 @@ impl<'a> RunRecorder<'a> {
             id: "rail".into(),
             x_m,
             value,
-            train: String::new(),
+            train: SmolStr::default(),
         }));
     }
 }
@@ -491,7 +492,7 @@ impl RunRecorder<'_> {
                 axles,
                 time_s: sample.time,
                 quantity: sample.quantity.name().into(),
-                id: volume.sensor.name.clone(),
+                id: volume.sensor.name.as_str().into(),
                 x_m: volume.sensor.x,
                 value: sample.value,
                 train: train.clone(),
@@ -507,7 +508,7 @@ impl RunRecorder<'_> {
             axles,
             time_s: s.time,
             quantity: s.quantity.name().into(),
-            id: s.part.name(node),
+            id: s.part.name(node).into(),
             x_m: s.x,
             value: s.value,
             train: train.clone(),

@@ -3,6 +3,7 @@
 use crate::nodes::Bonds;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+use smol_str::SmolStr;
 
 /// A row of a small table that is kept as CSV.
 pub trait Row: Serialize + DeserializeOwned {
@@ -251,12 +252,12 @@ pub struct HistoryRow {
     pub axles: u64,
     pub time_s: f64,
     /// A [`crate::scenario::response::Response`] name.
-    pub quantity: String,
+    pub quantity: SmolStr,
     /// Seat name, wheel (`wheel 1` leads) or `rail`.
-    pub id: String,
+    pub id: SmolStr,
     /// Chainage, m: of the seat, of the wheel at that moment, or of the place on the rail.
     pub x_m: f64,
     pub value: f64,
     /// Whose passage it is; empty where no train runs, as for settlement.
-    pub train: String,
+    pub train: SmolStr,
 }

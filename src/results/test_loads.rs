@@ -4,6 +4,7 @@ use super::HistoryRow;
 use crate::graph::{History, Record};
 use crate::nodes::Unloaded;
 use crate::scenario::Track;
+use smol_str::SmolStr;
 
 /// Rows of the recorded quantities of a seat, at every seat where a record names none. Forces are whole, displacements count from
 /// the track without the loads. The rail is kept whole beside it, and nothing has a velocity.
@@ -25,10 +26,10 @@ pub(super) fn at_seats(track: &Track, records: &[Record], unloaded: &Unloaded, l
                     axles: 0,
                     time_s: 0.0,
                     quantity: quantity.name().into(),
-                    id: track.seat_name(&track.seats[seat]),
+                    id: track.seat_name(&track.seats[seat]).into(),
                     x_m: track.seats[seat].x,
                     value,
-                    train: String::new(),
+                    train: SmolStr::default(),
                 });
             }
         }

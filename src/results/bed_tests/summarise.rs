@@ -5,6 +5,7 @@ use super::{BedTest, BedTests};
 use crate::scenario::Track;
 use crate::scenario::response::Response;
 use crate::solvers::granular::rig::Cycle;
+use smol_str::SmolStr;
 use std::collections::BTreeMap;
 
 /// 97.5 % quantiles of Student's t for 1, 2, ... degrees of freedom; beyond them that of the normal distribution serves.
@@ -167,7 +168,8 @@ fn histories(sensors: &[(String, f64)], sleepers: &[(String, f64)], tests: &[Bed
     let mut rows = Vec::new();
     let mut put = |cycle: u64, phase: f64, quantity: Response, (id, x): &(String, f64), value: f64| {
         let (quantity, id) = (quantity.name().to_owned(), id.clone());
-        rows.push(HistoryRow { axles: cycle, time_s: phase, quantity, id, x_m: *x, value, train: String::new() });
+        let (quantity, id) = (quantity.into(), id.into());
+        rows.push(HistoryRow { axles: cycle, time_s: phase, quantity, id, x_m: *x, value, train: SmolStr::default() });
     };
     for test in tests {
         for reading in &test.answer.readings {
