@@ -258,6 +258,12 @@ fn vehicles_ride_on_the_rail_over_the_grains() {
     // the rail carries what is left over to the stiff side
     assert!((carried / weight - 1.0).abs() < 0.015, "{carried} of {weight} N");
     assert!(voids.iter().all(|void| *void < 50e-6), "{voids:?}");
+    // after trains the rail lies on what it has settled: no sleeper beyond the grains holds it up
+    assert_eq!(ridden.at_rest.len(), 2, "before the axles and after");
+    let [before, after] = [0, 1].map(|count: usize| &ridden.at_rest[count].1);
+    for seat in ballasted.iter().filter(|seat| !on_grains.contains(seat)) {
+        assert!(after[*seat] < 1.5 * before[*seat], "seat {seat}: {:.0} and {:.0} N", before[*seat], after[*seat]);
+    }
     let loads = &ridden.seat_loads[0];
     // vehicles come onto the rail as if it went on: only the two seats at its end feel that the track beyond is another model
     assert_eq!(ridden.seat_loads.len(), 2, "before the axles and after");

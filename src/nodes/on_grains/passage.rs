@@ -36,7 +36,7 @@ const PRESSING: [f64; 2] = [0.06, 0.03];
 
 impl Coupled {
     /// Each carried foot now.
-    fn readings(&self) -> Vec<Reading> {
+    pub fn readings(&self) -> Vec<Reading> {
         let of = |(foot, force): (usize, &f64)| Reading { level: self.level(foot), force: *force };
         self.pushes.iter().enumerate().map(of).collect()
     }

@@ -2,7 +2,7 @@
 
 use super::build::Parts;
 use super::extremes::{Extremes, Recorded};
-use super::passage::REACH;
+use super::passage::{AFTER, REACH};
 use super::reading::LIFTED;
 use super::underway::{Following, RideUnderway};
 use super::{GrainGround, Live};
@@ -116,6 +116,13 @@ impl Live {
         }
     }
 
+    /// The springs beyond the grains have sunk by what a train settles: the rail follows, and what the grains under it bear changes.
+    fn come_to_rest_on_springs(&mut self) -> Result<(), NodeError> {
+        self.coupled.come_to_rest(AFTER, &mut |_| {})?;
+        self.books.rest = self.coupled.readings();
+        Ok(())
+    }
+
     /// The part of a block under way that is about vehicles that ride.
     fn underway_ride(&mut self) -> Result<&mut RideUnderway, NodeError> {
         self.block().ride.as_mut().ok_or(NodeError::NoTrain)
@@ -171,6 +178,7 @@ impl Live {
         self.coupled.rail.dismiss();
         self.underway_ride()?.on_rail = false;
         self.come_to_rest_after(parts)?;
+        self.come_to_rest_on_springs()?;
         Ok(extremes.outcome())
     }
 
