@@ -7,9 +7,10 @@ use crate::nodes::{Builders, NodeError, Superstructure};
 use crate::store::Beds;
 use std::borrow::Cow;
 
-/// Elements of a bay in a state of rest that is only checked. More of them find the same: cubic elements are exact at their nodes under what
-/// a track at rest carries.
+/// Elements of a bay in the state of rest of a track of more elements than [`MANY`], which is checked within seconds then. Cubic elements are
+/// exact at their nodes under what a track at rest carries.
 const ELEMENTS: u32 = 2;
+const MANY: usize = 100_000;
 
 pub(super) fn run(machine: &Machine<'_>, loads: &[PointLoad], listener: &mut dyn Listener) -> Result<Ending, RunError> {
     let at = |cause: NodeError| RunError::node(Clock::Axles(0), cause);
@@ -44,9 +45,10 @@ pub fn at_rest(graph: &Graph) -> Result<(), RunError> {
     Ok(())
 }
 
-/// The graph with as few elements of its track as a state of rest needs.
+/// The graph itself, or with as few elements of its track as a state of rest needs.
 fn coarse(graph: &Graph) -> Cow<'_, Graph> {
-    if graph.track().is_none_or(|track| track.elements_per_bay <= ELEMENTS) {
+    let elements = graph.track().map_or(0, |track| track.seats.len() * track.elements_per_bay as usize);
+    if elements <= MANY {
         return Cow::Borrowed(graph);
     }
     let mut coarse = graph.clone();
