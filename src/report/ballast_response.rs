@@ -25,7 +25,7 @@ const SHOWN: [(InVolume, &str, &str); 5] = [
 
 pub fn ballast_response(run: &Run) -> Option<Figure> {
     let chosen = chosen(run);
-    let (counts, passages) = (recorded(run), Passages::of(run));
+    let (counts, passages) = (recorded(run), Passages::new(run));
     let mut charts: Vec<(Chart, f64)> = Vec::new();
     for (quantity, title, unit) in SHOWN {
         let chart = |volume: &String| chart((run, &passages), quantity, (volume, title, unit), &counts);

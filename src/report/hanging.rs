@@ -23,7 +23,7 @@ pub fn hanging_sleeper(run: &Run) -> Option<Figure> {
     if chosen.is_empty() {
         return None;
     }
-    let passages = Passages::of(run);
+    let passages = Passages::new(run);
     let mut charts: Vec<(Chart, f64)> = Vec::new();
     for (quantity, title) in SHOWN {
         let title = |seat: &str| format!("{}: {title}", shown(seat));

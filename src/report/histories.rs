@@ -37,7 +37,7 @@ const SHOWN: [(Response, &str, &str); 4] = [
 
 /// One figure a quantity, one panel a seat, one curve a count.
 pub fn histories(run: &Run) -> Vec<Figure> {
-    let passages = Passages::of(run);
+    let passages = Passages::new(run);
     SHOWN.iter().filter_map(|(quantity, title, what)| history((run, &passages), *quantity, title, what)).collect()
 }
 

@@ -20,7 +20,7 @@ pub struct Passages<'a> {
 }
 
 impl<'a> Passages<'a> {
-    pub fn of(run: &'a Run) -> Self {
+    pub fn new(run: &'a Run) -> Self {
         let mut rows: HashMap<&str, HashMap<&str, HashMap<u64, Vec<&HistoryRow>>>> = HashMap::new();
         for row in run.leading_histories() {
             let of_part = rows.entry(&row.quantity).or_default().entry(&row.id).or_default();
@@ -140,7 +140,7 @@ mod tests {
                 train: Default::default(),
             };
             run.histories = (0..=10).map(|i| row(0.1 * f64::from(i))).collect();
-            let passages = Passages::of(&run);
+            let passages = Passages::new(&run);
             let arrival = |x: f64| arrival(passages.rows("wheel_force", "wheel 1", 0), x);
             for time in [0.1, 0.35, 0.8] {
                 let found = arrival(row(time).x_m).unwrap();
