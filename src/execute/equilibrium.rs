@@ -7,10 +7,10 @@ use crate::nodes::{Builders, NodeError, Superstructure};
 use crate::store::Beds;
 use std::borrow::Cow;
 
-/// Elements of a bay in the state of rest of a track of more elements than [`MANY`], which is checked within seconds then. Cubic elements are
-/// exact at their nodes under what a track at rest carries.
-const ELEMENTS: u32 = 2;
+/// A track of more elements is checked at rest on fewer of them.
 const MANY: usize = 100_000;
+/// Elements of a bay there: cubic elements are exact at their nodes under what a track at rest carries.
+const ELEMENTS: u32 = 2;
 
 pub(super) fn run(machine: &Machine<'_>, loads: &[PointLoad], listener: &mut dyn Listener) -> Result<Ending, RunError> {
     let at = |cause: NodeError| RunError::node(Clock::Axles(0), cause);

@@ -49,10 +49,7 @@ pub fn perform(
     executor: &Executor,
     asked: &AtomicBool,
 ) -> Option<Repeat> {
-    match run(scene, study, point, repeat, executor, asked) {
-        Ok(run) => run.map(|run| Repeat(Ok(run))),
-        Err(failed) => Some(Repeat(Err(failed))),
-    }
+    run(scene, study, point, repeat, executor, asked).transpose().map(Repeat)
 }
 
 impl PointResult {

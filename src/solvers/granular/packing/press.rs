@@ -113,9 +113,11 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         Ok(())
     }
 
-    /// Eases the plate and takes it away. Friction comes back before, between or after, as the recipe says; usually between. Then the plate loads the bed again, as often as it says. With friction a
-    /// bed that springs back opens a third of its contacts. Without friction it comes to rest a third as stiff. `weight`: weight of the bed
-    /// over its area, Pa. The plate is eased to half of it, the mean pressure of the bed's own weight.
+    /// Eases the plate, takes it away, and loads the bed again as often as the recipe says. Friction comes back when the recipe says: before
+    /// easing, after it, or after the plate has gone. With friction a bed that springs back opens a third of its contacts; without friction it
+    /// comes to rest a third as stiff.
+    ///
+    /// `weight`: weight of the bed over its area, Pa. The plate is eased to half of it, the mean pressure of the bed's own weight.
     pub fn finish(&mut self, recipe: &Recipe, weight: f64) -> Result<(), PackingError> {
         let pressed = recipe.layers.last().map(|layer| layer.pressure);
         let eased = pressed.map(|pressure| pressure.min(0.5 * weight));
