@@ -131,3 +131,26 @@ fn a_run_larger_than_the_memory_is_not_started() {
         "a rig is held to the memory of its scene: {said}"
     );
 }
+
+/// A law that settles 1 mm an axle: a level track follows it down without a complaint of its own.
+#[test]
+fn a_track_that_sinks_out_of_its_ballast_stops_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let law = |beta: &str| format!("solve.law={{ form = sato(beta = {beta}) }}");
+    let run = |law: &str| {
+        let scene = ["scenarios/transition.track", "--set", law, "--set", "line.sections=[open: 42 m, open: 24 m]"];
+        let traffic = ["--set", "traffic.total=600 axles", "--force"];
+        told(
+            trackbed(&[&["run"], &scene[..], &traffic[..], &["--out", out.to_str().unwrap()]].concat())
+                .output()
+                .unwrap(),
+        )
+    };
+    let (code, said) = run(&law("1 mm"));
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("E0814") && said.contains("more than the ballast below it is thick"), "{said}");
+    assert!(said.contains("lies in `open`"), "the place is marked: {said}");
+    let (_, said) = run(&law("1e-3 mm"));
+    assert!(!said.contains("E0814") && said.contains("report.html"), "{said}");
+}

@@ -132,6 +132,7 @@ codes! {
     E0811 Error "rig that does not come to rest"
     E0812 Error "rig whose bed gives way"
     E0813 Error "run larger than the memory"
+    E0814 Error "track that has sunk"
     L1001 Warning "stiffness jump without mitigation"
     L1002 Warning "speed near the critical speed"
     L1003 Warning "track too short for its train"

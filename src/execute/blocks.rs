@@ -68,6 +68,17 @@ pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunErro
     Ok(Some(passage))
 }
 
+/// Settlement beyond which a run stops, m: more than ballast below a sleeper is thick, so that no law and no linear track holds.
+const SUNK: f64 = 0.5;
+
+/// Fails where a seat has settled (m) beyond all sense.
+pub(super) fn bearable(axles: u64, settlement: &[f64]) -> Result<(), RunError> {
+    match settlement.iter().position(|settled| settled.abs() > SUNK) {
+        Some(seat) => Err(RunError::node(Clock::Axles(axles), NodeError::Sunk { seat, settlement: settlement[seat] })),
+        None => Ok(()),
+    }
+}
+
 /// A run of blocks on its way.
 struct Run<'a, 'l> {
     pair: Pair<'a>,
@@ -184,6 +195,7 @@ impl Run<'_, '_> {
         };
         work.add(&here, Work::default());
         let after = self.pair.ground.settlement();
+        bearable(here.axles + block.axles, &after)?;
         // what the ground did may differ from what it predicted, and it may answer otherwise: the passages ahead are lost then
         let same = |next: &Exchange| next.settlement == after && self.pair.ground.responses().revision == revision;
         let (next, lost) = if next.as_ref().is_some_and(same) { (next, None) } else { (None, next) };

@@ -1,9 +1,10 @@
 //! The schedule of trains that ride on a rail over grains: nothing is exchanged between blocks, which only say when the state is told.
 
+use super::Between;
+use super::blocks::{bearable, restored};
 use super::event::{Checkpoint, Event, Listener, ScheduleState, tell_of_trains, tell_stage};
 use super::machine::{Ending, Machine, RunError};
 use super::step::BlockMeasures;
-use super::{Between, blocks::restored};
 use crate::graph::{Blocks, Clock, Control};
 use crate::nodes::{GrainGround, NodeError, PassageOutcome, Riders, Stage, Substructure};
 
@@ -72,6 +73,7 @@ pub(super) fn run(
         }
         let passages: Vec<&PassageOutcome> = passages.iter().collect();
         let after = if last { before.clone() } else { ground.settlement() };
+        bearable(axles + block.axles, &after)?;
         let steps = passages.iter().map(|passage| passage.time_steps).sum();
         let (passages_done, bonds) = (passages.len() as u64, ground.bonds());
         let measured = BlockMeasures { passages: passages_done, time_steps: steps, bonds, ..BlockMeasures::default() };

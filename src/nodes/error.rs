@@ -32,6 +32,8 @@ pub enum NodeError {
     Foreign { node: &'static str, why: String },
     /// A node of the graph for which nobody has a builder.
     NoBuilder { node: String, kind: String },
+    /// A seat that has settled (m) by more than the ballast below it is thick.
+    Sunk { seat: usize, settlement: f64 },
     /// Who listens has ended the run in the middle of a block; what was kept before goes on from there.
     Stopped,
     /// What a node of another program says.
@@ -49,6 +51,9 @@ impl fmt::Display for NodeError {
             NodeError::Soil(cause) => write!(f, "the soil below the grains: {cause}"),
             NodeError::NoGround => f.write_str("the track stands on no ground"),
             NodeError::NoTrain => f.write_str("no train runs over the track"),
+            NodeError::Sunk { settlement, .. } => {
+                write!(f, "a sleeper has settled by {settlement:.2} m, more than the ballast below it is thick")
+            }
             NodeError::Stopped => f.write_str("the run was stopped in the middle of a block"),
             NodeError::Foreign { node, why } => write!(f, "the kept state of the {node} cannot be used: {why}"),
             NodeError::NoBuilder { node, kind } => {
