@@ -50,6 +50,7 @@ pub mod embed;
 pub mod study;
 pub mod trials;
 
+pub mod cluster;
 pub mod report;
 
 pub mod cli;

@@ -27,6 +27,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("trials", 8),
     ("embed", 8),
     ("report", 9),
+    ("cluster", 9),
     ("editor", 10),
     ("cli", 11),
 ];

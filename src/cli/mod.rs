@@ -25,9 +25,12 @@ mod scene;
 mod stability;
 mod stored;
 mod study;
+mod study_elsewhere;
+mod study_local;
 mod study_summary;
 mod subject;
 mod terminal;
+mod work;
 
 use clap::{Parser, Subcommand, ValueEnum};
 use std::process::ExitCode;
@@ -49,6 +52,7 @@ enum Command {
     Pack(pack::Arguments),
     Run(run::Arguments),
     Study(study::Arguments),
+    Work(work::Arguments),
     Calibrate(calibrate::Arguments),
     Report(report::Arguments),
     Chart(chart::Arguments),
@@ -101,6 +105,7 @@ pub fn main() -> ExitCode {
         Command::Pack(arguments) => pack::run(&arguments),
         Command::Run(arguments) => run::run(&arguments),
         Command::Study(arguments) => study::run(&arguments),
+        Command::Work(arguments) => work::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),

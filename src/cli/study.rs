@@ -1,9 +1,12 @@
-//! `trackbed study`: runs the points of a study, several at once, and says which design is best.
+//! `trackbed study`: runs the points of a study, here or on a cluster, and says which design is best.
 
 use super::memory::MemoryArgument;
 use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
-use super::{Outcome, interrupt, pack, progress, stored, study_summary, terminal};
+use super::study_elsewhere::{self, ClusterArguments};
+use super::study_local::{Unfinished, perform};
+use super::{Outcome, pack, stored, study_summary, terminal};
 use crate::check::{Folder, Remembered};
+use crate::cluster::ClusterError;
 use crate::compile::Compiled;
 use crate::diag::nearest::nearest;
 use crate::diag::{Code, Diagnostic, has_errors, or_list, render};
@@ -12,13 +15,11 @@ use crate::nodes::turns;
 use crate::report;
 use crate::scenario::Study;
 use crate::store::Mode;
-use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Repeat, Scene, StudyFolder};
+use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Scene, StudyFolder};
 use crate::units::number;
 use clap::ValueEnum;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 /// Run a study of a scene: its points, its best design
@@ -33,7 +34,8 @@ pub(super) struct Arguments {
     /// The directory for results; made where it does not exist.
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-    /// Points at a time; all cores where it is not given. The results do not depend on it.
+    /// Points at a time; all cores where it is not given, and all that the cluster allows with `--executor slurm`. The results do not
+    /// depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Go on where an interrupted study of the same scene stopped.
@@ -50,19 +52,25 @@ pub(super) struct Arguments {
     /// Where points run.
     #[arg(long, value_enum, default_value = "local")]
     executor: Executor,
+    #[command(flatten)]
+    cluster: ClusterArguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Executor {
     /// On this machine.
     Local,
-    /// On a cluster; not in this version.
+    /// As job arrays of Slurm, which are watched until all results are there.
     Slurm,
+    /// By `trackbed work`, which another program starts: PBS, HyperQueue, xargs.
+    Workers,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
-    if arguments.executor == Executor::Slurm {
-        terminal::error("this version runs studies on this machine only; leave out `--executor slurm`");
+    if arguments.executor != Executor::Slurm
+        && let Some(option) = arguments.cluster.given()
+    {
+        terminal::error(&format!("`{option}` needs `--executor slurm`"));
         return Outcome::Usage;
     }
     let scene = arguments.scene.with_seed(&arguments.seed);
@@ -130,9 +138,21 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
         return Outcome::Failed;
     }
     let jobs = arguments.jobs.map_or_else(turns::cores, usize::from);
-    if let Some(refusal) = arguments.memory.refusal_of_study(&plan, jobs) {
+    let refusal = arguments.memory.refusal_of_study(&plan, jobs).filter(|_| arguments.executor == Executor::Local);
+    if let Some(refusal) = refusal {
         say(&[refusal], compiled);
         return Outcome::Failed;
+    }
+    let elsewhere =
+        study_elsewhere::Study { scene, plan: &plan, out: &arguments.out, cache: arguments.cache.as_deref() };
+    if arguments.cluster.dry_run {
+        return match elsewhere.dry_run(&arguments.cluster, arguments.jobs) {
+            Ok(scripts) => {
+                terminal::out(&scripts);
+                Outcome::Fine
+            }
+            Err(error) => refused(&error, compiled),
+        };
     }
     let folder = match StudyFolder::open(&arguments.out, &plan, compiled, mode(arguments)) {
         Ok(folder) => folder,
@@ -141,7 +161,7 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
             return Outcome::Failed;
         }
     };
-    let known = known(&plan, &folder);
+    let mut known = known_of(&plan, &folder);
     let missing = known.iter().filter(|result| result.is_none()).count();
     match (folder.is_finished(), missing) {
         (true, 0) => terminal::note("this study has been finished before: nothing is run\n"),
@@ -149,9 +169,21 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
             "this study has been finished before by a version that kept less: {n} of {} points run\n",
             plan.points.len()
         )),
-        (false, _) => announce(&plan, jobs),
+        (false, _) => announce(&plan, jobs, arguments.executor),
     }
     let started = Instant::now();
+    if missing > 0 && !folder.is_finished() {
+        let left = match arguments.executor {
+            Executor::Local => Ok(None),
+            Executor::Slurm => elsewhere.on_slurm(&folder, &arguments.cluster, arguments.jobs),
+            Executor::Workers => elsewhere.for_workers(&folder).map(Some),
+        };
+        match left {
+            Ok(None) => known = known_of(&plan, &folder),
+            Ok(Some(outcome)) => return outcome,
+            Err(error) => return refused(&error, compiled),
+        }
+    }
     let executor = execute::Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
     let results = match perform(scene, &plan, known, &folder, &executor, jobs) {
         Ok(results) => results,
@@ -196,8 +228,18 @@ fn say(diagnostics: &[Diagnostic], compiled: &Compiled) {
     }
 }
 
+/// Says why a cluster does not do the study.
+fn refused(error: &ClusterError, compiled: &Compiled) -> Outcome {
+    let diagnostic = match error {
+        ClusterError::Store(error) => stored::diagnostic(error),
+        other => Diagnostic::new(Code::E0815, other.to_string()).help(other.help()),
+    };
+    say(&[diagnostic], compiled);
+    Outcome::Failed
+}
+
 /// What is about to run.
-fn announce(plan: &Plan, jobs: usize) {
+fn announce(plan: &Plan, jobs: usize, executor: Executor) {
     let runs = plan.runs();
     let left_out = match plan.left_out {
         0 => String::new(),
@@ -209,12 +251,12 @@ fn announce(plan: &Plan, jobs: usize) {
         Some(number) => format!(", number {number} of them the scene as it is"),
         None => String::new(),
     };
+    let how = if executor == Executor::Local { format!(", {jobs} at a time") } else { String::new() };
     terminal::note(&format!(
-        "study `{}`: {} points{left_out}{as_it_is}{repeats}, about {} of computing, {} at a time\n",
+        "study `{}`: {} points{left_out}{as_it_is}{repeats}, about {} of computing{how}\n",
         plan.study.name,
         plan.designs(),
-        duration(plan.seconds()),
-        jobs
+        duration(plan.seconds())
     ));
 }
 
@@ -227,21 +269,13 @@ fn duration(seconds: f64) -> String {
 }
 
 /// What has run before, one for each point.
-fn known(plan: &Plan, folder: &StudyFolder) -> Vec<Option<PointResult>> {
+fn known_of(plan: &Plan, folder: &StudyFolder) -> Vec<Option<PointResult>> {
     let one = |point: &PlannedPoint| {
         let name = if point.number == 0 { "the scene as it is".to_string() } else { format!("point {}", point.number) };
         let damaged = |error| terminal::error(&format!("{name} runs again: {error}"));
         folder.known(point).map_err(damaged).ok().flatten()
     };
     plan.points.iter().map(one).collect()
-}
-
-/// Why a study has ended before its last point.
-enum Unfinished {
-    /// A result could not be written.
-    Broken(String),
-    /// Ctrl-C or SIGTERM, with so many points kept.
-    Asked { kept: usize },
 }
 
 /// Says how to go on with a study that Ctrl-C or SIGTERM has stopped.
@@ -251,74 +285,4 @@ fn stopped(out: &Path, kept: usize, all: usize) -> Outcome {
         out.display()
     ));
     Outcome::Failed
-}
-
-/// Runs what has not run yet, repeat by repeat, and keeps each point as soon as it is there. The order of the answer is that of the
-/// plan.
-fn perform(
-    scene: Scene<'_>,
-    plan: &Plan,
-    known: Vec<Option<PointResult>>,
-    folder: &StudyFolder,
-    executor: &execute::Executor,
-    jobs: usize,
-) -> Result<Vec<PointResult>, Unfinished> {
-    let missing = known.iter().enumerate().filter(|(_, result)| result.is_none());
-    let tasks: Vec<(usize, u32)> =
-        missing.flat_map(|(index, _)| (0..plan.study.repeats).map(move |repeat| (index, repeat))).collect();
-    let work = Mutex::new(Work { plan, known, runs: BTreeMap::new(), bar: progress::Patient::seen("the study") });
-    // what cannot be written would be computed for nothing
-    let (broken, asked) = (AtomicBool::new(false), interrupt::asked());
-    let one = |(index, repeat): &(usize, u32)| {
-        if broken.load(Ordering::Relaxed) || asked.load(Ordering::Relaxed) {
-            return Ok(());
-        }
-        let run = study::perform(scene, &plan.study, &plan.points[*index], *repeat, executor, asked);
-        let Some(run) = run else { return Ok(()) };
-        let taken = work.lock().unwrap_or_else(PoisonError::into_inner).take(*index, *repeat, run, folder);
-        taken.inspect_err(|_| broken.store(true, Ordering::Relaxed))
-    };
-    let taken = turns::each(&tasks, jobs, turns::cores(), one)
-        .map_err(|error| Unfinished::Broken(format!("cannot start threads: {error}")))?;
-    taken.into_iter().collect::<Result<(), String>>().map_err(Unfinished::Broken)?;
-    let known = work.into_inner().unwrap_or_else(PoisonError::into_inner).known;
-    let results: Vec<PointResult> = known.into_iter().flatten().collect();
-    // a signal after the last run changes nothing
-    if results.len() < plan.points.len() { Err(Unfinished::Asked { kept: results.len() }) } else { Ok(results) }
-}
-
-/// What there is of a study while it runs.
-struct Work<'a> {
-    plan: &'a Plan,
-    /// One for each point of the plan.
-    known: Vec<Option<PointResult>>,
-    /// By point and repeat, of points that are not finished.
-    runs: BTreeMap<(usize, u32), Repeat>,
-    bar: progress::Patient,
-}
-
-impl Work<'_> {
-    /// A run is over; with the last of its point that is kept.
-    fn take(&mut self, index: usize, repeat: u32, run: Repeat, folder: &StudyFolder) -> Result<(), String> {
-        self.runs.insert((index, repeat), run);
-        let (point, all) = (&self.plan.points[index], self.plan.study.repeats);
-        let runs: Vec<Repeat> = (0..all).map_while(|repeat| self.runs.get(&(index, repeat)).cloned()).collect();
-        if runs.len() == all as usize {
-            let result = PointResult::from_repeats(point, &runs);
-            folder.keep(point, &result).map_err(|error| error.to_string())?;
-            self.known[index] = Some(result);
-            self.runs.retain(|(other, _), _| *other != index);
-        }
-        self.tell();
-        Ok(())
-    }
-
-    /// Points differ in cost: the bar counts thousandths of the estimate.
-    fn tell(&mut self) {
-        let seconds = |index: usize| self.plan.points[index].seconds;
-        let finished = self.known.iter().enumerate().filter(|(_, result)| result.is_some());
-        let done = finished.map(|(index, _)| seconds(index) * f64::from(self.plan.study.repeats)).sum::<f64>()
-            + self.runs.keys().map(|(index, _)| seconds(*index)).sum::<f64>();
-        self.bar.show((1e3 * done / self.plan.seconds().max(1e-9)) as u64, 1000);
-    }
 }

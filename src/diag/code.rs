@@ -133,6 +133,7 @@ codes! {
     E0812 Error "rig whose bed gives way"
     E0813 Error "run larger than the memory"
     E0814 Error "track that has sunk"
+    E0815 Error "work that a cluster does not do"
     L1001 Warning "stiffness jump without mitigation"
     L1002 Warning "speed near the critical speed"
     L1003 Warning "track too short for its train"

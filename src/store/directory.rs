@@ -78,6 +78,7 @@ impl<D: Disk> Directory<D> {
             Err(StoreError::Damaged { .. }) if mode == Mode::Force => recovery::abandon(&disk, &layout)?,
             other => other?,
         }
+        let gate = Lock::wait(&layout.gate())?;
         let finished = match mode {
             Mode::New => refuse_any(&layout).map(|()| None)?,
             Mode::Resume => found(&layout, &work)?,
@@ -89,6 +90,7 @@ impl<D: Disk> Directory<D> {
             let path = directory.layout().work();
             directory.replace(&path, &WORK.close_json(&path, directory.unfinished.work())?)?;
         }
+        drop(gate);
         Ok(directory)
     }
 
@@ -99,6 +101,11 @@ impl<D: Disk> Directory<D> {
 
     fn layout(&self) -> &Layout {
         &self.unfinished.layout
+    }
+
+    /// The work under way here, as others see it.
+    pub fn shared(&self) -> &Unfinished {
+        &self.unfinished
     }
 
     /// What was finished here before, in [`Mode::Resume`]: each of its files has been checked.
@@ -151,6 +158,7 @@ impl<D: Disk> Directory<D> {
 
     /// Puts everything that was staged in place of the old results, at once, and ends the unfinished work.
     pub fn commit(self) -> Result<Finished, StoreError> {
+        let _gate = Lock::wait(&self.layout().gate())?;
         let manifest = Manifest::new(self.unfinished.work.clone(), self.files.clone());
         self.replace(&self.layout().intent(), &manifest.bytes())?;
         recovery::finish(&self.disk, self.layout(), &manifest)?;

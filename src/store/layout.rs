@@ -8,6 +8,9 @@
 //! .trackbed/work         whose unfinished work this is
 //! .trackbed/checkpoint   the state to go on from
 //! .trackbed/pieces/      data that is finished, by its key
+//! .trackbed/claims/      locks of pieces that processes compute now, by the same keys
+//! .trackbed/gate         held by all who add pieces, and alone by who ends the work
+//! .trackbed/logs/        what processes elsewhere have printed
 //! .trackbed/staging/     files of the next results
 //! .trackbed/intent.json  the manifest of staged files that are on their way to their places
 //! ```
@@ -48,6 +51,18 @@ impl Layout {
 
     pub fn pieces(&self) -> PathBuf {
         self.inner().join("pieces")
+    }
+
+    pub fn claims(&self) -> PathBuf {
+        self.inner().join("claims")
+    }
+
+    pub fn gate(&self) -> PathBuf {
+        self.inner().join("gate")
+    }
+
+    pub fn logs(&self) -> PathBuf {
+        self.inner().join("logs")
     }
 
     pub fn staging(&self) -> PathBuf {

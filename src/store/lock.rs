@@ -26,6 +26,23 @@ impl Lock {
         }
     }
 
+    /// The lock in a file, at once; `None` where somebody else has it.
+    pub fn claim(path: &Path) -> Result<Option<Lock>, StoreError> {
+        match Lock::take(path, path) {
+            Err(StoreError::Busy { .. }) => Ok(None),
+            other => other.map(Some),
+        }
+    }
+
+    /// A lock in a file that any number may hold together, when nobody has it alone.
+    pub fn share(path: &Path) -> Result<Lock, StoreError> {
+        let file = open(path).map_err(|cause| StoreError::io(path, "open", cause))?;
+        match file.lock_shared() {
+            Err(cause) if cause.kind() != ErrorKind::Unsupported => Err(StoreError::io(path, "lock", cause)),
+            _ => Ok(Lock { _file: file }),
+        }
+    }
+
     /// The lock in a file, when everybody before has given it back.
     pub fn wait(path: &Path) -> Result<Lock, StoreError> {
         let file = open(path).map_err(|cause| StoreError::io(path, "open", cause))?;

@@ -3,7 +3,7 @@
 //! A [`Directory`] of results is a transaction: its files are staged, and [`Directory::commit`] puts all of them in place at once, so
 //! that a kill at any instant leaves the old results or the new ones. While work is under way it keeps a checkpoint and pieces
 //! beside it, and a lock that keeps others out. [`Finished`] reads such a directory and checks every file; [`Unfinished`] reads
-//! what work under way has kept so far. [`Beds`] are packed beds
+//! what work under way has kept so far, and adds pieces to it from any number of processes. [`Beds`] are packed beds
 //! by the hash of their recipe.
 //!
 //! The store knows bytes, hashes and recipes of solvers, and no scene.
@@ -19,6 +19,7 @@ mod lock;
 mod manifest;
 mod recovery;
 mod seal;
+mod shared;
 mod shelf;
 #[cfg(test)]
 mod tests;
@@ -31,6 +32,7 @@ pub use disk::{Disk, FileSystem};
 pub use error::StoreError;
 pub use finished::Finished;
 pub use manifest::{FileRecord, Manifest};
+pub use shared::Claim;
 pub use shelf::Shelf;
 pub use unfinished::{Piece, Unfinished};
 

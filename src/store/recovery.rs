@@ -62,8 +62,9 @@ fn remove_old(disk: &impl Disk, layout: &Layout, intent: &Manifest) -> Result<()
 pub(super) fn discard(disk: &impl Disk, layout: &Layout) -> Result<(), StoreError> {
     let file = |path: PathBuf| disk.remove_file(&path).map_err(|cause| StoreError::io(&path, "remove", cause));
     file(layout.checkpoint())?;
-    let pieces = layout.pieces();
-    disk.remove_folder(&pieces).map_err(|cause| StoreError::io(&pieces, "remove", cause))?;
+    for folder in [layout.pieces(), layout.claims(), layout.logs()] {
+        disk.remove_folder(&folder).map_err(|cause| StoreError::io(&folder, "remove", cause))?;
+    }
     file(layout.so_far())?;
     file(layout.work())
 }

@@ -1,9 +1,10 @@
 //! The directory of a study: each point is kept as soon as it is there, and the answer is put in place at once. A study that was
 //! killed finds there what it has.
 //!
-//! Points are kept by what they are made of and never by their number, so that no result can stand for another scene's.
+//! Runs are kept by what their points are made of and never by a number, so that no result can stand for another scene's, and any
+//! number of processes can add theirs.
 
-use super::{Answer, Plan, PlannedPoint, PointOutcome, PointResult, values};
+use super::{Answer, Plan, PlannedPoint, PointOutcome, PointResult, Repeat, values};
 use crate::compile::{Compiled, fingerprint};
 use crate::store::{Directory, Mode, StoreError, Work};
 use serde::Serialize;
@@ -22,6 +23,8 @@ pub struct StudyFolder {
     finished: Option<BTreeMap<String, PointOutcome>>,
     /// Constraints of the study: an older version did not keep by how much each is missed.
     constraints: usize,
+    /// Runs of each point.
+    repeats: u32,
 }
 
 impl StudyFolder {
@@ -37,7 +40,8 @@ impl StudyFolder {
             Ok(all.into_iter().filter_map(|(point, value)| Some((point, outcome(value)?))).collect())
         };
         let constraints = plan.study.constraints.len();
-        Ok(StudyFolder { directory, finished: points.map(read).transpose()?, constraints })
+        let (finished, repeats) = (points.map(read).transpose()?, plan.study.repeats);
+        Ok(StudyFolder { directory, finished, constraints, repeats })
     }
 
     /// Whether the study has been finished here before, by this version or by another one.
@@ -50,7 +54,11 @@ impl StudyFolder {
     pub fn known(&self, point: &PlannedPoint) -> Result<Option<PointResult>, StoreError> {
         let outcome = match self.finished.as_ref().and_then(|finished| finished.get(&point.fingerprint)) {
             Some(outcome) => Some(outcome.clone()),
-            None => self.piece(point)?,
+            None => {
+                let runs: Option<Vec<Repeat>> =
+                    (0..self.repeats).map(|repeat| self.known_run(point, repeat)).collect::<Result<_, _>>()?;
+                runs.map(|runs| PointResult::from_repeats(point, &runs).outcome)
+            }
         };
         let whole = outcome.filter(|outcome| match outcome {
             PointOutcome::Done { misses, .. } => misses.len() == self.constraints,
@@ -59,18 +67,24 @@ impl StudyFolder {
         Ok(whole.map(|outcome| PointResult { number: point.number, outcome }))
     }
 
-    fn piece(&self, point: &PlannedPoint) -> Result<Option<PointOutcome>, StoreError> {
-        let Some(bytes) = self.directory.kept(&point.fingerprint)? else { return Ok(None) };
-        let outcome = serde_json::from_slice(&bytes);
-        outcome.map(Some).map_err(|cause| StoreError::damaged(self.directory.path(), cause))
+    /// A run of a point that has been kept; `None` where it has not run. Fails where its file is damaged.
+    pub fn known_run(&self, point: &PlannedPoint, repeat: u32) -> Result<Option<Repeat>, StoreError> {
+        let Some(bytes) = self.directory.kept(&point.key(repeat))? else { return Ok(None) };
+        let run = serde_json::from_slice(&bytes);
+        run.map(Some).map_err(|cause| StoreError::damaged(self.directory.path(), cause))
     }
 
-    /// Keeps the result of a point until the study is finished; one that was finished before holds its old results until then.
-    pub fn keep(&self, point: &PlannedPoint, result: &PointResult) -> Result<(), StoreError> {
+    /// Keeps a run of a point until the study is finished; one that was finished before holds its old results until then.
+    pub fn keep(&self, point: &PlannedPoint, repeat: u32, run: &Repeat) -> Result<(), StoreError> {
         if self.is_finished() {
             return Ok(());
         }
-        self.directory.keep(&point.fingerprint, &self.text("a point", &result.outcome)?).map(drop)
+        self.directory.keep(&point.key(repeat), &self.text("a run", run)?).map(drop)
+    }
+
+    /// The directory, in which other processes may work for the study.
+    pub fn directory(&self) -> &Directory {
+        &self.directory
     }
 
     /// Puts the answer in place; equal studies leave equal bytes but for the timings.

@@ -2,6 +2,7 @@
 
 use super::miss::Miss;
 use super::point::{PlannedPoint, Scene};
+use crate::check::Override;
 use crate::diag::Diagnostic;
 use crate::execute::{self, Ending, Executor};
 use crate::results::{self, RunRecorder, Tables, TestTables};
@@ -36,20 +37,20 @@ pub enum PointOutcome {
 }
 
 /// A run of a point, one of its repeats.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Repeat(Result<OneRun, PointOutcome>);
 
-/// Runs one repeat of a point; `None` where it has ended early because `asked` became true. The beds of the executor are shared: of
-/// points that pack alike one packs.
+/// Runs one repeat of a point for a study of the scene, by its name: the scene with these lines edited
+/// ([`PlannedPoint::overrides_of`]). `None` where it has ended early because `asked` became true. The beds of the executor are shared:
+/// of points that pack alike one packs.
 pub fn perform(
     scene: Scene<'_>,
-    study: &Study,
-    point: &PlannedPoint,
-    repeat: u32,
+    study: &str,
+    overrides: &[Override],
     executor: &Executor,
     asked: &AtomicBool,
 ) -> Option<Repeat> {
-    run(scene, study, point, repeat, executor, asked).transpose().map(Repeat)
+    run(scene, study, overrides, executor, asked).transpose().map(Repeat)
 }
 
 impl PointResult {
@@ -65,19 +66,18 @@ type OneRun = (Vec<f64>, Vec<Option<Miss>>);
 
 fn run(
     scene: Scene<'_>,
-    study: &Study,
-    point: &PlannedPoint,
-    repeat: u32,
+    study: &str,
+    overrides: &[Override],
     executor: &Executor,
     asked: &AtomicBool,
 ) -> Result<Option<OneRun>, PointOutcome> {
-    let compiled = scene.compile(&point.overrides_of(repeat));
+    let compiled = scene.compile(overrides);
     if let Some(mistake) = compiled.diagnostics.iter().find(|d| d.is_error()) {
         return Err(failed(mistake));
     }
     let nothing = || fail("there is nothing to run");
     // places and counts of the point's own track
-    let own = compiled.studies.iter().find(|s| s.name == study.name).ok_or_else(nothing)?;
+    let own = compiled.studies.iter().find(|s| s.name == study).ok_or_else(nothing)?;
     let scenario = compiled.scenario.as_ref().ok_or_else(nothing)?;
     let graph = compiled.runnable().ok_or_else(nothing)?;
     let mut recorder = RunRecorder::new(scenario, graph).interrupted_by(asked);

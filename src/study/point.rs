@@ -46,6 +46,11 @@ impl Scene<'_> {
 }
 
 impl PlannedPoint {
+    /// Names one of its runs.
+    pub fn key(&self, repeat: u32) -> String {
+        format!("{}-{repeat}", self.fingerprint)
+    }
+
     /// The lines of one of its runs: the first has the seed of the scene, each further one the next.
     pub fn overrides_of(&self, repeat: u32) -> Vec<Override> {
         let seed = self.seed + u64::from(repeat);

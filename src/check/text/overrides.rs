@@ -5,12 +5,13 @@ use crate::diag::{Code, Diagnostic, Sources, Span};
 use crate::schema::{self, Role};
 use crate::syntax::parse;
 use crate::syntax::tree::{Argument, Declaration, Field, Item, Name, Path, Tree, Value, ValueKind};
+use serde::{Deserialize, Serialize};
 
 /// The name of a text that stands for an edited line.
 pub const EDIT: &str = "--set";
 
 /// One override: a path and the text of a value.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Override {
     pub path: String,
     pub value: String,

@@ -1,0 +1,90 @@
+//! Runs the points of a study on this machine, several at once.
+
+use super::{interrupt, progress};
+use crate::execute::Executor;
+use crate::nodes::turns;
+use crate::study::{self, Plan, PointResult, Repeat, Scene, StudyFolder};
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+/// Why a study has ended before its last point.
+pub(super) enum Unfinished {
+    /// A result could not be written.
+    Broken(String),
+    /// Ctrl-C or SIGTERM, with so many points kept.
+    Asked { kept: usize },
+}
+
+/// Runs what has not run yet, repeat by repeat, and keeps each run as soon as it is there. The order of the answer is that of the
+/// plan.
+pub(super) fn perform(
+    scene: Scene<'_>,
+    plan: &Plan,
+    known: Vec<Option<PointResult>>,
+    folder: &StudyFolder,
+    executor: &Executor,
+    jobs: usize,
+) -> Result<Vec<PointResult>, Unfinished> {
+    let missing: Vec<usize> = (0..known.len()).filter(|index| known[*index].is_none()).collect();
+    let all = missing.into_iter().flat_map(|index| (0..plan.study.repeats).map(move |repeat| (index, repeat)));
+    // a damaged run has been told with its point
+    let kept = |(index, repeat)| Some(((index, repeat), folder.known_run(&plan.points[index], repeat).ok()??));
+    let runs: BTreeMap<(usize, u32), Repeat> = all.clone().filter_map(kept).collect();
+    let tasks: Vec<(usize, u32)> = all.filter(|run| !runs.contains_key(run)).collect();
+    let work = Mutex::new(Work { plan, known, runs, bar: progress::Patient::seen("the study") });
+    // what cannot be written would be computed for nothing
+    let (broken, asked) = (AtomicBool::new(false), interrupt::asked());
+    let one = |(index, repeat): &(usize, u32)| {
+        if broken.load(Ordering::Relaxed) || asked.load(Ordering::Relaxed) {
+            return Ok(());
+        }
+        let overrides = plan.points[*index].overrides_of(*repeat);
+        let run = study::perform(scene, &plan.study.name, &overrides, executor, asked);
+        let Some(run) = run else { return Ok(()) };
+        let taken = work.lock().unwrap_or_else(PoisonError::into_inner).take(*index, *repeat, run, folder);
+        taken.inspect_err(|_| broken.store(true, Ordering::Relaxed))
+    };
+    let taken = turns::each(&tasks, jobs, turns::cores(), one)
+        .map_err(|error| Unfinished::Broken(format!("cannot start threads: {error}")))?;
+    taken.into_iter().collect::<Result<(), String>>().map_err(Unfinished::Broken)?;
+    let known = work.into_inner().unwrap_or_else(PoisonError::into_inner).known;
+    let results: Vec<PointResult> = known.into_iter().flatten().collect();
+    // a signal after the last run changes nothing
+    if results.len() < plan.points.len() { Err(Unfinished::Asked { kept: results.len() }) } else { Ok(results) }
+}
+
+/// What there is of a study while it runs.
+struct Work<'a> {
+    plan: &'a Plan,
+    /// One for each point of the plan.
+    known: Vec<Option<PointResult>>,
+    /// By point and repeat, of points that are not finished.
+    runs: BTreeMap<(usize, u32), Repeat>,
+    bar: progress::Patient,
+}
+
+impl Work<'_> {
+    /// A run is over and is kept; with the last of its point that is finished.
+    fn take(&mut self, index: usize, repeat: u32, run: Repeat, folder: &StudyFolder) -> Result<(), String> {
+        let (point, all) = (&self.plan.points[index], self.plan.study.repeats);
+        folder.keep(point, repeat, &run).map_err(|error| error.to_string())?;
+        self.runs.insert((index, repeat), run);
+        let runs: Vec<Repeat> = (0..all).map_while(|repeat| self.runs.get(&(index, repeat)).cloned()).collect();
+        if runs.len() == all as usize {
+            self.known[index] = Some(PointResult::from_repeats(point, &runs));
+            self.runs.retain(|(other, _), _| *other != index);
+        }
+        self.tell();
+        Ok(())
+    }
+
+    /// Points differ in cost: the bar counts thousandths of the estimate.
+    fn tell(&mut self) {
+        let seconds = |index: usize| self.plan.points[index].seconds;
+        let finished = self.known.iter().enumerate().filter(|(_, result)| result.is_some());
+        let done = finished.map(|(index, _)| seconds(index) * f64::from(self.plan.study.repeats)).sum::<f64>()
+            + self.runs.keys().map(|(index, _)| seconds(*index)).sum::<f64>();
+        self.bar.show((1e3 * done / self.plan.seconds().max(1e-9)) as u64, 1000);
+    }
+}

@@ -1,0 +1,120 @@
+//! `trackbed work`: computes runs of a study that another process has begun, beside any number of others.
+
+use super::{Outcome, interrupt, pack, stored, terminal};
+use crate::check::{self, Folder, Remembered};
+use crate::compile::fingerprint;
+use crate::diag::{Code, Diagnostic, Sources, render};
+use crate::execute::Executor;
+use crate::store::{StoreError, Unfinished};
+use crate::study::{self, Scene, Task, TaskRun};
+use crate::syntax;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Compute runs of a study that was begun with `--executor workers` or `slurm`
+#[derive(clap::Args)]
+pub(super) struct Arguments {
+    /// The directory of the study.
+    directory: PathBuf,
+    /// Numbers of tasks; all where none is given. What is kept, and what another worker computes, is left out.
+    tasks: Vec<usize>,
+    /// Threads of a run; all cores where it is not given. The results do not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Outcome {
+    let threads = arguments.threads.map_or(0, usize::from);
+    let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool,
+        Err(error) => {
+            terminal::error(&format!("cannot start {threads} threads: {error}"));
+            return Outcome::Failed;
+        }
+    };
+    match pool.install(|| work(arguments)) {
+        Ok(()) => Outcome::Fine,
+        Err(diagnostic) => {
+            terminal::note(&render::human(&[*diagnostic], &Sources::default(), terminal::colour(), terminal::width()));
+            Outcome::Failed
+        }
+    }
+}
+
+type Failure = Box<Diagnostic>;
+
+fn of_store(error: &StoreError) -> Failure {
+    Box::new(stored::diagnostic(error))
+}
+
+fn work(arguments: &Arguments) -> Result<(), Failure> {
+    let path = &arguments.directory;
+    let nothing = || {
+        let said = Diagnostic::new(Code::E0802, format!("no study is under way in `{}`", path.display()));
+        Box::new(said.help("begin one with `trackbed study SCENE --executor workers --out DIR`"))
+    };
+    let study = Unfinished::open(path).map_err(|error| of_store(&error))?.ok_or_else(nothing)?;
+    let asked = interrupt::asked();
+    let numbers = match arguments.tasks.as_slice() {
+        [] => Task::numbers(&study).map_err(|error| of_store(&error))?,
+        some => some.to_vec(),
+    };
+    for number in numbers {
+        let task = Task::read(&study, number).map_err(|error| of_store(&error))?;
+        let task = task.ok_or_else(|| {
+            Box::new(Diagnostic::new(Code::E0802, format!("`{}` holds no task {number}", path.display())))
+        })?;
+        one_task(&study, &task, asked)?;
+    }
+    if asked.load(Ordering::Relaxed) {
+        let said = Diagnostic::new(Code::E0802, "stopped: finished runs are kept");
+        return Err(Box::new(said.help("the same command computes the rest")));
+    }
+    Ok(())
+}
+
+fn one_task(study: &Unfinished, task: &Task, asked: &AtomicBool) -> Result<(), Failure> {
+    let name = task.scene.display().to_string();
+    let unreadable = |why: String| Box::new(Diagnostic::new(Code::E0802, format!("cannot read `{name}`: {why}")));
+    let bytes = check::read_bounded(&task.scene).map_err(|error| unreadable(error.to_string()))?;
+    let text = syntax::decode(&name, &bytes).map_err(|_| unreadable("it is not readable text".into()))?;
+    let modules = Remembered::new(Folder(task.scene.parent().unwrap_or(Path::new("")).to_owned()));
+    let scene = Scene { name: &name, text: &text, modules: &modules, set: &task.set };
+    if fingerprint(&scene.compile(&[]).sources) != study.work().scene_sha256 {
+        let said = Diagnostic::new(Code::E0809, format!("`{name}` is not the scene of the study any more"));
+        return Err(Box::new(said.help("take the edit back, or begin the study anew with `--force`")));
+    }
+    let executor = Executor::default().with_beds(pack::beds(task.cache.as_deref()));
+    for run in &task.runs {
+        if asked.load(Ordering::Relaxed) || !one_run(study, task, run, scene, &executor, asked)? {
+            return Ok(());
+        }
+    }
+    Ok(())
+}
+
+/// Computes a run, unless it is kept or somebody else computes it. Gives `false` where the study has ended.
+fn one_run(
+    study: &Unfinished,
+    task: &Task,
+    run: &TaskRun,
+    scene: Scene<'_>,
+    executor: &Executor,
+    asked: &AtomicBool,
+) -> Result<bool, Failure> {
+    let Some(_claim) = study.claim(&run.key).map_err(|error| of_store(&error))? else { return Ok(true) };
+    // a damaged one is computed again
+    if study.kept(&run.key).is_ok_and(|kept| kept.is_some()) {
+        return Ok(true);
+    }
+    let started = Instant::now();
+    let Some(done) = study::perform(scene, &task.study, &run.overrides, executor, asked) else { return Ok(true) };
+    let bytes = done.bytes().map_err(|cause| of_store(&StoreError::unwritable(study.path(), cause)))?;
+    let is_kept = study.add(&run.key, &bytes).map_err(|error| of_store(&error))?;
+    terminal::out(&match is_kept {
+        true => format!("{}: {:.1} s\n", run.name, started.elapsed().as_secs_f64()),
+        false => "the study has ended: nothing is left to do\n".to_owned(),
+    });
+    Ok(is_kept)
+}

@@ -1,0 +1,213 @@
+//! Gives pieces of work to a scheduler and looks what becomes of them. Whether a piece is done is read off the directory of results and never
+//! off the scheduler, which only says what still runs.
+
+use super::{Array, ClusterError, Ending, Need, Request, Scheduler, State, Task, tasks};
+use crate::store::StoreError;
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+
+/// A piece is given so often before it is given up.
+const ATTEMPTS: u32 = 3;
+
+/// Work in pieces, by numbers from 0, that processes elsewhere do.
+pub trait Work {
+    fn needs(&self) -> &[Need];
+
+    /// Pieces that nobody has done yet.
+    fn missing(&self) -> Result<BTreeSet<usize>, StoreError>;
+
+    /// Keeps what a task of some pieces is, for the process that will do it.
+    fn put(&self, task: usize, pieces: &[usize]) -> Result<(), StoreError>;
+
+    /// Keeps what has been given, for who goes on watching.
+    fn keep(&self, ledger: &Ledger) -> Result<(), StoreError>;
+
+    /// Where tasks print.
+    fn logs(&self) -> PathBuf;
+}
+
+/// What has been given to a scheduler.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Ledger {
+    jobs: Vec<Job>,
+    /// Pieces of every task.
+    tasks: Vec<Vec<usize>>,
+    /// How often each piece has been given.
+    attempts: BTreeMap<usize, u32>,
+}
+
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+struct Job {
+    name: String,
+    array: Array,
+    /// Places of tasks that are over, and seen to be.
+    over: BTreeSet<usize>,
+}
+
+/// What a look has found.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Seen {
+    pub missing: usize,
+    /// Tasks.
+    pub running: usize,
+    pub waiting: usize,
+    /// Why the first of them waits.
+    pub why: String,
+    /// Pieces that were given again in this look, and how their tasks had ended.
+    pub again: Vec<(usize, Ending)>,
+}
+
+/// Work that a scheduler does.
+pub struct Watch<'a> {
+    work: &'a dyn Work,
+    scheduler: &'a dyn Scheduler,
+    ledger: Ledger,
+    /// Tasks that had ended without all of their pieces when they were seen last: a shared disk may show them later.
+    doubtful: BTreeSet<usize>,
+    given_up: BTreeMap<usize, Ending>,
+}
+
+impl Ledger {
+    /// Pieces of tasks that are not known to be over.
+    fn under_way(&self) -> BTreeSet<usize> {
+        let places = |job: &Job| {
+            (0..job.array.count)
+                .filter(|place| !job.over.contains(place))
+                .map(|p| p + job.array.first)
+                .collect::<Vec<_>>()
+        };
+        self.jobs.iter().flat_map(places).flat_map(|task| self.tasks[task].iter().copied()).collect()
+    }
+
+    /// Names of the jobs that are not known to be over.
+    pub fn jobs(&self) -> Vec<&str> {
+        self.jobs.iter().filter(|job| job.over.len() < job.array.count).map(|job| job.name.as_str()).collect()
+    }
+}
+
+impl<'a> Watch<'a> {
+    /// Goes on from a ledger, or begins with an empty one.
+    pub fn new(work: &'a dyn Work, scheduler: &'a dyn Scheduler, ledger: Ledger) -> Watch<'a> {
+        Watch { work, scheduler, ledger, doubtful: BTreeSet::new(), given_up: BTreeMap::new() }
+    }
+
+    /// What has been given.
+    pub fn ledger(&self) -> &Ledger {
+        &self.ledger
+    }
+
+    /// Gives all pieces that are missing and that no task has. Attempts are counted from here: who goes on has mended something.
+    pub fn submit(&mut self) -> Result<(), ClusterError> {
+        self.ledger.attempts.clear();
+        let under_way = self.ledger.under_way();
+        let missing = self.work.missing()?.into_iter().filter(|piece| !under_way.contains(piece));
+        let pieces: Vec<(usize, Need)> = missing.map(|piece| (piece, self.work.needs()[piece])).collect();
+        self.give(tasks(&pieces))
+    }
+
+    /// Looks once, and gives again what was lost. Fails where pieces are missing that have been given often enough, and nothing else is under way.
+    pub fn look(&mut self) -> Result<Seen, ClusterError> {
+        let missing = self.work.missing()?;
+        let states = if missing.is_empty() { BTreeMap::new() } else { self.scheduler.states()? };
+        let mut seen = Seen { missing: missing.len(), ..Seen::default() };
+        let mut again: BTreeMap<Request, Vec<usize>> = BTreeMap::new();
+        for (job, place, task) in self.open_tasks() {
+            let (name, request) = (self.ledger.jobs[job].name.clone(), self.ledger.jobs[job].array.request);
+            let left: Vec<usize> =
+                self.ledger.tasks[task].iter().copied().filter(|piece| missing.contains(piece)).collect();
+            let ending = match states.get(&(name, place)) {
+                _ if left.is_empty() => Ending::Done,
+                Some(State::Running) => {
+                    seen.running += 1;
+                    continue;
+                }
+                Some(State::Waiting(why)) => {
+                    if seen.waiting == 0 {
+                        seen.why.clone_from(why);
+                    }
+                    seen.waiting += 1;
+                    continue;
+                }
+                _ if self.doubtful.insert(task) => {
+                    seen.running += 1;
+                    continue;
+                }
+                Some(State::Ended(ending)) => *ending,
+                None => Ending::Lost,
+            };
+            self.ledger.jobs[job].over.insert(place);
+            let left = self.worth_another(left, ending);
+            seen.again.extend(left.iter().map(|piece| (*piece, ending)));
+            again.entry(grown(request, ending)).or_default().extend(left);
+        }
+        // each piece by itself now: one that fails takes no other with it
+        let tasks = again
+            .into_iter()
+            .flat_map(|(request, pieces)| pieces.into_iter().map(move |piece| Task { request, pieces: vec![piece] }));
+        self.give(tasks.collect())?;
+        self.verdict(&missing, &seen)?;
+        Ok(seen)
+    }
+
+    /// Job, place and number of every task that is not known to be over.
+    fn open_tasks(&self) -> Vec<(usize, usize, usize)> {
+        let of_job = |(job, it): (usize, &Job)| {
+            let open = (0..it.array.count).filter(|place| !it.over.contains(place));
+            open.map(|place| (job, place, it.array.first + place)).collect::<Vec<_>>()
+        };
+        self.ledger.jobs.iter().enumerate().flat_map(of_job).collect()
+    }
+
+    /// Those of a task's pieces that are given again.
+    fn worth_another(&mut self, left: Vec<usize>, ending: Ending) -> Vec<usize> {
+        let tried = |piece: &usize| self.ledger.attempts.get(piece).copied().unwrap_or(0);
+        let hopeless = |piece: &usize| ending == Ending::Cancelled || tried(piece) >= ATTEMPTS;
+        let (given_up, again): (Vec<usize>, Vec<usize>) = left.into_iter().partition(hopeless);
+        self.given_up.extend(given_up.into_iter().map(|piece| (piece, ending)));
+        again
+    }
+
+    fn verdict(&self, missing: &BTreeSet<usize>, seen: &Seen) -> Result<(), ClusterError> {
+        let hopeless = self.given_up.iter().filter(|(piece, _)| missing.contains(piece));
+        let hopeless: Vec<Ending> = hopeless.map(|(_, ending)| *ending).collect();
+        match hopeless.last() {
+            Some(ending) if seen.running + seen.waiting == 0 && seen.again.is_empty() => {
+                Err(ClusterError::GivenUp { pieces: hopeless.len(), ending: *ending, logs: self.work.logs() })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Gives tasks, those that ask for the same in one array. What has been given is kept after each array, so that a kill in between loses one of them at most,
+    /// whose pieces are then done twice.
+    fn give(&mut self, mut tasks: Vec<Task>) -> Result<(), ClusterError> {
+        tasks.sort_by_key(|task| task.request);
+        for alike in tasks.chunk_by(|a, b| a.request == b.request) {
+            for some in alike.chunks(self.scheduler.largest_array().max(1)) {
+                let array = Array { first: self.ledger.tasks.len(), count: some.len(), request: some[0].request };
+                for task in some {
+                    self.work.put(self.ledger.tasks.len(), &task.pieces)?;
+                    self.ledger.tasks.push(task.pieces.clone());
+                    task.pieces.iter().for_each(|piece| *self.ledger.attempts.entry(*piece).or_default() += 1);
+                }
+                let name = self.scheduler.submit(&array)?;
+                self.ledger.jobs.push(Job { name, array, over: BTreeSet::new() });
+                self.work.keep(&self.ledger)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// What a task asks for after one has ended so.
+fn grown(request: Request, ending: Ending) -> Request {
+    match ending {
+        Ending::TimedOut => request.longer(),
+        Ending::OutOfMemory => request.larger(),
+        Ending::Done | Ending::Failed | Ending::Lost | Ending::Cancelled => request,
+    }
+}
+
+#[cfg(test)]
+mod tests;

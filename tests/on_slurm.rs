@@ -1,0 +1,104 @@
+//! Studies through a real Slurm: `tests/slurm/cluster.sh cargo test --test on_slurm -- --ignored --test-threads 1`.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::Duration;
+
+mod common {
+    pub mod program;
+    pub mod shared_study;
+}
+use common::program::{said, trackbed};
+use common::shared_study::{POINTS, STUDY, assert_same_answer, kept_runs};
+
+fn study(out: &Path, more: &[&str]) -> (Option<i32>, String) {
+    let output = trackbed(&[&["study"], &STUDY[..], &["--out", out.to_str().unwrap()], more].concat());
+    (output.status.code(), said(&output))
+}
+
+/// A study on Slurm that goes on beside the test.
+fn begun(out: &Path, more: &[&str]) -> Child {
+    let arguments = [&["study"], &STUDY[..], &["--executor", "slurm", "--out", out.to_str().unwrap()], more].concat();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_trackbed"));
+    command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).env("NO_COLOR", "1").spawn().unwrap()
+}
+
+fn wait_for(what: &str, mut is_so: impl FnMut() -> bool) {
+    for _ in 0..6000 {
+        if is_so() {
+            return;
+        }
+        thread::sleep(Duration::from_millis(10));
+    }
+    panic!("waited a minute for {what}");
+}
+
+/// Job and place of tasks that Slurm has, in any state.
+fn tasks(state: &str) -> Vec<String> {
+    let output = Command::new("squeue").args(["-h", "-r", "-t", state, "-o", "%F_%K"]).output().unwrap();
+    String::from_utf8_lossy(&output.stdout).lines().map(str::to_owned).collect()
+}
+
+/// One after the other: they count the tasks of the cluster.
+#[test]
+#[ignore = "needs a Slurm: tests/slurm/cluster.sh"]
+fn a_study_on_slurm_is_the_study_on_this_machine() {
+    let folder = tempfile::tempdir().unwrap();
+    let [alone, slurm, killed, left, moved] =
+        ["alone", "slurm", "killed", "left", "moved"].map(|name| folder.path().join(name));
+    assert_eq!(study(&alone, &[]).0, Some(0));
+
+    let (code, told) = study(&slurm, &["--executor", "slurm"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert_same_answer(&alone, &slurm);
+    assert!(tasks("all").len() >= 2, "{:?}", tasks("all"));
+
+    // a task whose program is killed is given again
+    let mut child = begun(&killed, &[]);
+    wait_for("a task", || kept_runs(&killed) > 0 && !tasks("running").is_empty());
+    // the worker itself: what `scancel` ends counts as cancelled
+    let worker = format!("work {}", killed.display());
+    assert!(Command::new("pkill").args(["-KILL", "--oldest", "--full", &worker]).status().unwrap().success());
+    wait_for("its end", || child.try_wait().unwrap().is_some());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    assert!(said(&output).contains("given again"), "{}", said(&output));
+    assert_same_answer(&alone, &killed);
+
+    // who watches is killed: jobs go on, who comes next gives nothing twice, and a copy elsewhere gives the same tables
+    let before = tasks("all").len();
+    let mut child = begun(&left, &["--jobs", "1"]);
+    wait_for("a run", || kept_runs(&left) > 0);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let given = tasks("all").len() - before;
+    assert!(kept_runs(&left) < POINTS);
+    assert!(
+        Command::new("cp").args(["-r", left.to_str().unwrap(), moved.to_str().unwrap()]).status().unwrap().success()
+    );
+    let (code, told) = study(&left, &["--executor", "slurm", "--resume", "--jobs", "1"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert_eq!(tasks("all").len() - before, given, "nothing is given twice");
+    assert_same_answer(&alone, &left);
+    let (code, told) = study(&moved, &["--resume"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert_same_answer(&alone, &moved);
+
+    // what a person cancels stays cancelled, and what Slurm refuses is told in its words
+    let ended = folder.path().join("ended");
+    let mut child = begun(&ended, &["--jobs", "1"]);
+    wait_for("a run", || kept_runs(&ended) > 0);
+    Command::new("scancel").arg("--name=speeds").status().unwrap();
+    wait_for("its end", || child.try_wait().unwrap().is_some());
+    let told = said(&child.wait_with_output().unwrap());
+    assert!(told.contains("E0815") && told.contains("the last attempt was cancelled"), "{told}");
+    let refused = folder.path().join("refused");
+    let (code, told) = study(&refused, &["--executor", "slurm", "--partition", "nowhere"]);
+    assert_eq!(code, Some(1));
+    assert!(told.contains("E0815") && told.contains("`sbatch` refused") && told.contains("partition"), "{told}");
+    let (code, told) = study(&refused, &["--executor", "slurm", "--resume"]);
+    assert_eq!(code, Some(0), "with another partition it goes on: {told}");
+    assert!(fs::metadata(refused.join("study.csv")).is_ok());
+}

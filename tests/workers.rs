@@ -1,0 +1,129 @@
+//! A study that several processes share through its directory, without a scheduler: the answer is that of one process.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::Duration;
+
+mod common {
+    pub mod program;
+    pub mod shared_study;
+}
+use common::program::{said, trackbed};
+use common::shared_study::{POINTS, STUDY, assert_same_answer, kept_runs};
+
+fn study(out: &Path, more: &[&str]) -> (Option<i32>, String) {
+    let output = trackbed(&[&["study"], &STUDY[..], &["--out", out.to_str().unwrap()], more].concat());
+    (output.status.code(), said(&output))
+}
+
+fn worker(out: &Path, tasks: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_trackbed"));
+    command.args(["work", out.to_str().unwrap()]).args(tasks).env("NO_COLOR", "1");
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+}
+
+#[test]
+fn workers_that_share_a_directory_give_the_answer_of_one_process() {
+    let folder = tempfile::tempdir().unwrap();
+    let (alone, shared) = (folder.path().join("alone"), folder.path().join("shared"));
+    assert_eq!(study(&alone, &[]).0, Some(0));
+    let (code, told) = study(&shared, &["--executor", "workers"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("tasks with 12 runs are in") && told.contains("| xargs -P 4 -n 1 trackbed work"), "{told}");
+    assert!(!shared.join("study.csv").exists());
+    let (code, told) = study(&shared, &[]);
+    assert!(code == Some(1) && told.contains("E0802") && told.contains("--resume"), "it is under way: {told}");
+
+    // one of two is killed in the middle; whoever comes later does the rest, and nothing twice
+    let mut killed = worker(&shared, &[]).spawn().unwrap();
+    while kept_runs(&shared) < 2 {
+        thread::sleep(Duration::from_millis(5));
+    }
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    let before = kept_runs(&shared);
+    assert!((2..POINTS).contains(&before));
+    let workers = [worker(&shared, &[]).spawn().unwrap(), worker(&shared, &[]).spawn().unwrap()];
+    let outputs = workers.map(|worker| worker.wait_with_output().unwrap());
+    let done: usize = outputs.iter().map(|output| said(output).matches(" s\n").count()).sum();
+    assert_eq!(done, POINTS - before, "{:?}", outputs.iter().map(said).collect::<Vec<_>>());
+    assert_eq!(kept_runs(&shared), POINTS);
+    let (code, told) = study(&shared, &["--resume"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert_same_answer(&alone, &shared);
+    assert_eq!(fs::read_dir(shared.join(".trackbed")).unwrap().flatten().filter(|e| e.path().is_dir()).count(), 0);
+
+    let late = said(&worker(&shared, &[]).output().unwrap());
+    assert!(late.contains("no study is under way"), "{late}");
+}
+
+#[test]
+fn a_worker_computes_the_tasks_that_it_is_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    assert_eq!(study(&out, &["--executor", "workers"]).0, Some(0));
+    let output = worker(&out, &["0", "--threads", "1"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let first = kept_runs(&out);
+    assert!((1..POINTS).contains(&first), "{first}");
+    let output = worker(&out, &["0"]).output().unwrap();
+    assert!(output.status.code() == Some(0) && said(&output).is_empty(), "it is done: {}", said(&output));
+    let output = worker(&out, &["1000"]).output().unwrap();
+    assert!(output.status.code() == Some(1) && said(&output).contains("holds no task 1000"), "{}", said(&output));
+    assert_eq!(kept_runs(&out), first);
+    let (code, told) = study(&out, &["--resume"]);
+    assert_eq!(code, Some(0), "what is missing is computed here: {told}");
+}
+
+#[test]
+fn a_worker_refuses_a_scene_that_has_changed() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.track");
+    let text = fs::read_to_string("scenarios/study_support.track").unwrap();
+    fs::write(&scene, &text).unwrap();
+    for module in ["transition.track"] {
+        fs::copy(Path::new("scenarios").join(module), folder.path().join(module)).unwrap();
+    }
+    let out = folder.path().join("out");
+    let arguments = ["study", scene.to_str().unwrap(), "--out", out.to_str().unwrap(), "--executor", "workers"];
+    let output = trackbed(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    fs::write(&scene, text.replace("study ", "let other = 1\nstudy ")).unwrap();
+    let output = worker(&out, &["0"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        said(&output).contains("E0809") && said(&output).contains("not the scene of the study"),
+        "{}",
+        said(&output)
+    );
+    assert_eq!(kept_runs(&out), 0);
+}
+
+/// Scripts are shown without a cluster; a study is not begun without one.
+#[test]
+fn a_machine_without_slurm_shows_its_scripts_and_begins_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = |more: &[&str]| {
+        let arguments = [&["study"], &STUDY[..], &["--out", out.to_str().unwrap()], more].concat();
+        let mut command = Command::new(env!("CARGO_BIN_EXE_trackbed"));
+        let output = command.args(arguments).env("NO_COLOR", "1").env("PATH", "/nowhere").output().unwrap();
+        (output.status.code(), said(&output))
+    };
+    let slurm = ["--executor", "slurm", "--cores", "2", "--partition", "long", "--jobs", "3"];
+    let (code, told) = run(&[&slurm[..], &["--dry-run"]].concat());
+    assert_eq!(code, Some(0), "{told}");
+    for line in
+        ["%3\n", "--mem=512M\n", "--cpus-per-task=2\n", "--partition=long\n", "SLURM_ARRAY_TASK_ID)) --threads 2\n"]
+    {
+        assert!(told.contains(line), "{line}: {told}");
+    }
+    assert!(!out.exists());
+    let (code, told) = run(&slurm);
+    assert!(code == Some(1) && told.contains("E0815") && told.contains("cannot start `sinfo`"), "{told}");
+    let (code, told) = run(&["--cores", "2"]);
+    assert!(code == Some(2) && told.contains("`--cores` needs `--executor slurm`"), "{told}");
+}
