@@ -1,4 +1,4 @@
-//! Studies through a real Slurm: `tests/slurm/cluster.sh cargo test --test on_slurm -- --ignored --test-threads 1`.
+//! Studies and packings through a real Slurm: `tests/slurm/cluster.sh cargo test --test on_slurm -- --ignored --test-threads 1`.
 
 use std::fs;
 use std::path::Path;
@@ -8,9 +8,11 @@ use std::time::Duration;
 
 mod common {
     pub mod program;
+    pub mod shared_packings;
     pub mod shared_study;
 }
 use common::program::{said, trackbed};
+use common::shared_packings::{PACKINGS, assert_same_run};
 use common::shared_study::{POINTS, STUDY, assert_same_answer, kept_runs};
 
 fn study(out: &Path, more: &[&str]) -> (Option<i32>, String) {
@@ -101,4 +103,23 @@ fn a_study_on_slurm_is_the_study_on_this_machine() {
     let (code, told) = study(&refused, &["--executor", "slurm", "--resume"]);
     assert_eq!(code, Some(0), "with another partition it goes on: {told}");
     assert!(fs::metadata(refused.join("study.csv")).is_ok());
+}
+
+#[test]
+#[ignore = "needs a Slurm: tests/slurm/cluster.sh"]
+fn packings_on_slurm_are_those_of_this_machine() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.track");
+    fs::write(&scene, PACKINGS).unwrap();
+    let [alone, slurm] = ["alone", "slurm"].map(|name| folder.path().join(name));
+    let run = |out: &Path, more: &[&str]| {
+        let output = trackbed(&[&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()], more].concat());
+        (output.status.code(), said(&output))
+    };
+    let (code, told) = run(&alone, &[]);
+    assert_eq!(code, Some(0), "{told}");
+    let (code, told) = run(&slurm, &["--executor", "slurm"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("goes on after 16 axles"), "{told}");
+    assert_same_run(&alone, &slurm);
 }

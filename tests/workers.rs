@@ -8,9 +8,11 @@ use std::time::Duration;
 
 mod common {
     pub mod program;
+    pub mod shared_packings;
     pub mod shared_study;
 }
 use common::program::{said, trackbed};
+use common::shared_packings::{PACKINGS, assert_same_run};
 use common::shared_study::{POINTS, STUDY, assert_same_answer, kept_runs};
 
 fn study(out: &Path, more: &[&str]) -> (Option<i32>, String) {
@@ -57,7 +59,7 @@ fn workers_that_share_a_directory_give_the_answer_of_one_process() {
     assert_eq!(fs::read_dir(shared.join(".trackbed")).unwrap().flatten().filter(|e| e.path().is_dir()).count(), 0);
 
     let late = said(&worker(&shared, &[]).output().unwrap());
-    assert!(late.contains("no study is under way"), "{late}");
+    assert!(late.contains("no study and no run is under way"), "{late}");
 }
 
 #[test]
@@ -126,4 +128,49 @@ fn a_machine_without_slurm_shows_its_scripts_and_begins_nothing() {
     assert!(code == Some(1) && told.contains("E0815") && told.contains("cannot start `sinfo`"), "{told}");
     let (code, told) = run(&["--cores", "2"]);
     assert!(code == Some(2) && told.contains("`--cores` needs `--executor slurm`"), "{told}");
+}
+
+#[test]
+fn packings_of_a_run_are_those_of_one_process() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.track");
+    fs::write(&scene, PACKINGS).unwrap();
+    let [alone, killed, shared] = ["alone", "killed", "shared"].map(|name| folder.path().join(name));
+    let arguments = |out: &Path, more: &[&'static str]| {
+        let all = ["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()].map(String::from);
+        all.into_iter().chain(more.iter().map(|text| text.to_string())).collect::<Vec<String>>()
+    };
+    let run = |out: &Path, more: &[&'static str]| {
+        let arguments = arguments(out, more);
+        let output = trackbed(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+        (output.status.code(), said(&output))
+    };
+    let (code, told) = run(&alone, &[]);
+    assert_eq!(code, Some(0), "{told}");
+
+    // killed in a further packing, before anything of the run itself is kept
+    let mut child = Command::new(env!("CARGO_BIN_EXE_trackbed"));
+    let mut child = child.args(arguments(&killed, &[])).stderr(Stdio::null()).stdout(Stdio::null()).spawn().unwrap();
+    while !killed.join("packings/2").exists() {
+        thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let (code, told) = run(&killed, &["--resume"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert_same_run(&alone, &killed);
+
+    let (code, told) = run(&shared, &["--executor", "workers"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("with 3 runs are in"), "{told}");
+    let workers = [worker(&shared, &[]).spawn().unwrap(), worker(&shared, &[]).spawn().unwrap()];
+    for worker in workers {
+        let output = worker.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    }
+    assert!(shared.join("packings/3/manifest.json").exists() && !shared.join("manifest.json").exists());
+    let (code, told) = run(&shared, &["--resume"]);
+    assert_eq!(code, Some(0), "{told}");
+    assert!(told.contains("goes on after 16 axles"), "the run itself was computed too: {told}");
+    assert_same_run(&alone, &shared);
 }

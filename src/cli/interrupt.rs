@@ -1,9 +1,11 @@
 //! Ctrl-C, SIGTERM and SIGHUP: the first asks a run to keep what it has and to stop, the second ends the program.
 
 use super::terminal;
+use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 static ASKED: AtomicBool = AtomicBool::new(false);
+static LISTENING: Once = Once::new();
 /// What shells give for a program that SIGINT has ended.
 const ENDED: i32 = 130;
 
@@ -14,8 +16,10 @@ pub(super) fn asked() -> &'static AtomicBool {
             std::process::exit(ENDED);
         }
     };
-    if let Err(error) = ctrlc::set_handler(handler) {
-        terminal::note(&format!("Ctrl-C ends the run at once and keeps the last checkpoint: {error}\n"));
-    }
+    LISTENING.call_once(|| {
+        if let Err(error) = ctrlc::set_handler(handler) {
+            terminal::note(&format!("Ctrl-C ends the run at once and keeps the last checkpoint: {error}\n"));
+        }
+    });
     &ASKED
 }

@@ -1,6 +1,8 @@
 //! `trackbed run`: runs a scene into a directory, with checkpoints, a report and the verdict on its expectations.
 
+use super::cluster::{self, ClusterArguments, Elsewhere, Executor as Place};
 use super::memory::MemoryArgument;
+use super::run_elsewhere::{self, Packings, ToTheLastAxle};
 use super::run_progress::Shown;
 use super::scene::{PassArguments, SceneArguments, SeedArgument, failed, not_yet, show};
 use super::{Outcome, interrupt, pack, report, stored, terminal};
@@ -18,7 +20,7 @@ use crate::store::{Directory, Mode, Work};
 use crate::units::number;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Run a scene and write its results and report
@@ -47,9 +49,14 @@ pub(super) struct Arguments {
     /// Where the packed beds of test rigs are kept, by what made them
     #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]
     cache: Option<PathBuf>,
+    #[command(flatten)]
+    cluster: ClusterArguments,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
+    if arguments.cluster.are_misused() {
+        return Outcome::Usage;
+    }
     let Some(threads) = arguments.threads else { return run_here(arguments) };
     match rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build() {
         Ok(pool) => pool.install(|| run_here(arguments)),
@@ -73,18 +80,107 @@ fn run_here(arguments: &Arguments) -> Outcome {
     let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else {
         return not_yet(&compiled);
     };
-    if let Some(refusal) = arguments.memory.refusal(graph) {
+    if arguments.cluster.dry_run {
+        return dry_run(arguments, &compiled, graph, scenario);
+    }
+    let refusal = arguments.memory.refusal(graph).filter(|_| arguments.cluster.executor == Place::Local);
+    if let Some(refusal) = refusal {
         return stop(&compiled, refusal);
     }
     let asked = interrupt::asked();
     let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph, asked };
-    match Directory::open(&arguments.out, running.work(arguments), arguments.mode()) {
-        Ok(directory) if directory.finished().is_some() => again(directory.path(), &compiled),
-        Ok(directory) => further_packings(arguments, &running)
-            .and_then(|()| compute(arguments, directory, &running))
-            .map_or_else(|outcome| outcome, |run| verdicts(&run.summary.expectations, scenario, &compiled)),
-        Err(error) => stop(&compiled, stored::diagnostic(&error)),
+    let directory = match Directory::open(&arguments.out, running.work(arguments), arguments.mode()) {
+        Ok(directory) if directory.finished().is_some() => return again(directory.path(), &compiled),
+        Ok(directory) => directory,
+        Err(error) => return stop(&compiled, stored::diagnostic(&error)),
+    };
+    let has_further = run_elsewhere::needs(graph, scenario).len() > 1;
+    if has_further && let Err(error) = run_elsewhere::begin(&directory) {
+        return stop(&compiled, stored::diagnostic(&error));
     }
+    let run = computed_elsewhere(arguments, directory, &running).and_then(|directory| {
+        further_packings(arguments, &running)?;
+        compute(arguments, directory, &running)
+    });
+    run.map_or_else(|outcome| outcome, |run| verdicts(&run.summary.expectations, scenario, &compiled))
+}
+
+/// Shows what a cluster would be asked for.
+fn dry_run(arguments: &Arguments, compiled: &Compiled, graph: &Graph, scenario: &Scenario) -> Outcome {
+    match arguments.asked().dry_run(&run_elsewhere::needs(graph, scenario)) {
+        Ok(scripts) => {
+            terminal::out(&scripts);
+            Outcome::Fine
+        }
+        Err(error) => stop(compiled, cluster::diagnostic(&error)),
+    }
+}
+
+/// Has a cluster compute the packings, where it is asked to. Gives the directory back, to go on from there.
+fn computed_elsewhere(
+    arguments: &Arguments,
+    directory: Directory,
+    running: &Running<'_>,
+) -> Result<Directory, Outcome> {
+    if arguments.cluster.executor == Place::Local {
+        return Ok(directory);
+    }
+    let of_store = |error| stop(running.compiled, stored::diagnostic(&error));
+    run_elsewhere::begin(&directory).map_err(of_store)?;
+    let state = directory.shared().clone();
+    // the lock is for the process that computes the run itself
+    drop(directory);
+    let scene = (running.graph, running.scenario);
+    match run_elsewhere::perform(arguments, &arguments.asked(), &state, scene) {
+        Ok(None) => {}
+        Ok(Some(outcome)) => return Err(outcome),
+        Err(error) => return Err(stop(running.compiled, cluster::diagnostic(&error))),
+    }
+    Directory::open(&arguments.out, running.work(arguments), Mode::Resume).map_err(of_store)
+}
+
+/// Computes packings of a run that another process watches.
+pub(super) fn packings_of(run: &Path, packings: &Packings) -> Result<(), Outcome> {
+    let arguments = Arguments::of_packings(run, packings);
+    let scene = &arguments.scene;
+    let compiled = scene.compile_without(&arguments.passes).map(Compiled::to_run).ok_or(Outcome::Usage)?;
+    let (Some(scenario), Some(graph)) = (&compiled.scenario, compiled.runnable()) else {
+        show(&compiled);
+        return Err(not_yet(&compiled));
+    };
+    let asked = interrupt::asked();
+    let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph, asked };
+    for packing in &packings.packings {
+        match packing {
+            0 => to_the_last_axle(&arguments, &running)?,
+            further => one_packing(&arguments, scenario.solve.seed + u64::from(*further), asked)?,
+        }
+    }
+    Ok(())
+}
+
+/// Computes a run up to its last axle, and keeps its state there.
+fn to_the_last_axle(arguments: &Arguments, running: &Running<'_>) -> Result<(), Outcome> {
+    let Running { compiled, sha256, scenario, graph, asked } = running;
+    let directory = Directory::open(&arguments.out, running.work(arguments), Mode::Resume)
+        .map_err(|error| stop(compiled, stored::diagnostic(&error)))?;
+    let end = ToTheLastAxle::new(graph);
+    let source = Source { sources: &compiled.sources, sha256, diagnostics: &compiled.diagnostics };
+    let mut recorder =
+        RunRecorder::new(scenario, graph).kept_in(&directory).made_by(source).interrupted_by(end.reached());
+    let from = recorder.resume().map_err(|error| stop(compiled, results_diagnostic(&error)))?;
+    let executor = Executor::default().with_beds(pack::beds(arguments.cache.as_deref()));
+    let ended = executor.run(graph, &mut Both(&mut &end, &mut recorder), from);
+    match (ended, recorder.failure()) {
+        (Err(error), _) => return Err(stop(compiled, execute::diagnose(&error, graph, &compiled.origins))),
+        (Ok(_), Some(error)) => return Err(stop(compiled, results_diagnostic(&error))),
+        (Ok(_), None) if asked.load(Ordering::Relaxed) => return Err(stopped(directory.path(), recorder.has_kept())),
+        (Ok(_), None) => {}
+    }
+    drop(recorder);
+    // whoever sees the word takes up the directory
+    drop(directory);
+    run_elsewhere::computed(&arguments.out).map_err(|error| stop(compiled, stored::diagnostic(&error)))
 }
 
 /// Runs the scene of a track on grains on the further packings that it asks for, each in a directory of its own below that of the run.
@@ -119,6 +215,33 @@ fn one_packing(arguments: &Arguments, seed: u64, asked: &'static AtomicBool) -> 
 }
 
 impl Arguments {
+    /// Those of a process that computes packings for another one.
+    fn of_packings(run: &Path, packings: &Packings) -> Arguments {
+        Arguments {
+            scene: SceneArguments { file: packings.scene.clone(), set: packings.set.clone() },
+            seed: SeedArgument::default(),
+            passes: PassArguments { without: packings.without.clone() },
+            out: run.to_owned(),
+            resume: true,
+            threads: None,
+            force: false,
+            memory: MemoryArgument::default(),
+            cache: packings.cache.clone(),
+            cluster: ClusterArguments::default(),
+        }
+    }
+
+    fn asked(&self) -> Elsewhere<'_> {
+        Elsewhere { arguments: &self.cluster, name: "run", out: &self.out, at_a_time: None }
+    }
+
+    /// What a process needs that computes some packings.
+    pub fn packings(&self, packings: Vec<u32>) -> Packings {
+        let SceneArguments { file, set } = self.scene.with_seed(&self.seed);
+        let (without, cache) = (self.passes.without.clone(), self.cache.as_deref().map(cluster::absolute));
+        Packings { scene: cluster::absolute(&file), set, without, cache, packings }
+    }
+
     /// What is done in the directory: a run without some passes is another work.
     fn name(&self) -> String {
         let without = self.passes.without.join("`, `");

@@ -20,7 +20,7 @@ pub(super) struct SceneArguments {
 }
 
 /// What a run is drawn from.
-#[derive(clap::Args)]
+#[derive(clap::Args, Default)]
 pub(super) struct SeedArgument {
     /// The seed of all that is random, as `--set solve.seed=N`.
     #[arg(long, value_name = "N")]

@@ -1,8 +1,9 @@
 //! `trackbed study`: runs the points of a study, here or on a cluster, and says which design is best.
 
+use super::cluster::{self, ClusterArguments, Elsewhere, Executor};
 use super::memory::MemoryArgument;
 use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
-use super::study_elsewhere::{self, ClusterArguments};
+use super::study_elsewhere;
 use super::study_local::{Unfinished, perform};
 use super::{Outcome, pack, stored, study_summary, terminal};
 use crate::check::{Folder, Remembered};
@@ -17,7 +18,6 @@ use crate::scenario::Study;
 use crate::store::Mode;
 use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Scene, StudyFolder};
 use crate::units::number;
-use clap::ValueEnum;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -49,28 +49,12 @@ pub(super) struct Arguments {
     /// Where the packed beds of test rigs are kept, by what made them
     #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]
     cache: Option<PathBuf>,
-    /// Where points run.
-    #[arg(long, value_enum, default_value = "local")]
-    executor: Executor,
     #[command(flatten)]
     cluster: ClusterArguments,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Executor {
-    /// On this machine.
-    Local,
-    /// As job arrays of Slurm, which are watched until all results are there.
-    Slurm,
-    /// By `trackbed work`, which another program starts: PBS, HyperQueue, xargs.
-    Workers,
-}
-
 pub(super) fn run(arguments: &Arguments) -> Outcome {
-    if arguments.executor != Executor::Slurm
-        && let Some(option) = arguments.cluster.given()
-    {
-        terminal::error(&format!("`{option}` needs `--executor slurm`"));
+    if arguments.cluster.are_misused() {
         return Outcome::Usage;
     }
     let scene = arguments.scene.with_seed(&arguments.seed);
@@ -138,15 +122,17 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
         return Outcome::Failed;
     }
     let jobs = arguments.jobs.map_or_else(turns::cores, usize::from);
-    let refusal = arguments.memory.refusal_of_study(&plan, jobs).filter(|_| arguments.executor == Executor::Local);
+    let refusal =
+        arguments.memory.refusal_of_study(&plan, jobs).filter(|_| arguments.cluster.executor == Executor::Local);
     if let Some(refusal) = refusal {
         say(&[refusal], compiled);
         return Outcome::Failed;
     }
-    let elsewhere =
-        study_elsewhere::Study { scene, plan: &plan, out: &arguments.out, cache: arguments.cache.as_deref() };
+    let elsewhere = study_elsewhere::Study { scene, plan: &plan, cache: arguments.cache.as_deref() };
+    let asked =
+        Elsewhere { arguments: &arguments.cluster, name: &study.name, out: &arguments.out, at_a_time: arguments.jobs };
     if arguments.cluster.dry_run {
-        return match elsewhere.dry_run(&arguments.cluster, arguments.jobs) {
+        return match asked.dry_run(&elsewhere.needs()) {
             Ok(scripts) => {
                 terminal::out(&scripts);
                 Outcome::Fine
@@ -169,16 +155,12 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
             "this study has been finished before by a version that kept less: {n} of {} points run\n",
             plan.points.len()
         )),
-        (false, _) => announce(&plan, jobs, arguments.executor),
+        (false, _) => announce(&plan, jobs, arguments.cluster.executor),
     }
     let started = Instant::now();
     if missing > 0 && !folder.is_finished() {
-        let left = match arguments.executor {
-            Executor::Local => Ok(None),
-            Executor::Slurm => elsewhere.on_slurm(&folder, &arguments.cluster, arguments.jobs),
-            Executor::Workers => elsewhere.for_workers(&folder).map(Some),
-        };
-        match left {
+        match elsewhere.perform(&folder, &asked) {
+            Ok(None) if arguments.cluster.executor == Executor::Local => {}
             Ok(None) => known = known_of(&plan, &folder),
             Ok(Some(outcome)) => return outcome,
             Err(error) => return refused(&error, compiled),
@@ -230,11 +212,7 @@ fn say(diagnostics: &[Diagnostic], compiled: &Compiled) {
 
 /// Says why a cluster does not do the study.
 fn refused(error: &ClusterError, compiled: &Compiled) -> Outcome {
-    let diagnostic = match error {
-        ClusterError::Store(error) => stored::diagnostic(error),
-        other => Diagnostic::new(Code::E0815, other.to_string()).help(other.help()),
-    };
-    say(&[diagnostic], compiled);
+    say(&[cluster::diagnostic(error)], compiled);
     Outcome::Failed
 }
 

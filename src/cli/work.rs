@@ -1,21 +1,24 @@
-//! `trackbed work`: computes runs of a study that another process has begun, beside any number of others.
+//! `trackbed work`: computes runs of a study, or packings of a run, that another process has begun, beside any number of others.
 
-use super::{Outcome, interrupt, pack, stored, terminal};
+use super::cluster::{task_key, task_numbers};
+use super::run_elsewhere::Packings;
+use super::{Outcome, interrupt, pack, run, stored, terminal};
 use crate::check::{self, Folder, Remembered};
 use crate::compile::fingerprint;
 use crate::diag::{Code, Diagnostic, Sources, render};
 use crate::execute::Executor;
 use crate::store::{StoreError, Unfinished};
-use crate::study::{self, Scene, Task, TaskRun};
+use crate::study::{self, Runs, Scene, TaskRun};
 use crate::syntax;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// Compute runs of a study that was begun with `--executor workers` or `slurm`
+/// Compute what a study or a run with `--executor workers` or `slurm` has left to other processes
 #[derive(clap::Args)]
 pub(super) struct Arguments {
-    /// The directory of the study.
+    /// The directory of the study or of the run.
     directory: PathBuf,
     /// Numbers of tasks; all where none is given. What is kept, and what another worker computes, is left out.
     tasks: Vec<usize>,
@@ -33,57 +36,78 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             return Outcome::Failed;
         }
     };
-    match pool.install(|| work(arguments)) {
-        Ok(()) => Outcome::Fine,
-        Err(diagnostic) => {
-            terminal::note(&render::human(&[*diagnostic], &Sources::default(), terminal::colour(), terminal::width()));
-            Outcome::Failed
-        }
+    pool.install(|| work(arguments)).map_or_else(|outcome| outcome, |()| Outcome::Fine)
+}
+
+/// What a process is given.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Task {
+    Runs(Runs),
+    Packings(Packings),
+}
+
+impl Task {
+    /// A task by its number; `None` where there is none.
+    fn read(state: &Unfinished, number: usize) -> Result<Option<Task>, StoreError> {
+        let Some(bytes) = state.kept(&task_key(number))? else { return Ok(None) };
+        serde_json::from_slice(&bytes).map(Some).map_err(|cause| StoreError::damaged(state.path(), cause))
     }
 }
 
-type Failure = Box<Diagnostic>;
-
-fn of_store(error: &StoreError) -> Failure {
-    Box::new(stored::diagnostic(error))
+fn fail(diagnostic: Diagnostic) -> Outcome {
+    terminal::note(&render::human(&[diagnostic], &Sources::default(), terminal::colour(), terminal::width()));
+    Outcome::Failed
 }
 
-fn work(arguments: &Arguments) -> Result<(), Failure> {
+fn of_store(error: &StoreError) -> Outcome {
+    fail(stored::diagnostic(error))
+}
+
+fn work(arguments: &Arguments) -> Result<(), Outcome> {
     let path = &arguments.directory;
     let nothing = || {
-        let said = Diagnostic::new(Code::E0802, format!("no study is under way in `{}`", path.display()));
-        Box::new(said.help("begin one with `trackbed study SCENE --executor workers --out DIR`"))
+        let said = Diagnostic::new(Code::E0802, format!("no study and no run is under way in `{}`", path.display()));
+        fail(said.help("begin one with `--executor workers --out DIR`"))
     };
-    let study = Unfinished::open(path).map_err(|error| of_store(&error))?.ok_or_else(nothing)?;
+    let state = Unfinished::open(path).map_err(|error| of_store(&error))?.ok_or_else(nothing)?;
     let asked = interrupt::asked();
     let numbers = match arguments.tasks.as_slice() {
-        [] => Task::numbers(&study).map_err(|error| of_store(&error))?,
+        [] => task_numbers(&state).map_err(|error| of_store(&error))?,
         some => some.to_vec(),
     };
     for number in numbers {
-        let task = Task::read(&study, number).map_err(|error| of_store(&error))?;
-        let task = task.ok_or_else(|| {
-            Box::new(Diagnostic::new(Code::E0802, format!("`{}` holds no task {number}", path.display())))
-        })?;
-        one_task(&study, &task, asked)?;
+        let missing = || fail(Diagnostic::new(Code::E0802, format!("`{}` holds no task {number}", path.display())));
+        match Task::read(&state, number).map_err(|error| of_store(&error))?.ok_or_else(missing)? {
+            Task::Runs(runs) => some_runs(&state, &runs, asked)?,
+            Task::Packings(packings) => some_packings(&state, &packings, number)?,
+        }
     }
     if asked.load(Ordering::Relaxed) {
         let said = Diagnostic::new(Code::E0802, "stopped: finished runs are kept");
-        return Err(Box::new(said.help("the same command computes the rest")));
+        return Err(fail(said.help("the same command computes the rest")));
     }
     Ok(())
 }
 
-fn one_task(study: &Unfinished, task: &Task, asked: &AtomicBool) -> Result<(), Failure> {
+/// Computes packings of a run, unless somebody else computes them.
+fn some_packings(state: &Unfinished, packings: &Packings, number: usize) -> Result<(), Outcome> {
+    match state.claim(&task_key(number)).map_err(|error| of_store(&error))? {
+        Some(_claim) => run::packings_of(state.path(), packings),
+        None => Ok(()),
+    }
+}
+
+fn some_runs(study: &Unfinished, task: &Runs, asked: &AtomicBool) -> Result<(), Outcome> {
     let name = task.scene.display().to_string();
-    let unreadable = |why: String| Box::new(Diagnostic::new(Code::E0802, format!("cannot read `{name}`: {why}")));
+    let unreadable = |why: String| fail(Diagnostic::new(Code::E0802, format!("cannot read `{name}`: {why}")));
     let bytes = check::read_bounded(&task.scene).map_err(|error| unreadable(error.to_string()))?;
     let text = syntax::decode(&name, &bytes).map_err(|_| unreadable("it is not readable text".into()))?;
     let modules = Remembered::new(Folder(task.scene.parent().unwrap_or(Path::new("")).to_owned()));
     let scene = Scene { name: &name, text: &text, modules: &modules, set: &task.set };
     if fingerprint(&scene.compile(&[]).sources) != study.work().scene_sha256 {
         let said = Diagnostic::new(Code::E0809, format!("`{name}` is not the scene of the study any more"));
-        return Err(Box::new(said.help("take the edit back, or begin the study anew with `--force`")));
+        return Err(fail(said.help("take the edit back, or begin the study anew with `--force`")));
     }
     let executor = Executor::default().with_beds(pack::beds(task.cache.as_deref()));
     for run in &task.runs {
@@ -97,12 +121,12 @@ fn one_task(study: &Unfinished, task: &Task, asked: &AtomicBool) -> Result<(), F
 /// Computes a run, unless it is kept or somebody else computes it. Gives `false` where the study has ended.
 fn one_run(
     study: &Unfinished,
-    task: &Task,
+    task: &Runs,
     run: &TaskRun,
     scene: Scene<'_>,
     executor: &Executor,
     asked: &AtomicBool,
-) -> Result<bool, Failure> {
+) -> Result<bool, Outcome> {
     let Some(_claim) = study.claim(&run.key).map_err(|error| of_store(&error))? else { return Ok(true) };
     // a damaged one is computed again
     if study.kept(&run.key).is_ok_and(|kept| kept.is_some()) {

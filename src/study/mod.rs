@@ -2,7 +2,7 @@
 //!
 //! [`design`](mod@design) chooses the points of a study that a file declares, [`plan`](fn@plan) checks and costs them all,
 //! [`perform`](fn@perform) runs one, and [`Answer`] says what came out and which design is best;
-//! [`StudyFolder`] is its directory. A [`Task`] is some runs of it for another process.
+//! [`StudyFolder`] is its directory. [`Runs`] are some of it for another process.
 
 mod answer;
 mod as_it_is;
@@ -15,7 +15,7 @@ mod miss;
 mod perform;
 mod plan;
 mod point;
-mod task;
+mod runs;
 
 pub use answer::{Answer, Row};
 pub use compared::{Difference, MetAndMissed, amount};
@@ -24,4 +24,4 @@ pub use miss::Miss;
 pub use perform::{PointOutcome, PointResult, Repeat, perform};
 pub use plan::{Plan, plan};
 pub use point::{PlannedPoint, Scene, values};
-pub use task::{Task, TaskRun};
+pub use runs::{Runs, TaskRun};

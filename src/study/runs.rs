@@ -2,16 +2,12 @@
 
 use super::{PlannedPoint, Repeat};
 use crate::check::Override;
-use crate::store::{StoreError, Unfinished};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// What the keys of tasks begin with.
-const KEY: &str = "task-";
-
 /// Some runs of a study, for one process.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Task {
+pub struct Runs {
     /// The file of the scene.
     pub scene: PathBuf,
     /// Edits of every run, those of the command line.
@@ -23,7 +19,7 @@ pub struct Task {
     pub runs: Vec<TaskRun>,
 }
 
-/// A run of a task.
+/// One of them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TaskRun {
     /// What a person calls it: `point 12`.
@@ -38,27 +34,6 @@ impl TaskRun {
         let further = if repeat > 0 { format!(", run {}", repeat + 1) } else { String::new() };
         let name = if point.number == 0 { "the scene as it is".into() } else { format!("point {}", point.number) };
         TaskRun { name: name + &further, key: point.key(repeat), overrides: point.overrides_of(repeat) }
-    }
-}
-
-impl Task {
-    /// Names a task among the pieces of the study.
-    pub fn key(number: usize) -> String {
-        format!("{KEY}{number}")
-    }
-
-    /// The numbers of all tasks of a study, in their order.
-    pub fn numbers(study: &Unfinished) -> Result<Vec<usize>, StoreError> {
-        let keys = study.keys()?;
-        let mut numbers: Vec<usize> = keys.iter().filter_map(|key| key.strip_prefix(KEY)?.parse().ok()).collect();
-        numbers.sort_unstable();
-        Ok(numbers)
-    }
-
-    /// A task by its number; `None` where there is none.
-    pub fn read(study: &Unfinished, number: usize) -> Result<Option<Task>, StoreError> {
-        let Some(bytes) = study.kept(&Task::key(number))? else { return Ok(None) };
-        serde_json::from_slice(&bytes).map(Some).map_err(|cause| StoreError::damaged(study.path(), cause))
     }
 }
 

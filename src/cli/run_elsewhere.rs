@@ -1,0 +1,147 @@
+//! Packings of a run on a cluster: that of the run itself and further ones, each a task that goes on from its checkpoint when it was lost.
+//!
+//! The task of the run itself goes as far as the last axle and keeps its state. Whoever watches goes on from there when all packings are finished: the
+//! last passage, tables and pages of the run need them all.
+
+use super::cluster::{Elsewhere, Executor, keep_ledger, put_json, task_key};
+use super::run::Arguments;
+use super::work::Task;
+use super::{Outcome, interrupt};
+use crate::check::Override;
+use crate::cluster::{ClusterError, Ledger, Need, Work};
+use crate::execute::{Event, Listener};
+use crate::graph::Graph;
+use crate::results;
+use crate::scenario::Scenario;
+use crate::store::{Directory, Finished, StoreError, Unfinished};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Packings of a run as plain data, which any process that sees the run's directory can compute.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Packings {
+    /// The file of the scene.
+    pub scene: PathBuf,
+    pub set: Vec<Override>,
+    /// Passes that are left out.
+    pub without: Vec<String>,
+    /// Where packed beds are kept.
+    pub cache: Option<PathBuf>,
+    /// By how much their seeds are above that of the scene; 0 is the run itself.
+    pub packings: Vec<u32>,
+}
+
+/// Says that a run is under way, before anything of it is kept.
+const BEGUN: &str = "begun";
+/// Says that the run itself has come to its last axle.
+const COMPUTED: &str = "computed";
+
+/// Marks a directory as that of a run under way: its further packings are there before anything of itself.
+pub(super) fn begin(directory: &Directory) -> Result<(), StoreError> {
+    directory.keep(BEGUN, b"").map(drop)
+}
+
+/// Says that the run itself has come to its last axle.
+pub(super) fn computed(run: &Path) -> Result<(), StoreError> {
+    match Unfinished::open(run)? {
+        Some(state) => state.add(COMPUTED, b"").map(drop),
+        None => Ok(()),
+    }
+}
+
+/// What a run takes, once for each of its packings.
+pub(super) fn needs(graph: &Graph, scenario: &Scenario) -> Vec<Need> {
+    let further = if graph.has_grains_under_track() { scenario.solve.grains.repeats - 1 } else { 0 };
+    (0..=further).map(|_| Need { seconds: graph.cost.seconds, bytes: graph.cost.bytes }).collect()
+}
+
+/// Has other processes compute all packings: gives them to Slurm and waits for them, or writes them for workers. Gives an outcome where
+/// the run ends here without its results.
+pub(super) fn perform(
+    arguments: &Arguments,
+    asked: &Elsewhere<'_>,
+    state: &Unfinished,
+    (graph, scenario): (&Graph, &Scenario),
+) -> Result<Option<Outcome>, ClusterError> {
+    let watched = state.claim("watch")?;
+    let _watched = watched.ok_or_else(|| StoreError::Busy { path: state.path().to_owned() })?;
+    let pieces = Pieces { arguments, state, seed: scenario.solve.seed, needs: needs(graph, scenario) };
+    match asked.arguments.executor {
+        Executor::Local => Ok(None),
+        Executor::Slurm => asked.watch(&pieces, state),
+        Executor::Workers => asked.for_workers(&pieces).map(Some),
+    }
+}
+
+/// The packings of a run as pieces of work, by how much their seeds are above that of the scene.
+struct Pieces<'a> {
+    arguments: &'a Arguments,
+    state: &'a Unfinished,
+    seed: u64,
+    needs: Vec<Need>,
+}
+
+impl Work for Pieces<'_> {
+    fn needs(&self) -> &[Need] {
+        &self.needs
+    }
+
+    fn missing(&self) -> Result<BTreeSet<usize>, StoreError> {
+        let run = self.state.path();
+        let mut missing = BTreeSet::new();
+        if !self.state.keys()?.contains(COMPUTED) {
+            missing.insert(0);
+        }
+        for further in 1..self.needs.len() {
+            let directory = results::packing_directory(run, self.seed + further as u64);
+            if Finished::open(&directory)?.is_none() {
+                missing.insert(further);
+            }
+        }
+        Ok(missing)
+    }
+
+    fn put(&self, task: usize, pieces: &[usize]) -> Result<(), StoreError> {
+        let packings = self.arguments.packings(pieces.iter().map(|piece| *piece as u32).collect());
+        put_json(self.state, &task_key(task), &Task::Packings(packings))
+    }
+
+    fn keep(&self, ledger: &Ledger) -> Result<(), StoreError> {
+        keep_ledger(self.state, ledger)
+    }
+
+    fn logs(&self) -> PathBuf {
+        self.state.path().join(".trackbed/logs")
+    }
+}
+
+/// Stops a run as soon as its last axle has passed, so that its state is kept there.
+pub(super) struct ToTheLastAxle {
+    total: u64,
+    reached: AtomicBool,
+}
+
+impl ToTheLastAxle {
+    pub fn new(graph: &Graph) -> ToTheLastAxle {
+        ToTheLastAxle { total: graph.blocks().map_or(u64::MAX, |blocks| blocks.total), reached: AtomicBool::new(false) }
+    }
+
+    /// Becomes true where the run is to stop.
+    pub fn reached(&self) -> &AtomicBool {
+        &self.reached
+    }
+}
+
+impl Listener for &ToTheLastAxle {
+    fn hear(&mut self, event: &Event<'_>) -> ControlFlow<()> {
+        let is_last =
+            matches!(event, Event::Block { axles, block: Some((block, _)), .. } if axles + block.axles >= self.total);
+        if is_last || interrupt::asked().load(Ordering::Relaxed) {
+            self.reached.store(true, Ordering::Relaxed);
+        }
+        ControlFlow::Continue(())
+    }
+}
