@@ -584,8 +584,6 @@ fn a_study_is_chosen_by_its_name() {
     assert!(code == Some(2) && text.contains("name `slab_pads` or `speeds`"), "{text}");
     let (code, text) = run(&["speed"]);
     assert!(code == Some(2) && text.contains("did you mean `speeds`"), "{text}");
-    let (code, text) = run(&["speeds", "--executor", "slurm"]);
-    assert!(code == Some(2) && text.contains("this machine only"), "{text}");
     assert!(!out.exists());
     let (code, text) = run(&["speeds"]);
     assert_eq!(code, Some(0), "{text}");

@@ -126,6 +126,7 @@ fn a_machine_without_slurm_shows_its_scripts_and_begins_nothing() {
     assert!(!out.exists());
     let (code, told) = run(&slurm);
     assert!(code == Some(1) && told.contains("E0815") && told.contains("cannot start `sinfo`"), "{told}");
+    assert!(!out.exists(), "nothing is begun");
     let (code, told) = run(&["--cores", "2"]);
     assert!(code == Some(2) && told.contains("`--cores` needs `--executor slurm`"), "{told}");
 }

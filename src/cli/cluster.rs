@@ -96,6 +96,11 @@ impl Elsewhere<'_> {
         Ok(scripts)
     }
 
+    /// Fails where the cluster that is asked for does not answer.
+    pub fn reach(&self) -> Result<(), ClusterError> {
+        if self.arguments.executor == Executor::Slurm { Slurm::partitions().map(drop) } else { Ok(()) }
+    }
+
     /// Gives work to Slurm and waits for all of it. Gives an outcome where somebody has asked to stop.
     pub fn watch(&self, work: &dyn Work, state: &Unfinished) -> Result<Option<Outcome>, ClusterError> {
         let partitions = Slurm::partitions()?;

@@ -87,6 +87,9 @@ fn run_here(arguments: &Arguments) -> Outcome {
     if let Some(refusal) = refusal {
         return stop(&compiled, refusal);
     }
+    if let Err(error) = arguments.asked().reach() {
+        return stop(&compiled, cluster::diagnostic(&error));
+    }
     let asked = interrupt::asked();
     let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph, asked };
     let directory = match Directory::open(&arguments.out, running.work(arguments), arguments.mode()) {

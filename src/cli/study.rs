@@ -140,6 +140,9 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
             Err(error) => refused(&error, compiled),
         };
     }
+    if let Err(error) = asked.reach() {
+        return refused(&error, compiled);
+    }
     let folder = match StudyFolder::open(&arguments.out, &plan, compiled, mode(arguments)) {
         Ok(folder) => folder,
         Err(error) => {

@@ -44,6 +44,9 @@ impl ClusterError {
             ClusterError::NotHere { .. } => {
                 "run this where Slurm's commands are, or leave out `--executor slurm`".into()
             }
+            ClusterError::Refused { program, .. } if *program != "sbatch" => {
+                format!("see that `{program}` answers on this machine, or leave out `--executor slurm`")
+            }
             ClusterError::Refused { .. } => {
                 "give what your cluster asks for with `--sbatch`, such as `--sbatch=--account=NAME`; then `--resume`"
                     .into()

@@ -37,6 +37,8 @@ impl Unfinished {
             Ok(_) | Err(StoreError::Damaged { .. }) => return Ok(false),
             Err(error) => return Err(error),
         }
+        let folder = self.layout.pieces();
+        fs::create_dir_all(&folder).map_err(|cause| StoreError::io(&folder, "create", cause))?;
         write_atomically(&path, &Seal { kind: "piece", key: &self.piece_key(key) }.close(bytes))?;
         Ok(true)
     }
