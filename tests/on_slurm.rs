@@ -1,4 +1,5 @@
-//! Studies and packings through a real Slurm: `tests/slurm/cluster.sh cargo test --test on_slurm -- --ignored --test-threads 1`.
+//! Studies and packings through a real Slurm: `tests/slurm/cluster.sh cargo test --test on_slurm -- --ignored
+//! --test-threads 1`.
 
 use std::fs;
 use std::path::Path;

@@ -86,9 +86,7 @@ fn a_worker_refuses_a_scene_that_has_changed() {
     let scene = folder.path().join("scene.track");
     let text = fs::read_to_string("scenarios/study_support.track").unwrap();
     fs::write(&scene, &text).unwrap();
-    for module in ["transition.track"] {
-        fs::copy(Path::new("scenarios").join(module), folder.path().join(module)).unwrap();
-    }
+    fs::copy("scenarios/transition.track", folder.path().join("transition.track")).unwrap();
     let out = folder.path().join("out");
     let arguments = ["study", scene.to_str().unwrap(), "--out", out.to_str().unwrap(), "--executor", "workers"];
     let output = trackbed(&arguments);

@@ -32,12 +32,12 @@ pub(super) struct ClusterArguments {
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
 pub(super) enum Executor {
-    /// On this machine
+    /// This machine
     #[default]
     Local,
-    /// As job arrays of Slurm, which are watched until all results are there
+    /// Slurm: job arrays, which are watched until all results are there
     Slurm,
-    /// By `trackbed work`, which another program starts: PBS, HyperQueue, xargs
+    /// `trackbed work`, which another program starts: PBS, HyperQueue, xargs
     Workers,
 }
 
@@ -71,8 +71,6 @@ pub(super) struct Elsewhere<'a> {
 
 /// The key of the ledger among the pieces of work.
 const LEDGER: &str = "ledger";
-/// What the keys of tasks begin with.
-const TASK: &str = "task-";
 /// Looks follow each other by these times: the first task may be short, and a queue is not to be asked often.
 const PAUSES: [Duration; 2] = [Duration::from_millis(250), Duration::from_secs(10)];
 
@@ -184,19 +182,6 @@ pub(super) fn keep_ledger(state: &Unfinished, ledger: &Ledger) -> Result<(), Sto
 fn ledger(state: &Unfinished) -> Result<Ledger, StoreError> {
     let Some(bytes) = state.kept(LEDGER)? else { return Ok(Ledger::default()) };
     serde_json::from_slice(&bytes).map_err(|cause| StoreError::damaged(state.path(), cause))
-}
-
-/// Names a task among the pieces of work.
-pub(super) fn task_key(number: usize) -> String {
-    format!("{TASK}{number}")
-}
-
-/// The numbers of all tasks, in their order.
-pub(super) fn task_numbers(state: &Unfinished) -> Result<Vec<usize>, StoreError> {
-    let keys = state.keys()?;
-    let mut numbers: Vec<usize> = keys.iter().filter_map(|key| key.strip_prefix(TASK)?.parse().ok()).collect();
-    numbers.sort_unstable();
-    Ok(numbers)
 }
 
 /// `1 run`, `3 runs`

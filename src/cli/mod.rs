@@ -31,6 +31,7 @@ mod study_elsewhere;
 mod study_local;
 mod study_summary;
 mod subject;
+mod task;
 mod terminal;
 mod work;
 

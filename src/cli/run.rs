@@ -2,9 +2,10 @@
 
 use super::cluster::{self, ClusterArguments, Elsewhere, Executor as Place};
 use super::memory::MemoryArgument;
-use super::run_elsewhere::{self, Packings, ToTheLastAxle};
+use super::run_elsewhere::{self, ToTheLastAxle};
 use super::run_progress::Shown;
 use super::scene::{PassArguments, SceneArguments, SeedArgument, failed, not_yet, show};
+use super::task::Packings;
 use super::{Outcome, interrupt, pack, report, stored, terminal};
 use crate::compile::{Compiled, fingerprint};
 use crate::diag::{Code, Diagnostic, render};
@@ -134,7 +135,7 @@ fn computed_elsewhere(
     // the lock is for the process that computes the run itself
     drop(directory);
     let scene = (running.graph, running.scenario);
-    match run_elsewhere::perform(arguments, &arguments.asked(), &state, scene) {
+    match run_elsewhere::perform(arguments.packings(), &arguments.asked(), &state, scene) {
         Ok(None) => {}
         Ok(Some(outcome)) => return Err(outcome),
         Err(error) => return Err(stop(running.compiled, cluster::diagnostic(&error))),
@@ -238,11 +239,11 @@ impl Arguments {
         Elsewhere { arguments: &self.cluster, name: "run", out: &self.out, at_a_time: None }
     }
 
-    /// What a process needs that computes some packings.
-    pub fn packings(&self, packings: Vec<u32>) -> Packings {
+    /// What a process needs that computes packings.
+    fn packings(&self) -> Packings {
         let SceneArguments { file, set } = self.scene.with_seed(&self.seed);
         let (without, cache) = (self.passes.without.clone(), self.cache.as_deref().map(cluster::absolute));
-        Packings { scene: cluster::absolute(&file), set, without, cache, packings }
+        Packings { scene: cluster::absolute(&file), set, without, cache, packings: Vec::new() }
     }
 
     /// What is done in the directory: a run without some passes is another work.

@@ -1,38 +1,22 @@
-//! Packings of a run on a cluster: that of the run itself and further ones, each a task that goes on from its checkpoint when it was lost.
+//! Packings of a run on a cluster: that of the run itself and further ones, each a task that goes on from its
+//! checkpoint when it was lost.
 //!
-//! The task of the run itself goes as far as the last axle and keeps its state. Whoever watches goes on from there when all packings are finished: the
-//! last passage, tables and pages of the run need them all.
+//! The task of the run itself goes as far as the last axle and keeps its state. Whoever watches goes on from there
+//! when all packings are finished: the last passage, tables and pages of the run need them all.
 
-use super::cluster::{Elsewhere, Executor, keep_ledger, put_json, task_key};
-use super::run::Arguments;
-use super::work::Task;
+use super::cluster::{Elsewhere, Executor, keep_ledger, put_json};
+use super::task::{Packings, Task};
 use super::{Outcome, interrupt};
-use crate::check::Override;
 use crate::cluster::{ClusterError, Ledger, Need, Work};
 use crate::execute::{Event, Listener};
 use crate::graph::Graph;
 use crate::results;
 use crate::scenario::Scenario;
 use crate::store::{Directory, Finished, StoreError, Unfinished};
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Packings of a run as plain data, which any process that sees the run's directory can compute.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Packings {
-    /// The file of the scene.
-    pub scene: PathBuf,
-    pub set: Vec<Override>,
-    /// Passes that are left out.
-    pub without: Vec<String>,
-    /// Where packed beds are kept.
-    pub cache: Option<PathBuf>,
-    /// By how much their seeds are above that of the scene; 0 is the run itself.
-    pub packings: Vec<u32>,
-}
 
 /// Says that a run is under way, before anything of it is kept.
 const BEGUN: &str = "begun";
@@ -58,17 +42,17 @@ pub(super) fn needs(graph: &Graph, scenario: &Scenario) -> Vec<Need> {
     (0..=further).map(|_| Need { seconds: graph.cost.seconds, bytes: graph.cost.bytes }).collect()
 }
 
-/// Has other processes compute all packings: gives them to Slurm and waits for them, or writes them for workers. Gives an outcome where
-/// the run ends here without its results.
+/// Has other processes compute all packings: gives them to Slurm and waits for them, or writes them for workers.
+/// Gives an outcome where the run ends here without its results.
 pub(super) fn perform(
-    arguments: &Arguments,
+    run: Packings,
     asked: &Elsewhere<'_>,
     state: &Unfinished,
     (graph, scenario): (&Graph, &Scenario),
 ) -> Result<Option<Outcome>, ClusterError> {
     let watched = state.claim("watch")?;
     let _watched = watched.ok_or_else(|| StoreError::Busy { path: state.path().to_owned() })?;
-    let pieces = Pieces { arguments, state, seed: scenario.solve.seed, needs: needs(graph, scenario) };
+    let pieces = Pieces { run, state, seed: scenario.solve.seed, needs: needs(graph, scenario) };
     match asked.arguments.executor {
         Executor::Local => Ok(None),
         Executor::Slurm => asked.watch(&pieces, state),
@@ -78,7 +62,8 @@ pub(super) fn perform(
 
 /// The packings of a run as pieces of work, by how much their seeds are above that of the scene.
 struct Pieces<'a> {
-    arguments: &'a Arguments,
+    /// What every task needs.
+    run: Packings,
     state: &'a Unfinished,
     seed: u64,
     needs: Vec<Need>,
@@ -105,8 +90,8 @@ impl Work for Pieces<'_> {
     }
 
     fn put(&self, task: usize, pieces: &[usize]) -> Result<(), StoreError> {
-        let packings = self.arguments.packings(pieces.iter().map(|piece| *piece as u32).collect());
-        put_json(self.state, &task_key(task), &Task::Packings(packings))
+        let packings = pieces.iter().map(|piece| *piece as u32).collect();
+        put_json(self.state, &Task::key(task), &Task::Packings(Packings { packings, ..self.run.clone() }))
     }
 
     fn keep(&self, ledger: &Ledger) -> Result<(), StoreError> {

@@ -1,8 +1,8 @@
 //! Points of a study on other machines: as job arrays of Slurm, or by workers that another program starts.
 
 use super::Outcome;
-use super::cluster::{Elsewhere, Executor, absolute, keep_ledger, put_json, task_key};
-use super::work::Task;
+use super::cluster::{Elsewhere, Executor, absolute, keep_ledger, put_json};
+use super::task::Task;
 use crate::cluster::{ClusterError, Ledger, Need, Work};
 use crate::store::{StoreError, Unfinished};
 use crate::study::{Plan, PlannedPoint, Runs, Scene, StudyFolder, TaskRun};
@@ -18,8 +18,8 @@ pub(super) struct Study<'a> {
 }
 
 impl Study<'_> {
-    /// Has other processes compute the points: gives them to Slurm and waits for them, or writes them for workers. Gives an outcome where
-    /// the study ends here without its answer.
+    /// Has other processes compute the points: gives them to Slurm and waits for them, or writes them for workers.
+    /// Gives an outcome where the study ends here without its answer.
     pub fn perform(&self, folder: &StudyFolder, asked: &Elsewhere<'_>) -> Result<Option<Outcome>, ClusterError> {
         let state = folder.directory().shared();
         let pieces = Pieces { study: self, state, needs: self.needs() };
@@ -30,7 +30,7 @@ impl Study<'_> {
         }
     }
 
-    /// Of every run, in the order of [`Pieces`].
+    /// What every run takes, in the order of [`Pieces`].
     pub fn needs(&self) -> Vec<Need> {
         let of = |point: &PlannedPoint| Need { seconds: point.seconds, bytes: point.bytes };
         self.plan.points.iter().flat_map(|point| (0..self.plan.study.repeats).map(move |_| of(point))).collect()
@@ -78,7 +78,7 @@ impl Work for Pieces<'_> {
             cache: cache.map(absolute),
             runs: pieces.iter().map(run).collect(),
         };
-        put_json(self.state, &task_key(task), &Task::Runs(runs))
+        put_json(self.state, &Task::key(task), &Task::Runs(runs))
     }
 
     fn keep(&self, ledger: &Ledger) -> Result<(), StoreError> {

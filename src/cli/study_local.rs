@@ -16,8 +16,8 @@ pub(super) enum Unfinished {
     Asked { kept: usize },
 }
 
-/// Runs what has not run yet, repeat by repeat, and keeps each run as soon as it is there. The order of the answer is that of the
-/// plan.
+/// Runs what has not run yet, repeat by repeat, and keeps each run as soon as it is there. The order of the answer is
+/// that of the plan.
 pub(super) fn perform(
     scene: Scene<'_>,
     plan: &Plan,

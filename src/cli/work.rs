@@ -1,7 +1,7 @@
-//! `trackbed work`: computes runs of a study, or packings of a run, that another process has begun, beside any number of others.
+//! `trackbed work`: computes runs of a study, or packings of a run, that another process has begun, beside any number
+//! of others.
 
-use super::cluster::{task_key, task_numbers};
-use super::run_elsewhere::Packings;
+use super::task::{Packings, Task};
 use super::{Outcome, interrupt, pack, run, stored, terminal};
 use crate::check::{self, Folder, Remembered};
 use crate::compile::fingerprint;
@@ -10,7 +10,6 @@ use crate::execute::Executor;
 use crate::store::{StoreError, Unfinished};
 use crate::study::{self, Runs, Scene, TaskRun};
 use crate::syntax;
-use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -39,22 +38,6 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     pool.install(|| work(arguments)).map_or_else(|outcome| outcome, |()| Outcome::Fine)
 }
 
-/// What a process is given.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum Task {
-    Runs(Runs),
-    Packings(Packings),
-}
-
-impl Task {
-    /// A task by its number; `None` where there is none.
-    fn read(state: &Unfinished, number: usize) -> Result<Option<Task>, StoreError> {
-        let Some(bytes) = state.kept(&task_key(number))? else { return Ok(None) };
-        serde_json::from_slice(&bytes).map(Some).map_err(|cause| StoreError::damaged(state.path(), cause))
-    }
-}
-
 fn fail(diagnostic: Diagnostic) -> Outcome {
     terminal::note(&render::human(&[diagnostic], &Sources::default(), terminal::colour(), terminal::width()));
     Outcome::Failed
@@ -73,7 +56,7 @@ fn work(arguments: &Arguments) -> Result<(), Outcome> {
     let state = Unfinished::open(path).map_err(|error| of_store(&error))?.ok_or_else(nothing)?;
     let asked = interrupt::asked();
     let numbers = match arguments.tasks.as_slice() {
-        [] => task_numbers(&state).map_err(|error| of_store(&error))?,
+        [] => Task::numbers(&state).map_err(|error| of_store(&error))?,
         some => some.to_vec(),
     };
     for number in numbers {
@@ -92,7 +75,7 @@ fn work(arguments: &Arguments) -> Result<(), Outcome> {
 
 /// Computes packings of a run, unless somebody else computes them.
 fn some_packings(state: &Unfinished, packings: &Packings, number: usize) -> Result<(), Outcome> {
-    match state.claim(&task_key(number)).map_err(|error| of_store(&error))? {
+    match state.claim(&Task::key(number)).map_err(|error| of_store(&error))? {
         Some(_claim) => run::packings_of(state.path(), packings),
         None => Ok(()),
     }

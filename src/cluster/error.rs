@@ -24,7 +24,8 @@ pub enum ClusterError {
         request: Request,
         known: Vec<String>,
     },
-    /// Pieces that have been given as often as is sensible; how many, how the last task has ended, and where it has printed what.
+    /// Pieces that have been given as often as is sensible; how many, how the last task has ended, and where it has
+    /// printed what.
     GivenUp {
         pieces: usize,
         ending: Ending,

@@ -1,8 +1,9 @@
-//! Machines beyond this one. Pieces of work are put into tasks ([`tasks`]), tasks are given to a scheduler ([`Slurm`]) and watched until their
-//! pieces are kept ([`Watch`]). What was lost is given again, with more time or memory where that was missing.
+//! Machines beyond this one. Pieces of work are put into tasks ([`tasks`]), tasks are given to a scheduler
+//! ([`Slurm`]) and watched until their pieces are kept ([`Watch`]). What was lost is given again, with more time or
+//! memory where that was missing.
 //!
-//! The scheduler starts `trackbed work`, and pieces come back as files of the directory of results. So nothing depends on a connection: who
-//! watches may stop and go on, on this machine or another one.
+//! The scheduler starts `trackbed work`, and pieces come back as files of the directory of results. So nothing
+//! depends on a connection: who watches may stop and go on, on this machine or another one.
 
 mod error;
 mod need;

@@ -64,7 +64,8 @@ impl Request {
     }
 }
 
-/// Puts pieces into tasks of some seconds to a minute: of equal memory, in their order. A longer piece is a task of its own.
+/// Puts pieces into tasks of some seconds to a minute: of equal memory, in their order. A longer piece is a task of
+/// its own.
 pub fn tasks(pieces: &[(usize, Need)]) -> Vec<Task> {
     let all: f64 = pieces.iter().map(|(_, need)| need.seconds).sum();
     let length = (all / ENOUGH).clamp(LENGTH[0], LENGTH[1]).max(all / MOST);

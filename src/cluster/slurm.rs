@@ -37,7 +37,7 @@ pub struct Slurm {
     pub partition: Option<String>,
     /// Those of the cluster; none where they are not known.
     pub partitions: Vec<Partition>,
-    /// Of each task.
+    /// Cores of each task.
     pub cores: u16,
     /// Tasks of an array at a time.
     pub at_a_time: Option<u16>,
@@ -67,7 +67,8 @@ impl Slurm {
         Ok(format!("#!/bin/sh\n{options}exec {program} work {directory} {number} --threads {}\n", self.cores))
     }
 
-    /// The partition for a request: the one that was named, none where the default takes it, else the one with the shortest limit that does.
+    /// The partition for a request: the one that was named, none where the default takes it, else the one with the
+    /// shortest limit that does.
     fn partition_of(&self, request: Request) -> Result<Option<String>, ClusterError> {
         if self.partition.is_some() || self.partitions.is_empty() {
             return Ok(self.partition.clone());

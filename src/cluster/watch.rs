@@ -1,5 +1,5 @@
-//! Gives pieces of work to a scheduler and looks what becomes of them. Whether a piece is done is read off the directory of results and never
-//! off the scheduler, which only says what still runs.
+//! Gives pieces of work to a scheduler and looks what becomes of them. Whether a piece is done is read off the
+//! directory of results and never off the scheduler, which only says what still runs.
 
 use super::{Array, ClusterError, Ending, Need, Request, Scheduler, State, Task, tasks};
 use crate::store::StoreError;
@@ -97,7 +97,8 @@ impl<'a> Watch<'a> {
         &self.ledger
     }
 
-    /// Gives all pieces that are missing and that no task has. Attempts are counted from here: who goes on has mended something.
+    /// Gives all pieces that are missing and that no task has. Attempts are counted from here: who goes on has mended
+    /// something.
     pub fn submit(&mut self) -> Result<(), ClusterError> {
         self.ledger.attempts.clear();
         let under_way = self.ledger.under_way();
@@ -106,7 +107,8 @@ impl<'a> Watch<'a> {
         self.give(tasks(&pieces))
     }
 
-    /// Looks once, and gives again what was lost. Fails where pieces are missing that have been given often enough, and nothing else is under way.
+    /// Looks once, and gives again what was lost. Fails where pieces are missing that have been given often enough,
+    /// and nothing else is under way.
     pub fn look(&mut self) -> Result<Seen, ClusterError> {
         let missing = self.work.missing()?;
         let states = if missing.is_empty() { BTreeMap::new() } else { self.scheduler.states()? };
@@ -179,8 +181,8 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Gives tasks, those that ask for the same in one array. What has been given is kept after each array, so that a kill in between loses one of them at most,
-    /// whose pieces are then done twice.
+    /// Gives tasks, those that ask for the same in one array. What has been given is kept after each array, so that a
+    /// kill in between loses one of them at most, whose pieces are then done twice.
     fn give(&mut self, mut tasks: Vec<Task>) -> Result<(), ClusterError> {
         tasks.sort_by_key(|task| task.request);
         for alike in tasks.chunk_by(|a, b| a.request == b.request) {

@@ -1,8 +1,10 @@
-//! Work that several processes do in one directory, on one machine or on many that share a disk. One holds the directory; the others
-//! add pieces to its work. Which of them computes a piece does not matter: equal pieces have equal bytes.
+//! Work that several processes do in one directory, on one machine or on many that share a disk. One holds the
+//! directory; the others add pieces to its work. Which of them computes a piece does not matter: equal pieces have
+//! equal bytes.
 //!
-//! Two locks keep them apart. The claim of a piece says that somebody computes it now. The gate is held by all who add a piece, and alone by
-//! who begins or ends the work, so that no piece comes late into results that are in place. On a disk that knows no locks a piece may be computed twice.
+//! Two locks keep them apart. The claim of a piece says that somebody computes it now. The gate is held by all who
+//! add a piece, and alone by who begins or ends the work, so that no piece comes late into results that are in place.
+//! On a disk that knows no locks a piece may be computed twice.
 
 use super::lock::Lock;
 use super::seal::Seal;
@@ -28,7 +30,8 @@ impl Unfinished {
         Ok(Lock::claim(&folder.join(key))?.map(|lock| Claim { _lock: lock }))
     }
 
-    /// Adds a piece to the work. Gives `false`, and keeps nothing, where the work has ended meanwhile or is another one.
+    /// Adds a piece to the work. Gives `false`, and keeps nothing, where the work has ended meanwhile or is another
+    /// one.
     pub fn add(&self, key: &str, bytes: &[u8]) -> Result<bool, StoreError> {
         let _gate = Lock::share(&self.layout.gate())?;
         let path = self.piece(key)?;

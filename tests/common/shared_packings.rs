@@ -24,7 +24,8 @@ traffic { trains = ore, total = 16 axles }
 solve { substructure = cells, passages = continuous, update_every = 8 axles, tolerance = 20 %, repeats = 3 }
 "#;
 
-/// Fails where two runs, or their further packings, do not hold the same results, to the bit: manifests name every file by its hash.
+/// Fails where two runs, or their further packings, do not hold the same results, to the bit: manifests name every
+/// file by its hash.
 pub fn assert_same_run(one: &Path, other: &Path) {
     for name in ["manifest.json", "packings/2/manifest.json", "packings/3/manifest.json"] {
         assert!(fs::read(one.join(name)).unwrap() == fs::read(other.join(name)).unwrap(), "{name}");
