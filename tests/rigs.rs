@@ -93,6 +93,33 @@ fn further_packings_give_a_band_and_a_missed_expectation_is_named() {
 }
 
 #[test]
+fn a_scene_may_expect_how_many_bonds_break() {
+    let directory = tempfile::tempdir().unwrap();
+    let expecting = SCENE.replace("0 mm < max(settlement) < 10 mm", "broken_bonds_share < 5 %");
+    let glued = |strength: &str| {
+        let bond = format!(
+            "bond = {{ stiffness = 50 MN/m per contact, tensile_strength = {strength}, shear_strength = {strength} }}"
+        );
+        expecting.replace("friction = 0.7\n", &format!("friction = 0.7\n  {bond}\n"))
+    };
+    let (out, cache) = (directory.path().join("out").display().to_string(), directory.path().join("cache"));
+    let run = |text: &str| {
+        let scene = scene(directory.path(), text);
+        let run = trackbed(&["run", &scene, "--out", &out, "--cache", cache.to_str().unwrap(), "--force"]);
+        (run.status.code(), said(&run))
+    };
+    let (code, told) = run(&glued("500 kN"));
+    assert_eq!(code, Some(0), "{told}");
+    let (code, told) = run(&glued("1 N"));
+    assert!(
+        code == Some(1) && told.contains("E0804") && told.contains("expected `broken_bonds_share < 5 %`"),
+        "{told}"
+    );
+    let (code, told) = run(&expecting);
+    assert!(code == Some(1) && told.contains("E0616") && told.contains("glued grains"), "{told}");
+}
+
+#[test]
 fn a_force_that_no_bed_carries_is_told() {
     let directory = tempfile::tempdir().unwrap();
     let scene = scene(directory.path(), &SCENE.replace("5 .. 60 kN", "5 .. 9000 kN"));

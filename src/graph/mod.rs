@@ -91,6 +91,16 @@ impl Graph {
         self.nodes.iter().any(|node| matches!(node.model, Model::Grains(_) | Model::Cells(_)))
     }
 
+    /// Whether grains of it are glued.
+    pub fn has_bonds(&self) -> bool {
+        self.nodes.iter().any(|node| match &node.model {
+            Model::Bed(bed) => !bed.glued.is_empty(),
+            Model::Grains(grains) => grains.stretches.iter().any(|stretch| !stretch.glued.is_empty()),
+            Model::Cells(cells) => cells.cells.iter().any(|cell| !cell.glued.is_empty()),
+            _ => false,
+        })
+    }
+
     /// Volumes of grains under the track in which passages are recorded; none without grains.
     pub fn volumes(&self) -> &[VolumeUnderTrack] {
         let grains = |node: &Node| matches!(node.model, Model::Grains(_));

@@ -27,6 +27,9 @@ pub fn absent(measure: &Measure, clock: fn(u64) -> Clock) -> String {
     text + " was recorded"
 }
 
+/// What broken bonds need.
+const BOND: &str = "glued grains: a `granular` with a `bond`, under a track on grains or on a test rig";
+
 /// Expectations of a scene that a run of its plan cannot answer.
 pub(super) fn refusals(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
     let refused = |expectation: &Expectation| {
@@ -85,7 +88,10 @@ fn lack(measure: &Measure, graph: &Graph, track: &Track) -> Option<Lack> {
     match &graph.schedule {
         Schedule::Actuators(tests) => {
             let (bed, actuators) = graph.bed_under_actuators()?;
-            lack_of_tests(measure, bed, actuators.cycles, &tests.kept)
+            match measure.response {
+                Response::BrokenBonds => (!graph.has_bonds()).then_some(Lack::Response(BOND)),
+                _ => lack_of_tests(measure, bed, actuators.cycles, &tests.kept),
+            }
         }
         Schedule::Blocks(blocks) => lack_on_track(measure, graph, track, &blocks.recorded),
         Schedule::Static { .. } => lack_on_track(measure, graph, track, &[0]),
@@ -109,6 +115,7 @@ fn lack_on_track(measure: &Measure, graph: &Graph, track: &Track, counts: &[u64]
             Response::SettlementStep | Response::LevelChangeWheelbase | Response::LevelChange3m if !trains => {
                 Some("trains: `traffic`")
             }
+            Response::BrokenBonds if !graph.has_bonds() => Some(BOND),
             Response::FarFieldSettlement | Response::DifferentialSettlement | Response::VoidedSleepers
                 if !ballasted =>
             {

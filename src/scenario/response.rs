@@ -58,6 +58,8 @@ pub enum Response {
     DifferentialSettlement,
     /// Number of sleepers with a void.
     VoidedSleepers,
+    /// Share of the bonds between glued grains that have broken.
+    BrokenBonds,
     /// By how much the softer side of a transition lies below the stiffer one, m: the largest of all transitions.
     SettlementStep,
     /// Largest change of the unloaded level between two wheels of a bogie, m.
@@ -188,6 +190,7 @@ impl Response {
         Response::FarFieldSettlement,
         Response::DifferentialSettlement,
         Response::VoidedSleepers,
+        Response::BrokenBonds,
         Response::SettlementStep,
         Response::LevelChangeWheelbase,
         Response::LevelChange3m,
@@ -220,6 +223,7 @@ impl Response {
             Response::FarFieldSettlement => "far_field_settlement",
             Response::DifferentialSettlement => "differential_settlement",
             Response::VoidedSleepers => "voided_sleepers",
+            Response::BrokenBonds => "broken_bonds_share",
             Response::SettlementStep => "settlement_step",
             Response::LevelChangeWheelbase => "level_change_wheelbase",
             Response::LevelChange3m => "level_change_3m",
@@ -244,6 +248,7 @@ impl Response {
             Response::FarFieldSettlement
             | Response::DifferentialSettlement
             | Response::VoidedSleepers
+            | Response::BrokenBonds
             | Response::SettlementStep
             | Response::LevelChangeWheelbase
             | Response::LevelChange3m => Place::Scene,
@@ -263,7 +268,7 @@ impl Response {
             Response::SupportStiffness | Response::RailStiffness => "N/m",
             Response::ContactPressure | Response::SubgradePressure | Response::BallastStress => "Pa",
             Response::ContactLoss => "s",
-            Response::VoidedSleepers | Response::Porosity | Response::CoordinationNumber => "1",
+            Response::VoidedSleepers | Response::BrokenBonds | Response::Porosity | Response::CoordinationNumber => "1",
             _ => "m",
         }
     }
