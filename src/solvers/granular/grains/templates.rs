@@ -3,6 +3,7 @@
 use super::super::clump::{Template, TemplateError};
 use super::super::shape::Mesh;
 use super::{Angular, AngularError, Bubbles, Random, Rule, Sample};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 use std::fmt;
@@ -92,7 +93,9 @@ impl ClumpShape {
             Surfaces::Meshes(meshes) => meshes.clone(),
         };
         let fitted = |(number, surface)| self.fit(number, surface);
-        surfaces.into_iter().enumerate().map(fitted).collect()
+        // all of them before the first that fails is told: which one that is does not depend on the threads
+        let fitted: Vec<Result<Fitted, TemplatesError>> = surfaces.into_par_iter().enumerate().map(fitted).collect();
+        fitted.into_iter().collect()
     }
 
     fn fit(&self, number: usize, surface: Arc<Mesh>) -> Result<Fitted, TemplatesError> {
