@@ -159,7 +159,9 @@ fn packings_of_a_run_are_those_of_one_process() {
     assert_eq!(code, Some(0), "{told}");
     assert_same_run(&alone, &killed);
 
-    let (code, told) = run(&shared, &["--executor", "workers"]);
+    // over the results of another scene
+    assert_eq!(run(&shared, &["--set", "traffic.total=8 axles"]).0, Some(0));
+    let (code, told) = run(&shared, &["--executor", "workers", "--force"]);
     assert_eq!(code, Some(0), "{told}");
     assert!(told.contains("with 3 runs are in"), "{told}");
     let workers = [worker(&shared, &[]).spawn().unwrap(), worker(&shared, &[]).spawn().unwrap()];
@@ -167,7 +169,13 @@ fn packings_of_a_run_are_those_of_one_process() {
         let output = worker.wait_with_output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     }
-    assert!(shared.join("packings/3/manifest.json").exists() && !shared.join("manifest.json").exists());
+    let manifest = |packing: &str| fs::read(shared.join(packing).join("manifest.json")).unwrap();
+    assert_eq!(manifest("packings/3"), fs::read(alone.join("packings/3/manifest.json")).unwrap());
+    assert_ne!(
+        manifest(""),
+        fs::read(alone.join("manifest.json")).unwrap(),
+        "old results hold until the new ones are there"
+    );
     let (code, told) = run(&shared, &["--resume"]);
     assert_eq!(code, Some(0), "{told}");
     assert!(told.contains("goes on after 16 axles"), "the run itself was computed too: {told}");

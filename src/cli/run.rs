@@ -102,10 +102,11 @@ fn run_here(arguments: &Arguments) -> Outcome {
     if has_further && let Err(error) = run_elsewhere::begin(&directory) {
         return stop(&compiled, stored::diagnostic(&error));
     }
-    let run = computed_elsewhere(arguments, directory, &running).and_then(|directory| {
-        further_packings(arguments, &running)?;
-        compute(arguments, directory, &running)
-    });
+    let ready = match arguments.cluster.executor {
+        Place::Local => further_packings(arguments, &running).map(|()| directory),
+        Place::Slurm | Place::Workers => computed_elsewhere(arguments, directory, &running),
+    };
+    let run = ready.and_then(|directory| compute(arguments, directory, &running));
     run.map_or_else(|outcome| outcome, |run| verdicts(&run.summary.expectations, scenario, &compiled))
 }
 
@@ -120,27 +121,38 @@ fn dry_run(arguments: &Arguments, compiled: &Compiled, graph: &Graph, scenario: 
     }
 }
 
-/// Has a cluster compute the packings, where it is asked to. Gives the directory back, to go on from there.
+/// Has other processes compute all packings. Gives the directory back, to go on from there.
 fn computed_elsewhere(
     arguments: &Arguments,
     directory: Directory,
     running: &Running<'_>,
 ) -> Result<Directory, Outcome> {
-    if arguments.cluster.executor == Place::Local {
-        return Ok(directory);
-    }
+    let works = further_works(arguments, running)?;
     let of_store = |error| stop(running.compiled, stored::diagnostic(&error));
     run_elsewhere::begin(&directory).map_err(of_store)?;
     let state = directory.shared().clone();
     // the lock is for the process that computes the run itself
     drop(directory);
-    let scene = (running.graph, running.scenario);
-    match run_elsewhere::perform(arguments.packings(), &arguments.asked(), &state, scene) {
+    let of_run = (run_elsewhere::needs(running.graph, running.scenario), works);
+    match run_elsewhere::perform(arguments.packings(), &arguments.asked(), &state, of_run) {
         Ok(None) => {}
         Ok(Some(outcome)) => return Err(outcome),
         Err(error) => return Err(stop(running.compiled, cluster::diagnostic(&error))),
     }
     Directory::open(&arguments.out, running.work(arguments), Mode::Resume).map_err(of_store)
+}
+
+/// What each further packing is, by its directory: results of another scene that lie there are not those of this one.
+fn further_works(arguments: &Arguments, running: &Running<'_>) -> Result<Vec<(PathBuf, Work)>, Outcome> {
+    let seeds = (1..run_elsewhere::needs(running.graph, running.scenario).len() as u64)
+        .map(|further| running.scenario.solve.seed + further);
+    let work = |seed: u64| {
+        let scene = arguments.scene.with_seed(&SeedArgument::with(seed));
+        let compiled = scene.compile_without(&arguments.passes).ok_or(Outcome::Usage)?;
+        let work = Work { name: arguments.name(), scene_sha256: fingerprint(&compiled.sources) };
+        Ok((results::packing_directory(&arguments.out, seed), work))
+    };
+    seeds.map(work).collect()
 }
 
 /// Computes packings of a run that another process watches.
@@ -211,10 +223,17 @@ fn one_packing(arguments: &Arguments, seed: u64, asked: &'static AtomicBool) -> 
         return Err(not_yet(&compiled));
     };
     let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph, asked };
-    let mode = if arguments.force { Mode::Force } else { Mode::Resume };
-    let out = results::packing_directory(&arguments.out, seed);
-    let directory = Directory::open(&out, running.work(arguments), mode)
-        .map_err(|error| stop(&compiled, stored::diagnostic(&error)))?;
+    let open = |mode| Directory::open(&results::packing_directory(&arguments.out, seed), running.work(arguments), mode);
+    let directory = match (arguments.force, arguments.resume) {
+        (true, false) => open(Mode::Force),
+        // what this very run has computed is gone on with
+        (true, true) => open(Mode::Resume).or_else(|error| match error.is_of_another() {
+            true => open(Mode::Force),
+            false => Err(error),
+        }),
+        (false, _) => open(Mode::Resume),
+    };
+    let directory = directory.map_err(|error| stop(&compiled, stored::diagnostic(&error)))?;
     if directory.finished().is_some() { Ok(()) } else { compute(arguments, directory, &running).map(drop) }
 }
 
@@ -228,7 +247,7 @@ impl Arguments {
             out: run.to_owned(),
             resume: true,
             threads: None,
-            force: false,
+            force: packings.force,
             memory: MemoryArgument::default(),
             cache: packings.cache.clone(),
             cluster: ClusterArguments::default(),
@@ -243,7 +262,7 @@ impl Arguments {
     fn packings(&self) -> Packings {
         let SceneArguments { file, set } = self.scene.with_seed(&self.seed);
         let (without, cache) = (self.passes.without.clone(), self.cache.as_deref().map(cluster::absolute));
-        Packings { scene: cluster::absolute(&file), set, without, cache, packings: Vec::new() }
+        Packings { scene: cluster::absolute(&file), set, without, cache, force: self.force, packings: Vec::new() }
     }
 
     /// What is done in the directory: a run without some passes is another work.

@@ -10,9 +10,8 @@ use super::{Outcome, interrupt};
 use crate::cluster::{ClusterError, Ledger, Need, Work};
 use crate::execute::{Event, Listener};
 use crate::graph::Graph;
-use crate::results;
 use crate::scenario::Scenario;
-use crate::store::{Directory, Finished, StoreError, Unfinished};
+use crate::store::{self, Directory, Finished, StoreError, Unfinished};
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -48,11 +47,11 @@ pub(super) fn perform(
     run: Packings,
     asked: &Elsewhere<'_>,
     state: &Unfinished,
-    (graph, scenario): (&Graph, &Scenario),
+    (needs, further): (Vec<Need>, Vec<(PathBuf, store::Work)>),
 ) -> Result<Option<Outcome>, ClusterError> {
     let watched = state.claim("watch")?;
     let _watched = watched.ok_or_else(|| StoreError::Busy { path: state.path().to_owned() })?;
-    let pieces = Pieces { run, state, seed: scenario.solve.seed, needs: needs(graph, scenario) };
+    let pieces = Pieces { run, state, needs, further };
     match asked.arguments.executor {
         Executor::Local => Ok(None),
         Executor::Slurm => asked.watch(&pieces, state),
@@ -65,8 +64,9 @@ struct Pieces<'a> {
     /// What every task needs.
     run: Packings,
     state: &'a Unfinished,
-    seed: u64,
     needs: Vec<Need>,
+    /// Directory of each further packing, and what is done there.
+    further: Vec<(PathBuf, store::Work)>,
 }
 
 impl Work for Pieces<'_> {
@@ -75,15 +75,14 @@ impl Work for Pieces<'_> {
     }
 
     fn missing(&self) -> Result<BTreeSet<usize>, StoreError> {
-        let run = self.state.path();
         let mut missing = BTreeSet::new();
         if !self.state.keys()?.contains(COMPUTED) {
             missing.insert(0);
         }
-        for further in 1..self.needs.len() {
-            let directory = results::packing_directory(run, self.seed + further as u64);
-            if Finished::open(&directory)?.is_none() {
-                missing.insert(further);
+        for (number, (directory, work)) in self.further.iter().enumerate() {
+            let is_done = Finished::open(directory)?.is_some_and(|finished| finished.manifest().work == *work);
+            if !is_done {
+                missing.insert(number + 1);
             }
         }
         Ok(missing)

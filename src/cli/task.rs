@@ -24,6 +24,8 @@ pub(super) struct Packings {
     pub without: Vec<String>,
     /// Where packed beds are kept.
     pub cache: Option<PathBuf>,
+    /// Whether results of another scene are replaced.
+    pub force: bool,
     /// By how much their seeds are above that of the scene; 0 is the run itself.
     pub packings: Vec<u32>,
 }
