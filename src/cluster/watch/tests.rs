@@ -105,7 +105,7 @@ fn what_was_missing_is_given_more_of_the_next_time() {
         (Ending::Failed, 5, 512),
         (Ending::Done, 5, 512),
     ] {
-        let (work, queue) = (Pieces::new(&[10.0, 10.0, 10.0]), Queue::default());
+        let (work, queue) = (Pieces::new(&[1.0, 1.0, 1.0]), Queue::default());
         let mut watch = Watch::new(&work, &queue, Ledger::default());
         watch.submit().unwrap();
         work.finish(&[0]);
@@ -137,6 +137,7 @@ fn what_fails_again_and_again_is_given_up_when_the_rest_is_done() {
     // who goes on has mended something
     let mut watch = Watch::new(&work, &queue, work.kept.borrow().clone());
     watch.submit().unwrap();
+    assert_eq!(look_twice(&mut watch).unwrap().again, [(0, Ending::TimedOut)]);
     assert_eq!(watch.look().unwrap().waiting, 1);
 }
 
