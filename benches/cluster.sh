@@ -29,7 +29,7 @@ study() {
 workers() {
     study --executor workers
     local tasks
-    tasks=$(grep -o '^[0-9]*' "$folder/log" | tail -n 1)
+    tasks=$(grep -o 'holds [0-9]*' "$folder/log" | grep -o '[0-9]*')
     seq 0 $((tasks - 1)) | xargs -P "$(nproc)" -n 1 "$binary" work "$folder/out" --threads 1 >/dev/null
     study --resume
 }

@@ -8,12 +8,13 @@ use std::thread;
 use std::time::Duration;
 
 mod common {
+    pub mod coarse_cells;
     pub mod program;
     pub mod shared_packings;
     pub mod shared_study;
 }
 use common::program::{said, trackbed};
-use common::shared_packings::{PACKINGS, assert_same_run};
+use common::shared_packings::{assert_same_run, packings};
 use common::shared_study::{POINTS, STUDY, assert_same_answer, kept_runs};
 
 fn study(out: &Path, more: &[&str]) -> (Option<i32>, String) {
@@ -111,7 +112,7 @@ fn a_study_on_slurm_is_the_study_on_this_machine() {
 fn packings_on_slurm_are_those_of_this_machine() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("scene.track");
-    fs::write(&scene, PACKINGS).unwrap();
+    fs::write(&scene, packings()).unwrap();
     let [alone, slurm] = ["alone", "slurm"].map(|name| folder.path().join(name));
     let run = |out: &Path, more: &[&str]| {
         let output = trackbed(&[&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()], more].concat());

@@ -7,12 +7,13 @@ use std::thread;
 use std::time::Duration;
 
 mod common {
+    pub mod coarse_cells;
     pub mod program;
     pub mod shared_packings;
     pub mod shared_study;
 }
 use common::program::{said, trackbed};
-use common::shared_packings::{PACKINGS, assert_same_run};
+use common::shared_packings::{assert_same_run, packings};
 use common::shared_study::{POINTS, STUDY, assert_same_answer, kept_runs};
 
 fn study(out: &Path, more: &[&str]) -> (Option<i32>, String) {
@@ -34,7 +35,11 @@ fn workers_that_share_a_directory_give_the_answer_of_one_process() {
     assert_eq!(study(&alone, &[]).0, Some(0));
     let (code, told) = study(&shared, &["--executor", "workers"]);
     assert_eq!(code, Some(0), "{told}");
-    assert!(told.contains("tasks with 12 runs are in") && told.contains("| xargs -P 4 -n 1 trackbed work"), "{told}");
+    assert!(
+        told.contains("tasks with 12 runs; start them on any machine")
+            && told.contains("| xargs -P 4 -n 1 trackbed work"),
+        "{told}"
+    );
     assert!(!shared.join("study.csv").exists());
     let (code, told) = study(&shared, &[]);
     assert!(code == Some(1) && told.contains("E0802") && told.contains("--resume"), "it is under way: {told}");
@@ -133,7 +138,7 @@ fn a_machine_without_slurm_shows_its_scripts_and_begins_nothing() {
 fn packings_of_a_run_are_those_of_one_process() {
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("scene.track");
-    fs::write(&scene, PACKINGS).unwrap();
+    fs::write(&scene, packings()).unwrap();
     let [alone, killed, shared] = ["alone", "killed", "shared"].map(|name| folder.path().join(name));
     let arguments = |out: &Path, more: &[&'static str]| {
         let all = ["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()].map(String::from);
@@ -163,7 +168,7 @@ fn packings_of_a_run_are_those_of_one_process() {
     assert_eq!(run(&shared, &["--set", "traffic.total=8 axles"]).0, Some(0));
     let (code, told) = run(&shared, &["--executor", "workers", "--force"]);
     assert_eq!(code, Some(0), "{told}");
-    assert!(told.contains("with 3 runs are in"), "{told}");
+    assert!(told.contains("with 3 runs; start them"), "{told}");
     let workers = [worker(&shared, &[]).spawn().unwrap(), worker(&shared, &[]).spawn().unwrap()];
     for worker in workers {
         let output = worker.wait_with_output().unwrap();

@@ -135,9 +135,9 @@ impl Elsewhere<'_> {
         }
         let (out, last) = (self.out.display(), tasks.len().saturating_sub(1));
         terminal::out(&format!(
-            "{} with {} are in `{out}`; start them wherever this directory is seen, for example\n  \
+            "`{out}` holds {} with {}; start them on any machine that sees this directory, for example\n  \
              seq 0 {last} | xargs -P 4 -n 1 trackbed work '{out}'\n\
-             then the same command with `--resume` and without `--executor` gives the answer\n",
+             then run the same command with `--resume` and without `--executor`: it gives the answer\n",
             counted(tasks.len(), "task"),
             counted(missing.len(), "run")
         ));

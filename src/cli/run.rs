@@ -52,6 +52,9 @@ pub(super) struct Arguments {
     cache: Option<PathBuf>,
     #[command(flatten)]
     cluster: ClusterArguments,
+    /// Whether this is `trackbed work` for a run of another process.
+    #[arg(skip)]
+    is_worker: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
@@ -190,7 +193,9 @@ fn to_the_last_axle(arguments: &Arguments, running: &Running<'_>) -> Result<(), 
     match (ended, recorder.failure()) {
         (Err(error), _) => return Err(stop(compiled, execute::diagnose(&error, graph, &compiled.origins))),
         (Ok(_), Some(error)) => return Err(stop(compiled, results_diagnostic(&error))),
-        (Ok(_), None) if asked.load(Ordering::Relaxed) => return Err(stopped(directory.path(), recorder.has_kept())),
+        (Ok(_), None) if asked.load(Ordering::Relaxed) => {
+            return Err(stopped(arguments, directory.path(), recorder.has_kept()));
+        }
         (Ok(_), None) => {}
     }
     drop(recorder);
@@ -224,9 +229,9 @@ fn one_packing(arguments: &Arguments, seed: u64, asked: &'static AtomicBool) -> 
     };
     let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph, asked };
     let open = |mode| Directory::open(&results::packing_directory(&arguments.out, seed), running.work(arguments), mode);
-    let directory = match (arguments.force, arguments.resume) {
+    let directory = match (arguments.force, arguments.is_worker) {
         (true, false) => open(Mode::Force),
-        // what this very run has computed is gone on with
+        // an earlier attempt at this very packing goes on
         (true, true) => open(Mode::Resume).or_else(|error| match error.is_of_another() {
             true => open(Mode::Force),
             false => Err(error),
@@ -251,6 +256,7 @@ impl Arguments {
             memory: MemoryArgument::default(),
             cache: packings.cache.clone(),
             cluster: ClusterArguments::default(),
+            is_worker: true,
         }
     }
 
@@ -318,7 +324,7 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
     match (ended, recorder.failure()) {
         (Ok(Ending::Finished), _) => {}
         (Ok(Ending::Stopped), Some(error)) => return Err(refused(&error)),
-        (Ok(Ending::Stopped), None) => return Err(stopped(&out, recorder.has_kept())),
+        (Ok(Ending::Stopped), None) => return Err(stopped(arguments, &out, recorder.has_kept())),
         (Err(error), _) => return Err(stop(compiled, execute::diagnose(&error, graph, &compiled.origins))),
     }
     let timed = Timed { solve: recorder.seconds(), parts: recorder.parts(), after: Instant::now() };
@@ -333,14 +339,15 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
 }
 
 /// Says how to go on with a run that Ctrl-C or SIGTERM has stopped.
-fn stopped(out: &Path, has_kept: bool) -> Outcome {
-    let out = out.display();
+fn stopped(arguments: &Arguments, out: &Path, has_kept: bool) -> Outcome {
+    let (out, how) = (out.display(), if arguments.is_worker { "again" } else { "with `--resume`" });
     terminal::note(&match has_kept {
         true => format!(
-            "stopped: the state is kept in `{out}`\nto go on, run the same command with `--resume`: the answer will be the same\n"
+            "stopped: the state is kept in `{out}`\nto go on, run the same command {how}: the answer will be the same\n"
         ),
-        false => "stopped before there was a state to keep\nto start again, run the same command with `--resume`\n"
-            .to_owned(),
+        false => {
+            format!("stopped before there was a state to keep\nto start again, run the same command {how}\n")
+        }
     });
     Outcome::Failed
 }

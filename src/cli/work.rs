@@ -67,8 +67,8 @@ fn work(arguments: &Arguments) -> Result<(), Outcome> {
         }
     }
     if asked.load(Ordering::Relaxed) {
-        let said = Diagnostic::new(Code::E0802, "stopped: finished runs are kept");
-        return Err(fail(said.help("the same command computes the rest")));
+        terminal::note("stopped: finished runs are kept, and the same command computes the rest\n");
+        return Err(Outcome::Failed);
     }
     Ok(())
 }

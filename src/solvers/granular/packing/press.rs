@@ -113,9 +113,9 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         Ok(())
     }
 
-    /// Eases the plate, takes it away, and loads the bed again as often as the recipe says. Friction comes back when the recipe says: before
-    /// easing, after it, or after the plate has gone. With friction a bed that springs back opens a third of its contacts; without friction it
-    /// comes to rest a third as stiff.
+    /// Eases the plate, takes it away, and loads the bed again as often as the recipe says. The recipe also says when friction comes
+    /// back: before easing, after it, or after the plate has gone. With friction a third of the contacts open when the bed springs
+    /// back. Without friction the bed comes to rest a third as stiff.
     ///
     /// `weight`: weight of the bed over its area, Pa. The plate is eased to half of it, the mean pressure of the bed's own weight.
     pub fn finish(&mut self, recipe: &Recipe, weight: f64) -> Result<(), PackingError> {
