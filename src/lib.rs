@@ -46,6 +46,7 @@ pub mod store;
 pub mod compile;
 pub mod results;
 
+pub mod compare;
 pub mod embed;
 pub mod study;
 pub mod trials;

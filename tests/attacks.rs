@@ -154,3 +154,42 @@ fn a_track_that_sinks_out_of_its_ballast_stops_the_run() {
     let (_, said) = run(&law("1e-3 mm"));
     assert!(!said.contains("E0814") && said.contains("report.html"), "{said}");
 }
+
+/// Checks a scene of its own.
+fn check_text(text: &str) -> (Option<i32>, String) {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scene.track"), text).unwrap();
+    told(trackbed(&["check", "scene.track"]).current_dir(folder.path()).output().unwrap())
+}
+
+#[test]
+fn very_many_mistakes_are_counted() {
+    let wrong: String = (0..3000).map(|k| format!("material m{k} {{ density = no_{k} }}\n")).collect();
+    let (code, said) = check_text(&wrong);
+    assert_eq!(code, Some(1));
+    assert!(said.contains("5500 more errors are not shown"), "{}", &said[said.len() - 400..]);
+}
+
+#[test]
+fn lets_count_among_declarations() {
+    let lets: String = (0..100_001).map(|k| format!("let a{k} = 1\n")).collect();
+    let (code, said) = check_text(&lets);
+    assert_eq!(code, Some(1));
+    assert!(said.contains("more than 100000 declarations and `let`s in one file"), "{}", &said[..400]);
+}
+
+#[test]
+fn a_circle_of_lets_that_nothing_uses_is_told() {
+    let (_, said) = check_text("let a = b\nlet b = a\n");
+    assert!(said.contains("E0203") || said.contains("nothing uses `a`"), "{said}");
+}
+
+#[test]
+fn fresh_wins_over_the_folder_of_the_environment() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("scene.track"), "track line { sections = [] }").unwrap();
+    let scene = folder.path().join("scene.track");
+    let output = trackbed(&["pack", scene.to_str().unwrap(), "--fresh"]).env("TRACKBED_CACHE", folder.path()).output();
+    let (_, said) = told(output.unwrap());
+    assert!(!said.contains("cannot be used with"), "{said}");
+}

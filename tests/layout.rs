@@ -23,6 +23,7 @@ const FLOORS: &[(&str, u32)] = &[
     ("execute", 6),
     ("compile", 7),
     ("results", 7),
+    ("compare", 8),
     ("study", 8),
     ("trials", 8),
     ("embed", 8),

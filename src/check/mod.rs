@@ -24,8 +24,9 @@ pub use text::measured::{MeasuredCurve, measured_curve};
 pub use text::modules::{DataError, Folder, LARGEST_DATA_FILE, Modules, NoModules, Parsed, Remembered, read_bounded};
 pub use text::overrides::Override;
 
-use crate::diag::{self, Code, Diagnostic, Sources};
+use crate::diag::{self, Code, Diagnostic, Severity, Sources, Span};
 use crate::scenario::{Scenario, Study};
+use crate::syntax::limits;
 use evaluate::evaluator::Evaluator;
 use text::library::Part;
 use text::loader::{load, seeming_texts};
@@ -74,6 +75,35 @@ fn with_evaluator<T>(
     evaluated(Evaluator::new(load(name, text, overrides, Part::Whole, modules)), &ask)
 }
 
+/// Leaves the first of very many errors and of very many warnings, and counts the rest in one more.
+fn bound(diagnostics: &mut Vec<Diagnostic>) {
+    let (mut errors, mut warnings) = (0_usize, 0_usize);
+    let mut last = None;
+    diagnostics.retain(|diagnostic| {
+        let count = if diagnostic.is_error() { &mut errors } else { &mut warnings };
+        *count += 1;
+        let is_kept = *count <= limits::DIAGNOSTICS;
+        if is_kept {
+            last = diagnostic.labels.first().map(|label| label.span).or(last);
+        }
+        is_kept
+    });
+    let more = |count: usize| count.saturating_sub(limits::DIAGNOSTICS);
+    let said = match (more(errors), more(warnings)) {
+        (0, 0) => return,
+        (errors, 0) => format!("{errors} more errors are not shown"),
+        (0, warnings) => format!("{warnings} more warnings are not shown"),
+        (errors, warnings) => format!("{errors} more errors and {warnings} more warnings are not shown"),
+    };
+    let severity = if more(errors) > 0 { Severity::Error } else { Severity::Warning };
+    let rest =
+        Diagnostic::new(Code::E0103, said).severity(severity).help("mend those that are shown, then check again");
+    diagnostics.push(match last {
+        Some(span) => rest.label(Span { start: span.end, ..span }, "the last one that is shown"),
+        None => rest,
+    });
+}
+
 /// A name that is not known is told once, with every place that asks for it; so is a stretch that its place does not bear, at the
 /// first of its transitions. Takes them in order.
 fn one_cause_once(diagnostics: &mut Vec<Diagnostic>) {
@@ -101,6 +131,7 @@ fn evaluated<T>(mut eval: Evaluator<'_>, ask: &impl Fn(&mut Evaluator<'_>) -> T)
     eval.drop_superseded();
     let mut diagnostics = eval.findings.diagnostics;
     diag::sort(&mut diagnostics);
+    bound(&mut diagnostics);
     one_cause_once(&mut diagnostics);
     let sound = !diagnostics.iter().any(|d| d.is_error() || d.code == Code::E0410);
     (Checked { sources: eval.files.sources, diagnostics, scenario, studies, stated, sound }, answer)

@@ -1,7 +1,7 @@
 //! What `study` and `run` share of work on a cluster: its options, its scripts, the watch over its jobs.
 
 use super::{Outcome, interrupt, progress, terminal};
-use crate::cluster::{self, Array, ClusterError, Ledger, Need, Seen, Slurm, Watch, Work};
+use crate::cluster::{self, Array, ClusterError, Ledger, Need, Scheduler, Seen, Slurm, Watch, Work};
 use crate::diag::{Code, Diagnostic};
 use crate::store::{StoreError, Unfinished};
 use clap::ValueEnum;
@@ -81,6 +81,9 @@ impl Elsewhere<'_> {
         let partitions = Slurm::partitions().unwrap_or_default();
         let slurm = Slurm { partitions, ..self.slurm(&self.out.join(".trackbed/logs")) };
         let mut tasks = cluster::tasks(&needs.iter().copied().enumerate().collect::<Vec<_>>());
+        for task in &mut tasks {
+            task.request = task.request_within(needs, |request| slurm.longest(request));
+        }
         tasks.sort_by_key(|task| task.request);
         let mut scripts = String::new();
         let mut first = 0;

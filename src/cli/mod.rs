@@ -7,6 +7,8 @@ mod calibrate;
 mod chart;
 mod check;
 mod cluster;
+mod compare;
+mod compare_summary;
 mod docs;
 mod draw;
 mod explain;
@@ -58,6 +60,7 @@ enum Command {
     Work(work::Arguments),
     Calibrate(calibrate::Arguments),
     Report(report::Arguments),
+    Compare(compare::Arguments),
     Chart(chart::Arguments),
     Stability(stability::Arguments),
     Bench(bench::Arguments),
@@ -111,6 +114,7 @@ pub fn main() -> ExitCode {
         Command::Work(arguments) => work::run(&arguments),
         Command::Calibrate(arguments) => calibrate::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),
         Command::Stability(arguments) => stability::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),

@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", env = "TRACKBED_CACHE")]
     cache: Option<PathBuf>,
     /// Build it anew, and keep nothing
-    #[arg(long, conflicts_with = "cache")]
+    #[arg(long)]
     fresh: bool,
     #[command(flatten)]
     track: TrackArguments,

@@ -13,7 +13,7 @@ use crate::execute::{self, Both, Ending, Executor};
 use crate::graph::Graph;
 use crate::lower::Parameter;
 use crate::results::{
-    self, BedTestsView, BlockRow, NamedBytes, ResultsError, Run, RunRecorder, Scalar, Source, Verdict,
+    self, BedTestsView, BlockRow, Label, NamedBytes, ResultsError, Run, RunRecorder, Scalar, Source, Verdict,
 };
 use crate::scenario::Scenario;
 use crate::solvers::granular::Bed;
@@ -95,7 +95,7 @@ fn run_here(arguments: &Arguments) -> Outcome {
         return stop(&compiled, cluster::diagnostic(&error));
     }
     let asked = interrupt::asked();
-    let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph, asked };
+    let running = Running::new(&scene, &compiled, (scenario, graph), asked);
     let directory = match Directory::open(&arguments.out, running.work(arguments), arguments.mode()) {
         Ok(directory) if directory.finished().is_some() => return again(directory.path(), &compiled),
         Ok(directory) => directory,
@@ -168,7 +168,7 @@ pub(super) fn packings_of(run: &Path, packings: &Packings) -> Result<(), Outcome
         return Err(not_yet(&compiled));
     };
     let asked = interrupt::asked();
-    let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph, asked };
+    let running = Running::new(scene, &compiled, (scenario, graph), asked);
     for packing in &packings.packings {
         match packing {
             0 => to_the_last_axle(&arguments, &running)?,
@@ -180,7 +180,7 @@ pub(super) fn packings_of(run: &Path, packings: &Packings) -> Result<(), Outcome
 
 /// Computes a run up to its last axle, and keeps its state there.
 fn to_the_last_axle(arguments: &Arguments, running: &Running<'_>) -> Result<(), Outcome> {
-    let Running { compiled, sha256, scenario, graph, asked } = running;
+    let Running { compiled, sha256, scenario, graph, asked, .. } = running;
     let directory = Directory::open(&arguments.out, running.work(arguments), Mode::Resume)
         .map_err(|error| stop(compiled, stored::diagnostic(&error)))?;
     let end = ToTheLastAxle::new(graph);
@@ -227,7 +227,7 @@ fn one_packing(arguments: &Arguments, seed: u64, asked: &'static AtomicBool) -> 
         show(&compiled);
         return Err(not_yet(&compiled));
     };
-    let running = Running { compiled: &compiled, sha256: fingerprint(&compiled.sources), scenario, graph, asked };
+    let running = Running::new(&scene, &compiled, (scenario, graph), asked);
     let open = |mode| Directory::open(&results::packing_directory(&arguments.out, seed), running.work(arguments), mode);
     let directory = match (arguments.force, arguments.is_worker) {
         (true, false) => open(Mode::Force),
@@ -290,13 +290,25 @@ impl Arguments {
 struct Running<'a> {
     compiled: &'a Compiled,
     sha256: String,
+    /// The whole scene as one file, kept beside its results.
+    resolved: Option<String>,
     scenario: &'a Scenario,
     graph: &'a Graph,
     /// Whether somebody wants it to stop.
     asked: &'static AtomicBool,
 }
 
-impl Running<'_> {
+impl<'a> Running<'a> {
+    fn new(
+        scene: &SceneArguments,
+        compiled: &'a Compiled,
+        (scenario, graph): (&'a Scenario, &'a Graph),
+        asked: &'static AtomicBool,
+    ) -> Running<'a> {
+        let (sha256, resolved) = (fingerprint(&compiled.sources), scene.resolved_in_place());
+        Running { compiled, sha256, resolved, scenario, graph, asked }
+    }
+
     fn work(&self, arguments: &Arguments) -> Work {
         Work { name: arguments.name(), scene_sha256: self.sha256.clone() }
     }
@@ -330,7 +342,8 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
     let timed = Timed { solve: recorder.seconds(), parts: recorder.parts(), after: Instant::now() };
     let packings = results::read_packings(&out, &scenario.solve).map_err(|error| refused(&error))?;
     let run = Run::gather(&recorder, scenario, graph, source).with_packings(packings);
-    let files = files(&run, recorder.last_bed.take(), &out).map_err(|error| refused(&error))?;
+    let mut files = files(&run, recorder.last_bed.take(), &out).map_err(|error| refused(&error))?;
+    files.extend(running.resolved.iter().map(|text| (results::RESOLVED.to_owned(), text.clone().into_bytes())));
     drop(recorder);
     put_in_place(directory, &files, &timed).map_err(|error| refused(&error))?;
     summary(&run, &out.join(report::PAGE), timed.solve);
@@ -433,7 +446,11 @@ fn put_in_place(mut directory: Directory, files: &[NamedBytes], timed: &Timed) -
 /// The few numbers that people ask for first.
 fn summary(run: &Run, page: &Path, seconds: f64) {
     let mut out = format!("{}\n", run.scenario.title);
-    headline(&mut out, &run.summary.scalars, if run.tests.is_some() { &OF_TESTS } else { &OF_TRACKS });
+    headline(
+        &mut out,
+        &run.summary.scalars,
+        if run.tests.is_some() { &results::OF_TESTS } else { &results::OF_TRACKS },
+    );
     if let Some(spread) = run.summary.scalars.get("law_spread") {
         out.push_str(&format!("  {:<26}{}\n", "spread between laws", number((spread.value * 1e2).round() / 1e2)));
     }
@@ -444,43 +461,9 @@ fn summary(run: &Run, page: &Path, seconds: f64) {
     terminal::out(&out);
 }
 
-/// A scalar, how it is called, its unit, and that unit in SI.
-type Line = (&'static str, &'static str, &'static str, f64);
-
-const OF_TRACKS: [Line; 14] = [
-    ("settlement_step", "step at the structure", "mm", 1e-3),
-    ("level_change_wheelbase", "level change, wheelbase", "mm", 1e-3),
-    ("level_change_3m", "level change over 3 m", "mm", 1e-3),
-    ("max_settlement", "largest settlement", "mm", 1e-3),
-    ("max_settlement_x", "  at", "m", 1.0),
-    ("far_field_settlement", "far-field settlement", "mm", 1e-3),
-    ("voided_sleepers", "voided sleepers", "", 1.0),
-    ("broken_bonds_share", "broken bonds", "%", 0.01),
-    ("max_wheel_force", "largest wheel force", "kN", 1e3),
-    ("dynamic_amplification", "dynamic amplification", "", 1.0),
-    ("wheel_unloading", "wheel load missing", "%", 0.01),
-    ("max_rail_seat_load", "largest rail seat load", "kN", 1e3),
-    ("max_rail_moment", "largest rail moment", "kN m", 1e3),
-    ("max_rail_displacement", "largest rail displacement", "mm", 1e-3),
-];
-
-const OF_TESTS: [Line; 11] = [
-    ("max_settlement", "settlement", "mm", 1e-3),
-    ("first_settlement", "  after one cycle", "mm", 1e-3),
-    ("support_stiffness", "resilient stiffness", "MN/m", 1e6),
-    ("oedometric_modulus", "oedometric modulus", "MPa", 1e6),
-    ("peak_deviator", "largest deviator", "kPa", 1e3),
-    ("peak_friction_angle", "largest angle of friction", "deg", std::f64::consts::PI / 180.0),
-    ("peak_strain", "  at a strain of", "%", 0.01),
-    ("broken_bonds_share", "broken bonds", "%", 0.01),
-    ("cycles", "cycles", "", 1.0),
-    ("repeats", "packings", "", 1.0),
-    ("grains", "grains", "", 1.0),
-];
-
 /// A line for each scalar that there is, in its unit. Its band of confidence or its scatter over packings follows where it has one.
-fn headline(out: &mut String, scalars: &BTreeMap<String, Scalar>, lines: &[Line]) {
-    for (name, label, unit, size) in lines {
+fn headline(out: &mut String, scalars: &BTreeMap<String, Scalar>, lines: &[Label]) {
+    for Label { name, text, unit, size } in lines {
         let rounded = |value: f64| number((value / size * 1e4).round() / 1e4);
         let Some(scalar) = scalars.get(*name) else { continue };
         let band = scalars.get(&format!("{name}_confidence"));
@@ -489,7 +472,7 @@ fn headline(out: &mut String, scalars: &BTreeMap<String, Scalar>, lines: &[Line]
         let over = over.map_or(String::new(), |(mean, deviation)| {
             format!(" (over packings {}, standard deviation {})", rounded(mean.value), rounded(deviation.value))
         });
-        out.push_str(&format!("  {label:<26}{}{band} {unit}{over}\n", rounded(scalar.value)));
+        out.push_str(&format!("  {text:<26}{}{band} {unit}{over}\n", rounded(scalar.value)));
     }
 }
 

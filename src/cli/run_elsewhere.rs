@@ -38,7 +38,7 @@ pub(super) fn computed(run: &Path) -> Result<(), StoreError> {
 /// What a run takes, once for each of its packings.
 pub(super) fn needs(graph: &Graph, scenario: &Scenario) -> Vec<Need> {
     let further = if graph.has_grains_under_track() { scenario.solve.grains.repeats - 1 } else { 0 };
-    (0..=further).map(|_| Need { seconds: graph.cost.seconds, bytes: graph.cost.bytes }).collect()
+    (0..=further).map(|_| Need { seconds: graph.cost.seconds, bytes: graph.cost.bytes, goes_on: true }).collect()
 }
 
 /// Has other processes compute all packings: gives them to Slurm and waits for them, or writes them for workers.

@@ -86,9 +86,17 @@ impl SceneArguments {
 
     /// The scene as one file; `None` where there is none.
     pub fn resolve(&self) -> Option<String> {
-        let name = self.file.display().to_string();
-        let text = syntax::decode(&name, &check::read_bounded(&self.file).ok()?).ok()?;
-        check::resolve(&name, &text, &self.folder(), &self.set)
+        self.resolve_as(&self.file.display().to_string())
+    }
+
+    /// The same under the name of its file alone, so that equal scenes leave equal results wherever they lie.
+    pub fn resolved_in_place(&self) -> Option<String> {
+        self.resolve_as(&self.file.file_name()?.to_string_lossy())
+    }
+
+    fn resolve_as(&self, name: &str) -> Option<String> {
+        let text = syntax::decode(name, &check::read_bounded(&self.file).ok()?).ok()?;
+        check::resolve(name, &text, &self.folder(), &self.set)
     }
 
     /// Reads and compiles the file; `None` where it cannot be read, which has been said.

@@ -2,11 +2,12 @@
 
 use super::cluster::{self, ClusterArguments, Elsewhere, Executor};
 use super::memory::MemoryArgument;
+use super::progress::Patient;
 use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
 use super::study_elsewhere;
 use super::study_local::{Unfinished, perform};
 use super::{Outcome, pack, stored, study_summary, terminal};
-use crate::check::{Folder, Remembered};
+use crate::check::{self, Folder, Remembered};
 use crate::cluster::ClusterError;
 use crate::compile::Compiled;
 use crate::diag::nearest::nearest;
@@ -20,6 +21,7 @@ use crate::study::{self, Answer, Plan, PlannedPoint, PointResult, Scene, StudyFo
 use crate::units::number;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::time::Instant;
 
 /// Run a study of a scene: its points, its best design
@@ -97,7 +99,7 @@ fn chosen<'a>(compiled: &'a Compiled, name: Option<&str>) -> Result<&'a Study, S
 /// Diagnostics of every study of a scene, for `check`.
 pub(super) fn diagnostics(arguments: &SceneArguments, modules: &Asked, compiled: &Compiled) -> Vec<Diagnostic> {
     with_scene(arguments, modules, compiled, |scene| {
-        compiled.studies.iter().flat_map(|study| study::plan(scene, compiled, study).diagnostics).collect()
+        compiled.studies.iter().flat_map(|study| planned(scene, compiled, study).diagnostics).collect()
     })
 }
 
@@ -115,8 +117,19 @@ fn with_scene<T>(
     f(Scene { name: &name, text, modules, set: &arguments.set })
 }
 
+/// The points of a study, checked; thousands take longer than two seconds, which a bar shows.
+fn planned(scene: Scene<'_>, compiled: &Compiled, study: &Study) -> Plan {
+    let bar = Mutex::new(Patient::new("the check of all points"));
+    study::plan_told(scene, compiled, study, &|done, all| {
+        // a thread that finds another one at it has nothing new to say
+        if let Ok(mut bar) = bar.try_lock() {
+            bar.show(done, all);
+        }
+    })
+}
+
 fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study: &Study) -> Outcome {
-    let plan = study::plan(scene, compiled, study);
+    let plan = planned(scene, compiled, study);
     say(&plan.diagnostics, compiled);
     if has_errors(&plan.diagnostics) {
         return Outcome::Failed;
@@ -185,10 +198,11 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
     let best = shown.map(|index| scene.compile(&plan.points[index].overrides));
     let design = best.as_ref().and_then(|compiled| compiled.scenario.as_ref());
     let page = report::study_page(&answer, &name, design);
+    let resolved = check::resolve(&name, scene.text, scene.modules, scene.set);
     let seconds = started.elapsed().as_secs_f64();
     let timings = BTreeMap::from([("total_s".to_string(), seconds), ("jobs".to_string(), jobs as f64)]);
     if (missing > 0 || !folder.is_finished())
-        && let Err(error) = folder.finish(&plan, &answer, &page, compiled, &timings)
+        && let Err(error) = folder.finish(&plan, &answer, (&page, resolved.as_deref()), compiled, &timings)
     {
         say(&[stored::diagnostic(&error)], compiled);
         return Outcome::Failed;

@@ -32,7 +32,7 @@ impl Study<'_> {
 
     /// What every run takes, in the order of [`Pieces`].
     pub fn needs(&self) -> Vec<Need> {
-        let of = |point: &PlannedPoint| Need { seconds: point.seconds, bytes: point.bytes };
+        let of = |point: &PlannedPoint| Need { seconds: point.seconds, bytes: point.bytes, goes_on: false };
         self.plan.points.iter().flat_map(|point| (0..self.plan.study.repeats).map(move |_| of(point))).collect()
     }
 }

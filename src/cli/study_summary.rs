@@ -1,6 +1,7 @@
 //! What `trackbed study` prints at its end: a table that begins with the scene as it is, the best designs, and what stands against
 //! the answer.
 
+use super::terminal;
 use crate::diag::{Code, Diagnostic};
 use crate::scenario::{Goal, Measured};
 use crate::study::{Answer, MetAndMissed, Row, amount};
@@ -18,7 +19,7 @@ pub(super) fn text(answer: &Answer, out: &Path, seconds: f64) -> String {
     let (title, name) = (&answer.title, &answer.study.name);
     let mut text = format!("{title}, study `{name}`\n\n{}\n", measured(answer));
     let rows = shown(answer);
-    text += &aligned(&table(answer, &rows));
+    text += &terminal::aligned(&table(answer, &rows));
     if rows.len() < answer.rows.len() {
         let _ = writeln!(text, "  and {} more in study.csv", answer.rows.len() - rows.len());
     }
@@ -119,18 +120,6 @@ fn remark(answer: &Answer, row: &Row, best: bool) -> String {
         String::new()
     };
     [point, what].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
-}
-
-/// Columns as wide as their widest cell: text to the left, numbers begin there too.
-fn aligned(table: &[Vec<String>]) -> String {
-    let columns = table.first().map_or(0, Vec::len);
-    let width = |column: usize| table.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..columns).map(width).collect();
-    let line = |row: &Vec<String>| {
-        let cells: String = row.iter().zip(&widths).map(|(cell, width)| format!("  {cell:<width$}")).collect();
-        format!("{}\n", cells.trim_end())
-    };
-    table.iter().map(line).collect()
 }
 
 /// How the designs do against the constraints that some of them miss.

@@ -41,3 +41,15 @@ pub(super) fn colour() -> bool {
 pub(super) fn width() -> usize {
     std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok()).filter(|w| *w >= 40).unwrap_or(110).min(140)
 }
+
+/// Columns as wide as their widest cell: text to the left, numbers begin there too.
+pub(super) fn aligned(table: &[Vec<String>]) -> String {
+    let columns = table.first().map_or(0, Vec::len);
+    let width = |column: usize| table.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let line = |row: &Vec<String>| {
+        let cells: String = row.iter().zip(&widths).map(|(cell, width)| format!("  {cell:<width$}")).collect();
+        format!("{}\n", cells.trim_end())
+    };
+    table.iter().map(line).collect()
+}

@@ -9,6 +9,8 @@ pub struct Need {
     /// On one core, s.
     pub seconds: f64,
     pub bytes: u64,
+    /// Whether it goes on from its last checkpoint where its task is cut off.
+    pub goes_on: bool,
 }
 
 /// What a task asks of a scheduler.
@@ -57,10 +59,28 @@ impl Request {
         Request { minutes: self.minutes * 2, ..self }
     }
 
+    /// The same in no more than some minutes; `None` is no limit.
+    #[must_use]
+    pub fn within(self, longest: Option<u64>) -> Request {
+        Request { minutes: longest.map_or(self.minutes, |longest| self.minutes.min(longest)), ..self }
+    }
+
     /// Twice the memory.
     #[must_use]
     pub fn larger(self) -> Request {
         Request { megabytes: self.megabytes * 2, ..self }
+    }
+}
+
+impl Task {
+    /// What the task asks for where no task may take longer than `longest`: all of whose pieces go on from a checkpoint is done in
+    /// parts of that length.
+    #[must_use]
+    pub fn request_within(&self, needs: &[Need], longest: impl Fn(Request) -> Option<u64>) -> Request {
+        match self.pieces.iter().all(|piece| needs[*piece].goes_on) {
+            true => self.request.within(longest(self.request)),
+            false => self.request,
+        }
     }
 }
 
@@ -79,7 +99,11 @@ pub fn tasks(pieces: &[(usize, Need)]) -> Vec<Task> {
             match tasks.last_mut() {
                 Some((sum, pieces)) if sum.seconds + need.seconds <= length => {
                     pieces.push(piece);
-                    *sum = Need { seconds: sum.seconds + need.seconds, bytes: sum.bytes.max(need.bytes) };
+                    *sum = Need {
+                        seconds: sum.seconds + need.seconds,
+                        bytes: sum.bytes.max(need.bytes),
+                        goes_on: sum.goes_on && need.goes_on,
+                    };
                 }
                 _ => tasks.push((need, vec![piece])),
             }
@@ -94,7 +118,7 @@ mod tests {
     use super::*;
 
     fn need(seconds: f64, gigabytes: f64) -> Need {
-        Need { seconds, bytes: (gigabytes * 1e9) as u64 }
+        Need { seconds, bytes: (gigabytes * 1e9) as u64, goes_on: false }
     }
 
     #[test]

@@ -63,4 +63,7 @@ pub trait Scheduler {
 
     /// Most tasks of one array.
     fn largest_array(&self) -> usize;
+
+    /// Minutes of the longest task that it takes with the memory of a request; `None` where it has no limit.
+    fn longest(&self, request: Request) -> Option<u64>;
 }

@@ -74,9 +74,7 @@ impl Slurm {
             return Ok(self.partition.clone());
         }
         let takes = |partition: &&Partition| {
-            partition.minutes.is_none_or(|minutes| minutes >= request.minutes)
-                && partition.megabytes >= request.megabytes
-                && partition.cores >= self.cores.into()
+            partition.minutes.is_none_or(|m| m >= request.minutes) && self.fits(partition, request)
         };
         let fitting: Vec<&Partition> = self.partitions.iter().filter(takes).collect();
         if fitting.iter().any(|partition| partition.is_default) {
@@ -85,6 +83,11 @@ impl Slurm {
         let shortest = fitting.iter().min_by_key(|partition| partition.minutes.unwrap_or(u64::MAX));
         let known = || self.partitions.iter().map(|partition| partition.name.clone()).collect();
         shortest.map(|p| Some(p.name.clone())).ok_or_else(|| ClusterError::NoPartition { request, known: known() })
+    }
+
+    /// Whether the machines of a partition are large enough.
+    fn fits(&self, partition: &Partition, request: Request) -> bool {
+        partition.megabytes >= request.megabytes && partition.cores >= self.cores.into()
     }
 
     /// Partitions of the cluster that are up.
@@ -133,6 +136,17 @@ impl Scheduler for Slurm {
 
     fn largest_array(&self) -> usize {
         self.largest_array
+    }
+
+    fn longest(&self, request: Request) -> Option<u64> {
+        let asked = |partition: &&Partition| match &self.partition {
+            Some(name) => partition.name == *name,
+            None => self.fits(partition, request),
+        };
+        let limits: Vec<Option<u64>> =
+            self.partitions.iter().filter(asked).map(|partition| partition.minutes).collect();
+        // one without a limit takes any task
+        limits.into_iter().collect::<Option<Vec<u64>>>()?.into_iter().max()
     }
 }
 
@@ -248,6 +262,10 @@ exec '/opt/track bed/trackbed' work '/home/a/out' $((7 + SLURM_ARRAY_TASK_ID)) -
         assert_eq!(of(5, 32768).unwrap().as_deref(), Some("day"), "the default has too little memory");
         let error = of(5, 131_072).unwrap_err().to_string();
         assert_eq!(error, "no partition takes a task of 5 min and 131072 MiB (there are `short`, `long`, `day`)");
+        let longest = |megabytes| slurm.longest(Request { minutes: 1 << 20, megabytes });
+        assert_eq!((longest(8192), longest(131_072)), (Some(10_080), None));
+        let short = Slurm { partition: Some("short".into()), ..slurm.clone() };
+        assert_eq!(short.longest(Request { minutes: 1 << 20, megabytes: 512 }), Some(60));
         let named = Slurm { partition: Some("gpu".into()), ..slurm };
         assert_eq!(named.partition_of(Request { minutes: 90, megabytes: 1 << 30 }).unwrap().as_deref(), Some("gpu"));
     }

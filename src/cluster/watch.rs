@@ -9,6 +9,8 @@ use std::path::PathBuf;
 
 /// A piece is given so often before it is given up.
 const ATTEMPTS: u32 = 3;
+/// A piece that goes on from its checkpoint is done in so many parts at most, each as long as a task may be.
+const PARTS: u32 = 100;
 
 /// Work in pieces, by numbers from 0, that processes elsewhere do.
 pub trait Work {
@@ -35,6 +37,9 @@ pub struct Ledger {
     tasks: Vec<Vec<usize>>,
     /// How often each piece has been given.
     attempts: BTreeMap<usize, u32>,
+    /// How often the time of a piece was over that goes on from its checkpoint.
+    #[serde(default)]
+    parts: BTreeMap<usize, u32>,
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -101,6 +106,7 @@ impl<'a> Watch<'a> {
     /// something.
     pub fn submit(&mut self) -> Result<(), ClusterError> {
         self.ledger.attempts.clear();
+        self.ledger.parts.clear();
         let under_way = self.ledger.under_way();
         let missing = self.work.missing()?.into_iter().filter(|piece| !under_way.contains(piece));
         let pieces: Vec<(usize, Need)> = missing.map(|piece| (piece, self.work.needs()[piece])).collect();
@@ -163,8 +169,17 @@ impl<'a> Watch<'a> {
 
     /// Those of a task's pieces that are given again.
     fn worth_another(&mut self, left: Vec<usize>, ending: Ending) -> Vec<usize> {
-        let tried = |piece: &usize| self.ledger.attempts.get(piece).copied().unwrap_or(0);
-        let hopeless = |piece: &usize| ending == Ending::Cancelled || tried(piece) >= ATTEMPTS;
+        let needs = self.work.needs();
+        let in_parts = |piece: &&usize| ending == Ending::TimedOut && needs[**piece].goes_on;
+        for piece in left.iter().filter(in_parts) {
+            // it has come further: that is no failed attempt
+            *self.ledger.parts.entry(*piece).or_default() += 1;
+            self.ledger.attempts.remove(piece);
+        }
+        let count = |of: &BTreeMap<usize, u32>, piece: &usize| of.get(piece).copied().unwrap_or(0);
+        let tried = |piece: &usize| count(&self.ledger.attempts, piece) >= ATTEMPTS;
+        let hopeless =
+            |piece: &usize| ending == Ending::Cancelled || tried(piece) || count(&self.ledger.parts, piece) >= PARTS;
         let (given_up, again): (Vec<usize>, Vec<usize>) = left.into_iter().partition(hopeless);
         self.given_up.extend(given_up.into_iter().map(|piece| (piece, ending)));
         again
@@ -184,6 +199,9 @@ impl<'a> Watch<'a> {
     /// Gives tasks, those that ask for the same in one array. What has been given is kept after each array, so that a
     /// kill in between loses one of them at most, whose pieces are then done twice.
     fn give(&mut self, mut tasks: Vec<Task>) -> Result<(), ClusterError> {
+        for task in &mut tasks {
+            task.request = task.request_within(self.work.needs(), |request| self.scheduler.longest(request));
+        }
         tasks.sort_by_key(|task| task.request);
         for alike in tasks.chunk_by(|a, b| a.request == b.request) {
             for some in alike.chunks(self.scheduler.largest_array().max(1)) {

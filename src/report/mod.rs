@@ -12,6 +12,7 @@ mod bed_tests;
 mod blocks;
 mod chart;
 mod colour_map;
+mod comparison;
 mod counts;
 mod cross_section;
 mod curves;
@@ -59,6 +60,7 @@ mod work_precision;
 
 pub use bed::{BedView, Colour, Side, bed_svg};
 pub use bed_tests::BedTestsPage;
+pub use comparison::comparison_page;
 pub use drawing::{DRAWN, drawing_svg};
 pub use packed::BedPage;
 pub use page::{page, page_so_far, standing};

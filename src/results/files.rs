@@ -16,6 +16,8 @@ use std::path::Path;
 const SCENARIO: &str = "scenario.json";
 const SUMMARY: &str = "summary.json";
 const TIMINGS: &str = "timings.json";
+/// The scene of a result as one file, with every value written out; directories of older versions have none.
+pub const RESOLVED: &str = "resolved.track";
 
 /// A file of a result directory: its path in there, and its bytes.
 pub type NamedBytes = (String, Vec<u8>);

@@ -7,6 +7,7 @@ mod bed;
 mod bed_readings;
 mod bed_tests;
 mod columns;
+mod confidence;
 mod error;
 mod evaluate;
 mod files;
@@ -14,6 +15,7 @@ mod gather;
 mod grains;
 mod histories;
 mod kept_beds;
+mod labels;
 mod laws;
 mod level;
 mod packings;
@@ -39,11 +41,13 @@ pub use bed_tests::{
     BedTest, BedTests, BedTestsView, CycleRow, LoopRow, MeanCycleRow, SensorRow, SpecimenRow, TestTables, VolumeRow,
     read_tests, test_files,
 };
+pub use confidence::{confidence_of_difference, mean_and_confidence, mean_and_deviation};
 pub use error::ResultsError;
 pub use evaluate::{SleeperTable, Tables, contact_pressures, evaluate, holds, known, verdict, verdicts};
-pub use files::{NamedBytes, files, read, read_summary, read_timings, timings_file, write, write_files};
+pub use files::{NamedBytes, RESOLVED, files, read, read_summary, read_timings, timings_file, write, write_files};
 pub use gather::Source;
 pub use grains::{Grain, Link, grains, links, places};
+pub use labels::{Label, OF_TESTS, OF_TRACKS};
 pub use laws::{LawCount, LawRow, law_rows, summarise_laws, unsettled};
 pub use level::{LongitudinalLevel, longitudinal_level};
 pub use packings::{OVER_PACKINGS, Packing, Scatter, packing_directory, read_packings};

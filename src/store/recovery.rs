@@ -10,7 +10,7 @@
 
 use super::StoreError;
 use super::disk::Disk;
-use super::layout::Layout;
+use super::layout::{Layout, part};
 use super::manifest::Manifest;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
@@ -62,6 +62,10 @@ fn remove_old(disk: &impl Disk, layout: &Layout, intent: &Manifest) -> Result<()
 pub(super) fn discard(disk: &impl Disk, layout: &Layout) -> Result<(), StoreError> {
     let file = |path: PathBuf| disk.remove_file(&path).map_err(|cause| StoreError::io(&path, "remove", cause));
     file(layout.checkpoint())?;
+    // a kill leaves what was being written under its first name
+    for written in [layout.checkpoint(), layout.work(), layout.so_far(), layout.intent()] {
+        file(part(&written))?;
+    }
     for folder in [layout.pieces(), layout.claims(), layout.logs()] {
         disk.remove_folder(&folder).map_err(|cause| StoreError::io(&folder, "remove", cause))?;
     }

@@ -6,6 +6,7 @@
 
 use super::{Answer, Plan, PlannedPoint, PointOutcome, PointResult, Repeat, values};
 use crate::compile::{Compiled, fingerprint};
+use crate::results::RESOLVED;
 use crate::store::{Directory, Mode, StoreError, Work};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -92,7 +93,7 @@ impl StudyFolder {
         mut self,
         plan: &Plan,
         answer: &Answer,
-        page: &str,
+        (page, resolved): (&str, Option<&str>),
         compiled: &Compiled,
         timings: &BTreeMap<String, f64>,
     ) -> Result<(), StoreError> {
@@ -114,6 +115,7 @@ impl StudyFolder {
             ("study.html", page.as_bytes().to_vec()),
         ];
         files.iter().try_for_each(|(name, bytes)| self.directory.stage(name, bytes))?;
+        resolved.map_or(Ok(()), |text| self.directory.stage(RESOLVED, text.as_bytes()))?;
         self.directory.stage_changing("timings.json", &self.text("timings.json", timings)?)?;
         self.directory.commit().map(drop)
     }

@@ -22,6 +22,6 @@ pub use compared::{Difference, MetAndMissed, amount};
 pub use folder::StudyFolder;
 pub use miss::Miss;
 pub use perform::{PointOutcome, PointResult, Repeat, perform};
-pub use plan::{Plan, plan};
+pub use plan::{Plan, plan, plan_told};
 pub use point::{PlannedPoint, Scene, values};
 pub use runs::{Runs, TaskRun};

@@ -15,6 +15,7 @@ use crate::scenario::Study;
 use crate::scenario::response::Expectation;
 use crate::units::number;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A study that has been checked.
 #[derive(Debug)]
@@ -62,6 +63,11 @@ enum Checked {
 
 /// Checks every point. `base` is the scene as it stands, without errors.
 pub fn plan(scene: Scene<'_>, base: &Compiled, study: &Study) -> Plan {
+    plan_told(scene, base, study, &|_, _| {})
+}
+
+/// The same, and tells how many points of all have been checked; from any thread, in any order.
+pub fn plan_told(scene: Scene<'_>, base: &Compiled, study: &Study, tell: &(dyn Fn(u64, u64) + Sync)) -> Plan {
     let seed = base.scenario.as_ref().map_or(1, |s| s.solve.seed);
     let points: Vec<(Vec<Level>, Vec<Override>)> = design(study, seed)
         .into_iter()
@@ -73,8 +79,13 @@ pub fn plan(scene: Scene<'_>, base: &Compiled, study: &Study) -> Plan {
     let all = points.len();
     let as_it_is = AsItIs::new(scene, study);
     let known = as_it_is.as_ref().ok();
-    let checked: Vec<Checked> =
-        points.par_iter().map(|(levels, overrides)| check(scene, base, study, levels, overrides, known)).collect();
+    let done = AtomicU64::new(0);
+    let check_one = |(levels, overrides): &(Vec<Level>, Vec<Override>)| {
+        let checked = check(scene, base, study, levels, overrides, known);
+        tell(done.fetch_add(1, Ordering::Relaxed) + 1, all as u64);
+        checked
+    };
+    let checked: Vec<Checked> = points.par_iter().map(check_one).collect();
     let mut plan = Plan { study: study.clone(), points: Vec::new(), left_out: 0, diagnostics: Vec::new() };
     let mut found = Findings::default();
     for (index, (checked, (levels, overrides))) in checked.into_iter().zip(points).enumerate() {

@@ -15,10 +15,11 @@ impl<'p> Builder<'p> {
         let mut declarations = 0;
         for pair in pairs.flat_map(Pair::into_inner) {
             let start = pair.as_span().start();
-            if matches!(pair.as_rule(), Rule::declaration | Rule::wrong_declaration) {
+            if matches!(pair.as_rule(), Rule::declaration | Rule::wrong_declaration | Rule::let_item | Rule::wrong_let)
+            {
                 declarations += 1;
                 if declarations > limits::DECLARATIONS {
-                    let mistake = Diagnostic::new(Code::E0103, "more than 100000 declarations in one file");
+                    let mistake = Diagnostic::new(Code::E0103, "more than 100000 declarations and `let`s in one file");
                     self.report(mistake.label(self.span(start, start), "").help("divide the file into modules"));
                     break;
                 }

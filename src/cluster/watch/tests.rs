@@ -16,7 +16,11 @@ struct Pieces {
 
 impl Pieces {
     fn new(seconds: &[f64]) -> Pieces {
-        let needs = seconds.iter().map(|seconds| Need { seconds: *seconds, bytes: MIB }).collect();
+        Pieces::of_needs(seconds, false)
+    }
+
+    fn of_needs(seconds: &[f64], goes_on: bool) -> Pieces {
+        let needs = seconds.iter().map(|seconds| Need { seconds: *seconds, bytes: MIB, goes_on }).collect();
         Pieces { needs, done: RefCell::default(), tasks: RefCell::default(), kept: RefCell::default() }
     }
 
@@ -70,6 +74,9 @@ impl Scheduler for Queue {
     }
     fn largest_array(&self) -> usize {
         2
+    }
+    fn longest(&self, _: Request) -> Option<u64> {
+        Some(60)
     }
 }
 
@@ -167,4 +174,39 @@ fn who_goes_on_watching_gives_nothing_twice() {
     queue.states.borrow_mut().clear();
     let seen = look_twice(&mut second).unwrap();
     assert_eq!(seen.again, [(1, Ending::Lost), (2, Ending::Lost)]);
+}
+
+#[test]
+fn what_goes_on_from_a_checkpoint_is_done_in_parts() {
+    // five hours by its plan, and no task may take longer than one
+    let (work, queue) = (Pieces::of_needs(&[18_000.0], true), Queue::default());
+    let mut watch = Watch::new(&work, &queue, Ledger::default());
+    watch.submit().unwrap();
+    for part in 0..20 {
+        assert_eq!(queue.arrays.borrow().last().unwrap().request.minutes, 60);
+        queue.becomes(part, 0, State::Ended(Ending::TimedOut));
+        assert_eq!(look_twice(&mut watch).unwrap().again, [(0, Ending::TimedOut)]);
+    }
+    // failures are counted apart
+    for attempt in 20..22 {
+        queue.becomes(attempt, 0, State::Ended(Ending::Failed));
+        assert_eq!(look_twice(&mut watch).unwrap().again.len(), 1);
+    }
+    queue.becomes(22, 0, State::Ended(Ending::Failed));
+    assert!(matches!(look_twice(&mut watch), Err(ClusterError::GivenUp { pieces: 1, ending: Ending::Failed, .. })));
+}
+
+#[test]
+fn parts_have_an_end() {
+    let (work, queue) = (Pieces::of_needs(&[18_000.0], true), Queue::default());
+    let mut watch = Watch::new(&work, &queue, Ledger::default());
+    watch.submit().unwrap();
+    for part in 0.. {
+        queue.becomes(part, 0, State::Ended(Ending::TimedOut));
+        if let Err(error) = look_twice(&mut watch) {
+            assert!(matches!(error, ClusterError::GivenUp { ending: Ending::TimedOut, .. }));
+            assert_eq!(part + 1, PARTS as usize);
+            break;
+        }
+    }
 }

@@ -1,30 +1,12 @@
 //! The few numbers of a test, over its packings, and what the scene expects of it.
 
-use super::super::{HistoryRow, Scalar, SleeperTable, Tables, broken_bonds, broken_share};
+use super::super::{HistoryRow, Scalar, SleeperTable, Tables, broken_bonds, broken_share, mean_and_confidence};
 use super::{BedTest, BedTests};
 use crate::scenario::Track;
 use crate::scenario::response::Response;
 use crate::solvers::granular::rig::Cycle;
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
-
-/// 97.5 % quantiles of Student's t for 1, 2, ... degrees of freedom; beyond them that of the normal distribution serves.
-const STUDENT: [f64; 20] = [
-    12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228, 2.201, 2.179, 2.160, 2.145, 2.131, 2.120,
-    2.110, 2.101, 2.093, 2.086,
-];
-
-/// Mean, and half the width of its 95 % confidence interval; `None` of fewer than two values.
-pub(super) fn mean_and_confidence(values: &[f64]) -> (f64, Option<f64>) {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    if values.len() < 2 {
-        return (mean, None);
-    }
-    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    let quantile = STUDENT.get(values.len() - 2).copied().unwrap_or(1.960);
-    (mean, Some(quantile * (variance / count).sqrt()))
-}
 
 /// Scalars of the sleeper that settles most in each packing: mean over packings, and its confidence where there are several.
 fn scalars(tests: &[BedTest], plate: Option<f64>) -> BTreeMap<String, Scalar> {
@@ -186,17 +168,4 @@ fn histories(sensors: &[(String, f64)], sleepers: &[(String, f64)], tests: &[Bed
         }
     }
     rows
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_mean_is_as_sure_as_students_t_says() {
-        assert_eq!(mean_and_confidence(&[3.0]), (3.0, None));
-        // of 1, 2, 3: standard deviation 1, t of two degrees of freedom 4.303
-        let (mean, half) = mean_and_confidence(&[1.0, 2.0, 3.0]);
-        assert!((mean - 2.0).abs() < 1e-12 && (half.unwrap() - 4.303 / 3f64.sqrt()).abs() < 1e-9);
-    }
 }
