@@ -1,6 +1,6 @@
 //! Why results cannot be compared.
 
-use super::Kind;
+use super::kind::Kind;
 use crate::results::ResultsError;
 use crate::store::StoreError;
 use std::fmt;

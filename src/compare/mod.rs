@@ -5,22 +5,28 @@
 
 mod error;
 mod json;
+mod kind;
+mod made;
 mod names;
 mod numbers;
 mod points;
 mod sample;
 mod scenes;
 mod seats;
+mod study_table;
 mod subject;
 mod tables;
 
 pub use error::CompareError;
+pub use kind::Kind;
+pub use made::Made;
 pub use numbers::{Number, NumberRow, is_named, numbers};
-pub use points::{PointRow, StudyTable, points};
+pub use points::{PointRow, points};
 pub use sample::{Difference, Sample};
 pub use scenes::{Edit, edits};
 pub use seats::{Column, SeatDifference, common_count, seat_differences};
-pub use subject::{Content, Kind, Made, Subject};
+pub use study_table::{StudyPoint, StudyTable};
+pub use subject::{Content, Subject};
 
 use std::path::PathBuf;
 

@@ -16,7 +16,7 @@ pub struct Sample {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Difference {
     pub difference: f64,
-    /// Of the mean of the first; `None` where that is 0.
+    /// The same as a share of the mean of the first; `None` where that is 0.
     pub share: Option<f64>,
     /// Half the width of the 95 % interval of the difference; `None` without packings to tell it.
     pub confidence: Option<f64>,

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// A value that is not the same in all scenes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Edit {
-    /// As after `--set`: `open.support.stiffness`.
+    /// The name that `--set` takes: `open.support.stiffness`.
     pub path: String,
     /// The text in each scene; `None` where it has no such value.
     pub texts: Vec<Option<String>>,

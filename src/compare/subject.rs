@@ -1,30 +1,13 @@
 //! A directory of finished results, read.
 
-use super::points::StudyTable;
+use super::kind::Kind;
+use super::made::Made;
+use super::study_table::StudyTable;
 use super::{CompareError, Sample};
-use crate::results::{self, BedTests, BedTestsView, RESOLVED, Run, Scalar, Summary, TestTables};
-use crate::store::{Finished, StoreError};
+use crate::results::{self, BedTests, BedTestsView, RESOLVED, Run, Scalar, TestTables};
+use crate::store::Finished;
 use std::collections::BTreeMap;
-use std::fmt;
 use std::path::{Path, PathBuf};
-
-/// What a directory holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    Run,
-    Tests,
-    Study,
-}
-
-impl fmt::Display for Kind {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(match self {
-            Kind::Run => "a run",
-            Kind::Tests => "tests of a rig",
-            Kind::Study => "a study",
-        })
-    }
-}
 
 /// One directory.
 #[derive(Debug)]
@@ -44,16 +27,6 @@ pub enum Content {
     Run(Box<Run>),
     Tests(Box<BedTestsView>),
     Study(Box<StudyTable>),
-}
-
-/// What made a result.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Made {
-    pub title: String,
-    pub version: String,
-    pub file: String,
-    pub sha256: String,
-    pub seed: Option<u64>,
 }
 
 impl Subject {
@@ -146,22 +119,4 @@ fn content(finished: &Finished, path: &Path) -> Result<(Content, Made), CompareE
     let run = results::read(path)?;
     let made = Made::of_summary(&run.scenario.title, &run.summary);
     Ok((Content::Run(Box::new(run)), made))
-}
-
-impl Made {
-    fn of_summary(title: &str, summary: &Summary) -> Made {
-        let made = &summary.provenance;
-        Made {
-            title: title.to_owned(),
-            version: made.version.clone(),
-            file: made.file.clone(),
-            sha256: made.source_sha256.clone(),
-            seed: Some(made.seed),
-        }
-    }
-}
-
-/// A file of a study that is not as this version writes it.
-pub(super) fn damaged(path: &Path, file: &str, cause: impl fmt::Display) -> CompareError {
-    StoreError::damaged(&path.join(file), cause).into()
 }

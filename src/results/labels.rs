@@ -18,7 +18,7 @@ impl Label {
     }
 }
 
-/// Of a run on a track.
+/// The lines of a run on a track.
 pub const OF_TRACKS: [Label; 14] = [
     Label::new("settlement_step", "step at the structure", "mm", 1e-3),
     Label::new("level_change_wheelbase", "level change, wheelbase", "mm", 1e-3),
@@ -36,7 +36,7 @@ pub const OF_TRACKS: [Label; 14] = [
     Label::new("max_rail_displacement", "largest rail displacement", "mm", 1e-3),
 ];
 
-/// Of a test rig.
+/// The lines of a test rig.
 pub const OF_TESTS: [Label; 11] = [
     Label::new("max_settlement", "settlement", "mm", 1e-3),
     Label::new("first_settlement", "  after one cycle", "mm", 1e-3),

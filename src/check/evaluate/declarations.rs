@@ -7,7 +7,8 @@ use crate::check::text::scope::{ItemId, ScopeId};
 use crate::diag::{Code, Diagnostic, FileId, Span};
 use crate::scenario::{Evidence, LibraryEntry};
 use crate::schema::{self, Role};
-use crate::syntax::tree::Item;
+use crate::syntax::tree::{Item, Let, Name, Value, ValueKind};
+use std::collections::HashSet;
 use std::rc::Rc;
 
 /// Kinds that ask something of the scene: those of modules wait until the main file names them.
@@ -61,8 +62,9 @@ impl Evaluator<'_> {
         Some(ItemId { scope: self.main, item })
     }
 
-    /// Bindings that nothing asks for may have unknown units all the same.
+    /// Bindings that nothing asks for may have unknown units all the same, or need each other.
     pub fn idle_lets(&mut self) {
+        let (used, mut seen) = (self.used.clone(), HashSet::new());
         for scope in (0..self.scopes.len()).filter(|s| !self.scopes[*s].library).collect::<Vec<_>>() {
             let tree = self.scopes[scope].tree.clone();
             for (item, thing) in tree.items.iter().enumerate() {
@@ -70,9 +72,31 @@ impl Evaluator<'_> {
                     && !self.used.contains(&ItemId { scope, item })
                 {
                     self.units_in(&binding.value);
+                    self.follow(ItemId { scope, item }, binding, binding.name.span, &mut seen);
                 }
             }
         }
+        // to be followed is not to be used
+        self.used = used;
+    }
+
+    /// Follows a binding to those that it names, each once, so that a circle is found.
+    fn follow(&mut self, id: ItemId, binding: &Let, place: Span, seen: &mut HashSet<ItemId>) {
+        if !seen.insert(id) && !self.follows(id) {
+            return;
+        }
+        self.within(id, place, |eval| {
+            let tree = eval.scopes[id.scope].tree.clone();
+            let mut names = Vec::new();
+            names_in(&binding.value, &mut names);
+            for name in names {
+                let Some(&item) = eval.scopes[id.scope].names.get(&name.text) else { continue };
+                if let Some(Item::Let(next)) = tree.items.get(item) {
+                    eval.follow(ItemId { item, ..id }, next, name.span, seen);
+                }
+            }
+            Some(())
+        });
     }
 
     /// Whether the main file declares an object of a kind.
@@ -154,5 +178,23 @@ impl Evaluator<'_> {
                 );
             }
         }
+    }
+}
+
+/// The names in a value that stand alone, without dots.
+fn names_in<'v>(value: &'v Value, names: &mut Vec<&'v Name>) {
+    match &value.kind {
+        ValueKind::Path(path) => {
+            if let [name] = path.names.as_slice() {
+                names.push(name);
+            }
+        }
+        ValueKind::Negate(inner) | ValueKind::Per(inner, _) => names_in(inner, names),
+        ValueKind::Binary(left, _, right) | ValueKind::Range(left, right) => {
+            names_in(left, names);
+            names_in(right, names);
+        }
+        ValueKind::List { entries, .. } => entries.iter().for_each(|entry| names_in(&entry.value, names)),
+        _ => {}
     }
 }
