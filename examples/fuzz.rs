@@ -1,56 +1,114 @@
-//! Throws texts at the parser, the formatter and the checker that nobody would write.
+//! Throws texts and files at what reads them that nobody would write.
 //!
 //! ```sh
 //! cargo run --release --example fuzz -- parse 1000000
 //! cargo run --release --example fuzz -- check 1000000 --from 5000000
+//! cargo run --release --example fuzz -- stl 1000000
 //! ```
 //!
-//! Run `k` is the same text everywhere, so a run that ends the program (a stack that overflows) is found again by its
-//! number. What fails is written to `fuzz/corpus`, which the tests replay.
+//! Run `k` is the same everywhere, so a run that ends the program (a stack that overflows) is found again by its number. What fails
+//! is written to `fuzz/corpus`, or to `fuzz/files` where it is no text of the language; the tests replay both.
 
+#[path = "../fuzz/bytes.rs"]
+mod bytes;
+#[path = "../fuzz/dice.rs"]
+mod dice;
+#[path = "../fuzz/files.rs"]
+mod files;
+#[path = "../fuzz/memory.rs"]
+mod memory;
 #[path = "../fuzz/mutate.rs"]
 mod mutate;
 #[path = "../fuzz/targets.rs"]
 mod targets;
 
 use rayon::prelude::*;
-use std::panic::catch_unwind;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
 
+/// Targets that read files.
+const FILES: [&str; 5] = ["stl", "csv", "results", "checkpoint", "bed"];
 /// Runs between two lines of progress.
 const CHUNK: u64 = 50_000;
+/// Memory that one run may ask for beyond what any before it did, MiB: files are shorter than a quarter of one.
+const MORE: f64 = 256.0;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let target: fn(&str) = match arguments.first().map(String::as_str) {
-        Some("parse") => targets::parse,
-        Some("format") => targets::format,
-        Some("check") => targets::check,
-        _ => return eprintln!("usage: fuzz parse|format|check RUNS [--from NUMBER]"),
-    };
+    let name = arguments.first().map(String::as_str).unwrap_or_default();
     let number = |text: Option<&String>| text.and_then(|t| t.parse::<u64>().ok());
     let runs = number(arguments.get(1)).unwrap_or(1_000_000);
     let from = arguments.iter().position(|a| a == "--from").and_then(|i| number(arguments.get(i + 1))).unwrap_or(0);
+    let text: Option<fn(&str)> = match name {
+        "parse" => Some(targets::parse),
+        "format" => Some(targets::format),
+        "check" => Some(targets::check),
+        _ => None,
+    };
+    let failed = match (text, files::Target::named(name)) {
+        (Some(target), _) => texts(name, target, from..from + runs),
+        (None, Some(target)) => of_files(name, &target, from..from + runs),
+        (None, None) => {
+            return eprintln!("usage: fuzz parse|format|check|{} RUNS [--from NUMBER]", FILES.join("|"));
+        }
+    };
+    std::process::exit(i32::from(failed > 0));
+}
+
+/// Texts on all cores.
+fn texts(name: &str, target: fn(&str), runs: std::ops::Range<u64>) -> u64 {
     let owned = seeds(Path::new(env!("CARGO_MANIFEST_DIR")));
     let seeds: Vec<&str> = owned.iter().map(String::as_str).collect();
-    let failed = AtomicU64::new(0);
-    for start in (from..from + runs).step_by(CHUNK as usize) {
-        let end = (start + CHUNK).min(from + runs);
+    let (failed, started) = (AtomicU64::new(0), Instant::now());
+    for start in runs.clone().step_by(CHUNK as usize) {
+        let end = (start + CHUNK).min(runs.end);
         (start..end).into_par_iter().for_each(|k| {
             let text = mutate::text(&seeds, k);
             if catch_unwind(|| target(&text)).is_err() {
                 failed.fetch_add(1, Ordering::Relaxed);
-                let path =
-                    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("fuzz/corpus/{}-{k}.track", arguments[0]));
-                if let Err(error) = std::fs::write(&path, &text) {
-                    eprintln!("{}: {error}", path.display());
-                }
+                keep(&format!("fuzz/corpus/{name}-{k}.track"), text.as_bytes());
             }
         });
-        eprintln!("{} of {runs} runs, {} failed", end - from, failed.load(Ordering::Relaxed));
+        tell(end - runs.start, &runs, failed.load(Ordering::Relaxed), started);
     }
-    std::process::exit(i32::from(failed.into_inner() > 0));
+    failed.into_inner()
+}
+
+/// Files on one core, so that the memory of each is seen.
+fn of_files(name: &str, target: &files::Target, runs: std::ops::Range<u64>) -> u64 {
+    target.read_seeds();
+    let (mut failed, started, mut most) = (0, Instant::now(), memory::peak());
+    for k in runs.clone() {
+        let (seed, bytes) = target.file(k);
+        let survived = catch_unwind(AssertUnwindSafe(|| target.read(seed, &bytes))).is_ok();
+        let peak = memory::peak();
+        if !survived || peak > most + MORE {
+            eprintln!("file {k} of seed {seed}: {}", if survived { "memory out of proportion" } else { "panic" });
+            failed += 1;
+            keep(&format!("fuzz/files/{name}-{seed}-{k}"), &bytes);
+        }
+        most = most.max(peak);
+        let done = k + 1 - runs.start;
+        if done % CHUNK == 0 || k + 1 == runs.end {
+            tell(done, &runs, failed, started);
+        }
+    }
+    failed
+}
+
+fn tell(done: u64, runs: &std::ops::Range<u64>, failed: u64, started: Instant) {
+    let (all, rate) = (runs.end - runs.start, done as f64 / started.elapsed().as_secs_f64());
+    eprintln!("{done} of {all} runs, {failed} failed, {rate:.0} a second, {:.0} MiB", memory::resident());
+}
+
+fn keep(name: &str, bytes: &[u8]) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    let made = path.parent().map_or(Ok(()), std::fs::create_dir_all);
+    if let Err(error) = made.and_then(|()| std::fs::write(&path, bytes)) {
+        eprintln!("{}: {error}", path.display());
+    }
 }
 
 /// Every scene and library of the project, and every failing example of a diagnostic.

@@ -1,5 +1,11 @@
-//! What broke the parser, the formatter or the checker once, and some texts that nobody would write.
+//! What broke the parser, the formatter, the checker or a reader of files once, and some texts and files that nobody would write.
 
+#[path = "../fuzz/bytes.rs"]
+mod bytes;
+#[path = "../fuzz/dice.rs"]
+mod dice;
+#[path = "../fuzz/files.rs"]
+mod files;
 #[path = "../fuzz/mutate.rs"]
 mod mutate;
 #[path = "../fuzz/targets.rs"]
@@ -30,4 +36,49 @@ fn formatting_survives() {
 #[test]
 fn checking_survives() {
     each(targets::check);
+}
+
+/// Files that are damaged anywhere are read as what they say, in finite numbers, or refused.
+fn each_file(name: &str, runs: u64) {
+    let target = files::Target::named(name).unwrap();
+    target.read_seeds();
+    let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/files");
+    for entry in std::fs::read_dir(corpus).unwrap() {
+        let path = entry.unwrap().path();
+        let file = path.file_name().unwrap().to_string_lossy().into_owned();
+        let mut parts = file.split('-');
+        if parts.next() == Some(name) {
+            let seed = parts.next().and_then(|part| part.parse().ok()).unwrap();
+            target.read(seed, &std::fs::read(&path).unwrap());
+        }
+    }
+    for k in 0..runs {
+        let (seed, bytes) = target.file(k);
+        target.read(seed, &bytes);
+    }
+}
+
+#[test]
+fn reading_surfaces_survives() {
+    each_file("stl", 1000);
+}
+
+#[test]
+fn reading_tables_survives() {
+    each_file("csv", 500);
+}
+
+#[test]
+fn reading_results_survives() {
+    each_file("results", 150);
+}
+
+#[test]
+fn reading_checkpoints_survives() {
+    each_file("checkpoint", 100);
+}
+
+#[test]
+fn reading_beds_survives() {
+    each_file("bed", 100);
 }

@@ -28,6 +28,11 @@ impl ResultsError {
         ResultsError::NotFinite { table: table.to_owned(), column: column.to_owned(), row }
     }
 
+    /// The same in a file that was read.
+    pub(super) fn read_not_finite(path: &Path, column: &str, row: usize) -> Self {
+        ResultsError::malformed(path, format!("column `{column}` of row {row} is not a finite number"))
+    }
+
     pub(crate) fn unwritable(path: &Path, cause: impl fmt::Display) -> Self {
         StoreError::unwritable(path, cause).into()
     }

@@ -163,13 +163,15 @@ pub(super) fn table<R: Row>(rows: &[R], directory: &Path) -> Result<Vec<u8>, Res
     writer.into_inner().map_err(|cause| ResultsError::unwritable(&path, cause))
 }
 
-/// JSON makes null of a number that is not finite, and a row holds nothing else that could be null.
 fn check_row<R: Row>(row: &R, number: usize, path: &Path) -> Result<(), ResultsError> {
-    let fields = serde_json::to_value(row).map_err(|cause| ResultsError::unwritable(path, cause))?;
-    match R::COLUMNS.iter().find(|column| fields[**column].is_null()) {
-        Some(column) => Err(ResultsError::not_finite(R::FILE, column, number)),
-        None => Ok(()),
-    }
+    let column = not_finite(row).map_err(|cause| ResultsError::unwritable(path, cause))?;
+    column.map_or(Ok(()), |column| Err(ResultsError::not_finite(R::FILE, column, number)))
+}
+
+/// The first column of a row that holds no finite number: JSON makes null of such, and a row holds nothing else that could be null.
+fn not_finite<R: Row>(row: &R) -> Result<Option<&'static str>, serde_json::Error> {
+    let fields = serde_json::to_value(row)?;
+    Ok(R::COLUMNS.iter().copied().find(|column| fields[*column].is_null()))
 }
 
 /// A table that not every run has.
@@ -187,9 +189,13 @@ fn read_table<R: Row>(directory: &Path) -> Result<Vec<R>, ResultsError> {
         let expected = R::COLUMNS.join(",");
         return Err(ResultsError::malformed(&path, format!("expected columns `{expected}`, found `{found}`")));
     }
-    let mut rows = Vec::new();
+    let mut rows: Vec<R> = Vec::new();
     for row in reader.deserialize() {
-        rows.push(row.map_err(|cause| ResultsError::malformed(&path, cause))?);
+        let row = row.map_err(|cause| ResultsError::malformed(&path, cause))?;
+        if let Some(column) = not_finite(&row).map_err(|cause| ResultsError::malformed(&path, cause))? {
+            return Err(ResultsError::read_not_finite(&path, column, rows.len() + 1));
+        }
+        rows.push(row);
     }
     Ok(rows)
 }

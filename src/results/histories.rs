@@ -3,7 +3,7 @@
 //! Columns `axles` INT64, `time_s` DOUBLE, `quantity` UTF8, `id` UTF8, `x_m` DOUBLE, `value` DOUBLE, `train` UTF8; dictionaries
 //! where values repeat, compressed with Snappy. Equal rows make equal bytes: nothing of the file depends on the clock.
 
-use super::columns::{read_column, write_column};
+use super::columns::{read_column, undamaged, write_column};
 use super::error::check_finite;
 use super::{HistoryRow, ResultsError};
 use bytes::Bytes;
@@ -46,12 +46,12 @@ pub(super) fn encode(rows: &[HistoryRow], directory: &Path) -> Result<Vec<u8>, R
 /// The rows of a file.
 pub(super) fn decode(path: &Path) -> Result<Vec<HistoryRow>, ResultsError> {
     let file = File::open(path).map_err(|cause| ResultsError::io(path, "read", cause))?;
-    read_rows(file, path)
+    undamaged(path, || read_rows(file, path))
 }
 
 /// The rows of a file that is in memory; `path` stands in messages only.
 pub(super) fn decode_bytes(bytes: Vec<u8>, path: &Path) -> Result<Vec<HistoryRow>, ResultsError> {
-    read_rows(Bytes::from(bytes), path)
+    undamaged(path, || read_rows(Bytes::from(bytes), path))
 }
 
 fn read_rows(file: impl ChunkReader + 'static, path: &Path) -> Result<Vec<HistoryRow>, ResultsError> {
@@ -68,6 +68,12 @@ fn read_rows(file: impl ChunkReader + 'static, path: &Path) -> Result<Vec<Histor
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(|cause| ResultsError::malformed(path, cause))?;
         read_group(group.as_ref(), &mut rows).map_err(|cause| ResultsError::malformed(path, cause))?;
+    }
+    for (index, row) in rows.iter().enumerate() {
+        let numbers = [("time_s", row.time_s), ("x_m", row.x_m), ("value", row.value)];
+        if let Some((column, _)) = numbers.into_iter().find(|(_, value)| !value.is_finite()) {
+            return Err(ResultsError::read_not_finite(path, column, index + 1));
+        }
     }
     Ok(rows)
 }

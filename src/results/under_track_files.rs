@@ -2,7 +2,7 @@
 //!
 //! Columns that count are INT64, all others FLOAT, compressed with Snappy. Equal rows make equal bytes.
 
-use super::columns::{read_column, write_column};
+use super::columns::{read_column, undamaged, write_column};
 use super::error::check_finite;
 use super::{BedsAtCount, Grain, Link, NamedBytes, ResultsError};
 use bytes::Bytes;
@@ -86,10 +86,11 @@ pub(super) fn read(directory: &Path) -> Result<Vec<BedsAtCount>, ResultsError> {
 /// The beds that the bytes of both files hold; `directory` stands in messages only.
 pub(super) fn decode([grains, contacts]: [Vec<u8>; 2], directory: &Path) -> Result<Vec<BedsAtCount>, ResultsError> {
     let mut beds: BTreeMap<(u64, bool), BedsAtCount> = BTreeMap::new();
-    for row in rows(OF_GRAINS, grains, &directory.join(GRAINS))? {
+    let [of_grains, of_contacts] = [GRAINS, CONTACTS].map(|name| directory.join(name));
+    for row in undamaged(&of_grains, || rows(OF_GRAINS, grains, &of_grains))? {
         beds.entry(when(&row)).or_default().grains.push(to_grain(&row));
     }
-    for row in rows(OF_CONTACTS, contacts, &directory.join(CONTACTS))? {
+    for row in undamaged(&of_contacts, || rows(OF_CONTACTS, contacts, &of_contacts))? {
         beds.entry(when(&row)).or_default().links.push(to_link(&row));
     }
     Ok(beds.into_iter().map(|((axles, under_train), bed)| BedsAtCount { axles, under_train, ..bed }).collect())
@@ -196,6 +197,11 @@ fn rows(columns: Columns, bytes: Vec<u8>, path: &Path) -> Result<Vec<Row>, Resul
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(|cause| malformed(&cause))?;
         read_group(columns, group.as_ref(), &mut all).map_err(|cause| malformed(&cause))?;
+    }
+    for (number, (_, values)) in all.iter().enumerate() {
+        if let Some((column, _)) = columns.1.iter().zip(values).find(|(_, value)| !value.is_finite()) {
+            return Err(ResultsError::read_not_finite(path, column, number + 1));
+        }
     }
     Ok(all)
 }
