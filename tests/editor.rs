@@ -115,10 +115,10 @@ let k = 40 MN/m
 trackform open {
   rail = rails.UIC60, pad = { stiffness = 2 * k, damping_time = 0.1 ms }
   sleeper = sleepers.B70, spacing = 0.6 m
-  support = { stiffness = ramp(40 .. 60 MN/m per seat), damping_time = 1 ms }
+  support = { stiffness = ramp(40 .. 60 MN/m) per seat, damping_time = 1 ms }
 }
 track line { sections = [open: 60 m] }
-expect { that = [max(settlement) < 5 mm] }
+record { at = [3, 5] sleepers, quantities = [rail_seat_load] }
 ";
 
 #[test]
@@ -155,6 +155,36 @@ fn a_scene_that_is_typed_character_by_character_always_has_an_answer() {
 }
 
 #[test]
+fn a_damaged_scene_still_has_answers() {
+    let place = Place::new();
+    let mut editor = Editor::start(place.folder.path());
+    let file = place.file("damaged.track");
+    editor.open(&file, SCENE);
+    let (pieces, mut version) = (32, 1);
+    for piece in 0..pieces {
+        // a hole in the text, each time elsewhere
+        let start = (SCENE.len() * piece / pieces..).find(|i| SCENE.is_char_boundary(*i)).unwrap();
+        let end = (start + 7..).find(|i| SCENE.is_char_boundary(*i) || *i >= SCENE.len()).unwrap().min(SCENE.len());
+        let text = format!("{}{}", &SCENE[..start], &SCENE[end..]);
+        version += 1;
+        editor.replace(&file, version, &text);
+        let at = position(&text, start);
+        for method in ["completion", "hover", "definition", "documentHighlight", "prepareRename"] {
+            editor.ask_at(&format!("textDocument/{method}"), &file, at.clone());
+        }
+        let document = json!({ "textDocument": { "uri": file } });
+        let outline = editor.ask("textDocument/documentSymbol", document.clone());
+        assert!(outline.as_array().unwrap().len() >= 8, "most declarations are there: {text}");
+        editor.ask("textDocument/semanticTokens/full", document);
+        let whole = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 99, "character": 0 } });
+        let range = json!({ "textDocument": { "uri": file }, "range": whole, "context": { "diagnostics": [] } });
+        editor.ask("textDocument/inlayHint", range.clone());
+        editor.ask("textDocument/codeAction", range);
+    }
+    assert_eq!(editor.end(), Some(0));
+}
+
+#[test]
 fn a_mistake_is_shown_as_it_is_typed_and_goes_when_it_is_mended() {
     let (place, broken) = (Place::new(), SCENE.replace("spacing = 0.6 m", "spacin = 0.6"));
     let mut editor = Editor::start(place.folder.path());
@@ -164,7 +194,8 @@ fn a_mistake_is_shown_as_it_is_typed_and_goes_when_it_is_mended() {
     let codes: Vec<&str> = found.iter().map(|d| d["code"].as_str().unwrap()).collect();
     assert!(codes.contains(&"E0402"), "{codes:?}");
     assert_eq!(found[0]["range"]["start"], position(&broken, broken.find("spacin").unwrap()));
-    let action = json!({ "textDocument": { "uri": file }, "range": found[0]["range"], "context": { "diagnostics": [] } });
+    let action =
+        json!({ "textDocument": { "uri": file }, "range": found[0]["range"], "context": { "diagnostics": [] } });
     let actions = editor.ask("textDocument/codeAction", action);
     let edits = &actions[0]["edit"]["changes"][&file];
     let mended = edited(&broken, edits);
@@ -188,14 +219,17 @@ fn words_are_explained_with_what_they_hold() {
         answer["contents"]["value"].as_str().unwrap_or_default().to_owned()
     };
     let field = said("{ stiffness");
-    assert!(field.contains("MN/m, 1 .. 1000"), "unit and range: {field}");
+    assert!(field.contains("MN/m per seat | sleeper, 1 .. 1000"), "unit and range: {field}");
     assert!(field.contains("here `50 MN/m per seat`, from line 12"), "value and origin: {field}");
     let default = said("  spacin");
     assert!(default.contains("here `0.6 m`"), "{default}");
     let entry = said("rails.UIC60");
     assert!(entry.contains("std/rails.track") && entry.contains("kg/m"), "an entry with its numbers: {entry}");
     let pad = said("parts.ours");
-    assert!(pad.contains("A pad of the site") && pad.contains("`stiffness = 60 MN/m` from `site/parts.track`"), "{pad}");
+    assert!(
+        pad.contains("A pad of the site") && pad.contains("`stiffness = 60 MN/m` from `site/parts.track`"),
+        "{pad}"
+    );
     assert!(said("60 km/h").contains("a speed") || said("60 km/h").contains("velocity"), "a unit");
     assert!(said("trackfor").contains("(kind)"));
     assert_eq!(editor.end(), Some(0));
@@ -225,7 +259,6 @@ fn half_typed_text_is_completed() {
         ("use std\ntrackform open { rail = |", "rails.UIC60"),
         ("trackform open { rail = |", "rails.UIC60"),
         ("trackform open {}\ntrack line { sections = [|", "open"),
-        ("solve { rail_ends = |", ""),
         ("track line { rail_ends = |", "clamped"),
         ("expect { that = [max(settl|", "settlement"),
         ("scenario { deny = [|", "critical_speed"),
@@ -234,7 +267,7 @@ fn half_typed_text_is_completed() {
         ("pad broken {\n  stiffness = 40\ntrack line {\n  sec|", "sections"),
     ] {
         let items = offered(text);
-        assert!(expected.is_empty() || labels(&items).contains(&expected), "{text}: {:?}", labels(&items));
+        assert!(labels(&items).contains(&expected), "{text}: {:?}", labels(&items));
     }
     let items = offered("trackform open { pad = |");
     let medium = items.as_array().unwrap().iter().find(|item| item["label"] == "pads.medium").unwrap();
@@ -319,7 +352,7 @@ fn a_scene_has_an_outline_a_layout_colours_and_hints() {
     let edits = editor.ask("textDocument/formatting", layout);
     assert_eq!(edited(&untidy, &edits), WITH_MODULE);
     let drawing = editor.ask("trackbed/draw", document);
-    assert!(drawing["svg"].as_str().unwrap().starts_with("<svg"), "{drawing}");
+    assert!(drawing["svg"].as_str().unwrap().contains("<svg"), "{drawing}");
     assert_eq!(editor.end(), Some(0));
 }
 
@@ -344,7 +377,8 @@ fn the_grammar_of_the_extension_is_made_from_the_vocabulary() {
 
 #[test]
 fn snippets_are_scenes_and_parts_of_scenes_without_a_mistake_of_the_text() {
-    let snippets: Value = serde_json::from_str(&fs::read_to_string("editors/vscode/snippets/track.json").unwrap()).unwrap();
+    let snippets: Value =
+        serde_json::from_str(&fs::read_to_string("editors/vscode/snippets/track.json").unwrap()).unwrap();
     for (name, snippet) in snippets.as_object().unwrap() {
         let lines: Vec<&str> = snippet["body"].as_array().unwrap().iter().map(|line| line.as_str().unwrap()).collect();
         let text = filled(&lines.join("\n"));

@@ -60,6 +60,14 @@ impl Diagnostic {
         self
     }
 
+    /// Offers to write a text in the place of a value, where the text says it.
+    pub fn rewrite(self, value: Option<Span>, text: impl Into<String>) -> Self {
+        match value {
+            Some(span) => self.fix(Fix::replace(span, text)),
+            None => self,
+        }
+    }
+
     /// Says that a text is to be written in the place of a span, and offers to do it.
     pub fn write(self, span: Span, text: impl Into<String>) -> Self {
         let text = text.into();

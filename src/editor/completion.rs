@@ -143,8 +143,7 @@ impl Offers<'_> {
         for field in fields(kind).filter(|field| !given.contains(&format!("{prefix}{}", field.name))) {
             let text = format!("{}{ending}", field.name);
             let detail = hover::form_and_need(field);
-            let item =
-                self.insert(field.name, &text, CompletionItemKind::FIELD, &detail, &hover::field_meaning(field));
+            let item = self.insert(field.name, &text, CompletionItemKind::FIELD, &detail, &hover::field_meaning(field));
             // what must be given comes first
             item.preselect = Some(field.need == schema::Need::Required && whole).filter(|first| *first);
         }
@@ -177,8 +176,7 @@ impl Offers<'_> {
         self.words(form);
         let key = pair_forms(form).filter(|_| !has(form, |f| matches!(f, Form::Number(_))));
         let kinds = object_kinds(key.map_or(form, |(key, _)| key));
-        let kinds: Vec<&'static Kind> =
-            kinds.into_iter().chain(list_kinds(form)).collect();
+        let kinds: Vec<&'static Kind> = kinds.into_iter().chain(list_kinds(form)).collect();
         if !kinds.is_empty() {
             self.objects(&kinds, &[]);
         }
@@ -209,7 +207,8 @@ impl Offers<'_> {
 
     fn word(&mut self, word: &'static Word) {
         let documentation = hover::word_meaning(word);
-        let kind = if word.arguments.is_empty() { CompletionItemKind::ENUM_MEMBER } else { CompletionItemKind::FUNCTION };
+        let kind =
+            if word.arguments.is_empty() { CompletionItemKind::ENUM_MEMBER } else { CompletionItemKind::FUNCTION };
         let detail = if word.arguments.is_empty() { String::new() } else { hover::signature(word) };
         self.add(word.name, kind, &detail, &documentation);
     }
@@ -330,7 +329,12 @@ impl Offers<'_> {
 
     fn profiles(&mut self, measure: &Measure) {
         if measure.varies == Varies::Yes {
-            self.add("ramp", CompletionItemKind::FUNCTION, "ramp(a .. b, over = span)", "straight from one value to another");
+            self.add(
+                "ramp",
+                CompletionItemKind::FUNCTION,
+                "ramp(a .. b, over = span)",
+                "straight from one value to another",
+            );
             self.add("smooth", CompletionItemKind::FUNCTION, "smooth(a .. b, over = span)", "a cubic with level ends");
             self.add("file", CompletionItemKind::FUNCTION, "file(\"level.csv\")", "a table below the scene's folder");
             self.word(&RANDOM);

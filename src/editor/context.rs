@@ -383,9 +383,9 @@ impl<'t> Before<'t> {
     /// Where the unit begins that is typed behind the last number of a value.
     fn unit_tokens(&self, value: &[Token]) -> Option<usize> {
         // an exponent is a number too: `N/mm^3`
-        let number = (0..value.len()).rev().find(|i| {
-            value[*i].kind == TokenKind::Number && !(*i > 0 && self.said(&value[*i - 1]) == "^")
-        })?;
+        let number = (0..value.len())
+            .rev()
+            .find(|i| value[*i].kind == TokenKind::Number && !(*i > 0 && self.said(&value[*i - 1]) == "^"))?;
         let unit = &value[number + 1..];
         // signs of arithmetic have blanks around them
         let touches = |i: usize| i > 0 && unit[i - 1].end == unit[i].start;
@@ -441,7 +441,9 @@ fn wanted(kind: &'static Kind, names: &[String]) -> Option<Wanted> {
             match argument(&field.form, last) {
                 Some((_, argument)) => argument,
                 // a pair by the last name of its key
-                None => return pair_forms(&field.form).map(|(_, form)| Wanted { form: Some(form), field: Some(field) }),
+                None => {
+                    return pair_forms(&field.form).map(|(_, form)| Wanted { form: Some(form), field: Some(field) });
+                }
             }
         }
     };

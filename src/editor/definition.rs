@@ -38,9 +38,11 @@ fn given(view: &View, mark: &Mark, place: &Place) -> Option<Span> {
 /// Where a track names its transition.
 fn transition(view: &View, mark: &Mark) -> Option<Span> {
     let text = |span: Span| view.text.get(span.start as usize..span.end as usize);
-    let named = view.marks.0.iter().find(|other| {
-        matches!(other.what, What::Transition(true)) && text(other.span) == text(mark.span)
-    })?;
+    let named = view
+        .marks
+        .0
+        .iter()
+        .find(|other| matches!(other.what, What::Transition(true)) && text(other.span) == text(mark.span))?;
     Some(named.span)
 }
 

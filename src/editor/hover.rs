@@ -129,7 +129,11 @@ fn origin(view: &View, held: &Held) -> String {
     let place = |span: crate::diag::Span| {
         let source = view.source(span.file);
         let line = view.survey.checked.sources.position(span.file, span.start).line;
-        if span.file == FileId(0) { format!("from line {line}") } else { format!("from `{}`, line {line}", source.name) }
+        if span.file == FileId(0) {
+            format!("from line {line}")
+        } else {
+            format!("from `{}`, line {line}", source.name)
+        }
     };
     match held.origin {
         Origin::Written(span) | Origin::Library(span) => place(span),
@@ -151,7 +155,8 @@ pub fn declared(view: &View, id: ItemId) -> String {
         }
         Item::Let(binding) => {
             let text = &view.source(binding.span.file).text;
-            let value = text.get(binding.value.span.start as usize..binding.value.span.end as usize).unwrap_or_default();
+            let value =
+                text.get(binding.value.span.start as usize..binding.value.span.end as usize).unwrap_or_default();
             paragraphs([format!("**{name}** = `{value}`"), binding.docs.join(" "), String::new()])
         }
         Item::Use(used) => format!("module `{}`", used.path.text()),
@@ -172,9 +177,8 @@ fn lines(view: &View, object: &Object, prefix: &str) -> Vec<String> {
             lines(view, inner, &format!("{prefix}{}.", held.field.name))
         }
         _ => {
-            let said = held_text(view, held).map(|text| {
-                format!("- `{prefix}{} = {text}` {}", held.field.name, origin(view, held))
-            });
+            let said = held_text(view, held)
+                .map(|text| format!("- `{prefix}{} = {text}` {}", held.field.name, origin(view, held)));
             said.into_iter().collect()
         }
     };

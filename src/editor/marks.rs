@@ -234,7 +234,8 @@ impl Reader<'_> {
     fn entry(&mut self, entry: &Entry, asked: Asked) {
         let Some(key) = &entry.key else {
             let form = asked.form.map(item_form);
-            let form = form.and_then(|form| pair_forms(form).filter(|_| !has(form, is_number)).map(|(k, _)| k)).or(form);
+            let form =
+                form.and_then(|form| pair_forms(form).filter(|_| !has(form, is_number)).map(|(k, _)| k)).or(form);
             return self.value(&entry.value, asked.with(form));
         };
         if asked.form.is_some_and(|form| matches!(form, Form::Axes | Form::Settings)) {

@@ -161,8 +161,7 @@ impl Session {
             return Some(view.clone());
         }
         let (name, modules) = self.around(address);
-        let places =
-            Places { main: address.clone(), folder: modules.folder.clone(), library: self.library.clone() };
+        let places = Places { main: address.clone(), folder: modules.folder.clone(), library: self.library.clone() };
         let view = Rc::new(View::new(&name, document.text.clone(), &modules, places));
         self.documents.get_mut(address)?.view = Some(view.clone());
         Some(view)
@@ -256,7 +255,11 @@ impl Session {
         roots.iter().for_each(|root| track_files(root, 0, &mut files));
         files.sort();
         files.dedup();
-        files.iter().filter_map(|file| self.neighbour(file)).filter(|other| other.places.main != view.places.main).collect()
+        files
+            .iter()
+            .filter_map(|file| self.neighbour(file))
+            .filter(|other| other.places.main != view.places.main)
+            .collect()
     }
 
     fn neighbour(&self, file: &Path) -> Option<Neighbour> {

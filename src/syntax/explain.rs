@@ -179,9 +179,7 @@ impl<'p> Builder<'p> {
                 let module = part[first_word(part).len()..].trim().trim_matches('"');
                 Some(Way::Write("", format!("use {module}")))
             }
-            Rule::exact_item if first_word(part) == "use" => {
-                say("write `use module` or `use module as name`")
-            }
+            Rule::exact_item if first_word(part) == "use" => say("write `use module` or `use module as name`"),
             Rule::exact_item if matches!(word, "extends" | "(" | "-" | "from" | "is") || found.is_some_and(is_text) => {
                 say("a declaration is `kind name : base { field = value }`")
             }

@@ -40,7 +40,8 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
                     Some(name) => format!("write `use {name}`"),
                     None => format!("write `// {}`", words.trim()),
                 };
-                let fix = help.strip_prefix("write `").and_then(|text| text.strip_suffix('`')).unwrap_or_default().to_owned();
+                let fix =
+                    help.strip_prefix("write `").and_then(|text| text.strip_suffix('`')).unwrap_or_default().to_owned();
                 mend(draft, token, format!("`{sign}` does not begin a comment"), help, &fix);
             }
             Kind::BlockComment => block_comment(draft, token),

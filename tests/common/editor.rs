@@ -167,10 +167,15 @@ pub fn edited(text: &str, edits: &Value) -> String {
         });
         start + reached.map_or(rest.len(), |(i, _)| i)
     };
-    let mut parts: Vec<(usize, usize, String)> = edits.as_array().unwrap().iter().map(|edit| {
-        let range = &edit["range"];
-        (offset(&range["start"]), offset(&range["end"]), edit["newText"].as_str().unwrap().to_owned())
-    }).collect();
+    let mut parts: Vec<(usize, usize, String)> = edits
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|edit| {
+            let range = &edit["range"];
+            (offset(&range["start"]), offset(&range["end"]), edit["newText"].as_str().unwrap().to_owned())
+        })
+        .collect();
     parts.sort();
     let mut out = text.to_owned();
     for (start, end, new) in parts.into_iter().rev() {

@@ -169,8 +169,9 @@ impl Reader<'_, '_> {
         }
         if !(0.0..=1.0).contains(&raw.value) {
             let text = format!("expected 0 .. 100 %, found {} %", crate::units::number(100.0 * raw.value));
-            let written =
-                (0.0..=100.0).contains(&raw.value).then(|| Help::write(format!("{} %", crate::units::number(raw.value))));
+            let written = (0.0..=100.0)
+                .contains(&raw.value)
+                .then(|| Help::write(format!("{} %", crate::units::number(raw.value))));
             let mistake = Diagnostic::new(Code::E0405, text).label(raw.span, "out of range");
             self.eval.findings.report(mistake.maybe_advise(raw.span, written));
             return None;

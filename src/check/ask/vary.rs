@@ -185,9 +185,9 @@ impl Reader<'_, '_> {
             self.eval.findings.report(mistake.maybe_advise(place.unwrap_or(first.span), help));
             return;
         };
-        self.eval
-            .findings
-            .report(Diagnostic::new(Code::E0704, message).label(first.span, "unknown here").maybe_advise(first.span, help));
+        self.eval.findings.report(
+            Diagnostic::new(Code::E0704, message).label(first.span, "unknown here").maybe_advise(first.span, help),
+        );
     }
 
     /// How a thing of another file becomes one of this file, that a study may vary.
@@ -363,13 +363,11 @@ impl Reader<'_, '_> {
                 let words: Vec<String> = DISTRIBUTIONS.iter().map(|w| format!("`{w}`")).collect();
                 let expected =
                     format!("expected a list, `from .. to`, {}, found {}", or_list(&words), looks_like(other));
-                self.eval
-                    .findings
-                    .report(
-                        Diagnostic::new(Code::E0406, expected)
-                            .label(inner.span, "not several values")
-                            .advise(inner.span, help),
-                    );
+                self.eval.findings.report(
+                    Diagnostic::new(Code::E0406, expected)
+                        .label(inner.span, "not several values")
+                        .advise(inner.span, help),
+                );
                 None
             }
         }

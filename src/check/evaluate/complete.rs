@@ -123,7 +123,7 @@ impl Evaluator<'_> {
     fn hole(&self, record: &Record, what: &str) -> Option<Fix> {
         let field = what.trim_matches('`');
         let source = self.files.sources.get(record.span.file);
-        if field.contains('`') || source.library {
+        if field.contains('`') || source.library || record.span.start == record.span.end {
             return None;
         }
         let whole = source.text.get(record.span.start as usize..record.span.end as usize)?;

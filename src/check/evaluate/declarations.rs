@@ -133,7 +133,8 @@ impl Evaluator<'_> {
         let begin = |end: usize| text[..end].rfind('\n').map_or(0, |i| i + 1);
         let line = begin(span.start as usize);
         let alone = text[line..span.start as usize].trim().is_empty();
-        let start = if alone { (0..docs).fold(line, |line, _| begin(line.saturating_sub(1))) } else { span.start as usize };
+        let start =
+            if alone { (0..docs).fold(line, |line, _| begin(line.saturating_sub(1))) } else { span.start as usize };
         let behind = &text[span.end as usize..];
         let blanks = behind.len() - behind.trim_start_matches([' ', '\t', ',', '\r']).len();
         let end = span.end as usize + if alone && behind[blanks..].starts_with('\n') { blanks + 1 } else { 0 };

@@ -327,7 +327,9 @@ impl Evaluator<'_> {
             return Some(Help::say(format!("a span is given with `over`: write `over = {text}`")));
         }
         if matches!(form, Form::Place) && found == "a name" {
-            return Some(Help::say("a place is a number: `-20 sleepers`, `[-20, -5] sleepers`; `over = -20 .. -1 sleepers` takes all of a span"));
+            return Some(Help::say(
+                "a place is a number: `-20 sleepers`, `[-20, -5] sleepers`; `over = -20 .. -1 sleepers` takes all of a span",
+            ));
         }
         if found == "a list" && matches!(form, Form::Number(_)) {
             return Some(Help::say("a field has one value; a study tries several: `vary = [path: [value, value]]`"));
@@ -448,9 +450,7 @@ impl Evaluator<'_> {
                 self.superseded.push(key.span.to(entry.value.span));
                 let help = match item {
                     Form::Comparison => Help::say("comparisons are `<`, `<=`, `>` and `>=`"),
-                    Form::Place => {
-                        Help::say("several places are `[-20, -5] sleepers`, a span is `-20 .. -1 sleepers`")
-                    }
+                    Form::Place => Help::say("several places are `[-20, -5] sleepers`, a span is `-20 .. -1 sleepers`"),
                     _ => Help::write(self.files.sources.text(key.span)).and(" alone"),
                 };
                 self.findings.report(

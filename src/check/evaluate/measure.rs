@@ -346,7 +346,9 @@ fn per_what(text: &str, basis: &Basis) -> Help {
 
 /// A number with what it is `per`, as far as it stands behind it.
 fn of_raw(raw: &Raw) -> Span {
-    raw.basis.as_ref().map_or(raw.span, |(_, span)| if span.file == raw.span.file { raw.span.to(*span) } else { raw.span })
+    raw.basis
+        .as_ref()
+        .map_or(raw.span, |(_, span)| if span.file == raw.span.file { raw.span.to(*span) } else { raw.span })
 }
 
 fn unsigned(value: &Value) -> &ValueKind {

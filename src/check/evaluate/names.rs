@@ -46,7 +46,9 @@ impl Evaluator<'_> {
             };
             let names: Vec<&str> = self.scopes[module].names.keys().map(String::as_str).collect();
             let help = match nearest(&second.text, names.iter().copied()) {
-                Some(near) => Help { said: format!("did you mean `{}.{near}`?", first.text), writes: vec![near.to_owned()] },
+                Some(near) => {
+                    Help { said: format!("did you mean `{}.{near}`?", first.text), writes: vec![near.to_owned()] }
+                }
                 None => Help::say(format!("it has {}", names.join(", "))),
             };
             self.findings.report(
@@ -95,8 +97,7 @@ impl Evaluator<'_> {
         let help = if name.text == "std" && path.names.len() > 1 {
             place = path.span;
             Some(
-                Help::write(behind.trim_start_matches('.'))
-                    .and(": `use std` brings its modules in by their own names"),
+                Help::write(behind.trim_start_matches('.')).and(": `use std` brings its modules in by their own names"),
             )
         } else if library && !here.modules.contains_key(&name.text) {
             // one line is missing, however many modules it would have brought in

@@ -59,8 +59,7 @@ impl Evaluator<'_> {
         }
         // what is misspelt is read on as what was probably meant
         let near = schema::meant_kind(&name.text);
-        let help =
-            near.map_or_else(|| Help::say("`trackbed docs` lists the kinds"), |k| Help::meant(k.name));
+        let help = near.map_or_else(|| Help::say("`trackbed docs` lists the kinds"), |k| Help::meant(k.name));
         self.findings.report(
             Diagnostic::new(Code::E0401, format!("unknown kind `{}`", name.text))
                 .label(name.span, "not a kind")

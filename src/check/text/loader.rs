@@ -45,7 +45,10 @@ fn is_library(name: &str) -> bool {
 /// What was meant by a module that has no file: the standard library, or one of its modules.
 fn missing_file(name: &str) -> Option<Help> {
     if is_library(name) {
-        return Some(Help { said: "the standard library is called `std`: write `use std`".into(), writes: vec!["std".into()] });
+        return Some(Help {
+            said: "the standard library is called `std`: write `use std`".into(),
+            writes: vec!["std".into()],
+        });
     }
     let module = library::MODULES.iter().any(|(module, _)| *module == name);
     let said = || format!("it is a module of the standard library: write `use std` or `use std.{name}`");
