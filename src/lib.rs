@@ -54,6 +54,8 @@ pub mod trials;
 pub mod cluster;
 pub mod report;
 
+pub mod editor;
+
 pub mod cli;
 
 pub use compile::{Compiled, compile, fingerprint};

@@ -85,13 +85,14 @@ fn diagnostics_are_data_too() {
         serde_json::json!({
             "code": "E0202", "severity": "error", "message": "`a` is declared twice", "file": "main.track",
             "start": { "line": 2, "column": 6 }, "end": { "line": 2, "column": 7 }, "help": "choose another name",
+            "fixes": [],
         })
     );
     assert_eq!(
         data["diagnostics"][2],
         serde_json::json!({
             "code": "E0601", "severity": "note", "message": "nothing to run", "file": null,
-            "start": null, "end": null, "help": null,
+            "start": null, "end": null, "help": null, "fixes": [],
         })
     );
 }

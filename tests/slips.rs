@@ -6,8 +6,10 @@ use trackbed::diag::Code;
 use trackbed::{Compiled, compile};
 
 mod common {
+    pub mod fixes;
     pub mod scene;
 }
+use common::fixes::{offers_a_text, useless};
 use common::scene::SCENE;
 
 /// What stands in the scene, what is typed in its place, the code, and the way out.
@@ -397,6 +399,23 @@ fn a_slip_is_said_once_with_its_way_out() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_way_out_that_is_an_edit_can_be_applied() {
+    let again = |text: &str| compile("scene.track", text, &NoModules, &[]);
+    let (mut wrong, mut without) = (Vec::new(), Vec::new());
+    for (right, typed, _, way_out) in SLIPS {
+        let text = SCENE.replace(right, typed);
+        let found = again(&text);
+        wrong.extend(useless(&text, &found, again).into_iter().map(|what| format!("`{typed}`: {what}")));
+        if found.diagnostics.iter().any(|d| offers_a_text(d) && d.fixes.is_empty()) {
+            without.push(format!("`{typed}`: {way_out}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    // what offers several lines, or the rest of a declaration, is left to the reader
+    assert!(without.len() * 10 <= SLIPS.len(), "{} offers are no edits:\n{}", without.len(), without.join("\n"));
 }
 
 #[test]

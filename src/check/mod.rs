@@ -14,15 +14,18 @@ mod reads;
 mod resolve;
 mod scene;
 mod stated;
+mod survey;
 mod text;
 
 pub use reads::{ALWAYS_READ, readers};
 pub use resolve::resolve;
 pub use stated::Stated;
-pub use text::library::{Entry, library};
+pub use survey::{Content, Files, Held, Object, Survey, survey, surveyed_names};
+pub use text::library::{Entry, MODULES as LIBRARY, library};
 pub use text::measured::{MeasuredCurve, measured_curve};
 pub use text::modules::{DataError, Folder, LARGEST_DATA_FILE, Modules, NoModules, Parsed, Remembered, read_bounded};
 pub use text::overrides::Override;
+pub use text::scope::{ItemId, Scope, ScopeId};
 
 use crate::diag::{self, Code, Diagnostic, Severity, Sources, Span};
 use crate::scenario::{Scenario, Study};
@@ -115,7 +118,13 @@ fn one_cause_once(diagnostics: &mut Vec<Diagnostic>) {
             _ => false,
         };
         match diagnostics.iter_mut().find(same) {
-            Some(first) if mistake.code == Code::E0201 => first.labels.extend(mistake.labels),
+            Some(first) if mistake.code == Code::E0201 => {
+                first.labels.extend(mistake.labels);
+                // one edit mends every place
+                for (fix, other) in first.fixes.iter_mut().zip(mistake.fixes) {
+                    fix.edits.extend(other.edits);
+                }
+            }
             Some(_) => {}
             None => diagnostics.push(mistake),
         }

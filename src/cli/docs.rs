@@ -2,7 +2,7 @@
 
 use super::{Outcome, terminal};
 use crate::diag::nearest::nearest;
-use crate::{report, schema};
+use crate::{editor, report, schema};
 use clap::ValueEnum;
 
 /// Say what a kind and its fields mean
@@ -10,7 +10,7 @@ use clap::ValueEnum;
 pub(super) struct Arguments {
     /// The kind; all of them in a line each where it is left out.
     kind: Option<String>,
-    /// `markdown` writes the whole reference, or the section of one kind.
+    /// `markdown` writes the whole reference, or the section of one kind; `textmate` the grammar by which editors colour files.
     #[arg(long, value_enum, default_value = "human")]
     format: DocsFormat,
 }
@@ -19,9 +19,14 @@ pub(super) struct Arguments {
 enum DocsFormat {
     Human,
     Markdown,
+    Textmate,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Outcome {
+    if arguments.format == DocsFormat::Textmate {
+        terminal::out(&editor::textmate());
+        return Outcome::Fine;
+    }
     let markdown = arguments.format == DocsFormat::Markdown;
     let Some(wanted) = &arguments.kind else {
         terminal::out(&if markdown { report::reference() } else { schema::index() });

@@ -14,6 +14,7 @@ mod draw;
 mod explain;
 mod fmt;
 mod interrupt;
+mod lsp;
 mod memory;
 mod new;
 mod pack;
@@ -68,6 +69,7 @@ enum Command {
     Explain(explain::Arguments),
     Docs(docs::Arguments),
     New(new::Arguments),
+    Lsp(lsp::Arguments),
 }
 
 /// For whom the answer is.
@@ -122,6 +124,7 @@ pub fn main() -> ExitCode {
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Docs(arguments) => docs::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
+        Command::Lsp(arguments) => lsp::run(&arguments),
     };
     let lost = terminal::lost();
     if let Some(cause) = lost {

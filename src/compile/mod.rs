@@ -88,7 +88,8 @@ pub fn compile_with(
             let of_plan = |graph| [check::readers(scenario), lowered.readers, lint::readers(graph)].concat();
             // a plan that this version cannot run is no measure of what a line is for
             let runs = graph.as_ref().filter(|graph| graph.runs);
-            diagnostics.extend(unused::told(&checked.stated, &runs.map(of_plan).unwrap_or_default()));
+            let readers = runs.map(of_plan).unwrap_or_default();
+            diagnostics.extend(unused::told(&checked.stated, &readers, &checked.sources));
         }
     }
     diag::sort(&mut diagnostics);

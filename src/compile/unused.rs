@@ -4,7 +4,7 @@
 //! true in each. What it states is told only where an edit asks for a change of it, or where no plan of this version reads it.
 
 use crate::check::Stated;
-use crate::diag::{Code, Diagnostic, and_list};
+use crate::diag::{Code, Diagnostic, Edit, Fix, Sources, Span, and_list};
 use crate::schema::{self, Field, Need, Reader, Role};
 
 /// Why a field does nothing.
@@ -17,7 +17,7 @@ enum Why {
 }
 
 /// One warning for each reason, with every field of which it holds. Without readers only those are told that nobody reads.
-pub(super) fn told(stated: &[Stated], readers: &[Reader]) -> Vec<Diagnostic> {
+pub(super) fn told(stated: &[Stated], readers: &[Reader], sources: &Sources) -> Vec<Diagnostic> {
     let mut reasons: Vec<(Why, Vec<Stated>)> = Vec::new();
     for one in stated {
         let Some(why) = why(one, readers) else { continue };
@@ -26,7 +26,12 @@ pub(super) fn told(stated: &[Stated], readers: &[Reader]) -> Vec<Diagnostic> {
             None => reasons.push((why, vec![*one])),
         }
     }
-    reasons.into_iter().map(|(why, fields)| warning(&why, &fields)).collect()
+    let with_fix = |(why, fields): (Why, Vec<Stated>)| {
+        let edits: Option<Vec<Edit>> = fields.iter().map(|field| without(field, sources)).collect();
+        let fix = edits.map(|edits| Fix { title: "take it out".into(), edits });
+        warning(&why, &fields).maybe_fix(fix)
+    };
+    reasons.into_iter().map(with_fix).collect()
 }
 
 /// Why a field does nothing in the plan of these readers; `None` where it does something, or where its word is not worth telling.
@@ -52,6 +57,28 @@ fn why(stated: &Stated, readers: &[Reader]) -> Option<Why> {
     }
     // what no plan reads, checking or the drawing does
     (!acts_where.is_empty()).then_some(Why::ActsWhere(acts_where))
+}
+
+/// The edit that takes a field out of the text, with its line where nothing else stands on it.
+fn without(field: &Stated, sources: &Sources) -> Option<Edit> {
+    let (file, end) = (field.span.file, field.span.end as usize);
+    let text = &sources.get(file).text;
+    let before = text.get(..field.span.start as usize)?.trim_end().strip_suffix('=')?.trim_end();
+    let start = before.trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '_' || c == '.').len();
+    let line = text[..start].rfind('\n').map_or(0, |i| i + 1);
+    let (rest, behind) = (&text[end..], text[end..].trim_start_matches([' ', '\t', ',']));
+    let ends = behind.is_empty() || behind.starts_with(['\n', '\r']) || behind.starts_with("//");
+    let span = if text[line..start].trim().is_empty() && ends {
+        let next = rest.find('\n').map_or(text.len(), |i| end + i + 1);
+        Span::new(file, line, next)
+    } else if rest.trim_start().starts_with(',') {
+        Span::new(file, start, text.len() - behind.len())
+    } else {
+        // the last of several: the comma before it goes too
+        let kept = text[..start].trim_end().trim_end_matches(',').trim_end().len();
+        Span::new(file, kept.max(line), end)
+    };
+    (!field.edited).then(|| Edit { span, text: String::new() })
 }
 
 fn warning(why: &Why, fields: &[Stated]) -> Diagnostic {

@@ -4,11 +4,13 @@
 //! Rendering for people and for programs is separate ([`render`]), so that the stages know no terminal.
 
 mod code;
+mod fix;
 pub mod nearest;
 pub mod render;
 mod source;
 
 pub use code::Code;
+pub use fix::{Edit, Fix, Help};
 pub use source::{FileId, Position, Source, Sources, Span};
 
 /// How much a diagnostic weighs: only errors stop a run.
@@ -47,12 +49,15 @@ pub struct Diagnostic {
     pub labels: Vec<Label>,
     /// What to write instead, ready to paste where possible.
     pub help: Option<String>,
+    /// The same as edits of the text, each of which takes the mistake away.
+    pub fixes: Vec<Fix>,
 }
 
 impl Diagnostic {
     /// A diagnostic of the code's usual severity.
     pub fn new(code: Code, message: impl Into<String>) -> Self {
-        Diagnostic { code, severity: code.severity(), message: message.into(), labels: Vec::new(), help: None }
+        let (labels, fixes) = (Vec::new(), Vec::new());
+        Diagnostic { code, severity: code.severity(), message: message.into(), labels, help: None, fixes }
     }
 
     /// Adds a place; the first one added is the place of the mistake.

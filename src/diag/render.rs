@@ -7,7 +7,7 @@ use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, M
 use miette::{SourceCode, SourceSpan, SpanContents};
 use serde_json::{Value, json};
 
-use super::{Diagnostic, FileId, Label, Severity, Sources, Span};
+use super::{Diagnostic, Edit, FileId, Fix, Label, Severity, Sources, Span};
 
 /// A report for a terminal of that width, with a footer that counts; empty where nothing is to be said.
 pub fn human(diagnostics: &[Diagnostic], sources: &Sources, colour: bool, width: usize) -> String {
@@ -75,10 +75,20 @@ pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Value {
                 "start": start.as_ref().map(|(_, place)| place),
                 "end": end.map(|(_, place)| place),
                 "help": diagnostic.help,
+                "fixes": diagnostic.fixes.iter().map(|fix| fix_json(fix, sources)).collect::<Vec<_>>(),
             })
         })
         .collect();
     json!({ "diagnostics": entries })
+}
+
+/// An edit as data: its parts of the files in bytes from 0, the end excluded, and what takes their place.
+fn fix_json(fix: &Fix, sources: &Sources) -> Value {
+    let edit = |edit: &Edit| {
+        let name = sources.iter().nth(edit.span.file.0 as usize).map(|(_, source)| source.name.as_str());
+        json!({ "file": name, "start": edit.span.start, "end": edit.span.end, "text": edit.text })
+    };
+    json!({ "title": fix.title, "edits": fix.edits.iter().map(edit).collect::<Vec<_>>() })
 }
 
 /// File name, line and column of an offset, which may lie anywhere.

@@ -39,7 +39,9 @@ fn too_fine(every: Given, traffic: Led<'_>) -> Option<Diagnostic> {
         number(step * 1e3)
     );
     let help = format!("write `every = {} s`, or a `time_step` as short as the samples", number(step));
-    (*every < 0.6 * step).then(|| Diagnostic::new(Code::L1025, message).help(help))
+    let written = format!("{} s", number(step));
+    (*every < 0.6 * step)
+        .then(|| Diagnostic::new(Code::L1025, message).help(help).rewrite(every.origin.span(), written))
 }
 
 fn too_coarse(every: Given, scenario: &Scenario, graph: &Graph, traffic: Led<'_>) -> Option<Diagnostic> {
@@ -57,7 +59,9 @@ fn too_coarse(every: Given, scenario: &Scenario, graph: &Graph, traffic: Led<'_>
         number(missed.round())
     );
     let enough = (1e4 / (SAMPLES_A_PERIOD * frequency)).floor() / 1e4;
-    Some(Diagnostic::new(Code::L1025, message).help(format!("write `every = {} s`, or leave it out", number(enough))))
+    let help = format!("write `every = {} s`, or leave it out", number(enough));
+    let written = format!("{} s", number(enough));
+    Some(Diagnostic::new(Code::L1025, message).help(help).rewrite(every.origin.span(), written))
 }
 
 /// What moves fastest of that which every history shows, and its frequency, Hz.

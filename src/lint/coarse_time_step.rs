@@ -35,7 +35,11 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             number(frequency.round())
         ),
     )
-    .help(format!("write `time_step = {} s`", number(rounded_down(needed))));
+    .help(format!("write `time_step = {} s`", number(rounded_down(needed))))
+    .rewrite(
+        scenario.solve.time_step.fixed().and_then(|step| step.origin.span()),
+        format!("{} s", number(rounded_down(needed))),
+    );
     vec![match scenario.solve.time_step.span() {
         Some(span) => diagnostic.label(span, "coarse"),
         None => diagnostic,

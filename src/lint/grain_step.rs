@@ -36,7 +36,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             number((smallest * 1e4).round() / 10.0)
         ),
     )
-    .help("write `grain_step = auto`; a larger `cut_below` or softer contacts allow a longer step");
+    .help("write `grain_step = auto`; a larger `cut_below` or softer contacts allow a longer step")
+    .rewrite(step.origin.span(), "auto");
     let (set_by, what) = match granular.grading.cut_below {
         Some(cut) => (cut.origin, "the smallest grains"),
         None => match granular.contact {

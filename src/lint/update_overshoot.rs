@@ -37,7 +37,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
             number(((amplification - 1.0).abs() * 10.0).round() / 10.0)
         ),
     )
-    .help("write `update_every = adaptive`");
+    .help("write `update_every = adaptive`")
+    .rewrite(scenario.solve.update_span, "adaptive");
     vec![match scenario.solve.update_span {
         Some(span) => diagnostic.label(span, "too long a block"),
         None => diagnostic,

@@ -42,7 +42,9 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         );
         let enough = (1e6 * wave / speed / STEPS_A_WAVE).floor() / 1e6;
         let help = format!("write `time_step = {} s`, or smooth the level", number(enough));
-        found.push(told(message, help, scenario.solve.time_step.span(), "steps"));
+        let value = scenario.solve.time_step.fixed().and_then(|step| step.origin.span());
+        let mistake = told(message, help, scenario.solve.time_step.span(), "steps");
+        found.push(mistake.rewrite(value, format!("{} s", number(enough))));
     }
 
     let frequency = speed / wave;
@@ -63,7 +65,8 @@ pub(super) fn check(scenario: &Scenario, graph: &Graph) -> Vec<Diagnostic> {
         );
         let enough = (ELEMENTS_A_WAVE * scenario.track.shortest_bay() / shortest).ceil();
         let help = format!("write `elements_per_bay = {}`, or smooth the level", number(enough));
-        found.push(told(message, help, scenario.solve.elements_per_bay.origin.span(), "elements"));
+        let value = scenario.solve.elements_per_bay.origin.span();
+        found.push(told(message, help, value, "elements").rewrite(value, number(enough)));
     }
     found
 }

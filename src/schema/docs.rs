@@ -49,7 +49,7 @@ fn row(field: &Field, name: &str) -> String {
         Need::Optional | Need::Alternative => String::new(),
         Need::Default(text) => format!("default `{text}`"),
     };
-    let cells = [name.to_string(), form(&field.form), need, meaning.join("; ")];
+    let cells = [name.to_string(), form_text(&field.form), need, meaning.join("; ")];
     format!("| {} |\n", cells.map(|cell| cell.replace('|', "\\|")).join(" | "))
 }
 
@@ -101,7 +101,7 @@ fn describe(out: &mut String, field: &Field, indent: usize) {
         Need::Default(text) => format!("default {text}"),
         Need::Alternative => "see below".into(),
     };
-    out.push_str(&format!("{pad}{:<24}{} ({need})\n", field.name, form(&field.form)));
+    out.push_str(&format!("{pad}{:<24}{} ({need})\n", field.name, form_text(&field.form)));
     for text in [field.doc, remark(field)].into_iter().filter(|text| !text.is_empty()) {
         out.push_str(&format!("{pad}{:<24}{text}\n", ""));
     }
@@ -113,7 +113,8 @@ fn describe(out: &mut String, field: &Field, indent: usize) {
     }
 }
 
-fn form(form: &Form) -> String {
+/// What may stand in a field, in a line: `MN/m, 5 .. 3000`.
+pub fn form_text(form: &Form) -> String {
     match form {
         Form::Number(m) | Form::Interval(m) => {
             let mut text = if m.unit.is_empty() { "number".to_string() } else { m.unit.to_string() };
@@ -129,10 +130,10 @@ fn form(form: &Form) -> String {
             format!("{text}, {} .. {}{along}", number(m.min), number(m.max))
         }
         Form::Integer { min, max } => format!("whole number, {min} .. {max}"),
-        Form::OneOf(forms) => forms.iter().map(self::form).collect::<Vec<_>>().join(" | "),
+        Form::OneOf(forms) => forms.iter().map(form_text).collect::<Vec<_>>().join(" | "),
         Form::Words(words) => words.iter().filter(|w| !w.planned).map(|w| w.name).collect::<Vec<_>>().join(" | "),
-        Form::List(item) => format!("[{}]", self::form(item)),
-        Form::Pairs { key, value, .. } => format!("[{}: {}]", self::form(key), self::form(value)),
+        Form::List(item) => format!("[{}]", form_text(item)),
+        Form::Pairs { key, value, .. } => format!("[{}: {}]", form_text(key), form_text(value)),
         Form::Object(kind) => (*kind).to_string(),
         Form::Text => "text".into(),
         Form::Name => "name of a transition".into(),

@@ -112,7 +112,7 @@ impl Finding {
         let labels = self.place.unwrap_or_else(|| vec![Label { span: study.span, text: "varied here".into() }]);
         if severity != Severity::Error {
             let message = format!("{message} ({many} of study `{}`, {first})", study.name);
-            return Diagnostic { code, severity, message, labels, help };
+            return Diagnostic { code, severity, message, labels, help, fixes: Vec::new() };
         }
         let help = match help {
             Some(help) => help,
@@ -120,6 +120,6 @@ impl Finding {
         };
         let code = if code == Code::E0705 { String::new() } else { format!(" ({code})") };
         let message = format!("{many} of study `{}` cannot run: {message}{code}, {first}", study.name);
-        Diagnostic { code: Code::E0705, severity, message, labels, help: Some(help) }
+        Diagnostic { code: Code::E0705, severity, message, labels, help: Some(help), fixes: Vec::new() }
     }
 }

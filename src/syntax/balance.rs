@@ -8,7 +8,7 @@
 use super::draft::Draft;
 use super::limits;
 use super::token::{Kind, Token, partner};
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Fix};
 
 /// What is known of the end of the line that holds an opening bracket.
 #[derive(Clone, Copy, PartialEq)]
@@ -300,7 +300,8 @@ impl Scan<'_, '_> {
         let mistake = Diagnostic::new(Code::E0104, format!("`{open}` closed by `{bracket}`"))
             .label(self.draft.span(token.start, token.end), format!("expected `{right}`"))
             .label(self.draft.span(top.token.start, top.token.end), "opened here")
-            .help(format!("write `{right}` instead of `{bracket}`"));
+            .help(format!("write `{right}` instead of `{bracket}`"))
+            .fix(Fix::replace(self.draft.span(token.start, token.end), right.to_string()));
         self.draft.report(mistake);
         self.draft.overwrite(&token, &right.to_string());
         self.end_item();
@@ -311,7 +312,8 @@ impl Scan<'_, '_> {
         self.draft.overwrite(&token, "");
         let mistake = Diagnostic::new(Code::E0104, format!("`{bracket}` closes nothing"))
             .label(self.draft.span(token.start, token.end), format!("no `{}` is open here", partner(bracket)))
-            .help("remove it, or open its partner before it");
+            .help("remove it, or open its partner before it")
+            .fix(Fix::replace(self.draft.span(token.start, token.end), "").titled(format!("remove `{bracket}`")));
         self.draft.report(mistake);
     }
 
@@ -341,6 +343,8 @@ impl Scan<'_, '_> {
         if line == self.draft.original[..token.start].matches('\n').count() + 1 {
             mistake = mistake.help(format!("add `{right}`, most likely at the end of line {line}"));
         }
+        let text = if right == '}' { " }".to_owned() } else { right.to_string() };
+        mistake = mistake.fix(Fix::replace(self.draft.span(at, at), text).titled(format!("add `{right}`")));
         if let Some(noticed) = noticed {
             mistake = mistake.label(self.draft.span(noticed.start, noticed.end), "still open here");
         }

@@ -9,7 +9,7 @@ use super::grammar::{Grammar, Rule};
 use super::token::{self, Kind};
 use super::tree::{Entry, Field, Value, ValueKind};
 use super::value::Told;
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Fix};
 
 impl<'p> Builder<'p> {
     /// Whether part of a block only goes on with the list that the field before it, at `before`, began without brackets: `at = -1, -2 m`.
@@ -36,7 +36,8 @@ impl<'p> Builder<'p> {
             let last = start + items.trim_end().len();
             let mistake = Diagnostic::new(Code::E0101, "several values stand in brackets")
                 .label(self.span(start, last), "where a field is expected");
-            self.report(mistake.help(format!("write `{list}`")));
+            let whole = self.span(before.0, last);
+            self.report(mistake.write(whole, list));
         }
         field.value.kind = ValueKind::Error;
         true
@@ -77,20 +78,21 @@ impl<'p> Builder<'p> {
         let whole = block.as_str();
         let inner = whole[1..whole.len() - usize::from(whole.ends_with('}'))].split_whitespace();
         let inner = inner.collect::<Vec<_>>().join(" ");
-        let (message, help) = match base {
+        let at = self.span_of(&block);
+        let (message, written, place) = match base {
             Some(word) => {
-                let written = format!("write `{}({inner})`", word.as_str());
-                ("the arguments of a word stand in parentheses", written)
+                let written = format!("{}({inner})", word.as_str());
+                ("the arguments of a word stand in parentheses", written, self.span_of(&word).to(at))
             }
             None if pairs && inner.starts_with('"') => (
                 "names stand without quotes, and fields are given with `=`",
-                format!("write `{{ {} }}`", inner.replace("\": ", " = ").replace('"', "")),
+                format!("{{ {} }}", inner.replace("\": ", " = ").replace('"', "")),
+                at,
             ),
-            None if count == 1 && !pairs => ("braces hold fields, `name = value`", format!("write `{inner}`")),
-            None => ("braces hold fields, brackets hold items", format!("write `[{inner}]`")),
+            None if count == 1 && !pairs => ("braces hold fields, `name = value`", inner, at),
+            None => ("braces hold fields, brackets hold items", format!("[{inner}]"), at),
         };
-        let at = self.span_of(&block);
-        self.report(Diagnostic::new(Code::E0101, message).label(at, "").help(help));
+        self.report(Diagnostic::new(Code::E0101, message).label(at, "").write(place, written));
         true
     }
 
@@ -105,7 +107,8 @@ impl<'p> Builder<'p> {
         let inner = first_line(whole.trim_start_matches('(').trim_start()).trim_end_matches(')').trim_end();
         let close = if whole.contains('\n') { "" } else { " }" };
         let mistake = Diagnostic::new(Code::E0105, "fields stand in braces").label(span, "");
-        self.report(mistake.help(format!("write `{{ {inner}{close}`")));
+        let fix = Fix::replace(span, format!("{{ {inner} }}"));
+        self.report(mistake.help(format!("write `{{ {inner}{close}`")).maybe_fix((!close.is_empty()).then_some(fix)));
         let mut told = Told { equals: true, colon: false };
         let mut fields = Vec::new();
         for entry in group.clone().into_inner() {
@@ -127,7 +130,7 @@ impl<'p> Builder<'p> {
         let at = self.span_of(list);
         let mistake =
             Diagnostic::new(Code::E0105, "a pair in a list is `key: value`").label(at, "pairs in parentheses");
-        self.report(mistake.help(format!("write `[{}]`", pairs.join(", "))));
+        self.report(mistake.write(at, format!("[{}]", pairs.join(", "))));
         true
     }
 

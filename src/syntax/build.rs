@@ -7,7 +7,7 @@ use super::explain::Explained;
 use super::grammar::Rule;
 use super::limits;
 use super::tree::{Declaration, Field, Item, Let, Name, Path, Use, Value, ValueKind};
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Fix, Span};
 
 impl<'p> Builder<'p> {
     pub fn file(&mut self, pairs: Pairs<'p, Rule>) -> Vec<Item> {
@@ -97,7 +97,10 @@ impl<'p> Builder<'p> {
                     "put it into the braces of the declaration it belongs to".to_owned(),
                 )
             };
-            self.report(Diagnostic::new(Code::E0105, message).label(path.span, "").help(help));
+            let mistake = Diagnostic::new(Code::E0105, message).label(path.span, "");
+            let before = Span { end: path.span.start, ..path.span };
+            let fix = Fix::replace(before, "let ").titled(help.as_str());
+            self.report(mistake.maybe_fix(help.starts_with("write `let ").then_some(fix)).help(help));
         }
         let span = path.span.to(value.span);
         let name = path.names.into_iter().next()?;
@@ -164,8 +167,9 @@ impl<'p> Builder<'p> {
                 Rule::base => base = part.into_inner().next().map(|p| self.path(p)),
                 Rule::missing => {
                     let mistake = Diagnostic::new(Code::E0101, "expected a name after `:`, found `{`");
-                    let help = "name what is extended, or remove the `:`";
-                    self.report(mistake.label(self.span(colon, colon + 1), "").help(help));
+                    let (help, place) = ("name what is extended, or remove the `:`", self.span(colon, colon + 1));
+                    let fix = Fix::replace(place, "").titled("remove the `:`");
+                    self.report(mistake.label(place, "").help(help).fix(fix));
                     continue;
                 }
                 Rule::block => fields = self.block(part),
@@ -214,7 +218,10 @@ impl<'p> Builder<'p> {
         };
         if sound {
             let mistake = Diagnostic::new(Code::E0105, "`=` in the header of a declaration");
-            self.report(mistake.label(self.span_of(&equals), "").help(help));
+            let sign = self.span_of(&equals);
+            let text = if base.is_some() { ":" } else { "" };
+            let fix = Fix::replace(sign, text).titled(help.as_str());
+            self.report(mistake.label(sign, "").maybe_fix((!help.contains("`let ")).then_some(fix)).help(help));
         }
         Some(Declaration { kind, name: Some(name), base, fields, docs, span })
     }
@@ -270,7 +277,8 @@ impl<'p> Builder<'p> {
         if wrong && sound {
             let rest = self.text(path_end, end).trim_start().trim_start_matches(':').trim_start();
             let help = format!("write `{} = {}`", path.text(), first_line(rest));
-            self.report(Diagnostic::new(Code::E0105, "a field is given with `=`").label(colon, "").help(help));
+            let mistake = Diagnostic::new(Code::E0105, "a field is given with `=`").label(colon, "").help(help);
+            self.report(mistake.fix(Fix::replace(colon, " =")));
         }
         let span = path.span.to(value.span);
         fields.push(Field { path, value, docs, span });
@@ -288,7 +296,9 @@ impl<'p> Builder<'p> {
         let object = ValueKind::Object { base: None, fields: self.block(block.clone()) };
         let mut value = Value { kind: object, span };
         let help = format!("write `{} = {}`", path.text(), first_line(block.as_str()));
-        self.report(Diagnostic::new(Code::E0105, "a field is given with `=`").label(path.span, "").help(help));
+        let mistake = Diagnostic::new(Code::E0105, "a field is given with `=`").label(path.span, "").help(help);
+        let behind = Span { start: path.span.end, ..path.span };
+        self.report(mistake.fix(Fix::replace(behind, " =").titled("write `=`")));
         if let Some(junk) = parts.next() {
             self.explain(Rule::exact_field, start, junk.as_span().start(), junk.as_span().end());
             value.kind = ValueKind::Error;

@@ -3,7 +3,7 @@
 
 use super::draft::Draft;
 use super::token::{Kind, Token};
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Fix};
 
 const EXTENDS: [&str; 6] = ["extends", "inherits", "from", "is", "based_on", "of"];
 
@@ -81,7 +81,9 @@ fn header(draft: &mut Draft, tokens: &mut [Token], i: usize) {
         None => tokens[i + 2],
     };
     let mistake = Diagnostic::new(Code::E0105, "a declaration is `kind name : base { field = value }`");
-    draft.report(mistake.label(draft.span(wrong.start, wrong.end), "").help(format!("write `{written} {{`")));
+    let place = draft.span(tokens[i].start, tokens[open].start);
+    let mistake = mistake.label(draft.span(wrong.start, wrong.end), "").help(format!("write `{written} {{`"));
+    draft.report(mistake.fix(Fix::replace(place, format!("{written} "))));
     for (n, new) in over {
         let token = tokens[i + n];
         draft.overwrite(&token, &new);
@@ -111,7 +113,8 @@ fn arguments(draft: &mut Draft, tokens: &mut [Token], i: usize, end: usize) {
     };
     let mistake = Diagnostic::new(Code::E0105, "the fields of a declaration stand in braces");
     let at = draft.span(tokens[open].start, tokens[open].end);
-    draft.report(mistake.label(at, "").help(format!("write `{header} {{ {fields} }}`")));
+    let whole = draft.span(tokens[i].start, tokens[close].end);
+    draft.report(mistake.label(at, "").write(whole, format!("{header} {{ {fields} }}")));
     if named {
         // the two names change places: both are words, and the places of blanks mean nothing
         let (name, kind_text) = (sign(i).to_owned(), sign(kind).to_owned());
@@ -135,7 +138,8 @@ fn digit_first(draft: &mut Draft, tokens: &mut [Token], i: usize, before: &str) 
     let (digits, letters) = (number.text(text), word.text(text));
     let mistake = Diagnostic::new(Code::E0101, format!("a name begins with a letter, not with `{digits}`"));
     let at = draft.span(number.start, word.end);
-    draft.report(mistake.label(at, "").help(format!("a name begins with a letter: write `{before}{letters}{digits}`")));
+    let help = format!("a name begins with a letter: write `{before}{letters}{digits}`");
+    draft.report(mistake.label(at, "").help(help).fix(Fix::replace(at, format!("{letters}{digits}"))));
     draft.overwrite(&number, "");
     tokens[i].kind = Kind::Comment;
 }

@@ -9,7 +9,14 @@ use super::builder::{Builder, first_line};
 use super::grammar::{Grammar, Rule};
 use super::token::{self, Kind, Token};
 use super::tree::{Name, Path};
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Fix};
+
+/// What to do about an unreadable part.
+enum Way {
+    Say(String),
+    /// Why, and what to write in the place of its first line.
+    Write(&'static str, String),
+}
 
 /// What an unreadable part turned out to be.
 pub(super) enum Explained {
@@ -43,9 +50,8 @@ impl<'p> Builder<'p> {
         let Some(found) = token::next(text, at).filter(|t| t.kind != Kind::LineBreak) else {
             let mistake = Diagnostic::new(Code::E0101, message(&expected, &self.found(at)));
             let last = start + text[start..end.min(at.max(start))].trim_end().len();
-            self.report(
-                mistake.label(self.span(last, last), "").maybe_help(self.way_out(exact, start, junk, end, None)),
-            );
+            let mistake = mistake.label(self.span(last, last), "");
+            self.report(self.shown(mistake, self.way_out(exact, start, junk, end, None), start, end));
             return Explained::Other(path);
         };
         let found = self.whole_word(found);
@@ -54,9 +60,13 @@ impl<'p> Builder<'p> {
         }
         let mistake = match self.swallowed(junk) {
             Some(next) => {
+                let before = text[..junk].trim_end_matches([' ', '\t']);
+                let next_start = before.trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '_').len();
                 let message = format!("expected a comma or a line break before `{}`", next.text());
                 let mistake = Diagnostic::new(Code::E0101, message).label(next.span, "a new field starts here");
-                self.report(mistake.help(format!("write `, {}`", next.text())));
+                let gap = text[..next_start].trim_end_matches([' ', '\t']).len();
+                let fix = Fix::replace(self.span(gap, next_start), ", ").titled("write a comma");
+                self.report(mistake.help(format!("write `, {}`", next.text())).fix(fix));
                 return Explained::Other(path);
             }
             None => {
@@ -64,8 +74,21 @@ impl<'p> Builder<'p> {
                 Diagnostic::new(Code::E0101, message(&expected, &what)).label(self.span(found.start, found.end), "")
             }
         };
-        self.report(mistake.maybe_help(self.way_out(exact, start, junk, end, Some(found))));
+        self.report(self.shown(mistake, self.way_out(exact, start, junk, end, Some(found)), start, end));
         Explained::Other(path)
+    }
+
+    /// A mistake with the way out; one that is an edit takes the place of the first line of the part that begins at `start`.
+    fn shown(&self, mistake: Diagnostic, way: Option<Way>, start: usize, end: usize) -> Diagnostic {
+        match way {
+            Some(Way::Say(help)) => mistake.help(help),
+            Some(Way::Write(why, written)) => {
+                let part = first_line(&self.prepared.text[start..end]);
+                let fix = Fix::replace(self.span(start, start + part.len()), written.as_str());
+                mistake.help(format!("{why}write `{written}`")).fix(fix)
+            }
+            None => mistake,
+        }
     }
 
     /// A word with letters that no name has is cut before the first of them; a reader wants to see all of it.
@@ -85,31 +108,32 @@ impl<'p> Builder<'p> {
     }
 
     /// What to write instead, where that can be guessed.
-    fn way_out(&self, exact: Rule, start: usize, junk: usize, end: usize, found: Option<Token>) -> Option<String> {
+    fn way_out(&self, exact: Rule, start: usize, junk: usize, end: usize, found: Option<Token>) -> Option<Way> {
         let text: &'p str = &self.prepared.text;
         let part = first_line(&text[start..end]);
         let word = found.map_or("", |t| t.text(text));
         if let Some(help) = self.habit(exact, start, part, found) {
-            return Some(help);
+            return Some(Way::Say(help));
         }
+        let say = |help: &str| Some(Way::Say(help.to_owned()));
         let opens = |sign: &str| matches!(sign, "+" | "*" | "/" | "^" | ".." | "<" | ">" | "<=" | ">=" | "per");
         if !word.is_ascii() && matches!(found?.kind, Kind::Word) {
-            return Some("names are made of ASCII letters, digits and `_`".to_owned());
+            return say("names are made of ASCII letters, digits and `_`");
         }
         let line = text[..start].rfind('\n').map_or(0, |i| i + 1);
         let first = start == junk && line > 0 && text[line..start].trim().is_empty();
         if word == "==" {
-            return Some("`=` gives a value, `<=` and `>=` compare".to_owned());
+            return say("`=` gives a value, `<=` and `>=` compare");
         }
         if first && found.is_some_and(|t| t.start == start) && opens(word) {
-            return Some(format!("a line goes on behind an operator: end the line above with `{word}`"));
+            return say(&format!("a line goes on behind an operator: end the line above with `{word}`"));
         }
         if word == "." {
-            return Some("the factors of a unit are parted by a blank: `kN s/m`".to_owned());
+            return say("the factors of a unit are parted by a blank: `kN s/m`");
         }
         let mut before = text[start..found.map_or(end, |t| t.start)].split_whitespace().rev();
         if let (Some(half), Some("per")) = (before.next(), before.next()) {
-            return Some(format!("behind `per` stands one word: not `{half} {word}`, but such as `seat` or `sleeper`"));
+            return say(&format!("behind `per` stands one word: not `{half} {word}`, but such as `seat` or `sleeper`"));
         }
         match exact {
             Rule::exact_entry => {
@@ -118,14 +142,15 @@ impl<'p> Builder<'p> {
                 if !key.is_empty() && part.chars().all(|c| c.is_ascii_alphabetic() || "_ ".contains(c)) {
                     let words: Vec<&str> = part.split_whitespace().collect();
                     let (name, items) = (words.join("_"), words.join(", "));
-                    return Some(format!("write `{items}` for several, `{name}` for one: a name has no blanks"));
+                    return say(&format!("write `{items}` for several, `{name}` for one: a name has no blanks"));
                 }
                 let value = rest.starts_with(|c: char| c.is_alphanumeric());
                 let rest = rest.strip_prefix("x ").unwrap_or(rest);
-                (!key.is_empty() && value && !rest.starts_with("per ")).then(|| format!("write `{key}: {rest}`"))
+                let pair = !key.is_empty() && value && !rest.starts_with("per ");
+                pair.then(|| Way::Write("", format!("{key}: {rest}")))
             }
             Rule::exact_field if matches!(first_word(part), "let" | "use") => {
-                Some(format!("`{}` stands outside of braces", first_word(part)))
+                say(&format!("`{}` stands outside of braces", first_word(part)))
             }
             Rule::exact_field => {
                 let path = leading(part);
@@ -134,33 +159,32 @@ impl<'p> Builder<'p> {
                 let second = leading(rest);
                 let after = rest[second.len()..].trim_start();
                 if !path.is_empty() && !second.is_empty() && after.starts_with('=') && !after.starts_with("==") {
-                    return Some(format!("a name has no blanks: write `{path}_{second} {after}`"));
+                    return Some(Way::Write("a name has no blanks: ", format!("{path}_{second} {after}")));
                 }
                 let value = rest.starts_with(|c: char| c.is_alphanumeric() || "\"([-?".contains(c));
-                let written = (!path.is_empty() && value).then(|| format!("write `{path} = {rest}`"));
-                Some(written.unwrap_or_else(|| "a field is `name = value`".to_owned()))
+                let written = (!path.is_empty() && value).then(|| Way::Write("", format!("{path} = {rest}")));
+                written.or_else(|| say("a field is `name = value`"))
             }
             Rule::exact_item if first_word(part) == "let" => {
                 let name = part["let".len()..].trim_start();
                 let (first, rest) = name.split_at(leading(name).len());
                 let second = leading(rest.trim_start());
                 let after = rest.trim_start()[second.len()..].trim_start();
-                Some(match !first.is_empty() && !second.is_empty() && after.starts_with('=') {
-                    true => format!("a name has no blanks: write `let {first}_{second} {after}`"),
-                    false => "write `let name = value`".to_owned(),
-                })
+                match !first.is_empty() && !second.is_empty() && after.starts_with('=') {
+                    true => Some(Way::Write("a name has no blanks: ", format!("let {first}_{second} {after}"))),
+                    false => say("write `let name = value`"),
+                }
             }
             Rule::exact_item if matches!(first_word(part), "import" | "include" | "using" | "require") => {
-                Some(format!("write `use {}`", part[first_word(part).len()..].trim().trim_matches('"')))
+                let module = part[first_word(part).len()..].trim().trim_matches('"');
+                Some(Way::Write("", format!("use {module}")))
             }
-            Rule::exact_item if first_word(part) == "use" => {
-                Some("write `use module` or `use module as name`".to_owned())
-            }
+            Rule::exact_item if first_word(part) == "use" => say("write `use module` or `use module as name`"),
             Rule::exact_item if matches!(word, "extends" | "(" | "-" | "from" | "is") || found.is_some_and(is_text) => {
-                Some("a declaration is `kind name : base { field = value }`".to_owned())
+                say("a declaration is `kind name : base { field = value }`")
             }
-            Rule::exact_item if start == junk => Some("a declaration is `kind name { field = value }`".to_owned()),
-            Rule::exact_item => Some("a declaration is `kind name : base { field = value }`".to_owned()),
+            Rule::exact_item if start == junk => say("a declaration is `kind name { field = value }`"),
+            Rule::exact_item => say("a declaration is `kind name : base { field = value }`"),
             _ => None,
         }
     }
@@ -212,18 +236,19 @@ impl<'p> Builder<'p> {
         let Some(start) = self.decimal_comma(at) else { return };
         let (whole, decimals) = (&self.prepared.text[start..at - 1], first_line(self.text(at, end)));
         let digits = decimals.find(|c: char| !c.is_ascii_digit()).unwrap_or(decimals.len());
-        let help = if whole.contains('.') {
-            format!("write `{}.{decimals}`", whole.replace('.', ""))
+        let place = self.span(start, at + decimals.len());
+        let mistake = Diagnostic::new(Code::E0105, "a decimal comma").label(place, "a comma parts items");
+        let mistake = if whole.contains('.') {
+            mistake.write(place, format!("{}.{decimals}", whole.replace('.', "")))
         } else if decimals[digits..].starts_with('.') {
-            format!("write `{whole}{decimals}`")
+            mistake.write(place, format!("{whole}{decimals}"))
         } else if digits == 3 {
-            format!("write `{whole}.{decimals}`, or `{whole}_{decimals}` where the comma parts thousands")
+            let (point, thousands) = (format!("{whole}.{decimals}"), format!("{whole}_{decimals}"));
+            let help = format!("write `{point}`, or `{thousands}` where the comma parts thousands");
+            mistake.help(help).fix(Fix::replace(place, point)).fix(Fix::replace(place, thousands))
         } else {
-            format!("write `{whole}.{decimals}`")
+            mistake.write(place, format!("{whole}.{decimals}"))
         };
-        let mistake = Diagnostic::new(Code::E0105, "a decimal comma")
-            .label(self.span(start, at + decimals.len()), "a comma parts items")
-            .help(help);
         self.report(mistake);
     }
 

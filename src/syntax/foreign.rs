@@ -5,7 +5,7 @@
 
 use super::draft::Draft;
 use super::token::{Kind, Token};
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Edit, Fix};
 
 /// Signs that look like ours.
 const LOOK_ALIKES: [(&str, &str); 9] =
@@ -40,28 +40,31 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
                     Some(name) => format!("write `use {name}`"),
                     None => format!("write `// {}`", words.trim()),
                 };
-                report(draft, token, format!("`{sign}` does not begin a comment"), help);
+                let fix =
+                    help.strip_prefix("write `").and_then(|text| text.strip_suffix('`')).unwrap_or_default().to_owned();
+                mend(draft, token, format!("`{sign}` does not begin a comment"), help, &fix);
             }
             Kind::BlockComment => block_comment(draft, token),
             Kind::OddText => odd_text(draft, token),
             Kind::Text { closed: false } => {
                 draft.overwrite(token, "?");
                 draft.poisoned.insert(token.start);
+                let (place, closed) = (draft.span(token.start, token.end), text.trim_end());
                 let mistake = Diagnostic::new(Code::E0106, "text without its closing quote")
-                    .label(draft.span(token.start, token.end), "opened here, and still open at the end of the line")
-                    .help(format!("write `{}\"`", text.trim_end().trim_end_matches(['\'', '’', '”', '`'])));
+                    .label(place, "opened here, and still open at the end of the line")
+                    .write(place, format!("{}\"", closed.trim_end_matches(['\'', '’', '”', '`'])));
                 draft.report(mistake);
             }
             Kind::Sign => match text {
                 "->" | "::" if in_header(draft.original, tokens, i) => {
                     draft.overwrite(token, ":");
                     let help = format!("write `{}`", rewritten(draft.original, tokens, i, " : "));
-                    report(draft, token, format!("`{text}` is not a sign of this language"), help);
+                    mend(draft, token, format!("`{text}` is not a sign of this language"), help, ":");
                 }
                 "–" | "—" if between_ends(draft.original, tokens, i) => {
                     draft.overwrite(token, "..");
                     let help = format!("write `{}`", rewritten(draft.original, tokens, i, " .. "));
-                    report(draft, token, "a dash between the ends of a range", help);
+                    mend(draft, token, "a dash between the ends of a range", help, " .. ");
                 }
                 ";" | "=>" | ":=" | "=<" | "->" if told.contains(&text) => {
                     draft.overwrite(token, replacement(text, brackets.last()));
@@ -76,7 +79,9 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
                         None if item.is_empty() => "remove it".to_owned(),
                         None => format!("write `{item}`"),
                     };
-                    report(draft, token, "`;` does not end an item: a line break or a comma does", help);
+                    let fix = alike(draft, tokens, i, ",");
+                    let message = "`;` does not end an item: a line break or a comma does";
+                    report(draft, token, message, help, Some(fix));
                 }
                 "=>" if brackets.last() == Some(&'[') => {
                     draft.overwrite(token, ":");
@@ -86,7 +91,7 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
                         rewritten(draft.original, tokens, i, ": "),
                         rewritten(draft.original, tokens, i, " >= ")
                     );
-                    report(draft, token, "`=>` is not a sign of this language", help);
+                    report(draft, token, "`=>` is not a sign of this language", help, None);
                 }
                 "=>" | ":=" | "=<" | "->" => {
                     let right = replacement(text, brackets.last());
@@ -94,7 +99,8 @@ pub(super) fn replace(draft: &mut Draft, tokens: &[Token], balanced: bool) {
                     told.push(text);
                     let joint = if right == ":" { ": ".to_owned() } else { format!(" {right} ") };
                     let help = format!("write `{}`", rewritten(draft.original, tokens, i, &joint));
-                    report(draft, token, format!("`{text}` is not a sign of this language"), help);
+                    let fix = alike(draft, tokens, i, right);
+                    report(draft, token, format!("`{text}` is not a sign of this language"), help, Some(fix));
                 }
                 _ if wide(draft, token, &mut told) => {}
                 _ => look_alike(draft, tokens, i),
@@ -161,10 +167,25 @@ fn bracket_around<'t>(text: &'t str, tokens: &[Token], i: usize) -> Option<&'t s
     None
 }
 
-fn report(draft: &mut Draft, token: &Token, message: impl Into<String>, help: String) {
+fn report(draft: &mut Draft, token: &Token, message: impl Into<String>, help: String, fix: Option<Fix>) {
     let end = draft.original[token.start..token.end].find('\n').map_or(token.end, |i| token.start + i);
     let mistake = Diagnostic::new(Code::E0105, message).label(draft.span(token.start, end), "").help(help);
-    draft.report(mistake);
+    draft.report(mistake.maybe_fix(fix));
+}
+
+/// Reports a token in the place of which something else is to be written.
+fn mend(draft: &mut Draft, token: &Token, message: impl Into<String>, help: String, text: &str) {
+    let fix = Fix::replace(draft.span(token.start, token.end), text);
+    report(draft, token, message, help, Some(fix));
+}
+
+/// Writes a sign in the place of one, and of all of its kind behind it on the line, which are told with it.
+fn alike(draft: &Draft, tokens: &[Token], i: usize, sign: &str) -> Fix {
+    let wrong = tokens[i].text(draft.original);
+    let line = tokens[i..].iter().take_while(|token| token.kind != Kind::LineBreak);
+    let same = line.filter(|token| token.kind == Kind::Sign && token.text(draft.original) == wrong);
+    let edits = same.map(|token| Edit { span: draft.span(token.start, token.end), text: sign.to_owned() });
+    Fix { title: format!("write `{sign}` for `{wrong}`"), edits: edits.collect() }
 }
 
 fn block_comment(draft: &mut Draft, token: &Token) {
@@ -173,12 +194,17 @@ fn block_comment(draft: &mut Draft, token: &Token) {
     let inner = text.trim_start_matches("/*").trim_end_matches("*/");
     let lines = inner.lines().map(|l| l.trim().trim_start_matches('*').trim()).filter(|l| !l.is_empty());
     let first = lines.clone().next().unwrap_or("");
+    let mut written = lines.clone().map(|line| format!("// {line}")).collect::<Vec<_>>().join("\n");
+    let behind = draft.original[token.end..].lines().next().unwrap_or_default();
+    if !behind.trim().is_empty() {
+        written.push('\n');
+    }
     let help = if lines.count() > 1 {
         format!("begin each of its lines with `//`: `// {first}`")
     } else {
         format!("write `// {first}`, with nothing behind it on its line")
     };
-    report(draft, token, "`/* */` is not a comment here", help);
+    mend(draft, token, "`/* */` is not a comment here", help, &written);
 }
 
 fn odd_text(draft: &mut Draft, token: &Token) {
@@ -195,7 +221,7 @@ fn odd_text(draft: &mut Draft, token: &Token) {
         draft.overwrite(token, &right);
     }
     let right = format!("\"{}\"", inner.replace('\\', "\\\\").replace('"', "\\\""));
-    report(draft, token, "text stands in double quotes", format!("write `{right}`"));
+    mend(draft, token, "text stands in double quotes", format!("write `{right}`"), &right);
 }
 
 /// Signs of a keyboard for Chinese or Japanese, with the blank that we put behind them.
@@ -226,7 +252,11 @@ fn wide(draft: &mut Draft, token: &Token, known: &mut Vec<&str>) -> bool {
         let mended = WIDE.iter().fold(line.to_owned(), |line, (wide, right)| line.replace(wide, right));
         let mended = mended.split_whitespace().collect::<Vec<_>>().join(" ");
         let help = format!("write `{mended}`");
-        report(draft, token, format!("`{text}` looks like `{}` but is another character", right.trim_end()), help);
+        let place = draft.span(start, start + line.len());
+        let indent: String = line.chars().take_while(|c| c.is_whitespace()).collect();
+        let fix = Fix::replace(place, format!("{indent}{mended}"));
+        let message = format!("`{text}` looks like `{}` but is another character", right.trim_end());
+        report(draft, token, message, help, Some(fix));
     }
     true
 }
@@ -237,12 +267,12 @@ fn look_alike(draft: &mut Draft, tokens: &[Token], i: usize) {
         draft.overwrite(&tokens[i], right);
         let spaced = if *right == "-" { right.to_string() } else { format!(" {right} ") };
         let help = format!("write `{}`", rewritten(draft.original, tokens, i, &spaced));
-        report(draft, &tokens[i], format!("`{text}` looks like `{right}` but is another character"), help);
+        mend(draft, &tokens[i], format!("`{text}` looks like `{right}` but is another character"), help, right);
     } else if text.chars().all(|c| c.is_whitespace() || matches!(c, '\u{200b}' | '\u{feff}' | '\u{2060}')) {
         draft.overwrite(&tokens[i], "");
         let code = text.chars().next().map_or(0, u32::from);
         let help = "replace it by an ordinary blank".to_owned();
-        report(draft, &tokens[i], format!("blank of another kind (U+{code:04X})"), help);
+        mend(draft, &tokens[i], format!("blank of another kind (U+{code:04X})"), help, " ");
     }
 }
 

@@ -4,7 +4,7 @@
 use super::balance::starts_field;
 use super::draft::Draft;
 use super::token::{Kind, Token};
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Edit, Fix};
 
 /// Mends a draft whose tokens these are. Brackets that it answers for itself are no brackets any more in `tokens`.
 pub(super) fn mend(draft: &mut Draft, tokens: &mut [Token]) {
@@ -54,7 +54,17 @@ fn open(draft: &mut Draft, tokens: &mut [Token], i: usize) {
     } else if closer.is_none() {
         help += ", and `}` behind its last field";
     }
-    draft.report(mistake.help(help));
+    let opening = match bracket || colon {
+        true => Edit { span: draft.span(at.start, at.end), text: if colon { " {" } else { "{" }.to_owned() },
+        false => Edit { span: draft.span(last.end, last.end), text: " {".to_owned() },
+    };
+    let closing = closer.map(|k| Edit { span: draft.span(tokens[k].start, tokens[k].end), text: "}".to_owned() });
+    let closing = closing.unwrap_or_else(|| {
+        let end = end_of_fields(text, tokens, first).unwrap_or(last.end);
+        Edit { span: draft.span(end, end), text: "\n}".to_owned() }
+    });
+    let fix = Fix { title: "put the fields into braces".to_owned(), edits: vec![opening, closing] };
+    draft.report(mistake.help(help).fix(fix));
     if bracket || colon {
         draft.overwrite(&at, "{");
     } else {
@@ -65,16 +75,18 @@ fn open(draft: &mut Draft, tokens: &mut [Token], i: usize) {
             draft.overwrite(&tokens[k], "}");
             tokens[k].kind = Kind::Sign;
         }
-        None => {
-            let item = |t: &Token| t.kind == Kind::Word && text.as_bytes()[t.start - 1] == b'\n';
-            let end = tokens[first..].iter().position(item).map_or(tokens.len(), |k| first + k);
-            let behind = tokens[first..end].iter().rev().find(|t| t.kind != Kind::LineBreak && !t.is_comment());
-            draft.insertions.push((behind.map_or(last.end, |t| t.end), '}'));
-        }
+        None => draft.insertions.push((end_of_fields(text, tokens, first).unwrap_or(last.end), '}')),
     }
     if bracket || colon {
         tokens[next].kind = Kind::Sign;
     }
+}
+
+/// Where the fields end that begin at `first`: before the next item of the file.
+fn end_of_fields(text: &str, tokens: &[Token], first: usize) -> Option<usize> {
+    let item = |t: &Token| t.kind == Kind::Word && text.as_bytes()[t.start - 1] == b'\n';
+    let end = tokens[first..].iter().position(item).map_or(tokens.len(), |k| first + k);
+    tokens[first..end].iter().rev().find(|t| t.kind != Kind::LineBreak && !t.is_comment()).map(|t| t.end)
 }
 
 /// The first token of the line behind these, if nothing else stands on their own.

@@ -31,6 +31,7 @@ mod value;
 pub use decode::decode;
 pub use format::format;
 pub use parse::parse;
+pub use token::{Kind as TokenKind, Token, tokens};
 
 /// The bounds of the language, for files that no person wrote.
 pub mod limits {

@@ -3,7 +3,7 @@
 
 use super::draft::Draft;
 use super::token::{Kind, Token};
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Fix};
 
 pub(super) fn mend(draft: &mut Draft, tokens: &mut [Token]) {
     let mut i = 0;
@@ -37,7 +37,8 @@ fn lost_opening(draft: &mut Draft, tokens: &mut [Token], first: usize, line: usi
         false => format!("write `\"{inner}\"`"),
     };
     let mistake = Diagnostic::new(Code::E0106, "text without its opening quote");
-    told(draft, tokens, begin..quote + 1, mistake, "the text begins here", help);
+    let fix = (!inches).then(|| format!("\"{inner}\""));
+    told(draft, tokens, begin..quote + 1, mistake, "the text begins here", (help, fix));
 }
 
 fn inches_of(digits: &str) -> f64 {
@@ -60,7 +61,8 @@ fn over_two_lines(draft: &mut Draft, tokens: &mut [Token], first: usize, line: u
     let one_line = text[start..stop].split_whitespace().collect::<Vec<_>>().join(" ");
     let mistake = Diagnostic::new(Code::E0106, "a text over two lines")
         .label(draft.span(start, tokens[open].end), "it begins here");
-    draft.report(mistake.help(format!("a text stands on one line: write `{one_line}`")));
+    let fix = Fix::replace(draft.span(start, stop), one_line.as_str());
+    draft.report(mistake.help(format!("a text stands on one line: write `{one_line}`")).fix(fix));
     poison(draft, tokens, open..open + 1);
     for token in &mut tokens[next..=close] {
         draft.overwrite(token, "");
@@ -79,12 +81,13 @@ fn inside(draft: &mut Draft, tokens: &mut [Token], first: usize, line: usize) {
     let whole = &text[tokens[begin].start..tokens[last].end];
     let doubled = whole.starts_with("\"\"") && whole.ends_with("\"\"");
     let inner = if doubled { whole.trim_matches('"') } else { &whole[1..whole.len() - 1] };
+    let written = format!("\"{}\"", inner.replace('"', "\\\""));
     let help = match inner.contains('"') {
-        true => format!("a quote inside a text is written `\\\"`: `\"{}\"`", inner.replace('"', "\\\"")),
-        false => format!("write `\"{inner}\"`"),
+        true => format!("a quote inside a text is written `\\\"`: `{written}`"),
+        false => format!("write `{written}`"),
     };
     let mistake = Diagnostic::new(Code::E0105, "quotes inside quotes");
-    told(draft, tokens, begin..last + 1, mistake, "", help);
+    told(draft, tokens, begin..last + 1, mistake, "", (help, Some(written)));
 }
 
 fn told(
@@ -93,10 +96,11 @@ fn told(
     range: std::ops::Range<usize>,
     mistake: Diagnostic,
     label: &str,
-    help: String,
+    (help, written): (String, Option<String>),
 ) {
-    let (start, end) = (tokens[range.start].start, tokens[range.end - 1].end);
-    draft.report(mistake.label(draft.span(start, end), label).help(help));
+    let place = draft.span(tokens[range.start].start, tokens[range.end - 1].end);
+    let fix = written.map(|written| Fix::replace(place, written));
+    draft.report(mistake.label(place, label).help(help).maybe_fix(fix));
     poison(draft, tokens, range);
 }
 

@@ -1,10 +1,10 @@
 //! Cuts a text into tokens, comments and line breaks included: for everything that needs no grammar.
 //!
-//! Three stages share it: `foreign` and `balance` look at a text before it is parsed, `format` lays out one that is
-//! known to parse. Every byte belongs to a token or is a blank, and no text is refused.
+//! `foreign` and `balance` look at a text before it is parsed, `format` lays out one that is known to parse, and an editor
+//! asks what stands at a place of one that is half typed. Every byte belongs to a token or is a blank, and no text is refused.
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub enum Kind {
     LineBreak,
     /// `// to the line's end`
     Comment,
@@ -28,7 +28,7 @@ pub(super) enum Kind {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Token {
+pub struct Token {
     pub kind: Kind,
     pub start: usize,
     pub end: usize,
@@ -48,7 +48,7 @@ const PAIRS_OF_SIGNS: [&str; 15] =
     ["..", "<=", ">=", "=>", ":=", "==", "=<", "->", "<-", "!=", "<>", "::", "&&", "||", "**"];
 
 /// All tokens of a text, in order.
-pub(super) fn tokens(text: &str) -> Vec<Token> {
+pub fn tokens(text: &str) -> Vec<Token> {
     let mut out: Vec<Token> = Vec::with_capacity(text.len() / 4);
     let mut at = 0;
     // Where the current line began in `out`: an unclosed text looks back for the brackets opened before it.

@@ -16,6 +16,26 @@ pub enum Item {
     Declaration(Declaration),
 }
 
+impl Item {
+    /// The whole of it.
+    pub fn span(&self) -> Span {
+        match self {
+            Item::Use(used) => used.span,
+            Item::Let(binding) => binding.span,
+            Item::Declaration(declaration) => declaration.span,
+        }
+    }
+
+    /// The `///` lines above it.
+    pub fn docs(&self) -> &[String] {
+        match self {
+            Item::Use(_) => &[],
+            Item::Let(binding) => &binding.docs,
+            Item::Declaration(declaration) => &declaration.docs,
+        }
+    }
+}
+
 /// `use site.gravel as stone`
 #[derive(Debug, Clone, PartialEq)]
 pub struct Use {

@@ -1,7 +1,7 @@
 //! Characters that no terminal, page or picture can show as they are: told where they stand.
 
 use super::draft::Draft;
-use crate::diag::{Code, Diagnostic, Span};
+use crate::diag::{Code, Diagnostic, Edit, Fix, Span};
 
 /// Tells of the first such character, and how many there are.
 pub(super) fn tell(draft: &mut Draft<'_>) {
@@ -13,7 +13,10 @@ pub(super) fn tell(draft: &mut Draft<'_>) {
     };
     let message = format!("the text holds a character that cannot be shown, U+{:04X}{more}", u32::from(first));
     let span = Span::new(draft.file, start, start + first.len_utf8());
-    draft.diagnostics.push(Diagnostic::new(Code::E0101, message).label(span, "here").help("take it out"));
+    let all = draft.original.char_indices().filter(|(_, c)| is_unfit(*c));
+    let edits = all.map(|(i, c)| Edit { span: draft.span(i, i + c.len_utf8()), text: String::new() });
+    let fix = Fix { title: "take it out".to_owned(), edits: edits.collect() };
+    draft.diagnostics.push(Diagnostic::new(Code::E0101, message).label(span, "here").help("take it out").fix(fix));
 }
 
 /// Control characters, signs that turn the direction of what follows, and what is no character.

@@ -3,7 +3,7 @@
 
 use super::draft::Draft;
 use super::token::{Kind, Token};
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Fix};
 
 pub(super) fn mend(draft: &mut Draft, tokens: &mut [Token]) {
     for i in 0..tokens.len() {
@@ -43,7 +43,9 @@ fn by_file(draft: &mut Draft, tokens: &mut [Token], i: usize) {
     };
     let mistake =
         Diagnostic::new(Code::E0101, "a module is named by names with dots between them, not by the path of a file");
-    draft.report(mistake.label(draft.span(start, end), "no name of a module").help(help));
+    let place = draft.span(start, end);
+    let fix = Fix::replace(place, format!("use {name}{alias}"));
+    draft.report(mistake.label(place, "no name of a module").help(help).fix(fix));
     for token in tokens[i..].iter_mut().take_while(|t| t.start < end) {
         if token.kind == Kind::LineBreak {
             break;

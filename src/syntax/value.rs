@@ -6,7 +6,7 @@ use super::builder::Builder;
 use super::grammar::Rule;
 use super::limits;
 use super::tree::{Argument, BinaryOp, Comparison, Entry, UnitText, Value, ValueKind};
-use crate::diag::{Code, Diagnostic, Span};
+use crate::diag::{Code, Diagnostic, Fix, Span};
 
 /// What has been said of a list or of arguments.
 #[derive(Default)]
@@ -95,7 +95,8 @@ impl<'p> Builder<'p> {
         if let (Some(dots), [from, to]) = (dots, ends.as_slice()) {
             let message = format!("`{}` between the ends of a range", dots.as_str());
             let mistake = Diagnostic::new(Code::E0105, message).label(self.span_of(&dots), "expected `..`");
-            self.report(mistake.help(format!("write `{from} .. {to}`")));
+            let fix = Fix::replace(self.span_of(&dots), "..");
+            self.report(mistake.help(format!("write `{from} .. {to}`")).fix(fix));
         }
         let mut bounds = bounds.into_iter();
         let first = bounds.next().unwrap_or(Value { kind: ValueKind::Error, span: self.span(start, start) });
@@ -214,7 +215,7 @@ impl<'p> Builder<'p> {
                 None => right,
             };
             let mistake = Diagnostic::new(Code::E0105, "a decimal point has digits on both sides");
-            self.report(mistake.label(span, "").help(format!("write `{right}`")));
+            self.report(mistake.label(span, "").write(span, right));
         }
         let value: f64 = digits.parse().unwrap_or(f64::NAN);
         if !value.is_finite() {
@@ -353,7 +354,8 @@ impl<'p> Builder<'p> {
         {
             let mistake =
                 Diagnostic::new(Code::E0105, "a pair in a list has `:`, not `=`").label(self.span_of(sign), "");
-            self.report(mistake.help(format!("write `{key}: {value}`")));
+            let fix = Fix::replace(self.span_of(sign), ":");
+            self.report(mistake.help(format!("write `{key}: {value}`")).fix(fix));
         }
         let mut values = values.into_iter();
         let (first, second) = (values.next(), values.next());
@@ -399,7 +401,8 @@ impl<'p> Builder<'p> {
             && !std::mem::replace(&mut told.colon, true)
         {
             let mistake = Diagnostic::new(Code::E0105, "an argument is given with `=`").label(self.span_of(&sign), "");
-            self.report(mistake.help(format!("write `{} = {text}`", name.text)));
+            let fix = Fix::replace(self.span_of(&sign), " =");
+            self.report(mistake.help(format!("write `{} = {text}`", name.text)).fix(fix));
         }
         Argument { name, value }
     }

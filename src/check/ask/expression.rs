@@ -6,7 +6,7 @@ use crate::check::evaluate::offers;
 use crate::check::evaluate::written::looks_like;
 use crate::check::parts::traffic::{axle_count, whole};
 use crate::check::text::scope::ScopeId;
-use crate::diag::{Code, Diagnostic, Span, or_list};
+use crate::diag::{Code, Diagnostic, Help, Span, or_list};
 use crate::scenario::Measured;
 use crate::scenario::response::{Expectation, Expression, Function, Measure, Place, Reduction, Response};
 use crate::syntax::tree::{Argument, BinaryOp, Item, Name, Path, Value, ValueKind};
@@ -45,12 +45,12 @@ impl Reader<'_, '_> {
         let typed: Vec<Typed> = typed.into_iter().collect::<Option<_>>()?;
         let first = typed[0].1;
         if let Some(i) = typed.iter().position(|(_, d)| *d != first) {
-            let help = self.comparable(operands, &typed, scope);
+            let (place, help) = self.comparable(operands, &typed, scope).unzip();
             self.eval.findings.report(
                 Diagnostic::new(Code::E0305, "a comparison needs values of the same dimension")
                     .label(operands[i].span, typed[i].1.describe())
                     .label(operands[0].span, first.describe())
-                    .maybe_help(help),
+                    .maybe_advise(place.unwrap_or(operands[i].span), help),
             );
             return None;
         }
@@ -66,13 +66,14 @@ impl Reader<'_, '_> {
     }
 
     /// What to write in the place of a plain value, so that it compares with the response beside it.
-    fn comparable(&mut self, operands: &[Value], typed: &[Typed], scope: ScopeId) -> Option<String> {
+    fn comparable(&mut self, operands: &[Value], typed: &[Typed], scope: ScopeId) -> Option<(Span, Help)> {
         let (response, dimension) = typed.iter().find(|(e, _)| !matches!(e, Expression::Number(_)))?;
         let unit = shown_unit(*dimension, response);
         let other = operands.iter().zip(typed).find(|(_, (_, d))| d != dimension)?.0;
         let bare = if let ValueKind::Per(inner, _) = &other.kind { inner } else { other };
         let raw = self.eval.raw(other, scope)?;
-        offers::in_comparison(*dimension, &raw, self.eval.files.sources.text(bare.span), &unit)
+        let help = offers::in_comparison(*dimension, &raw, self.eval.files.sources.text(bare.span), &unit)?;
+        Some((other.span, help))
     }
 
     /// An expression of responses.
@@ -138,10 +139,11 @@ impl Reader<'_, '_> {
             self.eval.findings.report(
                 Diagnostic::new(Code::E0406, format!("`{}` has a value at many places", name.text))
                     .label(name.span, "not one number")
-                    .help(format!(
-                        "write `max({})`, or `min`, `mean`, `rms`, `percentile` or `place_of_max` of it",
-                        name.text
-                    )),
+                    .advise(
+                        name.span,
+                        Help::write(format!("max({})", name.text))
+                            .and(", or `min`, `mean`, `rms`, `percentile` or `place_of_max` of it"),
+                    ),
             );
             return None;
         }

@@ -7,7 +7,7 @@ use crate::check::evaluate::value::Val;
 use crate::check::evaluate::written::looks_like;
 use crate::check::text::scope::ScopeId;
 use crate::diag::nearest::nearest;
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Help};
 use crate::scenario::response::{Expression, Measure, Place, Reduction, Response};
 use crate::schema::{self, Names, Varies, called};
 use crate::syntax::tree::{Argument, Item, Name, ValueKind};
@@ -55,16 +55,16 @@ impl Reader<'_, '_> {
         let share = word.text.strip_prefix(['p', 'P']).and_then(|digits| digits.parse::<u32>().ok());
         let share = if word.text == "median" { Some(50) } else { share.filter(|share| *share <= 100) };
         let help = match share {
-            Some(share) => format!("write `percentile({response}, {share} %)`"),
+            Some(share) => Help::say(format!("write `percentile({response}, {share} %)`")),
             None => match called(Names::Reductions, &word.text, REDUCTIONS.into_iter()) {
-                Some(ours) => format!("did you mean `{ours}`?"),
+                Some(ours) => Help::meant(ours),
                 None => return false,
             },
         };
         self.eval.findings.report(
             Diagnostic::new(Code::E0408, format!("a response is not reduced by `{}`", word.text))
                 .label(word.span, "unknown word")
-                .help(help),
+                .advise(word.span, help),
         );
         true
     }
@@ -118,13 +118,11 @@ impl Reader<'_, '_> {
                     let place = argument.name.as_ref().map_or(argument.value.span, |n| n.span);
                     let known = ["over", "from", "after"];
                     let near = called(Names::Fields, name, known.into_iter()).or_else(|| nearest(name, known));
-                    let near = near.map(|n| format!("did you mean `{n}`?"));
                     self.eval.findings.report(
                         Diagnostic::new(Code::E0402, format!("`{}` has no such argument", word.text))
                             .label(place, "unknown argument")
-                            .help(near.unwrap_or_else(|| {
-                                "it takes `over = span`, `from = transition` and `after = axles`".into()
-                            })),
+                            .help("it takes `over = span`, `from = transition` and `after = axles`")
+                            .maybe_meant(place, near),
                     );
                     return None;
                 }
@@ -171,10 +169,11 @@ impl Reader<'_, '_> {
         }
         if !(0.0..=1.0).contains(&raw.value) {
             let text = format!("expected 0 .. 100 %, found {} %", crate::units::number(100.0 * raw.value));
-            let written =
-                (0.0..=100.0).contains(&raw.value).then(|| format!("write `{} %`", crate::units::number(raw.value)));
+            let written = (0.0..=100.0)
+                .contains(&raw.value)
+                .then(|| Help::write(format!("{} %", crate::units::number(raw.value))));
             let mistake = Diagnostic::new(Code::E0405, text).label(raw.span, "out of range");
-            self.eval.findings.report(mistake.maybe_help(written));
+            self.eval.findings.report(mistake.maybe_advise(raw.span, written));
             return None;
         }
         Some(Reduction::Percentile(raw.value))

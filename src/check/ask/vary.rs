@@ -9,7 +9,7 @@ use crate::check::evaluate::records::object_kind;
 use crate::check::evaluate::written::{looks_like, with_unit};
 use crate::check::text::scope::{ItemId, ScopeId};
 use crate::diag::nearest::nearest;
-use crate::diag::{Code, Diagnostic, Span, or_list};
+use crate::diag::{Code, Diagnostic, Help, Span, or_list};
 use crate::scenario::{Axis, Choice, Setting, Spread, Values};
 use crate::schema::{self, Form, Kind, Names, called};
 use crate::syntax::tree::{Argument, Declaration, Entry, Item, Name, Path, UnitText, Value, ValueKind};
@@ -86,11 +86,12 @@ impl Reader<'_, '_> {
                 found => {
                     let place = found.map_or(entry.value.span, |(_, span)| span);
                     let mended = found.and_then(|(_, span)| self.as_path(span));
-                    let help = mended.or_else(|| self.values_alone(entries, i)).unwrap_or_else(|| help.clone());
+                    let alone = || self.values_alone(entries, i).map(Help::say);
+                    let help = mended.or_else(alone).unwrap_or_else(|| Help::say(help.clone()));
                     self.eval.findings.report(
                         Diagnostic::new(Code::E0406, format!("expected `path: {what}`"))
                             .label(place, "no path")
-                            .help(help),
+                            .advise(place, help),
                     );
                     told = true;
                 }
@@ -105,10 +106,10 @@ impl Reader<'_, '_> {
     }
 
     /// A path in quotes, or with `/` between its names.
-    fn as_path(&self, span: Span) -> Option<String> {
+    fn as_path(&self, span: Span) -> Option<Help> {
         let text = self.eval.files.sources.text(span).trim_matches('"').replace('/', ".");
         let plain = text.chars().all(|c| c.is_ascii_alphanumeric() || "_.".contains(c));
-        plain.then(|| format!("names are joined by dots: write `{text}`"))
+        plain.then(|| Help::write(text).after("names are joined by dots: "))
     }
 
     /// The brackets that values behind a pair lack: `bay: 0.55, 0.6 m`.
@@ -174,16 +175,19 @@ impl Reader<'_, '_> {
         }
         let (message, help) = if self.eval.scopes[scope].modules.contains_key(&first.text) {
             let message = format!("a study varies what its own file declares, and `{}` is a module", first.text);
-            (message, self.declared_here(path, scope))
+            (message, self.declared_here(path, scope).map(Help::say))
         } else {
             let near = nearest(&first.text, self.eval.scopes[scope].names.keys().map(String::as_str));
             let message = format!("this file declares nothing called `{}` to vary", first.text);
-            let full = self.full_path(path, scope).map(|path| format!("write `{path}`"));
-            (message, full.or_else(|| near.map(|n| format!("did you mean `{n}`?"))))
+            let full = self.full_path(path, scope).map(|full| (path.span, Help::write(full)));
+            let (place, help) = full.or_else(|| Some((first.span, Help::meant(near?)))).unzip();
+            let mistake = Diagnostic::new(Code::E0704, message).label(first.span, "unknown here");
+            self.eval.findings.report(mistake.maybe_advise(place.unwrap_or(first.span), help));
+            return;
         };
-        self.eval
-            .findings
-            .report(Diagnostic::new(Code::E0704, message).label(first.span, "unknown here").maybe_help(help));
+        self.eval.findings.report(
+            Diagnostic::new(Code::E0704, message).label(first.span, "unknown here").maybe_advise(first.span, help),
+        );
     }
 
     /// How a thing of another file becomes one of this file, that a study may vary.
@@ -246,11 +250,12 @@ impl Reader<'_, '_> {
                 self.eval.field_of(kind, name);
                 return None;
             }
-            let near = kind.meant(&name.text).map(|n| format!("did you mean `{n}`?"));
+            let near = kind.meant(&name.text).map(Help::meant);
             self.eval.findings.report(
                 Diagnostic::new(Code::E0704, format!("a {} has no `{}` to vary", kind.name, name.text))
                     .label(name.span, "unknown field")
-                    .help(near.unwrap_or_else(|| format!("`trackbed docs {}` lists its fields", kind.name))),
+                    .help(format!("`trackbed docs {}` lists its fields", kind.name))
+                    .maybe_advise(name.span, near),
             );
             return None;
         };
@@ -265,11 +270,11 @@ impl Reader<'_, '_> {
         if let Form::Pairs { value, .. } = &field.form {
             return Some(value);
         }
-        let near = nearest(&next.text, arguments().map(|a| a.name)).map(|n| format!("did you mean `{n}`?"));
+        let near = nearest(&next.text, arguments().map(|a| a.name));
         self.eval.findings.report(
             Diagnostic::new(Code::E0704, format!("there is no `{}` inside `{}` to vary", next.text, field.name))
                 .label(next.span, "not found")
-                .maybe_help(near),
+                .maybe_meant(next.span, near),
         );
         None
     }
@@ -306,7 +311,8 @@ impl Reader<'_, '_> {
             let code = if raw.dimension.is_none() { Code::E0301 } else { Code::E0302 };
             let unit = unit_text(&binding.value).filter(|_| code == Code::E0301);
             let text = self.eval.files.sources.text(value.span);
-            let help = unit.map(|unit| format!("write `{text} {}`, if that is the unit you meant", unit.text));
+            let written = unit.map(|unit| Help::write(format!("{text} {}", unit.text)));
+            let help = written.map(|help| help.and(", if that is the unit you meant"));
             self.eval.findings.report(
                 Diagnostic::new(
                     code,
@@ -314,7 +320,7 @@ impl Reader<'_, '_> {
                 )
                 .label(value.span, "of another dimension")
                 .label(binding.value.span, "than what it replaces")
-                .maybe_help(help),
+                .maybe_advise(value.span, help),
             );
         }
     }
@@ -349,17 +355,19 @@ impl Reader<'_, '_> {
                 };
                 let text = self.eval.files.sources.text(inner.span);
                 let help = match near {
-                    Some("steps") => "write something like `steps(20 .. 80 MN/m, count = 4)`".to_owned(),
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None if is_number(inner) => format!("one value is a list of one: write `[{text}]`"),
-                    None => "write `[value, value]`".to_owned(),
+                    Some("steps") => Help::say("write something like `steps(20 .. 80 MN/m, count = 4)`"),
+                    Some(near) => Help::say(format!("did you mean `{near}`?")),
+                    None if is_number(inner) => Help::write(format!("[{text}]")).after("one value is a list of one: "),
+                    None => Help::say("write `[value, value]`"),
                 };
                 let words: Vec<String> = DISTRIBUTIONS.iter().map(|w| format!("`{w}`")).collect();
                 let expected =
                     format!("expected a list, `from .. to`, {}, found {}", or_list(&words), looks_like(other));
-                self.eval
-                    .findings
-                    .report(Diagnostic::new(Code::E0406, expected).label(inner.span, "not several values").help(help));
+                self.eval.findings.report(
+                    Diagnostic::new(Code::E0406, expected)
+                        .label(inner.span, "not several values")
+                        .advise(inner.span, help),
+                );
                 None
             }
         }
@@ -448,7 +456,7 @@ impl Reader<'_, '_> {
             self.eval.findings.report(
                 Diagnostic::new(Code::E0505, "a range must ascend")
                     .label(whole, "its first end is not the smaller")
-                    .maybe_help(swapped(&text)),
+                    .maybe_help(swapped(&text).map(|help| help.said)),
             );
             return None;
         }

@@ -6,7 +6,7 @@ use super::unit_mistakes::unit_mistake;
 use super::value::Val;
 use super::written::looks_like;
 use crate::check::text::scope::ScopeId;
-use crate::diag::{Code, Diagnostic, Span};
+use crate::diag::{Code, Diagnostic, Help, Span};
 use crate::syntax::tree::{Argument, BinaryOp, Name, Path, UnitText, Value, ValueKind};
 use crate::units::{Dimension, parse_unit};
 
@@ -39,13 +39,13 @@ impl Evaluator<'_> {
             }
             other => {
                 let unquoted = match other {
-                    ValueKind::Text(text) => Some(format!("write `{text}`, without quotes")),
+                    ValueKind::Text(text) => Some(Help::write(text).and(", without quotes")),
                     _ => None,
                 };
                 self.findings.report(
                     Diagnostic::new(Code::E0406, format!("expected a number, found {}", looks_like(other)))
                         .label(span, "not a number")
-                        .maybe_help(unquoted),
+                        .maybe_advise(span, unquoted),
                 );
                 None
             }
@@ -77,7 +77,12 @@ impl Evaluator<'_> {
             Err(error) => {
                 let help = self.of_trains(unit);
                 let whole = self.files.sources.text(span).to_owned();
-                self.findings.report(unit_mistake(unit, &error, &whole).maybe_help(help));
+                let mut mistake = unit_mistake(unit, &error, &whole);
+                if let Some((place, help)) = help {
+                    mistake.fixes.clear();
+                    mistake = mistake.advise(place, help);
+                }
+                self.findings.report(mistake);
                 None
             }
         }
@@ -121,7 +126,7 @@ impl Evaluator<'_> {
             self.findings.report(
                 Diagnostic::new(Code::E0305, "`-` in a unit takes one value from another")
                     .label(span, "")
-                    .help(format!("the factors of a unit are parted by a blank: write `{unit}`")),
+                    .advise(span, Help::write(unit).after("the factors of a unit are parted by a blank: ")),
             );
             return None;
         }
@@ -167,7 +172,7 @@ impl Evaluator<'_> {
                     self.findings.report(
                         Diagnostic::new(Code::E0305, "an exponent is a plain number from -9 to 9")
                             .label(right.span, b.dimension.describe())
-                            .help(self.power_of_ten(span)),
+                            .advise(span, self.power_of_ten(span)),
                     );
                     return None;
                 };
@@ -199,12 +204,12 @@ impl Evaluator<'_> {
     }
 
     /// `10^-4 s` as it should stand, or how powers of ten are written.
-    fn power_of_ten(&self, span: Span) -> String {
+    fn power_of_ten(&self, span: Span) -> Help {
         let before = self.files.sources.get(span.file).text[..span.start as usize].trim_end();
         let power = self.files.sources.text(span).strip_prefix("10^").filter(|_| !before.ends_with('*'));
         match power.filter(|p| p.split(' ').next().is_some_and(|n| n.parse::<i32>().is_ok())) {
-            Some(power) => format!("write `1e{power}`"),
-            None => "powers of ten stand in the number: `40e6 N/m`".to_owned(),
+            Some(power) => Help::write(format!("1e{power}")),
+            None => Help::say("powers of ten stand in the number: `40e6 N/m`"),
         }
     }
 
@@ -226,9 +231,8 @@ impl Evaluator<'_> {
             self.findings.report(
                 Diagnostic::new(Code::E0408, format!("expected a number, found the word `{}`", word.text))
                     .label(word.span, "not a function of numbers")
-                    .help(near.map_or("functions of numbers are `sqrt`, `abs`, `min` and `max`".to_string(), |n| {
-                        format!("did you mean `{n}`?")
-                    })),
+                    .help("functions of numbers are `sqrt`, `abs`, `min` and `max`")
+                    .maybe_meant(word.span, near),
             );
             return None;
         }

@@ -6,7 +6,7 @@ use super::shape::ShapeKind;
 use super::written::{Per, looks_like};
 use crate::check::text::table::{Cell, Table};
 use crate::diag::nearest::nearest;
-use crate::diag::{Code, Diagnostic, Span};
+use crate::diag::{Code, Diagnostic, Help, Span};
 use crate::schema::{Form, Measure};
 use crate::syntax::tree::{Argument, Name, Value, ValueKind};
 use crate::units::Dimension;
@@ -29,13 +29,15 @@ impl Evaluator<'_> {
                 return None;
             }
             let help = match first.map(|value| &value.kind) {
-                Some(ValueKind::Path(path)) => format!("a file stands in quotes: write `\"{}\"`", path.text()),
-                _ => "write something like `file(\"level.csv\")`".to_owned(),
+                Some(ValueKind::Path(path)) => {
+                    Help::write(format!("\"{}\"", path.text())).after("a file stands in quotes: ")
+                }
+                _ => Help::say("write something like `file(\"level.csv\")`"),
             };
             self.findings.report(
                 Diagnostic::new(Code::E0403, "`file` needs the name of a data file")
                     .label(word.span, "which file?")
-                    .help(help),
+                    .advise(first.map_or(word.span, |value| value.span), help),
             );
             return None;
         };

@@ -2,7 +2,7 @@
 
 use super::evaluator::Evaluator;
 use super::value::{Record, Slot, Val};
-use crate::diag::{Code, Diagnostic, Span, or_list};
+use crate::diag::{Code, Diagnostic, Fix, Span, or_list};
 use crate::schema::{Alternative, Field, Form, Need};
 use crate::syntax::tree::{Item, Value};
 use std::rc::Rc;
@@ -114,8 +114,33 @@ impl Evaluator<'_> {
         };
         let mistake = Diagnostic::new(Code::E0403, format!("{who} needs {what}"))
             .label(record.span, "not given")
-            .help(format!("`trackbed docs {}` says what it means", record.kind.name));
+            .help(format!("`trackbed docs {}` says what it means", record.kind.name))
+            .maybe_fix(self.hole(record, what));
         record.lacks(what, mistake, &mut self.findings);
+    }
+
+    /// A line for what is missing, with a hole to be filled: behind the bracket that opens the object.
+    fn hole(&self, record: &Record, what: &str) -> Option<Fix> {
+        let field = what.trim_matches('`');
+        let source = self.files.sources.get(record.span.file);
+        if field.contains('`') || source.library || record.span.start == record.span.end {
+            return None;
+        }
+        let whole = source.text.get(record.span.start as usize..record.span.end as usize)?;
+        let (from, header) = match whole.find('{') {
+            Some(n) => (record.span.start as usize + n, ""),
+            None => {
+                let rest = source.text.get(record.span.end as usize..)?;
+                let n = rest.find('{')?;
+                (record.span.end as usize + n, &rest[..n])
+            }
+        };
+        // only names and a colon stand between a header and its bracket
+        let plain = header.chars().all(|c| c.is_alphanumeric() || c.is_whitespace() || "_.:".contains(c));
+        let place = Span::new(record.span.file, from + 1, from + 1);
+        let empty = source.text[from + 1..].trim_start().starts_with('}');
+        let text = if empty { format!(" {field} = ? ") } else { format!(" {field} = ?,") };
+        plain.then(|| Fix::replace(place, text).titled(format!("add `{field} = ?`")))
     }
 
     fn default_slot(&mut self, field: &'static Field, text: &'static str) -> Slot {

@@ -4,7 +4,7 @@ use super::evaluator::Evaluator;
 use super::records::header;
 use super::value::Record;
 use crate::check::text::scope::{ItemId, ScopeId};
-use crate::diag::{Code, Diagnostic, FileId, Span};
+use crate::diag::{Code, Diagnostic, FileId, Fix, Span};
 use crate::scenario::{Evidence, LibraryEntry};
 use crate::schema::{self, Role};
 use crate::syntax::tree::{Item, Let, Name, Value, ValueKind};
@@ -150,6 +150,21 @@ impl Evaluator<'_> {
         self.library_uses.iter().filter_map(entry).collect()
     }
 
+    /// An item of the main file with the `///` lines above it and the line break behind it.
+    fn with_docs(&self, item: &Item) -> Span {
+        let (span, docs) = (item.span(), item.docs().len());
+        let text = &self.files.sources.get(span.file).text;
+        let begin = |end: usize| text[..end].rfind('\n').map_or(0, |i| i + 1);
+        let line = begin(span.start as usize);
+        let alone = text[line..span.start as usize].trim().is_empty();
+        let start =
+            if alone { (0..docs).fold(line, |line, _| begin(line.saturating_sub(1))) } else { span.start as usize };
+        let behind = &text[span.end as usize..];
+        let blanks = behind.len() - behind.trim_start_matches([' ', '\t', ',', '\r']).len();
+        let end = span.end as usize + if alone && behind[blanks..].starts_with('\n') { blanks + 1 } else { 0 };
+        Span::new(span.file, start, end)
+    }
+
     /// Warns of declarations of the main file that nothing asks for. Those of kinds that wait for something else, which is told
     /// itself, are left alone.
     pub fn unused(&mut self, roots: &[ItemId], waiting: &[&str]) {
@@ -174,7 +189,8 @@ impl Evaluator<'_> {
                 self.findings.report(
                     Diagnostic::new(Code::E0412, format!("nothing uses `{name}`"))
                         .label(span, "declared here")
-                        .help("take it out, or use it"),
+                        .help("take it out, or use it")
+                        .fix(Fix::replace(self.with_docs(thing), "").titled(format!("take `{name}` out"))),
                 );
             }
         }

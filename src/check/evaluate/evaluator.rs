@@ -157,6 +157,13 @@ impl<'m> Evaluator<'m> {
         self.records.get(&id)?.as_ref()
     }
 
+    /// Every object that has been understood so far.
+    pub fn known_objects(&self) -> Vec<(ItemId, Rc<Record>)> {
+        let mut known: Vec<_> = self.records.iter().filter_map(|(id, record)| Some((*id, record.clone()?))).collect();
+        known.sort_by_key(|(id, _)| *id);
+        known
+    }
+
     /// Whether an item is being evaluated.
     pub(super) fn follows(&self, id: ItemId) -> bool {
         self.stack.iter().any(|(item, _)| *item == id)

@@ -5,7 +5,7 @@ use super::objects;
 use super::value::{Slot, Val};
 use super::written::{is_profile, looks_like, with_unit};
 use crate::check::text::scope::{MAIN_FILE, ScopeId};
-use crate::diag::{Code, Diagnostic, Label, Span, or_list};
+use crate::diag::{Code, Diagnostic, Help, Label, Span, or_list};
 use crate::scenario::Origin;
 use crate::schema::{self, Form, Measure, Varies};
 use crate::syntax::tree::{Entry, Item, Name, UnitText, Value, ValueKind};
@@ -136,7 +136,7 @@ impl Evaluator<'_> {
                 self.findings.report(
                     Diagnostic::new(Code::E0406, format!("expected {}, found a number", form.describe()))
                         .label(path.span, "a number")
-                        .help(object),
+                        .advise(path.span, object),
                 );
                 return Some(error);
             }
@@ -240,7 +240,7 @@ impl Evaluator<'_> {
         self.findings.report(
             Diagnostic::new(Code::E0406, format!("expected {}, found {found}", form.describe()))
                 .label(span, found.to_string())
-                .maybe_help(instead),
+                .maybe_advise(span, instead),
         );
     }
 
@@ -254,7 +254,7 @@ impl Evaluator<'_> {
     }
 
     /// What to write where something of another form stands.
-    fn instead(&self, form: &Form, found: &str, span: Span) -> Option<String> {
+    fn instead(&self, form: &Form, found: &str, span: Span) -> Option<Help> {
         let text = self.files.sources.text(span);
         if let Some(help) = self.entry_or_file(form, text) {
             return Some(help);
@@ -262,44 +262,43 @@ impl Evaluator<'_> {
         let quotes = |mark: char| text.strip_prefix(mark).and_then(|t| t.strip_suffix(mark));
         let unquoted = quotes('"').or_else(|| quotes('\'')).filter(|_| found == "text");
         if let Some(inner) = unquoted.filter(|t| !t.is_empty() && !t.contains('"')) {
-            return Some(format!("write `{inner}`, without quotes"));
+            return Some(Help::write(inner).and(", without quotes"));
         }
         if matches!(form, Form::Text) && !text.contains(['\n', '"', '\\']) {
-            return Some(format!("write `\"{text}\"`"));
+            return Some(Help::write(format!("\"{text}\"")));
         }
         if let Some(help) = self.by_habit(form, found, text) {
             return Some(help);
         }
         if let Form::Interval(_) = form {
-            return span_of(text).map(|range| format!("write `{range}`"));
+            return span_of(text).map(Help::write);
         }
         if let Form::Span = form {
-            let written = span_of(text).map(|span| format!("write `{span}`"));
-            return Some(
-                written.unwrap_or_else(|| "from one end to the other: `-20 .. -1 sleepers`, `-6 .. 0 m`".into()),
-            );
+            let such = || Help::say("from one end to the other: `-20 .. -1 sleepers`, `-6 .. 0 m`");
+            return Some(span_of(text).map_or_else(such, Help::write));
         }
         if found == "a range" && matches!(form, Form::Number(m) if m.varies == Varies::Yes) {
-            return Some(format!("write `ramp({text})`, if it goes from one to the other along the track"));
+            let ramp = Help::write(format!("ramp({text})"));
+            return Some(ramp.and(", if it goes from one to the other along the track"));
         }
         let own = self.declared(form);
         let entries = if own.is_empty() { self.entries(form) } else { own };
         let such = or_list(&entries.into_iter().take(3).collect::<Vec<_>>());
-        (!such.is_empty()).then(|| format!("name one, such as {such}, or write `{{ field = value }}`"))
+        (!such.is_empty()).then(|| Help::say(format!("name one, such as {such}, or write `{{ field = value }}`")))
     }
 
     /// A name in quotes that is an entry of the library, or a file where a profile may stand.
-    fn entry_or_file(&self, form: &Form, text: &str) -> Option<String> {
+    fn entry_or_file(&self, form: &Form, text: &str) -> Option<Help> {
         let inner = text.strip_prefix('"')?.strip_suffix('"')?;
         if matches!(form, Form::Number(m) if m.varies == Varies::Yes) && inner.ends_with(".csv") {
-            return Some(format!("write `file({text})`"));
+            return Some(Help::write(format!("file({text})")));
         }
         let entry = self.entry_called(inner).filter(|entry| self.entries(form).contains(&format!("`{entry}`")))?;
-        Some(format!("write `{entry}`"))
+        Some(Help::write(entry))
     }
 
     /// What is meant by a value of another form, in the manner of other languages.
-    fn by_habit(&self, form: &Form, found: &str, text: &str) -> Option<String> {
+    fn by_habit(&self, form: &Form, found: &str, text: &str) -> Option<Help> {
         let form = if let Form::List(item) = form { item } else { form };
         let field = self.asked.map(|(_, field)| field);
         let has = |name: &str| self.asked.is_some_and(|(kind, _)| kind.field(name).is_some());
@@ -308,7 +307,7 @@ impl Evaluator<'_> {
                 text.split_once('/').filter(|(m, _)| self.scopes[self.standard].modules.contains_key(*m))
             {
                 let entry = entry.split([' ', '{']).next().unwrap_or(entry);
-                return Some(format!("write `{module}.{entry}`"));
+                return Some(Help::write(format!("{module}.{entry}")));
             }
             if let Some(help) = objects::of_number(form, text, text).or_else(|| objects::counted(form, text)) {
                 return Some(help);
@@ -317,21 +316,23 @@ impl Evaluator<'_> {
                 && has("at")
                 && text.split(' ').count() <= 2
             {
-                return Some(format!("one place is given with `at`: write `at = {text}`"));
+                return Some(Help::say(format!("one place is given with `at`: write `at = {text}`")));
             }
             let points = |w: &&schema::Word| matches!(w.arguments, [schema::Field { form: Form::Integer { .. }, .. }]);
             let words: Vec<String> =
-                form.words().into_iter().filter(points).map(|w| format!("`{}({text})`", w.name)).collect();
-            return (!words.is_empty()).then(|| format!("write {}", or_list(&words)));
+                form.words().into_iter().filter(points).map(|w| format!("{}({text})", w.name)).collect();
+            return (!words.is_empty()).then(|| Help::write_one_of(words));
         }
         if found == "a range" && matches!(form, Form::Place) && field == Some("at") && has("over") {
-            return Some(format!("a span is given with `over`: write `over = {text}`"));
+            return Some(Help::say(format!("a span is given with `over`: write `over = {text}`")));
         }
         if matches!(form, Form::Place) && found == "a name" {
-            return Some("a place is a number: `-20 sleepers`, `[-20, -5] sleepers`; `over = -20 .. -1 sleepers` takes all of a span".to_owned());
+            return Some(Help::say(
+                "a place is a number: `-20 sleepers`, `[-20, -5] sleepers`; `over = -20 .. -1 sleepers` takes all of a span",
+            ));
         }
         if found == "a list" && matches!(form, Form::Number(_)) {
-            return Some("a field has one value; a study tries several: `vary = [path: [value, value]]`".to_owned());
+            return Some(Help::say("a field has one value; a study tries several: `vary = [path: [value, value]]`"));
         }
         None
     }
@@ -420,7 +421,7 @@ impl Evaluator<'_> {
                 self.findings.report(
                     Diagnostic::new(Code::E0406, format!("expected {}, found a word with arguments", form.describe()))
                         .label(value.span, "a word")
-                        .help(object),
+                        .advise(value.span, object),
                 );
                 return None;
             }
@@ -448,14 +449,14 @@ impl Evaluator<'_> {
             if let Some(key) = &entry.key {
                 self.superseded.push(key.span.to(entry.value.span));
                 let help = match item {
-                    Form::Comparison => "comparisons are `<`, `<=`, `>` and `>=`".to_owned(),
-                    Form::Place => "several places are `[-20, -5] sleepers`, a span is `-20 .. -1 sleepers`".to_owned(),
-                    _ => format!("write `{}` alone", self.files.sources.text(key.span)),
+                    Form::Comparison => Help::say("comparisons are `<`, `<=`, `>` and `>=`"),
+                    Form::Place => Help::say("several places are `[-20, -5] sleepers`, a span is `-20 .. -1 sleepers`"),
+                    _ => Help::write(self.files.sources.text(key.span)).and(" alone"),
                 };
                 self.findings.report(
                     Diagnostic::new(Code::E0406, "expected a value, found a pair")
                         .label(key.span, "a key where none belongs")
-                        .help(help),
+                        .advise(key.span.to(entry.value.span), help),
                 );
                 continue;
             }
@@ -494,9 +495,9 @@ impl Evaluator<'_> {
         let with = |unit: &&str| match of_keys {
             true => {
                 let pair = |e: &Entry| format!("{}{unit}: {}", e.key.as_ref().map_or("", text), text(&e.value));
-                format!("`[{}]`", entries.iter().map(pair).collect::<Vec<_>>().join(", "))
+                format!("[{}]", entries.iter().map(pair).collect::<Vec<_>>().join(", "))
             }
-            false => format!("`[{}]{unit}`", self.files.sources.text(whole)),
+            false => format!("[{}]{unit}", self.files.sources.text(whole)),
         };
         let write: Vec<String> = units.iter().map(with).collect();
         if write.is_empty() {
@@ -510,8 +511,18 @@ impl Evaluator<'_> {
         self.findings.report(
             Diagnostic::new(code, message)
                 .label(whole, "their unit is missing")
-                .help(format!("write {}", or_list(&write))),
+                .advise(self.in_brackets(whole), Help::write_one_of(write)),
         );
+    }
+
+    /// The entries of a list with the brackets around them.
+    fn in_brackets(&self, entries: Span) -> Span {
+        let text = &self.files.sources.get(entries.file).text;
+        let (before, after) = (&text[..entries.start as usize], &text[entries.end as usize..]);
+        let start = before.trim_end().strip_suffix('[').map_or(before.len(), str::len);
+        let skipped = after.trim_start_matches(|c: char| c.is_whitespace() || c == ',');
+        let end = skipped.strip_prefix(']').map_or(entries.end as usize, |rest| text.len() - rest.len());
+        Span::new(entries.file, start, end)
     }
 }
 

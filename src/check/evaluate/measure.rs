@@ -7,8 +7,8 @@ use super::value::Val;
 use super::written::looks_like;
 use crate::check::text::scope::ScopeId;
 use crate::diag::nearest::nearest;
-use crate::diag::{Code, Diagnostic, Span};
-use crate::schema::{Form, Measure};
+use crate::diag::{Code, Diagnostic, Help, Span};
+use crate::schema::{Basis, Form, Measure};
 use crate::syntax::tree::{Value, ValueKind};
 use crate::units::{Dimension, Quantity, number, parse_unit};
 
@@ -62,7 +62,7 @@ impl Evaluator<'_> {
                     ),
                 )
                 .label(raw.span, "out of range")
-                .maybe_help(self.in_range(measure, &raw, shown)),
+                .maybe_advise(raw.span, self.in_range(measure, &raw, shown)),
             );
             return None;
         }
@@ -70,22 +70,24 @@ impl Evaluator<'_> {
     }
 
     /// What was probably meant by a value out of range: a share without its sign, a sign too many, another prefix.
-    fn in_range(&self, measure: &Measure, raw: &Raw, shown: f64) -> Option<String> {
+    fn in_range(&self, measure: &Measure, raw: &Raw, shown: f64) -> Option<Help> {
         let fits = |x: f64| (measure.min..=measure.max).contains(&x);
         let per = measure.basis.map_or(String::new(), |b| format!(" per {}", b.names[0].0));
         if raw.bare && measure.unit == "%" && fits(raw.value) {
-            return Some(format!("write `{} %`", number(raw.value)));
+            return Some(Help::write(format!("{} %", number(raw.value))));
         }
         if self.asked.is_some_and(|(kind, field)| (kind.name, field) == ("wheelset", "radius")) && fits(shown / 2.0) {
             let half = Quantity::new(raw.value / 2.0, raw.dimension).show(&self.unit_written(raw, measure));
-            return Some(format!("write `{half}`: a radius is half of the diameter"));
+            return Some(Help::write(half).and(": a radius is half of the diameter"));
         }
         if shown < 0.0 && fits(-shown) {
-            return Some(format!("write `{} {}{per}`, without the sign", number(-shown), measure.unit));
+            let written = Help::write(format!("{} {}{per}", number(-shown), measure.unit));
+            return Some(written.and(", without the sign"));
         }
         let thousands = [1e3, 1e-3, 1e6, 1e-6, 1e9, 1e-9].into_iter().map(|step| shown * step).find(|x| fits(*x))?;
         let there = format!("{} {}{per}", number(thousands), measure.unit);
-        (!measure.unit.is_empty()).then(|| format!("`{there}` would be in range: is the prefix of the unit right?"))
+        let said = format!("`{there}` would be in range: is the prefix of the unit right?");
+        (!measure.unit.is_empty()).then(|| Help::say(said))
     }
 
     /// The unit in which a number is written, else that of its field.
@@ -102,7 +104,7 @@ impl Evaluator<'_> {
         self.findings.report(
             Diagnostic::new(Code::E0304, format!("`per {name}` says nothing here: the value is of one thing only"))
                 .label(*span, "leave it out")
-                .help(format!("write `{text}`")),
+                .write(raw.span.to(*span), text),
         );
         None
     }
@@ -123,13 +125,16 @@ impl Evaluator<'_> {
                     let called = ALSO_CALLED.iter().find(|(theirs, _)| theirs == name).map(|(_, ours)| *ours);
                     let meant = called.filter(|ours| known().any(|n| n == *ours)).or_else(|| nearest(name, known()));
                     let help = match meant {
-                        Some(meant) => format!("did you mean `{text} per {meant}`?"),
-                        None => format!("write `{text} per {}`, if that is what it is", basis.names[0].0),
+                        Some(meant) => Help::meant(format!("{text} per {meant}")),
+                        None => {
+                            let written = Help::write(format!("{text} per {}", basis.names[0].0));
+                            written.and(", if that is what it is")
+                        }
                     };
                     self.findings.report(
                         Diagnostic::new(Code::E0304, format!("expected {}, found `per {name}`", basis.list()))
                             .label(*span, "not of this")
-                            .help(help),
+                            .advise(raw.span.to(*span), help),
                     );
                     None
                 }
@@ -141,7 +146,7 @@ impl Evaluator<'_> {
                     self.findings.report(
                         Diagnostic::new(Code::E0304, format!("expected {}, found none of them", basis.list()))
                             .label(raw.span, "could be of a half or of the whole")
-                            .help(format!("write `{text} per {}`, if that is what it is", basis.names[0].0)),
+                            .advise(raw.span, per_what(&text, basis)),
                     );
                     None
                 }
@@ -157,7 +162,7 @@ impl Evaluator<'_> {
         let text = self.files.sources.text(raw.span);
         let other = self.asked.and_then(|(kind, field)| offers::other_way(kind, field, raw));
         let help = match other {
-            Some(field) => Some(format!("write `{field} = {text}`, if that is what it is")),
+            Some(field) => Some(Help::say(format!("write `{field} = {text}`, if that is what it is"))),
             None => measures.iter().find_map(|measure| offers::of_other_dimension(measure, raw, text)),
         };
         self.other_dimension(measures[0], raw, expected, help);
@@ -173,12 +178,13 @@ impl Evaluator<'_> {
         self.other_dimension(measure, &Raw { span, ..b.clone() }, &expected, help);
     }
 
-    fn other_dimension(&mut self, measure: &Measure, raw: &Raw, expected: &str, help: Option<String>) {
+    fn other_dimension(&mut self, measure: &Measure, raw: &Raw, expected: &str, help: Option<Help>) {
         let dimension = Dimension::of_unit(measure.unit);
         self.findings.report(
             Diagnostic::new(Code::E0302, format!("{expected}, found {}", raw.dimension.describe()))
                 .label(raw.span, Quantity::new(raw.value, raw.dimension).show(&raw.dimension.usual_unit()))
-                .help(help.unwrap_or_else(|| crate::units::compare(dimension, raw.dimension))),
+                .help(crate::units::compare(dimension, raw.dimension))
+                .maybe_advise(of_raw(raw), help),
         );
     }
 
@@ -195,7 +201,7 @@ impl Evaluator<'_> {
         self.findings.report(
             Diagnostic::new(Code::E0301, format!("{expected}, found a number without a unit"))
                 .label(span, "its unit is missing")
-                .help(help),
+                .advise(span, help),
         );
     }
 
@@ -267,7 +273,7 @@ impl Evaluator<'_> {
         self.findings.report(
             Diagnostic::new(Code::E0505, "a span must ascend")
                 .label(span, "its first end is the greater one")
-                .maybe_help(swapped),
+                .maybe_advise(span, swapped),
         );
         None
     }
@@ -287,7 +293,7 @@ impl Evaluator<'_> {
         let mistake = if raw.bare {
             Diagnostic::new(Code::E0301, "expected a place in `m` or `sleepers`, found a number without a unit")
                 .label(raw.span, "its unit is missing")
-                .help(format!("write `{text} sleepers` or `{text} m`"))
+                .advise(raw.span, Help::write_one_of(vec![format!("{text} sleepers"), format!("{text} m")]))
         } else {
             Diagnostic::new(
                 Code::E0302,
@@ -322,7 +328,7 @@ impl Evaluator<'_> {
 }
 
 /// A range the other way round: a unit that stands once, behind its second end, stays there.
-pub fn swapped(text: &str) -> Option<String> {
+pub fn swapped(text: &str) -> Option<Help> {
     let (from, to) = text.split_once("..")?;
     let (from, to) = (from.trim(), to.trim());
     let bare = |end: &str| end.chars().all(|c| c.is_ascii_digit() || "+-._".contains(c));
@@ -330,7 +336,19 @@ pub fn swapped(text: &str) -> Option<String> {
         Some((end, unit)) => format!("{end} .. {from} {unit}"),
         None => format!("{to} .. {from}"),
     };
-    Some(format!("write the smaller end first: `{written}`"))
+    Some(Help { said: format!("write the smaller end first: `{written}`"), writes: vec![written] })
+}
+
+/// A value with the first of the things that it may be of.
+fn per_what(text: &str, basis: &Basis) -> Help {
+    Help::write(format!("{text} per {}", basis.names[0].0)).and(", if that is what it is")
+}
+
+/// A number with what it is `per`, as far as it stands behind it.
+fn of_raw(raw: &Raw) -> Span {
+    raw.basis
+        .as_ref()
+        .map_or(raw.span, |(_, span)| if span.file == raw.span.file { raw.span.to(*span) } else { raw.span })
 }
 
 fn unsigned(value: &Value) -> &ValueKind {

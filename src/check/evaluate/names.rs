@@ -4,7 +4,7 @@ use super::evaluator::Evaluator;
 use super::value::{Slot, Val};
 use crate::check::text::scope::{ItemId, ScopeId};
 use crate::diag::nearest::nearest;
-use crate::diag::{Code, Diagnostic, Span};
+use crate::diag::{Code, Diagnostic, Fix, Help, Span};
 use crate::schema::{Names, called};
 use crate::syntax::tree::{Item, Name, Path};
 
@@ -46,13 +46,15 @@ impl Evaluator<'_> {
             };
             let names: Vec<&str> = self.scopes[module].names.keys().map(String::as_str).collect();
             let help = match nearest(&second.text, names.iter().copied()) {
-                Some(near) => format!("did you mean `{}.{near}`?", first.text),
-                None => format!("it has {}", names.join(", ")),
+                Some(near) => {
+                    Help { said: format!("did you mean `{}.{near}`?", first.text), writes: vec![near.to_owned()] }
+                }
+                None => Help::say(format!("it has {}", names.join(", "))),
             };
             self.findings.report(
                 Diagnostic::new(Code::E0201, format!("module `{}` has no `{}`", first.text, second.text))
                     .label(second.span, "not found")
-                    .help(help),
+                    .advise(second.span, help),
             );
             return None;
         }
@@ -86,36 +88,52 @@ impl Evaluator<'_> {
         let known = called(Names::Words, &name.text, words.iter().copied());
         let modules = here.modules.clone();
         let near = known.or_else(|| nearest(&name.text, candidates)).map(|near| match modules.contains_key(near) {
-            true => format!("did you mean `{near}{behind}`?"),
-            false => format!("did you mean `{near}`?"),
+            true => Help { said: format!("did you mean `{near}{behind}`?"), writes: vec![near.to_owned()] },
+            false => Help::meant(near),
         });
+        let mut place = name.span;
+        let mut line = None;
         let library = crate::check::text::library::MODULES.iter().any(|(m, _)| *m == name.text);
         let help = if name.text == "std" && path.names.len() > 1 {
-            Some(format!(
-                "write `{}`: `use std` brings its modules in by their own names",
-                behind.trim_start_matches('.')
-            ))
+            place = path.span;
+            Some(
+                Help::write(behind.trim_start_matches('.')).and(": `use std` brings its modules in by their own names"),
+            )
         } else if library && !here.modules.contains_key(&name.text) {
             // one line is missing, however many modules it would have brought in
             if !self.without_library.insert(scope) || self.wanted_library(name.span) {
                 return;
             }
-            Some("it is a module of the standard library: begin the file with `use std`".to_string())
+            line = Some(self.first_line(name.span));
+            Some(Help::say("it is a module of the standard library: begin the file with `use std`"))
         } else if let Some(entry) = self.entry_called(&name.text).filter(|_| near.is_none()) {
-            Some(format!("did you mean `{entry}` of the standard library?"))
+            Some(Help { said: format!("did you mean `{entry}` of the standard library?"), writes: vec![entry] })
         } else if near.is_none() && crate::units::parse_unit(&name.text).is_ok() {
-            Some(format!("is `{}` a unit? it stands without blanks around `/` and `*`: `km/h`, `kN s/m`", name.text))
+            let unit = "a unit? it stands without blanks around `/` and `*`: `km/h`, `kN s/m`";
+            Some(Help::say(format!("is `{}` {unit}", name.text)))
         } else if near.is_none() && !words.is_empty() {
             let words: Vec<String> = words.iter().map(|w| format!("`{w}`")).collect();
-            Some(format!("expected {}", crate::diag::or_list(&words)))
+            Some(Help::say(format!("expected {}", crate::diag::or_list(&words))))
         } else {
             near
         };
         self.findings.report(
             Diagnostic::new(Code::E0201, format!("nothing is called `{}`", name.text))
                 .label(name.span, "unknown name")
-                .maybe_help(help),
+                .maybe_advise(place, help)
+                .maybe_fix(line.map(|line| Fix::replace(line, "use std\n"))),
         );
+    }
+
+    /// Where a line stands that begins the file of a place: before its first item, with the comments above.
+    fn first_line(&self, place: Span) -> Span {
+        let tree = self.scopes.iter().find(|scope| scope.tree.file == place.file).map(|scope| scope.tree.clone());
+        let first = tree.and_then(|tree| tree.items.first().map(|item| (item.span(), item.docs().len())));
+        let text = &self.files.sources.get(place.file).text;
+        let (start, docs) = first.map_or((0, 0), |(span, docs)| (span.start as usize, docs));
+        let begin = |end: usize| text[..end].rfind('\n').map_or(0, |i| i + 1);
+        let start = (0..docs).fold(begin(start), |line, _| begin(line.saturating_sub(1)));
+        Span::new(place.file, start, start)
     }
 
     /// Whether a line of that file which has been reported was to bring the standard library in: `import std`.

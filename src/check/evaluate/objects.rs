@@ -1,10 +1,11 @@
 //! Objects to write where a number or a word stands: `{ stiffness = 40 MN/m }` for `40 MN/m`, `[wagon: 10]` for `10 wagon`.
 
+use crate::diag::Help;
 use crate::schema::{self, Field, Form, Kind, Need};
 use crate::units::{Dimension, parse_unit};
 
 /// The object whose one needed field takes a number, where it is written as one; `value` is what the field shall have.
-pub fn of_number(form: &Form, number: &str, value: &str) -> Option<String> {
+pub fn of_number(form: &Form, number: &str, value: &str) -> Option<Help> {
     let bare = number.split(" per ").next().unwrap_or(number);
     let (_, unit) = bare.split_once(' ')?;
     let dimension = parse_unit(unit.trim()).ok()?.dimension;
@@ -16,23 +17,23 @@ pub fn of_number(form: &Form, number: &str, value: &str) -> Option<String> {
         open.then_some(only.name)
     });
     let field = kinds.next()?;
-    Some(format!("write `{{ {field} = {value} }}`"))
+    Some(Help::write(format!("{{ {field} = {value} }}")))
 }
 
 /// The object that has a field with that word.
-pub fn of_word(form: &Form, word: &str, text: &str) -> Option<String> {
+pub fn of_word(form: &Form, word: &str, text: &str) -> Option<Help> {
     let mut fields = objects(form).into_iter().flat_map(|kind| kind.fields);
     let field = fields.find(|field| field.form.word(word).is_some())?;
-    Some(format!("write `{{ {} = {text} }}`", field.name))
+    Some(Help::write(format!("{{ {} = {text} }}", field.name)))
 }
 
 /// `10 wagon` and `10 * wagon` where objects are counted.
-pub fn counted(form: &Form, text: &str) -> Option<String> {
+pub fn counted(form: &Form, text: &str) -> Option<Help> {
     let Form::Object("vehicle") = form else { return None };
     let parts: Vec<&str> = text.split([' ', '*']).filter(|part| !part.is_empty()).collect();
     let [first, second] = parts.as_slice() else { return None };
     let (count, name) = if first.parse::<u32>().is_ok() { (first, second) } else { (second, first) };
-    count.parse::<u32>().ok().map(|count| format!("write `[{name}: {count}]`"))
+    count.parse::<u32>().ok().map(|count| Help::write(format!("[{name}: {count}]")))
 }
 
 fn objects(form: &Form) -> Vec<&'static Kind> {

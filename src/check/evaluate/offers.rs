@@ -1,6 +1,7 @@
 //! What to write instead of a number that a field cannot take: with the unit that makes it legal, or as the quantity that the field has.
 
 use super::number::Raw;
+use crate::diag::Help;
 use crate::schema::{Kind, Measure};
 use crate::units::{Dimension, number, parse_unit, usual_units};
 
@@ -52,7 +53,7 @@ impl Measure {
 }
 
 /// What to write instead of numbers without a unit, as they stand in the text.
-pub fn with_unit(text: &str, values: &[f64], measures: &[&Measure], basis: Option<&str>) -> String {
+pub fn with_unit(text: &str, values: &[f64], measures: &[&Measure], basis: Option<&str>) -> Help {
     let legal = measures.iter().filter_map(|m| Some((Dimension::of_unit(m.unit), m.legal_unit(values, basis)?)));
     let mut legal: Vec<(Dimension, &str)> = legal.collect();
     // a length may be counted in sleepers as well; of other units the first is the usual one
@@ -63,11 +64,11 @@ pub fn with_unit(text: &str, values: &[f64], measures: &[&Measure], basis: Optio
         && Dimension::of_unit(only.unit) == Dimension::of_unit("kN s/m")
         && values.iter().all(|v| v.abs() < 1.0)
     {
-        return RATIO.to_owned();
+        return Help::say(RATIO);
     }
     if !legal.is_empty() {
-        let written: Vec<String> = legal.iter().map(|(_, unit)| format!("`{text} {unit}`")).collect();
-        return format!("write {}, if that is the unit you meant", crate::diag::or_list(&written));
+        let written: Vec<String> = legal.iter().map(|(_, unit)| format!("{text} {unit}")).collect();
+        return Help::write_one_of(written).and(", if that is the unit you meant");
     }
     let (measure, unit) = (measures[0], measures[0].unit);
     // `density = 20`: the weight of a cubic metre in kN
@@ -76,9 +77,10 @@ pub fn with_unit(text: &str, values: &[f64], measures: &[&Measure], basis: Optio
         && measure.takes(value * 1e3 / GRAVITY, basis)
     {
         let mass = four_digits(value * 1e3 / GRAVITY);
-        return format!("write `{mass} {unit}`, if `{text}` is a weight in kN/m^3: divided by {GRAVITY} m/s^2");
+        let why = format!(", if `{text}` is a weight in kN/m^3: divided by {GRAVITY} m/s^2");
+        return Help::write(format!("{mass} {unit}")).and(&why);
     }
-    format!("its unit is `{unit}`, its range {} .. {} {unit}", number(measure.min), number(measure.max))
+    Help::say(format!("its unit is `{unit}`, its range {} .. {} {unit}", number(measure.min), number(measure.max)))
 }
 
 /// What a dashpot wants where a share stands.
@@ -86,7 +88,7 @@ const RATIO: &str = "a dashpot is given in `kN s/m`, not as a damping ratio: `da
                      or as a time, damping / stiffness: `damping_time = 0.125 ms`";
 
 /// Text of what is to be written in the place of a value of another dimension, where it can be told.
-pub fn of_other_dimension(measure: &Measure, raw: &Raw, text: &str) -> Option<String> {
+pub fn of_other_dimension(measure: &Measure, raw: &Raw, text: &str) -> Option<Help> {
     let basis = raw.basis_name();
     let per = basis.filter(|b| measure.basis.is_some_and(|m| m.factor(b).is_some()));
     let per = per.map_or(String::new(), |name| format!(" per {name}"));
@@ -94,17 +96,18 @@ pub fn of_other_dimension(measure: &Measure, raw: &Raw, text: &str) -> Option<St
     if let Some((factor, power, why)) = conversion(expected, raw.dimension) {
         let value = factor * raw.value.powi(power);
         if let Some(written) = in_own_unit(measure, value, basis) {
-            return Some(format!("write `{written}{per}`: {why}"));
+            return Some(Help::write(format!("{written}{per}")).and(&format!(": {why}")));
         }
     }
     if let Some(help) = special(measure, raw, &per) {
         return Some(help);
     }
-    same_number(measure, raw, text).map(|written| format!("write `{written}{per}`, if that is what you meant"))
+    let same = same_number(measure, raw, text);
+    same.map(|written| Help::write(format!("{written}{per}")).and(", if that is what you meant"))
 }
 
 /// The same for both ends of a range.
-pub fn ends_of_other_dimension(measure: &Measure, a: &Raw, b: &Raw) -> Option<String> {
+pub fn ends_of_other_dimension(measure: &Measure, a: &Raw, b: &Raw) -> Option<Help> {
     let expected = Dimension::of_unit(measure.unit);
     let (factor, power, why) = conversion(expected, b.dimension).filter(|(_, power, _)| *power == 1)?;
     let unit = parse_unit(measure.unit).ok()?.factor;
@@ -113,7 +116,7 @@ pub fn ends_of_other_dimension(measure: &Measure, a: &Raw, b: &Raw) -> Option<St
     let basis = b.basis_name();
     ends.iter()
         .all(|value| measure.takes(*value, basis))
-        .then(|| format!("write `{from} .. {to} {}`: {why}", measure.unit))
+        .then(|| Help::write(format!("{from} .. {to} {}", measure.unit)).and(&format!(": {why}")))
 }
 
 /// A value in SI in the unit of the field, else in another usual one; nothing where it is out of range.
@@ -152,59 +155,53 @@ fn conversion(expected: Dimension, found: Dimension) -> Option<(f64, i32, &'stat
 }
 
 /// Pairs of quantities that are taken for each other, each with words of its own.
-fn special(measure: &Measure, raw: &Raw, per: &str) -> Option<String> {
+fn special(measure: &Measure, raw: &Raw, per: &str) -> Option<Help> {
     let (expected, found) = (Dimension::of_unit(measure.unit), raw.dimension);
     let of = |unit: &str| Dimension::of_unit(unit);
     let (stiffness, bedding, pressure) = (of("MN/m"), of("N/mm^3"), of("MPa"));
-    let offered = |value: f64| in_own_unit(measure, value, raw.basis_name()).map(|text| format!("`{text}{per}`"));
+    let offered = |value: f64| in_own_unit(measure, value, raw.basis_name()).map(|text| format!("{text}{per}"));
+    let offer = |why: &str, place: String, text: Option<String>| match text {
+        Some(text) => Help { said: format!("{why}, at {place} `{text}`"), writes: vec![text] },
+        None => Help::say(why),
+    };
     if expected == stiffness && found == pressure && measure.basis.is_some() {
         let why = "it is per metre of rail: a seat has it times the spacing";
-        return Some(match offered(raw.value * SPACING) {
-            Some(text) => format!("{why}, at {SPACING} m {text}"),
-            None => why.to_owned(),
-        });
+        return Some(offer(why, format!("{SPACING} m"), offered(raw.value * SPACING)));
     }
     if expected == stiffness && found == bedding {
         let why = "it is per area: a seat has it times half of the sleeper's base area";
-        return Some(match offered(raw.value * HALF_BASE).filter(|_| measure.basis.is_some()) {
-            Some(text) => format!("{why}, at {HALF_BASE} m^2 {text}"),
-            None => why.to_owned(),
-        });
+        let text = offered(raw.value * HALF_BASE).filter(|_| measure.basis.is_some());
+        return Some(offer(why, format!("{HALF_BASE} m^2"), text));
     }
     if expected == bedding && found == stiffness {
-        return Some(
-            "a bedding modulus is a stiffness per area: divide it by half of the sleeper's base area".to_owned(),
-        );
+        let why = "a bedding modulus is a stiffness per area: divide it by half of the sleeper's base area";
+        return Some(Help::say(why));
     }
     let angle = found == Dimension::ANGLE && expected.is_none() && measure.unit.is_empty();
     if angle && measure.takes(raw.value.tan(), None) {
-        return Some(format!(
-            "write `{}`: a coefficient of friction is the tangent of its angle",
-            four_digits(raw.value.tan())
-        ));
+        let tangent = Help::write(four_digits(raw.value.tan()));
+        return Some(tangent.and(": a coefficient of friction is the tangent of its angle"));
     }
     if found.is_none() {
         let slope = expected == Dimension::LENGTH && measure.varies == crate::schema::Varies::Yes;
         return match () {
-            () if expected == of("kN s/m") => Some(RATIO.to_owned()),
+            () if expected == of("kN s/m") => Some(Help::say(RATIO)),
             () if expected == of("ms") && measure.unit == "ms" => {
-                Some("it is a time, damping / stiffness: 5 kN s/m on 40 MN/m are `0.125 ms`".to_owned())
+                Some(Help::say("it is a time, damping / stiffness: 5 kN s/m on 40 MN/m are `0.125 ms`"))
             }
-            () if slope => Some("a slope is written as a ramp: `ramp(0 .. 20 mm, over = -10 .. 0 m)`".to_owned()),
+            () if slope => Some(Help::say("a slope is written as a ramp: `ramp(0 .. 20 mm, over = -10 .. 0 m)`")),
             () => None,
         };
     }
     if expected.is_none() && measure.unit == "%" && found == Dimension::LENGTH {
-        return Some("a share is given in `%`: the length divided by the whole".to_owned());
+        return Some(Help::say("a share is given in `%`: the length divided by the whole"));
     }
     if expected == Dimension::TIME && [Dimension::AXLES, Dimension::CYCLES].contains(&found) {
-        return Some(
-            "an interval of samples is a time; counts of traffic stand in a list: `after = [100, 200] axles`"
-                .to_owned(),
-        );
+        let why = "an interval of samples is a time; counts of traffic stand in a list: `after = [100, 200] axles`";
+        return Some(Help::say(why));
     }
     if expected == Dimension::AXLES && found == Dimension::TIME {
-        return Some("traffic is counted in `axles` or as the mass carried, `MGT`, not by the time".to_owned());
+        return Some(Help::say("traffic is counted in `axles` or as the mass carried, `MGT`, not by the time"));
     }
     None
 }
@@ -260,12 +257,13 @@ fn four_digits(value: f64) -> String {
 }
 
 /// What to write in a comparison in the place of an operand that is not of the other's dimension, in a usual unit.
-pub fn in_comparison(expected: Dimension, raw: &Raw, text: &str, unit: &str) -> Option<String> {
+pub fn in_comparison(expected: Dimension, raw: &Raw, text: &str, unit: &str) -> Option<Help> {
     let per = raw.basis_name().map_or(String::new(), |name| format!(" per {name}"));
     if raw.bare && raw.dimension.is_none() {
-        return Some(format!("write `{text} {unit}{per}`, if that is the unit you meant"));
+        return Some(Help::write(format!("{text} {unit}{per}")).and(", if that is the unit you meant"));
     }
     let (factor, power, why) = conversion(expected, raw.dimension)?;
     let size = parse_unit(unit).ok()?.factor;
-    Some(format!("write `{} {unit}{per}`: {why}", four_digits(factor * raw.value.powi(power) / size)))
+    let value = four_digits(factor * raw.value.powi(power) / size);
+    Some(Help::write(format!("{value} {unit}{per}")).and(&format!(": {why}")))
 }

@@ -26,7 +26,7 @@ impl Evaluator<'_> {
             self.findings.report(
                 Diagnostic::new(Code::E0406, format!("expected {}", form.describe()))
                     .label(value.span, "keys and values have changed places")
-                    .help(format!("write `{swapped}`")),
+                    .write(value.span, swapped),
             );
             return None;
         }

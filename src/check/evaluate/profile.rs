@@ -62,7 +62,7 @@ impl Evaluator<'_> {
         self.findings.report(
             Diagnostic::new(Code::E0408, format!("expected a number or a profile, found the word `{}`", word.text))
                 .label(word.span, "unknown word")
-                .help(format!("did you mean `{near}`?")),
+                .meant(word.span, near),
         );
         true
     }

@@ -3,7 +3,7 @@
 use super::evaluator::Evaluator;
 use super::value::{Change, Record, Slot, Val};
 use crate::check::text::scope::{ItemId, ScopeId};
-use crate::diag::{Code, Diagnostic, Span};
+use crate::diag::{Code, Diagnostic, Help, Span};
 use crate::scenario::Origin;
 use crate::schema::{self, Form, Kind, PLANNED_KINDS};
 use crate::syntax::tree::{Declaration, Field, Item, Name, Path, ValueKind};
@@ -59,12 +59,11 @@ impl Evaluator<'_> {
         }
         // what is misspelt is read on as what was probably meant
         let near = schema::meant_kind(&name.text);
-        let help =
-            near.map_or("`trackbed docs` lists the kinds".to_string(), |k| format!("did you mean `{}`?", k.name));
+        let help = near.map_or_else(|| Help::say("`trackbed docs` lists the kinds"), |k| Help::meant(k.name));
         self.findings.report(
             Diagnostic::new(Code::E0401, format!("unknown kind `{}`", name.text))
                 .label(name.span, "not a kind")
-                .help(help),
+                .advise(name.span, help),
         );
         near
     }
@@ -300,17 +299,20 @@ impl Evaluator<'_> {
             let (field, word) = kind.argument(&name.text)?;
             // a law has one form: its base says which
             Some(match kind.name {
-                "law" => format!("it is an argument of its form: write `{}.{}`", field.name, name.text),
-                _ => format!("it is an argument of `{}`: `{} = {0}({} = ...)`", word.name, field.name, name.text),
+                "law" => Help::write(format!("{}.{}", field.name, name.text)).after("it is an argument of its form: "),
+                _ => {
+                    let written = format!("`{} = {}({} = ...)`", field.name, word.name, name.text);
+                    Help::say(format!("it is an argument of `{}`: {written}", word.name))
+                }
             })
         };
-        let near = || kind.meant(&name.text).map(|n| format!("did you mean `{n}`?"));
-        let help =
-            argument().or_else(near).unwrap_or_else(|| format!("`trackbed docs {}` lists its fields", kind.name));
+        let near = || kind.meant(&name.text).map(Help::meant);
+        let docs = || Help::say(format!("`trackbed docs {}` lists its fields", kind.name));
+        let help = argument().or_else(near).unwrap_or_else(docs);
         self.findings.report(
             Diagnostic::new(Code::E0402, format!("`{}` has no field `{}`", kind.name, name.text))
                 .label(name.span, "unknown field")
-                .help(help),
+                .advise(name.span, help),
         );
         None
     }

@@ -2,7 +2,7 @@
 
 use super::evaluator::Evaluator;
 use crate::check::text::scope::ScopeId;
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Help, Span};
 use crate::syntax::tree::{Declaration, Item, Path, UnitText, Value, ValueKind};
 use crate::units::{UnitError, parse_unit};
 
@@ -25,16 +25,22 @@ const AXLES_OF_A_VEHICLE: u64 = 4;
 pub(super) fn unit_mistake(unit: &UnitText, error: &UnitError, whole: &str) -> Diagnostic {
     match error {
         UnitError::Unknown { symbol, instead } => {
-            let help = by_custom(unit, symbol, whole).or_else(|| of_what(unit, symbol)).or_else(|| {
-                let ours = instead.as_ref()?;
-                let mended = unit.text.replacen(symbol.as_str(), ours, 1);
-                // other factors may be foreign too: the offer has to hold
-                let closed = mended.split("/axle").next().unwrap_or(&mended).to_owned();
-                Some(if ours.contains('(') { format!("write {ours}") } else { format!("did you mean `{closed}`?") })
-            });
+            let of_unit = || {
+                of_what(unit, symbol).or_else(|| {
+                    let ours = instead.as_ref()?;
+                    let mended = unit.text.replacen(symbol.as_str(), ours, 1);
+                    // other factors may be foreign too: the offer has to hold
+                    let closed = mended.split("/axle").next().unwrap_or(&mended).to_owned();
+                    Some(if ours.contains('(') { Help::say(format!("write {ours}")) } else { Help::meant(closed) })
+                })
+            };
+            let (place, help) = match by_custom(unit, symbol, whole) {
+                Some(found) => found,
+                None => (unit.span, of_unit().unwrap_or_else(|| Help::say(SUCH))),
+            };
             Diagnostic::new(Code::E0303, format!("unknown unit `{symbol}`"))
                 .label(unit.span, "not a unit")
-                .help(help.unwrap_or_else(|| SUCH.to_owned()))
+                .advise(place, help)
         }
         UnitError::Exponent => {
             Diagnostic::new(Code::E0103, format!("the exponents of `{}` go beyond -9 .. 9", unit.text))
@@ -53,52 +59,61 @@ pub(super) fn unit_mistake(unit: &UnitText, error: &UnitError, whole: &str) -> D
 }
 
 /// `MN/m/seat`: the part of which a value is stands behind `per`.
-fn of_what(unit: &UnitText, symbol: &str) -> Option<String> {
+fn of_what(unit: &UnitText, symbol: &str) -> Option<Help> {
     crate::schema::basis_name(symbol).then(|| {
         let rest = unit.text.replacen(symbol, "", 1);
         let rest = rest.trim_end_matches(['/', '*', ' ']);
-        format!("write `{}per {symbol}`", if rest.is_empty() { String::new() } else { format!("{rest} ") })
+        Help::write(format!("{}per {symbol}", if rest.is_empty() { String::new() } else { format!("{rest} ") }))
     })
 }
 
 /// What is written by a custom of its own: a power of ten, a million, a count in a year, another language's `per`.
-fn by_custom(unit: &UnitText, symbol: &str, whole: &str) -> Option<String> {
+fn by_custom(unit: &UnitText, symbol: &str, whole: &str) -> Option<(Span, Help)> {
     let text = unit.text.as_str();
+    let start = unit.span.end.checked_sub(whole.len() as u32)?;
+    let quantity = Span { start, ..unit.span };
+    let say = |help: &str| Some((unit.span, Help::say(help)));
+    let write = |help: Help| Some((quantity, help));
     let digits = whole.strip_suffix(text)?.trim();
     let closed: String = text.split(' ').collect();
     if closed != text && parse_unit(&closed).is_ok() {
-        return Some(format!("did you mean `{closed}`?"));
+        return Some((unit.span, Help::meant(closed)));
     }
     // `1x10^-4 s`
     if let Some(rest) = text.strip_prefix("x10^") {
         let (power, unit) = rest.split_once(' ').unwrap_or((rest, ""));
-        return Some(format!("powers of ten stand in the number: `{digits}e{power} {unit}`"));
+        let written = format!("{digits}e{power} {unit}").trim_end().to_owned();
+        let said = format!("powers of ten stand in the number: `{digits}e{power} {unit}`");
+        return write(Help { said, writes: vec![written] });
     }
     if text.contains(&format!("({symbol}")) {
-        return Some(format!("a remark stands behind `//`: `// {symbol}`"));
+        return say(&format!("a remark stands behind `//`: `// {symbol}`"));
     }
     let lower = symbol.to_lowercase();
     if MILLION.contains(&lower.as_str()) {
         let rest = text.replacen(symbol, "", 1).trim_start_matches(['.', ' ']).to_owned();
-        return Some(match rest.as_str() {
-            "t" | "tonnes" | "tons" | "GT" => format!("write `{digits} MGT`"),
-            _ => format!("write `{digits}e6 {rest}`"),
+        return write(match rest.as_str() {
+            "t" | "tonnes" | "tons" | "GT" => Help::write(format!("{digits} MGT")),
+            _ => Help::write(format!("{digits}e6 {rest}")),
         });
     }
     if let Some((counted, time)) = text.split_once('/').filter(|(_, time)| TIMES.contains(time)) {
         let counts = matches!(counted, "axles" | "MGT" | "t" | "axle");
-        return counts.then(|| format!("write `{digits} {counted}`: traffic is that of the whole run, of no {time}"));
+        let why = format!(": traffic is that of the whole run, of no {time}");
+        return counts.then(|| (quantity, Help::write(format!("{digits} {counted}")).and(&why)));
     }
     if TIMES.contains(&lower.as_str()) {
-        return Some("traffic is counted in `axles` or as the mass carried, `MGT`, not by the time".to_owned());
+        return say("traffic is counted in `axles` or as the mass carried, `MGT`, not by the time");
     }
     if let Some((before, _)) = text.split_once(&format!(" {symbol}")).filter(|_| PER.contains(&lower.as_str())) {
-        return Some(format!("what a value is of stands behind `per`: `{digits} {before} per seat`, or `per sleeper`"));
+        return say(&format!("what a value is of stands behind `per`: `{digits} {before} per seat`, or `per sleeper`"));
     }
     match text {
-        "axle loads" | "axle load" => Some(format!("write `{digits} axles`")),
+        "axle loads" | "axle load" => write(Help::write(format!("{digits} axles"))),
         "load cycles" | "load applications" => {
-            Some(format!("write `{digits} cycles`, or `{digits} axles` where trains run"))
+            let (cycles, axles) = (format!("{digits} cycles"), format!("{digits} axles"));
+            let said = format!("write `{cycles}`, or `{axles}` where trains run");
+            write(Help { said, writes: vec![cycles, axles] })
         }
         _ => None,
     }
@@ -106,7 +121,7 @@ fn by_custom(unit: &UnitText, symbol: &str, whole: &str) -> Option<String> {
 
 impl Evaluator<'_> {
     /// `1000 trains` in axles, where every train of the main file has as many.
-    pub(super) fn of_trains(&self, unit: &UnitText) -> Option<String> {
+    pub(super) fn of_trains(&self, unit: &UnitText) -> Option<(Span, Help)> {
         let lower = unit.text.to_lowercase();
         let trains = TRAINS.contains(&lower.as_str());
         if !trains && !VEHICLES.contains(&lower.as_str()) {
@@ -117,7 +132,7 @@ impl Evaluator<'_> {
             false => ("vehicle", Some(AXLES_OF_A_VEHICLE)),
         };
         let Some(axles) = axles else {
-            return Some("count `axles`: a train has 4 for each of its vehicles".to_owned());
+            return Some((unit.span, Help::say("count `axles`: a train has 4 for each of its vehicles")));
         };
         let file = &self.files.sources.get(unit.span.file).text;
         let before = file[..unit.span.start as usize].trim_end();
@@ -133,7 +148,8 @@ impl Evaluator<'_> {
             true => format!("[{}] axles", told.join(", ")),
             false => format!("{} axles", told.join(", ")),
         };
-        Some(format!("write `{written}`: a {what} here has {axles} axles"))
+        let why = format!(": a {what} here has {axles} axles");
+        Some((Span { start: start as u32, ..unit.span }, Help::write(written).and(&why)))
     }
 
     /// The axles of a train, if all trains of the main file have as many.

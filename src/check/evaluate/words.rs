@@ -5,7 +5,7 @@ use super::value::{Slot, Val};
 use super::written::bare;
 use crate::check::text::scope::ScopeId;
 use crate::diag::nearest::nearest;
-use crate::diag::{Code, Diagnostic, or_list};
+use crate::diag::{Code, Diagnostic, Help, or_list};
 use crate::scenario::response::Response;
 use crate::schema::{Form, Names, Word, called};
 use crate::syntax::tree::{Argument, Name, ValueKind};
@@ -20,17 +20,15 @@ impl Evaluator<'_> {
             let near = called(Names::Responses, &name.text, names()).or_else(|| nearest(&name.text, names()));
             let help = near.map_or_else(
                 || {
-                    format!(
-                        "the responses are {}",
-                        Response::ALL.iter().map(|r| r.name()).collect::<Vec<_>>().join(", ")
-                    )
+                    let all: Vec<&str> = Response::ALL.iter().map(|r| r.name()).collect();
+                    Help::say(format!("the responses are {}", all.join(", ")))
                 },
-                |n| format!("did you mean `{n}`?"),
+                Help::meant,
             );
             self.findings.report(
                 Diagnostic::new(Code::E0408, format!("no response is called `{}`", name.text))
                     .label(name.span, "unknown")
-                    .help(help),
+                    .advise(name.span, help),
             );
         }
         found
@@ -45,11 +43,11 @@ impl Evaluator<'_> {
         let by_code = Code::ALL.iter().find(|c| c.to_string() == name.text).and_then(|c| c.rule());
         let help = by_code
             .or_else(|| nearest(&name.text, rules.iter().copied()))
-            .map_or_else(|| format!("the rules are {}", rules.join(", ")), |n| format!("did you mean `{n}`?"));
+            .map_or_else(|| Help::say(format!("the rules are {}", rules.join(", "))), Help::meant);
         self.findings.report(
             Diagnostic::new(Code::E0408, format!("no rule is called `{}`", name.text))
                 .label(name.span, "unknown")
-                .help(help),
+                .advise(name.span, help),
         );
         None
     }
@@ -59,12 +57,11 @@ impl Evaluator<'_> {
         let known: Vec<&str> = words.iter().filter(|w| !w.planned).map(|w| w.name).collect();
         let near = called(Names::Words, &name.text, known.iter().copied());
         let near = near.or_else(|| nearest(&name.text, known.iter().copied()));
-        let help = near.map(|n| format!("did you mean `{n}`?"));
         let quoted: Vec<String> = known.iter().map(|w| format!("`{w}`")).collect();
         self.findings.report(
             Diagnostic::new(Code::E0408, format!("expected {}, found `{}`", or_list(&quoted), name.text))
                 .label(name.span, "unknown word")
-                .maybe_help(help),
+                .maybe_meant(name.span, near),
         );
     }
 
@@ -83,11 +80,12 @@ impl Evaluator<'_> {
                 .all(|a| a.name.is_none() && matches!(bare(&a.value).0.kind, ValueKind::Number { .. }))
         {
             let [from, to] = [first, second].map(|a| self.files.sources.text(bare(&a.value).0.span));
-            let help = format!("from one to the other: write `{from} .. {to}`");
+            let place = first.value.span.to(second.value.span);
+            let help = Help::write(format!("{from} .. {to}")).after("from one to the other: ");
             self.findings.report(
                 Diagnostic::new(Code::E0406, format!("`{}` begins with a range, found two numbers", word.name))
-                    .label(first.value.span.to(second.value.span), "two numbers")
-                    .help(help),
+                    .label(place, "two numbers")
+                    .advise(place, help),
             );
             return None;
         }
@@ -105,14 +103,14 @@ impl Evaluator<'_> {
                 let known = word.arguments.iter().map(|a| a.name).chain((word.name == "random").then_some("sd"));
                 let near = argument.name.as_ref().and_then(|n| called(Names::Fields, &n.text, known));
                 let help = match near {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None if names.is_empty() => "it takes none".into(),
-                    None => format!("it takes {}", or_list(&names)),
+                    Some(near) => Help::meant(near),
+                    None if names.is_empty() => Help::say("it takes none"),
+                    None => Help::say(format!("it takes {}", or_list(&names))),
                 };
                 self.findings.report(
                     Diagnostic::new(Code::E0402, format!("`{}` has no such argument", word.name))
                         .label(place, "unknown argument")
-                        .help(help),
+                        .advise(place, help),
                 );
                 unknown = true;
                 continue;

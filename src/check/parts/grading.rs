@@ -151,7 +151,7 @@ fn is_a_curve(sieves: &[Sieve], whole: Span, cuts: [Option<Option<Given>>; 2], f
         findings.report(
             Diagnostic::new(Code::E0414, "the sizes of a grading ascend")
                 .label(whole, "from coarse to fine")
-                .help(format!("write `[{}]`", ascending.join(", "))),
+                .write(whole, format!("[{}]", ascending.join(", "))),
         );
         return None;
     }

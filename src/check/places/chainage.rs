@@ -34,7 +34,7 @@ impl Places {
                     findings.report(
                         Diagnostic::new(Code::E0504, format!("no transition is called `{name}`"))
                             .label(span, "unknown transition")
-                            .maybe_help(near.map(|n| format!("did you mean `{n}`?"))),
+                            .maybe_meant(span, near),
                     );
                 }
                 found

@@ -33,7 +33,7 @@ impl Literal {
 }
 
 /// `40 MN/m per seat`
-pub(super) fn number(number: Number, form: &Form) -> String {
+pub(in crate::check) fn number(number: Number, form: &Form) -> String {
     format!("{}{}", Literal::new(number, form).text(), per(number))
 }
 

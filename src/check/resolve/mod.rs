@@ -6,7 +6,7 @@
 //! left out: they edit lines of the file in which they stand.
 
 mod inline;
-mod literal;
+pub(super) mod literal;
 mod text;
 
 use super::{Modules, Override, with_evaluator};

@@ -2,7 +2,7 @@
 //! so that one slip is one mistake.
 
 use crate::diag::nearest::nearest;
-use crate::diag::{Code, Diagnostic};
+use crate::diag::{Code, Diagnostic, Fix};
 use crate::schema::{self, Kind, Names, Role, called};
 use crate::syntax::tree::{Declaration, Item, Tree, ValueKind};
 use std::collections::BTreeMap;
@@ -59,7 +59,8 @@ fn other_kind(d: &Declaration, kinds: &BTreeMap<&str, Option<&'static Kind>>) ->
     let message = format!("a {} cannot extend `{}`, which is a {}", kind.name, base.text, of_base.name);
     let mistake = Diagnostic::new(Code::E0205, message)
         .label(d.kind.span, format!("its fields are those of a {}", of_base.name))
-        .help(format!("write `{}{name} : {}`", of_base.name, base.text));
+        .help(format!("write `{}{name} : {}`", of_base.name, base.text))
+        .fix(Fix::replace(d.kind.span, of_base.name));
     let mut mended = d.clone();
     mended.kind.text = of_base.name.to_string();
     Some((mended, mistake))
@@ -78,7 +79,8 @@ fn name_behind_colon(
     }
     let mistake = Diagnostic::new(Code::E0201, format!("nothing is called `{}`", base.text))
         .label(base.span, "behind `:` stands what is extended")
-        .help(format!("write `{} {} {{`, without the colon", kind.name, base.text));
+        .help(format!("write `{} {} {{`, without the colon", kind.name, base.text))
+        .fix(Fix::replace(d.kind.span.to(base.span), format!("{} {}", kind.name, base.text)));
     let mut mended = d.clone();
     mended.name = mended.base.take().and_then(|path| path.names.into_iter().next());
     Some((mended, mistake))
@@ -98,7 +100,7 @@ fn foreign_kind(d: &Declaration) -> Option<(Declaration, Diagnostic)> {
     let kind = called_kind(d)?;
     let mistake = Diagnostic::new(Code::E0401, format!("unknown kind `{}`", d.kind.text))
         .label(d.kind.span, "not a kind")
-        .help(format!("did you mean `{}`?", kind.name));
+        .meant(d.kind.span, kind.name);
     let mut mended = d.clone();
     // without a name it is called by its kind
     mended.kind.text = kind.name.to_string();

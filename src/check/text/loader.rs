@@ -7,7 +7,7 @@ use super::modules::{DataError, LARGEST_DATA_FILE, Modules, Parsed};
 use super::overrides::{self, Override};
 use super::scope::{Scope, ScopeId};
 use crate::diag::nearest::nearest;
-use crate::diag::{Code, Diagnostic, Sources, Span};
+use crate::diag::{Code, Diagnostic, Help, Sources, Span};
 use crate::schema::{self, Role};
 use crate::syntax::decode;
 use crate::syntax::tree::{Declaration, Item, Tree, Use};
@@ -43,12 +43,16 @@ fn is_library(name: &str) -> bool {
 }
 
 /// What was meant by a module that has no file: the standard library, or one of its modules.
-fn missing_file(name: &str) -> Option<String> {
+fn missing_file(name: &str) -> Option<Help> {
     if is_library(name) {
-        return Some("the standard library is called `std`: write `use std`".into());
+        return Some(Help {
+            said: "the standard library is called `std`: write `use std`".into(),
+            writes: vec!["std".into()],
+        });
     }
     let module = library::MODULES.iter().any(|(module, _)| *module == name);
-    module.then(|| format!("it is a module of the standard library: write `use std` or `use std.{name}`"))
+    let said = || format!("it is a module of the standard library: write `use std` or `use std.{name}`");
+    module.then(|| Help { said: said(), writes: vec!["std".into(), format!("std.{name}")] })
 }
 
 /// What is said of a module whose file is not read.
@@ -58,27 +62,31 @@ fn unread(relative: &str, names: &[&str], error: &DataError, span: Span) -> Diag
             format!("there is no file `{relative}` below the main file's folder"),
             "not found",
             match names {
-                [path @ .., "track"] => Some(format!("write `use {}`, without the ending", path.join("."))),
+                [path @ .., "track"] => {
+                    let module = path.join(".");
+                    let said = format!("write `use {module}`, without the ending");
+                    Some(Help { said, writes: vec![module] })
+                }
                 _ => missing_file(names[0]),
             },
         ),
         DataError::Outside => (
             format!("`{relative}` is a link to a file outside the main file's folder"),
             "not read",
-            Some("copy the file into the folder of the scene".into()),
+            Some(Help::say("copy the file into the folder of the scene")),
         ),
         DataError::TooLarge(bytes) => (
             format!("`{relative}` has {} MiB, more than {} MiB", bytes.div_ceil(1 << 20), LARGEST_DATA_FILE >> 20),
             "not read",
-            Some("keep long tables of numbers in a data file: `file(\"level.csv\")`".into()),
+            Some(Help::say("keep long tables of numbers in a data file: `file(\"level.csv\")`")),
         ),
         DataError::Unreadable(cause) => (
             format!("`{relative}` cannot be read: {cause}"),
             "not read",
-            Some("make it a file that can be read".into()),
+            Some(Help::say("make it a file that can be read")),
         ),
     };
-    Diagnostic::new(Code::E0204, message).label(span, label).maybe_help(help)
+    Diagnostic::new(Code::E0204, message).label(span, label).maybe_advise(span, help)
 }
 
 /// The modules that a file brings in.
@@ -215,19 +223,25 @@ impl<'a> Loader<'a> {
                 let (message, help) = match &used.alias {
                     Some(alias) if names.len() == 1 => (
                         format!("the standard library brings its modules, it cannot be called `{}`", alias.text),
-                        Some("write `use std`, and `rails.UIC60` for what is in its module `rails`".to_string()),
+                        Some(Help::say("write `use std`, and `rails.UIC60` for what is in its module `rails`")),
                     ),
                     _ if names.len() == 3 => (
                         format!("`{}` is no module: a module is used whole", names.join(".")),
-                        Some(format!("write `use std`, and `{}` where it is wanted", names[1..].join("."))),
+                        Some(Help {
+                            said: format!("write `use std`, and `{}` where it is wanted", names[1..].join(".")),
+                            writes: vec!["std".to_owned()],
+                        }),
                     ),
                     _ => (
                         format!("the standard library has no module `{}`", names[1..].join(".")),
-                        near.map(|n| format!("did you mean `use std.{n}`?")),
+                        near.map(|n| Help {
+                            said: format!("did you mean `use std.{n}`?"),
+                            writes: vec![format!("std.{n}")],
+                        }),
                     ),
                 };
-                self.diagnostics
-                    .push(Diagnostic::new(Code::E0204, message).label(used.path.span, "not found").maybe_help(help));
+                let mistake = Diagnostic::new(Code::E0204, message).label(used.path.span, "not found");
+                self.diagnostics.push(mistake.maybe_advise(used.path.span, help));
                 if names.len() != 2 {
                     brought.broken.extend(library::MODULES.iter().map(|(module, _)| module.to_string()));
                 }

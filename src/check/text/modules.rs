@@ -34,7 +34,8 @@ pub struct Parsed {
 }
 
 impl Parsed {
-    fn new(file: FileId, text: &str) -> Parsed {
+    /// Reads a text.
+    pub fn new(file: FileId, text: &str) -> Parsed {
         let (tree, mistakes) = parse(file, text);
         Parsed { tree: Arc::new(tree), mistakes: mistakes.into() }
     }
