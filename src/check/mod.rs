@@ -22,7 +22,7 @@ pub use stated::Stated;
 pub use text::library::{Entry, library};
 pub use text::measured::{MeasuredCurve, measured_curve};
 pub use text::modules::{DataError, Folder, LARGEST_DATA_FILE, Modules, NoModules, Parsed, Remembered, read_bounded};
-pub use text::overrides::Override;
+pub use text::overrides::{EDIT, Override};
 
 use crate::diag::{self, Code, Diagnostic, Sources};
 use crate::scenario::{Scenario, Study};

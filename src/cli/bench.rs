@@ -11,6 +11,7 @@ use crate::results;
 use crate::solvers::granular::Real;
 use crate::trials::grains::{self, Finished, Measured, Pile, PileError, Request, Share};
 use crate::units::{Dimension, parse_unit};
+use std::ops::ControlFlow;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -163,6 +164,7 @@ impl SceneSteps {
                 bar = progress::Patient::new(stage.to_string());
             }
             bar.show((1e3 * share) as u64, 1000);
+            ControlFlow::Continue(())
         });
         drop(bar);
         match timed {

@@ -3,10 +3,9 @@
 use super::build::Parts;
 use super::recording::{Recording, VolumeSample};
 use super::underway::Following;
-use super::{GrainGround, Live, Told};
+use super::{GrainGround, Live, Told, going_on};
 use crate::graph::SleeperOnGrains;
 use crate::nodes::{Load, NodeError};
-use std::ops::ControlFlow;
 
 /// The third of some sleepers.
 const THIRD: usize = 2;
@@ -31,10 +30,7 @@ impl Live {
             return Ok(());
         }
         let beds = self.look(parts, &recording.tops)?;
-        match follow(Told::Beds(beds)) {
-            ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(NodeError::Stopped),
-        }
+        going_on(follow(Told::Beds(beds)))
     }
 
     /// The record of the passage under way, taken out for some steps: of the first one of the block only, and only where `wanted`.
