@@ -15,9 +15,8 @@ use common::program::{said, trackbed};
 fn python() -> Option<PathBuf> {
     let known = [Path::new(env!("CARGO_MANIFEST_DIR")).join("target/notebook/bin/python"), PathBuf::from("python3")];
     let imports = ["-c", "import matplotlib, pandas, polars, pyarrow, pyvista"];
-    let has_all = |python: &PathBuf| {
-        Command::new(python).args(imports).output().is_ok_and(|output| output.status.success())
-    };
+    let has_all =
+        |python: &PathBuf| Command::new(python).args(imports).output().is_ok_and(|output| output.status.success());
     let found = known.into_iter().find(has_all);
     if found.is_none() {
         println!("skipped: there is no Python with the packages of examples/notebook/requirements.txt");
@@ -44,17 +43,28 @@ fn is_png(path: &Path) -> bool {
 fn a_run_is_read_with_its_units_and_what_made_it() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("out");
-    let sets = ["traffic.total=8 axles", "solve.elements_per_bay=1", "solve.time_step=4e-4 s", "track_response.after=[0, 8] axles"];
+    let [scene, out] = ["transition.track", "out"].map(|name| folder.path().join(name));
+    // so short a run misses what the shipped one is expected to show
+    let text = fs::read_to_string("scenarios/transition.track").unwrap();
+    let lines: Vec<&str> = text.lines().filter(|line| !line.starts_with("expect ")).collect();
+    fs::write(&scene, lines.join("\n")).unwrap();
+    let sets = [
+        "traffic.total=8 axles",
+        "solve.elements_per_bay=1",
+        "solve.time_step=4e-4 s",
+        "track_response.after=[0, 8] axles",
+    ];
     let sets: Vec<&str> = sets.iter().flat_map(|set| ["--set", set]).collect();
-    fine(&[&["run", "scenarios/transition.track", "--out", out.to_str().unwrap()], &sets[..]].concat());
+    fine(&[&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()], &sets[..]].concat());
     let output = notebook(&python, "run.py", &[&out]);
     let told = said(&output);
     assert!(output.status.success(), "{told}");
     let summary: Value = serde_json::from_slice(&fs::read(out.join("summary.json")).unwrap()).unwrap();
     let hash = summary["provenance"]["source_sha256"].as_str().unwrap();
     let of_run = format!("transition.track, seed 1, trackbed {}, scene {}", env!("CARGO_PKG_VERSION"), &hash[..12]);
-    for words in [of_run.as_str(), "with traffic.total = 8 axles", "contact_force [N]: ", "settlement [m]: ", "rail_level [m]: "] {
+    for words in
+        [of_run.as_str(), "with traffic.total = 8 axles", "contact_force [N]: ", "settlement [m]: ", "rail_level [m]: "]
+    {
         assert!(told.contains(words), "{words}: {told}");
     }
     // pandas finds in the histories what the summary says

@@ -49,8 +49,7 @@ solve { substructure = full, repeats = 2 }
 ";
 
 /// The line of the coarse scene that says how it is solved, and others in its place.
-const SOLVE: &str =
-    "solve { substructure = cells, passages = continuous, update_every = 8 axles, tolerance = 20 % }";
+const SOLVE: &str = "solve { substructure = cells, passages = continuous, update_every = 8 axles, tolerance = 20 % }";
 const FULL: &str = "solve { substructure = full, window = -1.8 .. 1.2 m, support_from = passage }
 record { at = [-2, -1, +1] sleepers, after = [0, 8] axles, quantities = rail_seat_load }";
 const ZONE: &str = "solve { substructure = zone, window = -1.8 .. 1.2 m, tolerance = 20 % }";

@@ -11,9 +11,9 @@ use crate::results;
 use crate::solvers::granular::Real;
 use crate::trials::grains::{self, Finished, Measured, Pile, PileError, Request, Share};
 use crate::units::{Dimension, parse_unit};
-use std::ops::ControlFlow;
 use std::fs::File;
 use std::io::BufReader;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// Measure the speed of a solver on this machine

@@ -92,7 +92,10 @@ fn schema() -> ParquetResult<TypePtr> {
 /// Units of the columns, and of every quantity that occurs.
 fn units(rows: &[HistoryRow]) -> Units<'_> {
     let columns = [("axles", "1"), ("time_s", "s"), ("x_m", "m")];
-    columns.into_iter().chain(rows.iter().filter_map(|row| Some((row.quantity.as_str(), unit(&row.quantity)?)))).collect()
+    columns
+        .into_iter()
+        .chain(rows.iter().filter_map(|row| Some((row.quantity.as_str(), unit(&row.quantity)?))))
+        .collect()
 }
 
 /// The unit of a quantity. That of a sleeper over a volume of grains is named after the response that it is.
@@ -178,8 +181,10 @@ mod tests {
     #[test]
     fn every_quantity_has_a_unit() {
         let names = History::ALL.into_iter().map(History::name);
-        let in_volumes = [InVolume::BallastStress, InVolume::SleeperVelocity, InVolume::SleeperAcceleration, InVolume::SleeperForce];
-        let found: Vec<_> = names.chain(in_volumes.into_iter().map(InVolume::name)).map(|name| (name, unit(name))).collect();
+        let in_volumes =
+            [InVolume::BallastStress, InVolume::SleeperVelocity, InVolume::SleeperAcceleration, InVolume::SleeperForce];
+        let found: Vec<_> =
+            names.chain(in_volumes.into_iter().map(InVolume::name)).map(|name| (name, unit(name))).collect();
         assert!(found.iter().all(|(_, unit)| unit.is_some()), "{found:?}");
         assert!(found.contains(&("contact_force_on_grains", Some("N"))), "{found:?}");
     }

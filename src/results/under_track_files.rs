@@ -279,7 +279,8 @@ mod tests {
         assert_eq!(read(directory.path()).unwrap(), beds);
         let mut wrong = bed(0, false);
         wrong.grains[1].place[2] = f64::NAN;
-        let error = super::super::under_track_files::files(&[wrong], &provenance, directory.path()).unwrap_err().to_string();
+        let error =
+            super::super::under_track_files::files(&[wrong], &provenance, directory.path()).unwrap_err().to_string();
         assert!(error.contains("column `z_m` of row 2"), "{error}");
     }
 

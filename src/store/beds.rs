@@ -1,8 +1,8 @@
 //! Packed beds that were built before, by what made them.
 
 use super::{Shelf, StoreError, sha256};
-use crate::solvers::granular::{Answer, RestoreError};
 use crate::solvers::granular::packing::{METHOD, Packed, PackingError, Progress, Recipe, StoredBed, pack};
+use crate::solvers::granular::{Answer, RestoreError};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fmt;

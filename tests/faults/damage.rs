@@ -105,8 +105,8 @@ fn results_of_an_older_version_are_read() {
     let place = Place::new(&on_a_law(40));
     place.finish("out", &[]);
     let path = place.path("out/manifest.json");
-    let manifest: trackbed::store::Manifest = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
-    let older = trackbed::store::Manifest { version: "0.0.9".to_owned(), ..manifest };
+    let mut older: trackbed::store::Manifest = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    older.version = "0.0.9".to_owned();
     let compact = serde_json::to_string(&older).unwrap();
     let (bare, hash) = compact.rsplit_once("\"sha256\":\"").unwrap();
     let old_hash = hash.trim_end_matches("\"}");
@@ -119,6 +119,9 @@ fn results_of_an_older_version_are_read() {
     refused(&place.run("out", &[]), &words);
     let resumed = place.run("out", &["--resume"]);
     let told = in_one_line(&resumed);
-    assert!(resumed.status.success() && told.contains("finished before by version 0.0.9: `--force` runs it anew"), "{told}");
+    assert!(
+        resumed.status.success() && told.contains("finished before by version 0.0.9: `--force` runs it anew"),
+        "{told}"
+    );
     place.finish("out", &["--force"]);
 }

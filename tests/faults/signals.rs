@@ -2,7 +2,8 @@
 
 use super::{Place, coarse_cells, in_one_line, same_results, wait_for};
 use std::fs;
-use std::process::Command;
+use std::io::Read;
+use std::process::{Child, Command};
 
 const SOLVE: &str = "solve { substructure = cells, passages = continuous, update_every = 8 axles, tolerance = 20 % }";
 
@@ -12,33 +13,43 @@ fn on_grains(solve: &str, axles: u32) -> String {
     coarse_cells::SCENE.replace(SOLVE, solve).replace("total = 40 axles", &format!("total = {axles} axles"))
 }
 
-/// Stops a run as soon as it has kept a state, by Ctrl-C and then by SIGTERM, kills it, and lets it go on to its end.
+/// Stops a run as soon as it has kept a state, by Ctrl-C, stops it by SIGTERM as soon as it goes on, kills it, and lets it come to its end.
 fn stops_is_killed_and_goes_on(scene: &str) {
     let place = Place::new(scene);
     let checkpoint = place.path("cut/.trackbed/checkpoint");
-    for (signal, more) in [("-INT", &[][..]), ("-TERM", &["--resume"])] {
-        let mut child = place.start("cut", more);
-        wait_for(&mut child, &checkpoint);
-        Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
-        let output = child.wait_with_output().unwrap();
-        let told = in_one_line(&output);
-        // a signal before the program listens ends it at once, and what was kept before is there
-        assert!(matches!(output.status.code(), Some(1) | None), "it ends by itself: {told}");
-        if output.status.code() == Some(1) {
-            assert!(told.contains("the state is kept in") && told.contains("run the same command with `--resume`"), "{told}");
-        }
-        assert!(checkpoint.exists() && !place.path("cut/summary.json").exists(), "{told}");
-    }
-    let before = fs::read(&checkpoint).unwrap();
+    let mut child = place.start("cut", &[]);
+    wait_for(&mut child, &checkpoint);
+    is_stopped(child, "-INT");
     let mut child = place.start("cut", &["--resume"]);
-    while fs::read(&checkpoint).is_ok_and(|now| now == before) && child.try_wait().unwrap().is_none() {
-        std::thread::yield_now();
-    }
+    goes_on(&mut child);
+    is_stopped(child, "-TERM");
+    let mut child = place.start("cut", &["--resume"]);
+    goes_on(&mut child);
     child.kill().unwrap();
     child.wait().unwrap();
+    assert!(checkpoint.exists() && !place.path("cut/summary.json").exists());
     place.finish("cut", &["--resume"]);
     place.finish("whole", &[]);
     same_results(&place.path("whole"), &place.path("cut"));
+}
+
+/// Waits until a run says that it has taken up what was kept.
+fn goes_on(child: &mut Child) {
+    let (mut told, mut byte) = (Vec::new(), [0]);
+    while !String::from_utf8_lossy(&told).contains("goes on after ") {
+        let read = child.stderr.as_mut().unwrap().read(&mut byte).unwrap();
+        assert!(read > 0, "{}", String::from_utf8_lossy(&told));
+        told.push(byte[0]);
+    }
+}
+
+/// Fails unless a run that gets a signal ends by itself and says how to go on.
+fn is_stopped(child: Child, signal: &str) {
+    Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap();
+    let output = child.wait_with_output().unwrap();
+    let told = in_one_line(&output);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(told.contains("the state is kept in") && told.contains("run the same command with `--resume`"), "{told}");
 }
 
 #[test]
@@ -48,12 +59,18 @@ fn cells_stop_and_go_on() {
 
 #[test]
 fn grains_that_exchange_with_the_track_stop_and_go_on() {
-    stops_is_killed_and_goes_on(&on_grains("solve { substructure = full, window = -1.8 .. 1.2 m, support_from = passage }", 8));
+    stops_is_killed_and_goes_on(&on_grains(
+        "solve { substructure = full, window = -1.8 .. 1.2 m, support_from = passage }",
+        8,
+    ));
 }
 
 #[test]
 fn vehicles_on_grains_stop_and_go_on() {
-    stops_is_killed_and_goes_on(&on_grains("solve { substructure = full, window = -1.8 .. 1.2 m, coupling = monolithic }", 4));
+    stops_is_killed_and_goes_on(&on_grains(
+        "solve { substructure = full, window = -1.8 .. 1.2 m, coupling = monolithic }",
+        4,
+    ));
 }
 
 /// Packing takes minutes on a large bed and is not waited for.

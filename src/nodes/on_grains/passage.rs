@@ -102,11 +102,7 @@ impl Coupled {
     }
 
     /// Runs until all is at rest, or the time is over (s); gives how far from rest it is, over what counts as rest. `tell` may end it.
-    pub fn come_to_rest<A: Answer>(
-        &mut self,
-        longest: f64,
-        tell: &mut impl FnMut(f64) -> A,
-    ) -> Result<f64, NodeError> {
+    pub fn come_to_rest<A: Answer>(&mut self, longest: f64, tell: &mut impl FnMut(f64) -> A) -> Result<f64, NodeError> {
         self.damped(|coupled| {
             let (mut calm, mut passed, mut fading) = (0, 0.0, Fading::default());
             loop {

@@ -6,6 +6,7 @@ use super::underway::Following;
 use super::{GrainGround, Live, Told, going_on};
 use crate::graph::SleeperOnGrains;
 use crate::nodes::{Load, NodeError};
+use std::ops::ControlFlow;
 
 /// The third of some sleepers.
 const THIRD: usize = 2;

@@ -279,7 +279,10 @@ impl<R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Waiting<R> for Settling<'_
     fn hear(&mut self, look: &Look) -> Result<(), PackingError> {
         let share = self.fading.share(look.unbalance / self.limit);
         let (bodies, steps) = (self.bed.len(), self.bed.steps());
-        unless_stopped((self.tell)(&Progress { stage: StageKind::SideBySide.to_string(), share, bodies, steps }), PackingError::Stopped)
+        unless_stopped(
+            (self.tell)(&Progress { stage: StageKind::SideBySide.to_string(), share, bodies, steps }),
+            PackingError::Stopped,
+        )
     }
 
     fn restless(&self, look: &Look) -> PackingError {

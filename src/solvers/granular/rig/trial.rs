@@ -69,11 +69,7 @@ pub(super) struct Current {
 
 impl<'a, R: Real> Trial<'a, R> {
     /// Sets the sleepers down, fills the cribs and lets all come to rest. `tell` hears the share of the longest time that this may take.
-    pub fn new<A: Answer>(
-        mut bed: Bed<R>,
-        rig: &'a Rig,
-        mut tell: impl FnMut(f64) -> A,
-    ) -> Result<Self, RigError> {
+    pub fn new<A: Answer>(mut bed: Bed<R>, rig: &'a Rig, mut tell: impl FnMut(f64) -> A) -> Result<Self, RigError> {
         let mut tell = |share: f64| tell(share).flow();
         let before = bed.steps();
         let walls = place(&mut bed, &rig.sleepers, rig.gravity);
