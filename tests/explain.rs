@@ -8,7 +8,7 @@ use trackbed::study::{Scene, plan};
 use trackbed::{Compiled, compile};
 
 /// Codes that no text alone can show, and what shows them instead.
-const RUN_TIME: [(Code, &str); 18] = [
+const RUN_TIME: [(Code, &str); 19] = [
     (Code::E0610, "a bed of a scene: `tests/pack.rs`"),
     (Code::E0612, "a plan that a pass of another program breaks: `tests/graph/planner.rs`"),
     (Code::E0701, "a chart of a scene without trains: `tests/study.rs`"),
@@ -27,6 +27,7 @@ const RUN_TIME: [(Code, &str); 18] = [
     (Code::E0813, "a run that no machine holds: `tests/attacks.rs`"),
     (Code::E0814, "a run whose law sinks the track: `tests/attacks.rs`"),
     (Code::E0815, "a machine without Slurm: `tests/workers.rs`"),
+    (Code::E0816, "a run that is allowed less memory than it takes: `tests/faults.rs`"),
 ];
 
 /// Pages whose failing example is no scene: the bytes of the file are the mistake.

@@ -99,7 +99,7 @@ fn packed(recipe: &Recipe) -> (Packed<f32>, f64) {
 
 fn tried(recipe: &Recipe) -> Result<(Packed<f32>, f64), PackingError> {
     let mut told = Told::from_now();
-    let packed = pack::<f32>(recipe, |progress| told.stage(progress))?;
+    let packed = pack::<f32, _>(recipe, |progress| told.stage(progress))?;
     Ok((packed, told.start.elapsed().as_secs_f64()))
 }
 

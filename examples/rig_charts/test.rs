@@ -76,7 +76,7 @@ pub fn run(setting: &Setting, seed: u64) -> Result<Answer, String> {
     recipe.plan[0] = 0.6 * f64::from(setting.bays);
     recipe.rest.lift = setting.rest;
     let start = Instant::now();
-    let packed = pack::<f32>(&recipe, |_| ()).map_err(|error| error.to_string())?;
+    let packed = pack::<f32, _>(&recipe, |_| ()).map_err(|error| error.to_string())?;
     let packing = start.elapsed().as_secs_f64();
     let [low, high] = packed.between(0);
     let porosity = packed.porosity([low + 0.25 * (high - low), high - 0.25 * (high - low)]);

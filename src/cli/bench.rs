@@ -13,6 +13,7 @@ use crate::trials::grains::{self, Finished, Measured, Pile, PileError, Request, 
 use crate::units::{Dimension, parse_unit};
 use std::fs::File;
 use std::io::BufReader;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// Measure the speed of a solver on this machine
@@ -163,6 +164,7 @@ impl SceneSteps {
                 bar = progress::Patient::new(stage.to_string());
             }
             bar.show((1e3 * share) as u64, 1000);
+            ControlFlow::Continue(())
         });
         drop(bar);
         match timed {

@@ -6,7 +6,7 @@ use super::run_elsewhere::{self, ToTheLastAxle};
 use super::run_progress::Shown;
 use super::scene::{PassArguments, SceneArguments, SeedArgument, failed, not_yet, show};
 use super::task::Packings;
-use super::{Outcome, interrupt, pack, report, stored, terminal};
+use super::{Outcome, interrupt, memory, pack, report, stored, terminal};
 use crate::compile::{Compiled, fingerprint};
 use crate::diag::{Code, Diagnostic, render};
 use crate::execute::{self, Both, Ending, Executor};
@@ -17,7 +17,7 @@ use crate::results::{
 };
 use crate::scenario::Scenario;
 use crate::solvers::granular::Bed;
-use crate::store::{Directory, Mode, Work};
+use crate::store::{Directory, Finished, Mode, Work};
 use crate::units::number;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -95,10 +95,13 @@ fn run_here(arguments: &Arguments) -> Outcome {
         return stop(&compiled, cluster::diagnostic(&error));
     }
     let asked = interrupt::asked();
+    arguments.memory.watch(Some(scenario));
     let running = Running::new(&scene, &compiled, (scenario, graph), asked);
     let directory = match Directory::open(&arguments.out, running.work(arguments), arguments.mode()) {
-        Ok(directory) if directory.finished().is_some() => return again(directory.path(), &compiled),
-        Ok(directory) => directory,
+        Ok(directory) => match directory.finished() {
+            Some(finished) => return again(finished, directory.path(), &compiled),
+            None => directory,
+        },
         Err(error) => return stop(&compiled, stored::diagnostic(&error)),
     };
     let has_further = run_elsewhere::needs(graph, scenario).len() > 1;
@@ -194,7 +197,7 @@ fn to_the_last_axle(arguments: &Arguments, running: &Running<'_>) -> Result<(), 
         (Err(error), _) => return Err(stop(compiled, execute::diagnose(&error, graph, &compiled.origins))),
         (Ok(_), Some(error)) => return Err(stop(compiled, results_diagnostic(&error))),
         (Ok(_), None) if asked.load(Ordering::Relaxed) => {
-            return Err(stopped(arguments, directory.path(), recorder.has_kept()));
+            return Err(stopped(arguments, compiled, directory.path(), recorder.has_kept()));
         }
         (Ok(_), None) => {}
     }
@@ -336,7 +339,7 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
     match (ended, recorder.failure()) {
         (Ok(Ending::Finished), _) => {}
         (Ok(Ending::Stopped), Some(error)) => return Err(refused(&error)),
-        (Ok(Ending::Stopped), None) => return Err(stopped(arguments, &out, recorder.has_kept())),
+        (Ok(Ending::Stopped), None) => return Err(stopped(arguments, compiled, &out, recorder.has_kept())),
         (Err(error), _) => return Err(stop(compiled, execute::diagnose(&error, graph, &compiled.origins))),
     }
     let timed = Timed { solve: recorder.seconds(), parts: recorder.parts(), after: Instant::now() };
@@ -351,8 +354,12 @@ fn compute(arguments: &Arguments, directory: Directory, running: &Running<'_>) -
     Ok(run)
 }
 
-/// Says how to go on with a run that Ctrl-C or SIGTERM has stopped.
-fn stopped(arguments: &Arguments, out: &Path, has_kept: bool) -> Outcome {
+/// Says how to go on with a run that Ctrl-C, SIGTERM or its memory has stopped.
+fn stopped(arguments: &Arguments, compiled: &Compiled, out: &Path, has_kept: bool) -> Outcome {
+    let kept = if has_kept { format!("the state is kept in `{}`", out.display()) } else { NOTHING_KEPT.to_owned() };
+    if let Some(outgrown) = memory::outgrown(&kept) {
+        return stop(compiled, outgrown);
+    }
     let (out, how) = (out.display(), if arguments.is_worker { "again" } else { "with `--resume`" });
     terminal::note(&match has_kept {
         true => format!(
@@ -365,13 +372,19 @@ fn stopped(arguments: &Arguments, out: &Path, has_kept: bool) -> Outcome {
     Outcome::Failed
 }
 
+const NOTHING_KEPT: &str = "there was no state to keep yet";
+
 /// Says what a run found that is finished already.
-fn again(out: &Path, compiled: &Compiled) -> Outcome {
+fn again(finished: &Finished, out: &Path, compiled: &Compiled) -> Outcome {
     let summary = match results::read_summary(out) {
         Ok(summary) => summary,
         Err(error) => return stop(compiled, results_diagnostic(&error)),
     };
-    terminal::out(&format!("{} was finished before\n", out.join(report::PAGE).display()));
+    let (page, version) = (out.join(report::PAGE).display().to_string(), &finished.manifest().version);
+    terminal::out(&match version == env!("CARGO_PKG_VERSION") {
+        true => format!("{page} was finished before\n"),
+        false => format!("{page} was finished before by version {version}: `--force` runs it anew with this one\n"),
+    });
     match &compiled.scenario {
         Some(scenario) => verdicts(&summary.expectations, scenario, compiled),
         None => Outcome::Fine,

@@ -6,7 +6,7 @@ use super::progress::Patient;
 use super::scene::{SceneArguments, SeedArgument, failed, not_yet, show};
 use super::study_elsewhere;
 use super::study_local::{Unfinished, perform};
-use super::{Outcome, pack, stored, study_summary, terminal};
+use super::{Outcome, memory, pack, stored, study_summary, terminal};
 use crate::check::{self, Folder, Remembered};
 use crate::cluster::ClusterError;
 use crate::compile::Compiled;
@@ -141,6 +141,7 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
         say(&[refusal], compiled);
         return Outcome::Failed;
     }
+    arguments.memory.watch(None);
     let elsewhere = study_elsewhere::Study { scene, plan: &plan, cache: arguments.cache.as_deref() };
     let asked =
         Elsewhere { arguments: &arguments.cluster, name: &study.name, out: &arguments.out, at_a_time: arguments.jobs };
@@ -189,7 +190,7 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
             say(&[Diagnostic::new(Code::E0802, message).help("go on with `--resume`")], compiled);
             return Outcome::Failed;
         }
-        Err(Unfinished::Asked { kept }) => return stopped(&arguments.out, kept, plan.points.len()),
+        Err(Unfinished::Asked { kept }) => return stopped(&arguments.out, compiled, kept, plan.points.len()),
     };
     let title = compiled.scenario.as_ref().map_or("", |s| s.title.as_str());
     let answer = Answer::new(title, &plan, results);
@@ -273,11 +274,15 @@ fn known_of(plan: &Plan, folder: &StudyFolder) -> Vec<Option<PointResult>> {
     plan.points.iter().map(one).collect()
 }
 
-/// Says how to go on with a study that Ctrl-C or SIGTERM has stopped.
-fn stopped(out: &Path, kept: usize, all: usize) -> Outcome {
+/// Says how to go on with a study that Ctrl-C, SIGTERM or its memory has stopped.
+fn stopped(out: &Path, compiled: &Compiled, kept: usize, all: usize) -> Outcome {
+    let points = format!("{kept} of {all} points are kept in `{}`", out.display());
+    if let Some(outgrown) = memory::outgrown(&points) {
+        say(&[outgrown], compiled);
+        return Outcome::Failed;
+    }
     terminal::note(&format!(
-        "stopped: {kept} of {all} points are kept in `{}`\nto go on, run the same command with `--resume`: the answer will be the same\n",
-        out.display()
+        "stopped: {points}\nto go on, run the same command with `--resume`: the answer will be the same\n"
     ));
     Outcome::Failed
 }

@@ -22,15 +22,14 @@ pub(super) fn run(
     let at = |axles: u64| move |cause: NodeError| RunError::node(Clock::Axles(axles), cause);
     let (done, axles, control, state) = restored(from)?;
     let done = done as usize;
-    let mut stopped = false;
     let begun = machine.track_on_ground_that(|ground| match &state {
         Some(state) => ground.restore(state),
-        None => ground.prepare(&mut |stage, share| stopped |= tell_stage(listener, stage, share).is_break()),
+        None => ground.prepare(&mut |stage, share| tell_stage(listener, stage, share)),
     });
-    let (track, ground) = begun.map_err(at(axles))?;
-    if stopped {
-        return Ok(Ending::Stopped);
-    }
+    let (track, ground) = match begun {
+        Err(NodeError::Stopped) => return Ok(Ending::Stopped),
+        begun => begun.map_err(at(axles))?,
+    };
     let runs = machine.graph.track().map(settling).unwrap_or_default();
     let mut run = Run { pair: Pair { blocks, track, ground, control, runs }, done, listener };
     Ok(match run.go(axles)? {

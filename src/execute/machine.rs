@@ -7,6 +7,7 @@ use crate::nodes::{
 };
 use crate::store::Beds;
 use std::fmt;
+use std::ops::ControlFlow;
 
 /// How a run ended that did not fail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,7 +78,7 @@ impl<'a> Machine<'a> {
 
     /// The track and the ground that an edge joins to it, standing on each other.
     pub fn track_on_ground(&self) -> Result<(TrackSystem<'a>, Box<dyn Substructure + 'a>), NodeError> {
-        self.standing(self.graph.blocks(), |ground| ground.prepare(&mut |_, _| {}))
+        self.standing(self.graph.blocks(), |ground| ground.prepare(&mut |_, _| ControlFlow::Continue(())))
     }
 
     /// The same, where `begin` prepares the ground or restores it.
@@ -90,7 +91,7 @@ impl<'a> Machine<'a> {
 
     /// The same without the time steps of trains, which take most of the time to make it.
     pub(super) fn track_without_trains(&self) -> Result<(TrackSystem<'a>, Box<dyn Substructure + 'a>), NodeError> {
-        self.standing(None, |ground| ground.prepare(&mut |_, _| {}))
+        self.standing(None, |ground| ground.prepare(&mut |_, _| ControlFlow::Continue(())))
     }
 
     fn standing(

@@ -6,7 +6,7 @@ use super::event::{Checkpoint, Event, Listener, ScheduleState, tell_of_trains, t
 use super::machine::{Ending, Machine, RunError};
 use super::step::BlockMeasures;
 use crate::graph::{Blocks, Clock, Control};
-use crate::nodes::{GrainGround, NodeError, PassageOutcome, Riders, Stage, Substructure};
+use crate::nodes::{GrainGround, NodeError, PassageOutcome, Riders, Substructure};
 
 /// Runs the trains of a graph, from the beginning or from a checkpoint.
 pub(super) fn run(
@@ -20,15 +20,13 @@ pub(super) fn run(
     let parts = machine.grain_parts().ok_or_else(no_grains).map_err(at(0))?;
     let (mut done, mut axles, _, state) = restored(from)?;
     let mut ground = GrainGround::new(parts);
-    let mut stopped = false;
-    let mut tell = |stage: Stage, share: f64| stopped |= tell_stage(listener, stage, share).is_break();
-    match &state {
+    let begun = match &state {
         Some(state) => ground.restore(state),
-        None => ground.prepare(&mut tell),
-    }
-    .map_err(at(axles))?;
-    if stopped {
-        return Ok(Ending::Stopped);
+        None => ground.prepare(&mut |stage, share| tell_stage(listener, stage, share)),
+    };
+    match begun {
+        Err(NodeError::Stopped) => return Ok(Ending::Stopped),
+        begun => begun.map_err(at(axles))?,
     }
     loop {
         let last = axles >= blocks.total;

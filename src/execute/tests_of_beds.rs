@@ -1,11 +1,11 @@
 //! The schedule of test rigs: one bed after the other is packed, or taken from where beds are kept, and tested.
 
+use super::event::tell_stage;
 use super::machine::{Ending, Machine, RunError};
 use super::{Between, Checkpoint, Event, Listener, ScheduleState};
 use crate::graph::{ActuatorsNode, BedNode, Clock, Tests};
 use crate::nodes::{BedUnderActuators, NodeError, TestState, Tested};
 use crate::solvers::granular::Bed;
-use std::ops::ControlFlow;
 
 pub(super) fn run(
     machine: &Machine<'_>,
@@ -64,23 +64,26 @@ impl Test<'_, '_> {
     fn run(&mut self, running: Option<TestState>) -> Result<Option<(Tested, Bed<f32>)>, RunError> {
         let seed = self.bed.bed.seed().wrapping_add(self.done.len() as u64);
         let ready = self.bed.bed.ready(seed).map_err(|cause| failed_after(0, NodeError::Bed(cause)))?;
-        let mut going_on = ControlFlow::Continue(());
-        let found = self.machine.beds.bed(&ready.recipe, |progress| {
-            if going_on.is_continue() {
-                going_on = self.listener.hear(&Event::Packing(progress));
-            }
-        });
-        let found = found.map_err(|cause| failed_after(0, NodeError::Packing(cause)))?;
-        if going_on.is_break() || self.listener.hear(&Event::Packed { bed: &ready, found: &found }).is_break() {
+        let found = self.machine.beds.bed(&ready.recipe, |progress| self.listener.hear(&Event::Packing(progress)));
+        let found = match found.map_err(NodeError::from) {
+            Err(NodeError::Stopped) => return Ok(None),
+            found => found.map_err(|cause| failed_after(0, cause))?,
+        };
+        if self.listener.hear(&Event::Packed { bed: &ready, found: &found }).is_break() {
             return Ok(None);
         }
         let top = found.packed.levels.last().copied().unwrap_or_default();
         let rig = self.bed.rig(self.actuators, &ready.recipe, top, &self.tests.kept);
         let begun = match running {
             Some(state) => BedUnderActuators::restore(seed, state, &rig),
-            None => BedUnderActuators::new(seed, found.packed, self.bed.copies, &rig),
+            None => BedUnderActuators::new(seed, found.packed, self.bed.copies, &rig, &mut |stage, share| {
+                tell_stage(self.listener, stage, share)
+            }),
         };
-        let mut test = begun.map_err(|cause| failed_after(0, cause))?;
+        let mut test = match begun {
+            Err(NodeError::Stopped) => return Ok(None),
+            begun => begun.map_err(|cause| failed_after(0, cause))?,
+        };
         loop {
             let advanced = test.advance();
             if !advanced.map_err(|cause| failed_after(test.cycles(), cause))? {

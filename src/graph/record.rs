@@ -35,7 +35,7 @@ pub enum History {
 }
 
 impl History {
-    const ALL: [History; 8] = [
+    pub const ALL: [History; 8] = [
         History::WheelForce,
         History::RailSeatLoad,
         History::ContactForce,

@@ -34,7 +34,7 @@ pub enum NodeError {
     NoBuilder { node: String, kind: String },
     /// A seat that has settled (m) by more than the ballast below it is thick.
     Sunk { seat: usize, settlement: f64 },
-    /// Who listens has ended the run in the middle of a block; what was kept before goes on from there.
+    /// Who listens has ended the run, before its first step or in the middle of a block; what was kept before goes on from there.
     Stopped,
     /// What a node of another program says.
     Other { node: String, why: String },
@@ -54,7 +54,7 @@ impl fmt::Display for NodeError {
             NodeError::Sunk { settlement, .. } => {
                 write!(f, "a sleeper has settled by {settlement:.2} m, more than the ballast below it is thick")
             }
-            NodeError::Stopped => f.write_str("the run was stopped in the middle of a block"),
+            NodeError::Stopped => f.write_str("the run was stopped"),
             NodeError::Foreign { node, why } => write!(f, "the kept state of the {node} cannot be used: {why}"),
             NodeError::NoBuilder { node, kind } => {
                 write!(f, "node `{node}` is of a kind `{kind}` that this program cannot run")
@@ -84,14 +84,26 @@ impl From<SoilError> for NodeError {
     }
 }
 
+impl From<BedsError> for NodeError {
+    fn from(cause: BedsError) -> NodeError {
+        match cause {
+            BedsError::Packing(PackingError::Stopped) => NodeError::Stopped,
+            cause => NodeError::Packing(cause),
+        }
+    }
+}
+
 impl From<PackingError> for NodeError {
     fn from(cause: PackingError) -> NodeError {
-        NodeError::Packing(BedsError::Packing(cause))
+        BedsError::Packing(cause).into()
     }
 }
 
 impl From<RigError> for NodeError {
     fn from(cause: RigError) -> NodeError {
-        NodeError::Rig(cause)
+        match cause {
+            RigError::Stopped => NodeError::Stopped,
+            cause => NodeError::Rig(cause),
+        }
     }
 }

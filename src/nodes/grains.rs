@@ -1,5 +1,6 @@
 //! A bed of grains under actuators: the node of a test rig, advanced piece by piece of a cycle.
 
+use super::on_grains::{Stage, Telling};
 use super::{Bonds, NodeError};
 use crate::solvers::granular::Bed;
 use crate::solvers::granular::packing::Packed;
@@ -35,10 +36,16 @@ pub struct BedUnderActuators<'a> {
 
 impl<'a> BedUnderActuators<'a> {
     /// Sets sleepers, or a plate, down on `copies` cells of a packed bed side by side, and lets them come to rest.
-    pub fn new(seed: u64, mut packed: Packed<f32>, copies: u32, rig: &'a Rig) -> Result<Self, NodeError> {
+    pub fn new(
+        seed: u64,
+        mut packed: Packed<f32>,
+        copies: u32,
+        rig: &'a Rig,
+        tell: &mut Telling<'_>,
+    ) -> Result<Self, NodeError> {
         let failed = |failure| RigError::Failure { cycle: 0, failure };
         let whole = if copies == 1 { packed.bed } else { packed.bed.replicate(copies).map_err(failed)? };
-        Ok(BedUnderActuators { seed, trial: Trial::new(whole, rig, |_| {})? })
+        Ok(BedUnderActuators { seed, trial: Trial::new(whole, rig, |share| tell(Stage::Sleepers, share))? })
     }
 
     /// Goes on from a state that was kept of the same rig.

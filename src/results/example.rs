@@ -445,6 +445,7 @@ fn finished(
         file: "transition.track".to_owned(),
         source: "// 1 < 2 & \"quoted\"\nuse std\nscenario { title = \"Ballast meets slab\" }\n".to_owned(),
         source_sha256: "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".to_owned(),
+        overrides: vec!["ore.speed = 190 km/h".to_owned()],
         seed: 1,
         plan: "track        2D finite elements, 440 elements\nsubstructure law varandas, 69 seats\n".to_owned(),
     };

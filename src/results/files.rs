@@ -40,10 +40,11 @@ pub fn files(run: &Run, directory: &Path) -> Result<Vec<NamedBytes>, ResultsErro
     if !run.tampings.is_empty() {
         files.push((super::TampingRow::FILE, table(&run.tampings, directory)?));
     }
-    files.push((HISTORIES, histories::encode(&run.histories, directory)?));
+    let made_by = Some(&run.summary.provenance);
+    files.push((HISTORIES, histories::encode(&run.histories, made_by, directory)?));
     let named = files.into_iter().map(|(name, bytes)| (name.to_owned(), bytes));
     let states = super::states::files(run, directory)?;
-    let beds = super::under_track_files::files(&run.beds, directory)?;
+    let beds = super::under_track_files::files(&run.beds, &run.summary.provenance, directory)?;
     let summary = (SUMMARY.to_owned(), summary_json(run, directory)?);
     Ok(named.chain(beds).chain(states).chain([summary]).collect())
 }

@@ -1,11 +1,14 @@
 //! `histories.parquet`: the long table of everything sampled along a passage, one row a value.
 //!
 //! Columns `axles` INT64, `time_s` DOUBLE, `quantity` UTF8, `id` UTF8, `x_m` DOUBLE, `value` DOUBLE, `train` UTF8; dictionaries
-//! where values repeat, compressed with Snappy. Equal rows make equal bytes: nothing of the file depends on the clock.
+//! where values repeat, compressed with Snappy. The metadata of a finished file hold the units of its quantities and what made the
+//! run (`about.rs`). Equal rows make equal bytes: nothing of the file depends on the clock.
 
+use super::about::{self, Units};
 use super::columns::{read_column, undamaged, write_column};
 use super::error::check_finite;
-use super::{HistoryRow, ResultsError};
+use super::{HistoryRow, Provenance, ResultsError};
+use crate::scenario::response::Response;
 use bytes::Bytes;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
@@ -33,14 +36,18 @@ const COLUMNS: [(&str, Physical); 7] = [
 /// Rows that are held in columns at once while a file is written or read.
 const GROUP_ROWS: usize = 1 << 18;
 
-/// The bytes of the file that holds `rows`.
-pub(super) fn encode(rows: &[HistoryRow], directory: &Path) -> Result<Vec<u8>, ResultsError> {
+/// The bytes of the file that holds `rows`, and says what made them where the run is finished.
+pub(super) fn encode(
+    rows: &[HistoryRow],
+    made_by: Option<&Provenance>,
+    directory: &Path,
+) -> Result<Vec<u8>, ResultsError> {
     for (index, row) in rows.iter().enumerate() {
         check_finite(HISTORIES, "time_s", index + 1, row.time_s)?;
         check_finite(HISTORIES, "x_m", index + 1, row.x_m)?;
         check_finite(HISTORIES, "value", index + 1, row.value)?;
     }
-    write_groups(rows).map_err(|cause| ResultsError::unwritable(&directory.join(HISTORIES), cause))
+    write_groups(rows, made_by).map_err(|cause| ResultsError::unwritable(&directory.join(HISTORIES), cause))
 }
 
 /// The rows of a file.
@@ -88,11 +95,26 @@ fn schema() -> ParquetResult<TypePtr> {
     Ok(Arc::new(Type::group_type_builder("histories").with_fields(fields).build()?))
 }
 
-fn write_groups(rows: &[HistoryRow]) -> ParquetResult<Vec<u8>> {
+/// Units of the columns, and of every quantity that occurs.
+fn units(rows: &[HistoryRow]) -> Units<'_> {
+    let columns = [("axles", "1"), ("time_s", "s"), ("x_m", "m")];
+    columns
+        .into_iter()
+        .chain(rows.iter().filter_map(|row| Some((row.quantity.as_str(), unit(&row.quantity)?))))
+        .collect()
+}
+
+/// The unit of a quantity. That of a sleeper over a volume of grains is named after the response that it is.
+fn unit(quantity: &str) -> Option<&'static str> {
+    Response::of_name(quantity.strip_suffix("_on_grains").unwrap_or(quantity)).map(Response::unit)
+}
+
+fn write_groups(rows: &[HistoryRow], made_by: Option<&Provenance>) -> ParquetResult<Vec<u8>> {
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         .set_dictionary_enabled(true)
         .set_created_by(concat!("trackbed ", env!("CARGO_PKG_VERSION")).to_owned())
+        .set_key_value_metadata(about::entries(&units(rows), made_by))
         .build();
     let mut bytes = Vec::new();
     let mut writer = SerializedFileWriter::new(&mut bytes, schema()?, Arc::new(properties))?;
@@ -132,4 +154,44 @@ fn read_group(group: &dyn RowGroupReader, rows: &mut Vec<HistoryRow>) -> Parquet
         });
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::{History, InVolume};
+    use crate::results::example;
+    use std::collections::BTreeMap;
+
+    #[test]
+    fn a_file_says_its_units_and_what_made_it() {
+        let run = example::transition();
+        let made_by = &run.summary.provenance;
+        let said = |made_by: Option<&Provenance>| -> BTreeMap<String, String> {
+            let bytes = encode(&run.histories, made_by, Path::new("out")).unwrap();
+            let reader = SerializedFileReader::new(Bytes::from(bytes)).unwrap();
+            let entries = reader.metadata().file_metadata().key_value_metadata().cloned().unwrap_or_default();
+            entries.into_iter().map(|entry| (entry.key, entry.value.unwrap())).collect()
+        };
+        let told = said(Some(made_by));
+        let units: BTreeMap<String, String> = serde_json::from_str(&told["trackbed.units"]).unwrap();
+        assert_eq!((units["time_s"].as_str(), units["rail_seat_load"].as_str()), ("s", "N"));
+        assert!(run.histories.iter().all(|row| units.contains_key(row.quantity.as_str())), "{units:?}");
+        assert_eq!(told["trackbed.source_sha256"], made_by.source_sha256);
+        assert_eq!(told["trackbed.overrides"], "[\"ore.speed = 190 km/h\"]");
+        let of_pandas: serde_json::Value = serde_json::from_str(&told["PANDAS_ATTRS"]).unwrap();
+        assert_eq!(of_pandas["units"], serde_json::json!(units));
+        assert!(said(None).is_empty(), "pieces of a run are of no run yet");
+    }
+
+    #[test]
+    fn every_quantity_has_a_unit() {
+        let names = History::ALL.into_iter().map(History::name);
+        let in_volumes =
+            [InVolume::BallastStress, InVolume::SleeperVelocity, InVolume::SleeperAcceleration, InVolume::SleeperForce];
+        let found: Vec<_> =
+            names.chain(in_volumes.into_iter().map(InVolume::name)).map(|name| (name, unit(name))).collect();
+        assert!(found.iter().all(|(_, unit)| unit.is_some()), "{found:?}");
+        assert!(found.contains(&("contact_force_on_grains", Some("N"))), "{found:?}");
+    }
 }

@@ -39,7 +39,7 @@ impl KeptBeds {
             self.pieces.reference = Some(directory.keep("places", &bytes)?);
         }
         for number in self.pieces.counts.len()..self.told.len() {
-            let [grains, contacts] = under_track_files::encode(&self.told[number..=number], directory.path())?;
+            let [grains, contacts] = under_track_files::encode(&self.told[number..=number], None, directory.path())?;
             let grains = directory.keep(&format!("grains-{number:04}"), &grains)?;
             self.pieces.counts.push([grains, directory.keep(&format!("contacts-{number:04}"), &contacts)?]);
         }

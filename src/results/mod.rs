@@ -3,6 +3,7 @@
 //! Values are SI; signs and names are those of the language guide. [`summarise`] and [`verdicts`] make numbers of the
 //! tables, [`write()`] and [`read`] move a [`Run`] to a directory and back, bit for bit.
 
+mod about;
 mod bed;
 mod bed_readings;
 mod bed_tests;

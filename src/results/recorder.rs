@@ -228,7 +228,7 @@ impl<'a> RunRecorder<'a> {
             return Ok(());
         }
         if self.written < self.histories.len() {
-            let bytes = histories::encode(&self.histories[self.written..], directory.path())?;
+            let bytes = histories::encode(&self.histories[self.written..], None, directory.path())?;
             self.kept.push(directory.keep(&format!("histories-{:04}", self.kept.len()), &bytes)?);
             self.written = self.histories.len();
         }

@@ -1,6 +1,7 @@
 //! `summary.json`: the scalars of a run under their names, its expectations, and what made it.
 
 use super::Reliance;
+use crate::check::EDIT;
 use crate::diag::Sources;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -53,6 +54,9 @@ pub struct Provenance {
     /// Text of the main file, and the SHA-256 of all texts and overrides.
     pub source: String,
     pub source_sha256: String,
+    /// Lines that were edited for the run, as `path = value`.
+    #[serde(default)]
+    pub overrides: Vec<String>,
     pub seed: u64,
     /// The solver graph as `trackbed plan` prints it.
     pub plan: String,
@@ -63,6 +67,7 @@ impl Provenance {
     pub fn new(sources: &Sources, sha256: String, seed: u64, plan: String) -> Provenance {
         // the name alone: equal scenes give equal files wherever they lie
         let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_string();
+        let edits = sources.iter().filter(|(_, source)| source.name == EDIT);
         let main = sources.iter().next().map(|(_, s)| (name(&s.name), s.text.clone())).unwrap_or_default();
         Provenance {
             program: env!("CARGO_PKG_NAME").into(),
@@ -70,6 +75,7 @@ impl Provenance {
             file: main.0,
             source: main.1,
             source_sha256: sha256,
+            overrides: edits.map(|(_, edit)| edit.text.trim().to_owned()).collect(),
             seed,
             plan,
         }

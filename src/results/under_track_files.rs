@@ -1,10 +1,12 @@
 //! `grains.parquet` and `contacts.parquet`: the beds under a track at the recorded counts, one row a pebble and one a contact.
 //!
-//! Columns that count are INT64, all others FLOAT, compressed with Snappy. Equal rows make equal bytes.
+//! Columns that count are INT64, all others FLOAT, compressed with Snappy. The metadata of finished files hold units and what made the
+//! run (`about.rs`). Equal rows make equal bytes.
 
+use super::about::{self, Units};
 use super::columns::{read_column, undamaged, write_column};
 use super::error::check_finite;
-use super::{BedsAtCount, Grain, Link, NamedBytes, ResultsError};
+use super::{BedsAtCount, Grain, Link, NamedBytes, Provenance, ResultsError};
 use bytes::Bytes;
 use parquet::basic::{Compression, Repetition, Type as Physical};
 use parquet::data_type::{FloatType, Int64Type};
@@ -21,30 +23,42 @@ use std::sync::Arc;
 const GRAINS: &str = "grains.parquet";
 const CONTACTS: &str = "contacts.parquet";
 
-/// Columns of whole numbers, then those of others.
-type Columns = (&'static [&'static str], &'static [&'static str]);
+/// Columns of whole numbers, then those of others with their units.
+type Columns = (&'static [&'static str], &'static [(&'static str, &'static str)]);
 
 const OF_GRAINS: Columns = (
     &["axles", "under_train", "body", "coordination"],
-    &["x_m", "y_m", "z_m", "radius_m", "vx_m_s", "vy_m_s", "vz_m_s", "dx_m", "dy_m", "dz_m", "largest_force_N"],
+    &[
+        ("x_m", "m"),
+        ("y_m", "m"),
+        ("z_m", "m"),
+        ("radius_m", "m"),
+        ("vx_m_s", "m/s"),
+        ("vy_m_s", "m/s"),
+        ("vz_m_s", "m/s"),
+        ("dx_m", "m"),
+        ("dy_m", "m"),
+        ("dz_m", "m"),
+        ("largest_force_N", "N"),
+    ],
 );
 /// The second body of a contact with a wall is -1.
 const OF_CONTACTS: Columns = (
     &["axles", "under_train", "first_body", "second_body"],
     &[
-        "from_x_m",
-        "from_y_m",
-        "from_z_m",
-        "to_x_m",
-        "to_y_m",
-        "to_z_m",
-        "force_x_N",
-        "force_y_N",
-        "force_z_N",
-        "normal_x",
-        "normal_y",
-        "normal_z",
-        "overlap_m",
+        ("from_x_m", "m"),
+        ("from_y_m", "m"),
+        ("from_z_m", "m"),
+        ("to_x_m", "m"),
+        ("to_y_m", "m"),
+        ("to_z_m", "m"),
+        ("force_x_N", "N"),
+        ("force_y_N", "N"),
+        ("force_z_N", "N"),
+        ("normal_x", "1"),
+        ("normal_y", "1"),
+        ("normal_z", "1"),
+        ("overlap_m", "m"),
     ],
 );
 
@@ -55,21 +69,29 @@ type Row = (Vec<i64>, Vec<f32>);
 const GROUP_ROWS: usize = 1 << 18;
 
 /// Both files; none where nothing was kept.
-pub(super) fn files(beds: &[BedsAtCount], directory: &Path) -> Result<Vec<NamedBytes>, ResultsError> {
+pub(super) fn files(
+    beds: &[BedsAtCount],
+    made_by: &Provenance,
+    directory: &Path,
+) -> Result<Vec<NamedBytes>, ResultsError> {
     if beds.is_empty() {
         return Ok(Vec::new());
     }
-    let [grains, contacts] = encode(beds, directory)?;
+    let [grains, contacts] = encode(beds, Some(made_by), directory)?;
     Ok(vec![(GRAINS.to_owned(), grains), (CONTACTS.to_owned(), contacts)])
 }
 
-/// The bytes of both files.
-pub(super) fn encode(beds: &[BedsAtCount], directory: &Path) -> Result<[Vec<u8>; 2], ResultsError> {
+/// The bytes of both files, which say what made them where the run is finished.
+pub(super) fn encode(
+    beds: &[BedsAtCount],
+    made_by: Option<&Provenance>,
+    directory: &Path,
+) -> Result<[Vec<u8>; 2], ResultsError> {
     let grains = beds.iter().flat_map(|bed| bed.grains.iter().map(|grain| of_grain(bed, grain)));
     let contacts = beds.iter().flat_map(|bed| bed.links.iter().map(|link| of_link(bed, link)));
     Ok([
-        bytes(GRAINS, OF_GRAINS, &grains.collect::<Vec<_>>(), directory)?,
-        bytes(CONTACTS, OF_CONTACTS, &contacts.collect::<Vec<_>>(), directory)?,
+        bytes((GRAINS, OF_GRAINS), &grains.collect::<Vec<_>>(), made_by, directory)?,
+        bytes((CONTACTS, OF_CONTACTS), &contacts.collect::<Vec<_>>(), made_by, directory)?,
     ])
 }
 
@@ -142,21 +164,30 @@ fn to_link((whole, numbers): &Row) -> Link {
     }
 }
 
-fn bytes(name: &str, columns: Columns, rows: &[Row], directory: &Path) -> Result<Vec<u8>, ResultsError> {
+fn bytes(
+    (name, columns): (&str, Columns),
+    rows: &[Row],
+    made_by: Option<&Provenance>,
+    directory: &Path,
+) -> Result<Vec<u8>, ResultsError> {
     for (number, (_, values)) in rows.iter().enumerate() {
-        for (column, value) in columns.1.iter().zip(values) {
+        for ((column, _), value) in columns.1.iter().zip(values) {
             check_finite(name, column, number + 1, f64::from(*value))?;
         }
     }
-    write(columns, rows).map_err(|cause| ResultsError::unwritable(&directory.join(name), cause))
+    write(columns, rows, made_by).map_err(|cause| ResultsError::unwritable(&directory.join(name), cause))
 }
 
 fn described((whole, others): Columns) -> impl Iterator<Item = (&'static str, Physical)> + Clone {
-    let others = others.iter().map(|name| (*name, Physical::FLOAT));
+    let others = others.iter().map(|(name, _)| (*name, Physical::FLOAT));
     whole.iter().map(|name| (*name, Physical::INT64)).chain(others)
 }
 
-fn write(columns: Columns, rows: &[Row]) -> ParquetResult<Vec<u8>> {
+fn units((whole, others): Columns) -> Units<'static> {
+    whole.iter().map(|name| (*name, "1")).chain(others.iter().copied()).collect()
+}
+
+fn write(columns: Columns, rows: &[Row], made_by: Option<&Provenance>) -> ParquetResult<Vec<u8>> {
     let column = |(name, physical)| {
         let builder = Type::primitive_type_builder(name, physical);
         builder.with_repetition(Repetition::REQUIRED).build().map(Arc::new)
@@ -166,6 +197,7 @@ fn write(columns: Columns, rows: &[Row]) -> ParquetResult<Vec<u8>> {
     let properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         .set_created_by(concat!("trackbed ", env!("CARGO_PKG_VERSION")).to_owned())
+        .set_key_value_metadata(about::entries(&units(columns), made_by))
         .build();
     let mut bytes = Vec::new();
     let mut writer = SerializedFileWriter::new(&mut bytes, schema, Arc::new(properties))?;
@@ -219,6 +251,7 @@ fn read_group(columns: Columns, group: &dyn RowGroupReader, rows: &mut Vec<Row>)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::results::example;
 
     fn bed(axles: u64, under_train: bool) -> BedsAtCount {
         let grain = |body: u32| Grain {
@@ -246,12 +279,14 @@ mod tests {
     fn beds_come_back_from_their_files() {
         let directory = tempfile::tempdir().unwrap();
         let beds = vec![bed(0, false), bed(0, true), bed(40, false)];
-        let files = files(&beds, directory.path()).unwrap();
+        let provenance = example::transition().summary.provenance;
+        let files = files(&beds, &provenance, directory.path()).unwrap();
         super::super::write_files(&files, directory.path()).unwrap();
         assert_eq!(read(directory.path()).unwrap(), beds);
         let mut wrong = bed(0, false);
         wrong.grains[1].place[2] = f64::NAN;
-        let error = super::super::under_track_files::files(&[wrong], directory.path()).unwrap_err().to_string();
+        let error =
+            super::super::under_track_files::files(&[wrong], &provenance, directory.path()).unwrap_err().to_string();
         assert!(error.contains("column `z_m` of row 2"), "{error}");
     }
 
@@ -259,7 +294,9 @@ mod tests {
     fn a_damaged_file_is_told_by_name() {
         let directory = tempfile::tempdir().unwrap();
         assert!(read(directory.path()).unwrap().is_empty());
-        super::super::write_files(&files(&[bed(0, false)], directory.path()).unwrap(), directory.path()).unwrap();
+        let provenance = example::transition().summary.provenance;
+        let files = files(&[bed(0, false)], &provenance, directory.path()).unwrap();
+        super::super::write_files(&files, directory.path()).unwrap();
         fs::write(directory.path().join(CONTACTS), "PAR1 and nothing else").unwrap();
         let error = read(directory.path()).unwrap_err().to_string();
         assert!(error.contains("contacts.parquet"), "{error}");

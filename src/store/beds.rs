@@ -1,8 +1,8 @@
 //! Packed beds that were built before, by what made them.
 
 use super::{Shelf, StoreError, sha256};
-use crate::solvers::granular::RestoreError;
 use crate::solvers::granular::packing::{METHOD, Packed, PackingError, Progress, Recipe, StoredBed, pack};
+use crate::solvers::granular::{Answer, RestoreError};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fmt;
@@ -70,9 +70,9 @@ impl Beds {
         self.shelf.as_ref().map(Shelf::folder)
     }
 
-    /// The bed of a recipe: as it was kept, or packed and kept. `tell` hears how far packing is. Fails where it cannot be packed; a bed
-    /// that cannot be read or kept is packed all the same.
-    pub fn bed(&self, recipe: &Recipe, tell: impl FnMut(&Progress)) -> Result<FoundBed, BedsError> {
+    /// The bed of a recipe: as it was kept, or packed and kept. `tell` hears how far packing is, and may end it. Fails where it cannot be
+    /// packed; a bed that cannot be read or kept is packed all the same.
+    pub fn bed<A: Answer>(&self, recipe: &Recipe, tell: impl FnMut(&Progress) -> A) -> Result<FoundBed, BedsError> {
         let Some(shelf) = &self.shelf else { return packed(recipe, tell, |_| None) };
         let hash = bed_hash(recipe);
         // what is there is read without a lock: a folder may be there to be read only
@@ -107,7 +107,7 @@ impl Beds {
             return Ok(there);
         }
         let built = build()?;
-        let _ = shelf.put(hash, &built).and_then(|()| shelf.keep_newest(BUILT_KEPT));
+        let _ = shelf.put(hash, &built).and_then(|()| shelf.keep_newest(BUILT_KEPT, hash));
         Ok(built)
     }
 }
@@ -117,12 +117,12 @@ const BUILT: &str = "track";
 const BUILT_KEPT: usize = 4;
 
 /// Packs a bed and keeps it. What comes later must not know whether it was kept: it goes on from what is stored in both cases.
-fn packed(
+fn packed<A: Answer>(
     recipe: &Recipe,
-    tell: impl FnMut(&Progress),
+    tell: impl FnMut(&Progress) -> A,
     keep: impl FnOnce(&Packed<f32>) -> Option<StoreError>,
 ) -> Result<FoundBed, BedsError> {
-    let packed = pack::<f32>(recipe, tell).map_err(BedsError::Packing)?;
+    let packed = pack::<f32, A>(recipe, tell).map_err(BedsError::Packing)?;
     let loss = keep(&packed);
     let packed = Packed::restore(packed.store()).map_err(BedsError::Restore)?;
     Ok(FoundBed { packed, was_kept: false, damage: None, loss })
@@ -132,4 +132,28 @@ fn packed(
 fn kept(shelf: &Shelf, hash: &str) -> Result<Option<Packed<f32>>, StoreError> {
     let Some(stored) = shelf.get::<StoredBed<f32>>(hash)? else { return Ok(None) };
     Packed::restore(stored).map(Some).map_err(|error| StoreError::damaged(&shelf.path(hash), error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs::{self, File};
+    use std::time::{Duration, SystemTime};
+
+    /// Where the clock has gone back, what was built last is the oldest by its date.
+    #[test]
+    fn what_was_built_last_is_kept_whatever_its_date() {
+        let folder = tempfile::tempdir().unwrap();
+        let beds = Beds::kept_in(folder.path());
+        let build = |hash: &str| beds.built::<_, ()>(hash, || Ok(hash.to_owned())).unwrap();
+        for number in 0..BUILT_KEPT {
+            build(&format!("old-{number}"));
+            let file = File::options().write(true).open(folder.path().join(format!("old-{number}.{BUILT}"))).unwrap();
+            file.set_modified(SystemTime::now() + Duration::from_secs(86_400)).unwrap();
+        }
+        build("new");
+        assert!(folder.path().join(format!("new.{BUILT}")).exists());
+        let kept = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().path());
+        assert_eq!(kept.filter(|path| path.extension().is_some_and(|kind| kind == BUILT)).count(), BUILT_KEPT);
+    }
 }

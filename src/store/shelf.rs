@@ -45,18 +45,18 @@ impl Shelf {
         write_atomically(&path, &self.seal(key).close_json(&path, value)?)
     }
 
-    /// Removes all but the newest values.
-    pub(super) fn keep_newest(&self, count: usize) -> Result<(), StoreError> {
+    /// Removes all but the newest values and the one of a key, whatever a clock says of its age.
+    pub(super) fn keep_newest(&self, count: usize, key: &str) -> Result<(), StoreError> {
         let io = |cause| StoreError::io(&self.folder, "read", cause);
         let mut found: Vec<(SystemTime, PathBuf)> = Vec::new();
         for entry in fs::read_dir(&self.folder).map_err(io)? {
             let path = entry.map_err(io)?.path();
-            if path.extension().is_some_and(|kind| kind == self.kind) {
+            if path.extension().is_some_and(|kind| kind == self.kind) && path != self.path(key) {
                 found.push((fs::metadata(&path).and_then(|data| data.modified()).map_err(io)?, path));
             }
         }
         found.sort();
-        let old = found.len().saturating_sub(count);
+        let old = found.len().saturating_sub(count - 1);
         found[..old]
             .iter()
             .try_for_each(|(_, path)| fs::remove_file(path).map_err(|cause| StoreError::io(path, "remove", cause)))

@@ -65,7 +65,7 @@ impl Cell {
         let bed: &BedPlan = &node.beds[plan.bed];
         let ready = bed.ready(bed.seed()).map_err(NodeError::Bed)?;
         let found = beds.bed(&ready.recipe, |progress| tell(Stage::Packing, progress.share));
-        let mut packed = found.map_err(NodeError::Packing)?.packed;
+        let mut packed = found?.packed;
         let mut bed = packed.bed.replicate(plan.copies)?;
         let sleepers: Vec<Sleeper> = plan.sleepers.iter().map(sleeper).collect();
         let walls = stand(&mut bed, &sleepers, node.gravity, |share| tell(Stage::Sleepers, share))?;

@@ -12,7 +12,7 @@ mod hardening;
 mod layout;
 mod stored;
 
-use super::on_grains::{Following, Stage, Telling, Told};
+use super::on_grains::{Following, Stage, Telling, going_on, tell_stage_and_state};
 use super::turns;
 use super::{Bonds, Forces, Load, Mark, NodeError, Substructure};
 use crate::graph::{CellPlan, CellsNode, Responses, SeatOnCell};
@@ -186,7 +186,7 @@ impl Live {
                     ));
                     let build = || {
                         let cell = Cell::build(plan, node, parts.beds, tell)?;
-                        tell(Stage::StaticLoad, 0.0);
+                        going_on(tell(Stage::StaticLoad, 0.0))?;
                         Ok((cell.store(), cell.pressed(node.gravity)?))
                     };
                     // what comes later must not know whether it was built before: it goes on from what is stored in both cases
@@ -235,10 +235,7 @@ impl Live {
                 return Ok(());
             }
             let share = self.share(&jumps, load.trains);
-            let told = [Told::Stage(Stage::Passage, share), Told::State(&|| self.save())];
-            if told.into_iter().try_for_each(&mut *follow).is_break() {
-                return Err(NodeError::Stopped);
-            }
+            tell_stage_and_state((Stage::Passage, share), &|| self.save(), follow)?;
             for (cell, passed) in self.pass(&due, &trains, node.gravity)? {
                 self.books[cell].note(&passed);
                 self.block().computed[cell] += 1;

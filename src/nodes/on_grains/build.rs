@@ -3,7 +3,7 @@
 
 use super::soil::{Plan, SoilBelow};
 use super::step::{Coupled, Spent, StandingBed};
-use super::{Stage, Telling};
+use super::{Stage, Telling, going_on};
 use crate::graph::{GrainStretch, GrainsNode, Responses, SleeperOnGrains, SoilNode, TrackNode};
 use crate::nodes::NodeError;
 use crate::solvers::granular::packing::{Order, lay};
@@ -64,7 +64,7 @@ impl Parts<'_> {
         let ready = plan.ready(plan.seed()).map_err(NodeError::Bed)?;
         let recipe = &ready.recipe;
         let found = self.beds.bed(recipe, |progress| tell(Stage::Packing, progress.share));
-        let cell = found.map_err(NodeError::Packing)?.packed;
+        let cell = found?.packed;
         let order = Order::of_one(stretch.copies as usize);
         let mut bed = lay(&[cell], &order, recipe, |progress| tell(Stage::Laying, progress.share))?.bed;
         let sleepers: Vec<Sleeper> = stretch.sleepers.iter().map(sleeper).collect();
@@ -76,7 +76,7 @@ impl Parts<'_> {
         walls.iter().for_each(|wall| bed.set_motion(*wall, WallMotion::Guided));
         let time_step = self.time_step(&mut bed)?;
         bed.set_time_step(time_step);
-        tell(Stage::Soil, 0.0);
+        going_on(tell(Stage::Soil, 0.0))?;
         let below = |soil| SoilBelow::new(&mut bed, recipe.floor(), self.lies(number), soil);
         let soil = self.soil.map(below).transpose()?;
         // stiff soil in small elements may need shorter steps than the grains

@@ -17,9 +17,9 @@ impl GrainGround<'_> {
             seconds,
             |_, loads| loads.clear(),
             |time, coupled| {
-                tell(Stage::Rest, time / seconds);
                 let moved = levels(coupled).into_iter().zip(&before).map(|(now, before)| (now - before).abs());
                 farthest = moved.fold(farthest, f64::max);
+                tell(Stage::Rest, time / seconds)
             },
         )?;
         Ok(farthest)

@@ -72,8 +72,26 @@ impl fmt::Display for Stage {
     }
 }
 
-/// Hears what is being done, and the share of it that is done.
-pub type Telling<'a> = dyn FnMut(Stage, f64) + 'a;
+/// Hears what is being done, and the share of it that is done. A break ends it.
+pub type Telling<'a> = dyn FnMut(Stage, f64) -> ControlFlow<()> + 'a;
+
+/// Fails where who listens has ended the run.
+pub(super) fn going_on(told: ControlFlow<()>) -> Result<(), NodeError> {
+    match told {
+        ControlFlow::Continue(()) => Ok(()),
+        ControlFlow::Break(()) => Err(NodeError::Stopped),
+    }
+}
+
+/// Tells how far trains are, and offers the state to be kept: who ends the run can keep it first.
+pub(super) fn tell_stage_and_state(
+    (stage, share): (Stage, f64),
+    state: &dyn Fn() -> Result<serde_json::Value, NodeError>,
+    follow: &mut Following<'_>,
+) -> Result<(), NodeError> {
+    let told = [follow(Told::Stage(stage, share)), follow(Told::State(state))];
+    told.into_iter().try_for_each(going_on)
+}
 
 /// Grains as the ground of a track.
 pub struct GrainGround<'a> {
@@ -206,10 +224,7 @@ impl Substructure for GrainGround<'_> {
         let recorded = live.recorded();
         live.underway = None;
         if parts.grains.stiffness_from == StiffnessFrom::StaticLoad {
-            live.press(parts, &mut |stage, share| {
-                // nothing is kept while a copy is pressed
-                let _ = follow(Told::Stage(stage, share));
-            })?;
+            live.press(parts, &mut |stage, share| follow(Told::Stage(stage, share)))?;
         }
         self.recorded = recorded;
         self.answer();

@@ -5,13 +5,13 @@ use super::reading::{Reading, Watched};
 use super::step::{Coupled, HOLD};
 use super::underway::Following;
 use super::wheels::WheelRun;
-use super::{Books, Live, Stage, Telling};
+use super::{Books, Live, Stage, Telling, going_on};
 use crate::graph::{GrainStretch, SleeperOnGrains, StiffnessFrom};
 use crate::nodes::{Load, NodeError};
 use crate::solvers::granular::measure::unbalance;
-use crate::solvers::granular::{Fading, Stride};
+use crate::solvers::granular::{Answer, Fading, Stride};
 use crate::solvers::track::{Spring, WheelLoads};
-use std::ops::Range;
+use std::ops::{ControlFlow, Range};
 
 /// Local damping of grains (Cundall), and drag of the rail (1/s), on the way to rest.
 const DAMPING: f64 = 0.7;
@@ -59,23 +59,23 @@ impl Coupled {
         Ok(())
     }
 
-    /// Steps under wheels that are known until a time has passed (s); `see` hears the time and looks after each.
-    pub fn run(
+    /// Steps under wheels that are known until a time has passed (s); `see` hears the time and looks after each, and may end it.
+    pub fn run<A: Answer>(
         &mut self,
         time: f64,
         mut wheels: impl FnMut(f64, &mut Vec<(f64, f64)>),
-        mut see: impl FnMut(f64, &Coupled),
+        mut see: impl FnMut(f64, &Coupled) -> A,
     ) -> Result<(), NodeError> {
         let steps = (time / self.time_step()).ceil() as u64;
         self.run_steps(0..steps, &mut wheels, &mut see)
     }
 
     /// Some of the steps of a run.
-    fn run_steps(
+    fn run_steps<A: Answer>(
         &mut self,
         steps: Range<u64>,
         wheels: &mut impl FnMut(f64, &mut Vec<(f64, f64)>),
-        see: &mut impl FnMut(f64, &Coupled),
+        see: &mut impl FnMut(f64, &Coupled) -> A,
     ) -> Result<(), NodeError> {
         let mut loads = Vec::new();
         for step in steps {
@@ -85,7 +85,7 @@ impl Coupled {
             let now = step as f64 * self.time_step();
             wheels(now, &mut loads);
             self.step(&WheelLoads::Given(&loads))?;
-            see(now, self);
+            going_on(see(now, self).flow())?;
         }
         Ok(())
     }
@@ -101,8 +101,8 @@ impl Coupled {
         Ok(done)
     }
 
-    /// Runs until all is at rest, or the time is over (s); gives how far from rest it is, over what counts as rest.
-    pub fn come_to_rest(&mut self, longest: f64, tell: &mut dyn FnMut(f64)) -> Result<f64, NodeError> {
+    /// Runs until all is at rest, or the time is over (s); gives how far from rest it is, over what counts as rest. `tell` may end it.
+    pub fn come_to_rest<A: Answer>(&mut self, longest: f64, tell: &mut impl FnMut(f64) -> A) -> Result<f64, NodeError> {
         self.damped(|coupled| {
             let (mut calm, mut passed, mut fading) = (0, 0.0, Fading::default());
             loop {
@@ -111,7 +111,7 @@ impl Coupled {
                 passed += part;
                 let away = coupled.restlessness()?;
                 calm = if away <= 1.0 { calm + 1 } else { 0 };
-                tell(fading.share(away));
+                going_on(tell(fading.share(away)).flow())?;
                 if calm >= CALM || passed >= longest {
                     return Ok(away);
                 }
@@ -131,7 +131,11 @@ impl Coupled {
     }
 
     /// Presses all sleepers at once, and gives how stiff each support is, N/m.
-    fn press(&mut self, parts: Parts<'_>, tell: &mut dyn FnMut(f64)) -> Result<Vec<f64>, NodeError> {
+    fn press(
+        &mut self,
+        parts: Parts<'_>,
+        tell: &mut impl FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Vec<f64>, NodeError> {
         let seats: Vec<f64> = self.rail.carried().iter().map(|seat| parts.track.seats[*seat].x).collect();
         let [growing, standing] = PRESSING;
         let before = self.readings();

@@ -4,7 +4,7 @@ use super::extremes::Seen;
 use super::reading::Watched;
 use super::recording::Recording;
 use super::step::HOLD;
-use super::{BedUnderTrack, Books, Live, Stage};
+use super::{BedUnderTrack, Books, Live, Stage, tell_stage_and_state};
 use crate::nodes::{NodeError, PassageOutcome, Unloaded};
 use crate::solvers::track::LeapfrogState;
 use serde::{Deserialize, Serialize};
@@ -111,10 +111,7 @@ impl Live {
     /// The next steps of a passage of so many: up to where inertia is looked at. Tells the state before them.
     pub fn next_steps(&self, from: u64, steps: u64, follow: &mut Following<'_>) -> Result<Range<u64>, NodeError> {
         let share = from as f64 / steps.max(1) as f64;
-        let told = [Told::Stage(Stage::Passage, share), Told::State(&|| self.save())];
-        match told.into_iter().try_for_each(follow) {
-            ControlFlow::Continue(()) => Ok(from..steps.min(from + HOLD)),
-            ControlFlow::Break(()) => Err(NodeError::Stopped),
-        }
+        tell_stage_and_state((Stage::Passage, share), &|| self.save(), follow)?;
+        Ok(from..steps.min(from + HOLD))
     }
 }

@@ -3,7 +3,7 @@
 use super::build::Parts;
 use super::recording::{Recording, VolumeSample};
 use super::underway::Following;
-use super::{GrainGround, Live, Told};
+use super::{GrainGround, Live, Told, going_on};
 use crate::graph::SleeperOnGrains;
 use crate::nodes::{Load, NodeError};
 use std::ops::ControlFlow;
@@ -31,10 +31,7 @@ impl Live {
             return Ok(());
         }
         let beds = self.look(parts, &recording.tops)?;
-        match follow(Told::Beds(beds)) {
-            ControlFlow::Continue(()) => Ok(()),
-            ControlFlow::Break(()) => Err(NodeError::Stopped),
-        }
+        going_on(follow(Told::Beds(beds)))
     }
 
     /// The record of the passage under way, taken out for some steps: of the first one of the block only, and only where `wanted`.

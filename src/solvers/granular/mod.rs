@@ -50,6 +50,7 @@ mod join;
 mod lanes;
 mod law;
 mod lists;
+mod listen;
 pub mod measure;
 pub mod motion;
 mod order;
@@ -90,6 +91,7 @@ pub use lanes::Real;
 pub use law::{
     ContactLaw, ContactLaws, Dashpot, DashpotMode, FrictionLimit, HertzMindlin, LawError, Linear, Surface, in_series,
 };
+pub use listen::Answer;
 pub use motion::{Felt, Pose, Push, WallMotion};
 pub use rest::Fading;
 pub use scaling::Scaling;

@@ -71,8 +71,10 @@ pub(super) trait Waiting<R: Real> {
         0.0
     }
 
-    /// Hears of every look.
-    fn hear(&mut self, _look: &Look) {}
+    /// Hears of every look, and may end the wait.
+    fn hear(&mut self, _look: &Look) -> Result<(), Self::Error> {
+        Ok(())
+    }
 
     /// Fails where it is in vain to wait on for a bed that is not at rest.
     fn worth_waiting(&self, _look: &Look) -> Result<(), Self::Error> {
@@ -100,7 +102,7 @@ pub(super) fn until_rest<R: Real, W: Waiting<R>>(
         let look = look_at(waiting, since)?;
         let rests = look.unbalance <= criterion.unbalance && look.missed <= criterion.missed;
         calm = if rests { calm + 1 } else { 0 };
-        waiting.hear(&look);
+        waiting.hear(&look)?;
         if calm >= criterion.looks || rests && look.time == 0.0 {
             return Ok(look);
         }
@@ -132,6 +134,8 @@ mod tests {
         bed: Bed<f64>,
         steps: u64,
         looks: usize,
+        /// Looks after which nobody waits any more.
+        patience: usize,
     }
 
     impl Fall {
@@ -153,7 +157,7 @@ mod tests {
             bed.add_sphere(&Sphere { centre: [0.0, 0.0, height], radius: RADIUS, density, surface: 0 });
             bed.set_gravity(Gravity::Constant([0.0, 0.0, -9.81]));
             bed.set_time_step(1e-5);
-            Fall { bed, steps: 0, looks: 0 }
+            Fall { bed, steps: 0, looks: 0, patience: usize::MAX }
         }
     }
 
@@ -169,8 +173,9 @@ mod tests {
             self.bed.run(steps)
         }
 
-        fn hear(&mut self, _: &Look) {
+        fn hear(&mut self, _: &Look) -> Result<(), &'static str> {
             self.looks += 1;
+            if self.looks < self.patience { Ok(()) } else { Err("stopped") }
         }
 
         fn restless(&self, _: &Look) -> &'static str {
@@ -213,6 +218,9 @@ mod tests {
         let mut falling = Fall::new(-1e4);
         let soon = Criterion { longest: 0.0105, ..CRITERION };
         assert_eq!(until_rest(&mut falling, &soon, 0.0).unwrap_err(), "restless");
+        let mut watched = Fall { patience: 2, ..Fall::new(-1.0) };
+        assert_eq!(until_rest(&mut watched, &soon, 0.0).unwrap_err(), "stopped");
+        assert_eq!(watched.looks, 2);
         assert_eq!(falling.steps, 1100);
     }
 }

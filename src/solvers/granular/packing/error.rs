@@ -52,6 +52,8 @@ pub enum PackingError {
         stage: StageKind,
         failure: Failure,
     },
+    /// Who listens has ended it.
+    Stopped,
 }
 
 impl fmt::Display for PackingError {
@@ -94,6 +96,7 @@ impl fmt::Display for PackingError {
                  the packing more, or ask for less"
             ),
             PackingError::Failure { stage, failure } => write!(f, "{stage}: {failure}"),
+            PackingError::Stopped => f.write_str("packing was stopped"),
         }
     }
 }

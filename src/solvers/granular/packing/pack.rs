@@ -2,16 +2,21 @@
 
 use super::super::grains::{Sample, grains};
 use super::super::lanes::Real;
+use super::super::listen::Answer;
 use super::error::PackingError;
 use super::packed::Packed;
 use super::press::Press;
 use super::progress::Progress;
 use super::recipe::{GrainLayer, Recipe};
+use std::ops::ControlFlow;
 
-/// Builds the bed. `tell` hears how far it is.
-pub fn pack<R: Real>(recipe: &Recipe, tell: impl FnMut(&Progress)) -> Result<Packed<R>, PackingError> {
+/// Builds the bed. `tell` hears how far it is, and may end it.
+pub fn pack<R: Real, A: Answer>(
+    recipe: &Recipe,
+    mut tell: impl FnMut(&Progress) -> A,
+) -> Result<Packed<R>, PackingError> {
     recipe.check()?;
-    let mut press = Press::<R, _>::new(recipe, tell);
+    let mut press = Press::<R, _>::new(recipe, |progress: &Progress| tell(progress).flow());
     let mut packed = Contents::default();
     let mut top = 0.0;
     for (number, layer) in recipe.layers.iter().enumerate() {
@@ -39,7 +44,7 @@ struct Contents {
 
 /// Packs a layer lift by lift up to a level. Each has what the layer is thought to hold up to its top and lacks, by a guess that those
 /// before it have corrected.
-fn fill<R: Real, T: FnMut(&Progress)>(
+fn fill<R: Real, T: FnMut(&Progress) -> ControlFlow<()>>(
     press: &mut Press<'_, R, T>,
     recipe: &Recipe,
     number: usize,

@@ -4,6 +4,7 @@ use super::super::bed::Bed;
 use super::super::failure::Failure;
 use super::super::grains::{Grain, Random};
 use super::super::lanes::Real;
+use super::super::listen::unless_stopped;
 use super::super::motion::{Pose, WallMotion};
 use super::super::rest::{Criterion, Look, Waiting, until_rest};
 use super::super::shape::Shape;
@@ -15,6 +16,7 @@ use super::place::{Room, put, set_loose};
 use super::progress::Progress;
 use super::recipe::{Recipe, Restored};
 use nalgebra::Vector3;
+use std::ops::ControlFlow;
 
 /// Steps between looks at forces and at the time step.
 const LOOK: u64 = 200;
@@ -62,7 +64,7 @@ struct Goal {
     unbalance: f64,
 }
 
-impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
+impl<'a, R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Press<'a, R, T> {
     pub fn new(recipe: &'a Recipe, tell: T) -> Self {
         let mut bed = recipe.ground();
         let normal = Vector3::new(0.0, 0.0, -1.0);
@@ -244,10 +246,10 @@ impl<'a, R: Real, T: FnMut(&Progress)> Press<'a, R, T> {
         Ok(())
     }
 
-    fn say(&mut self, stage: &StageKind, share: f64) {
+    fn say(&mut self, stage: &StageKind, share: f64) -> ControlFlow<()> {
         let share = (self.stages.len() as f64 + share) / self.count as f64;
         let progress = Progress { stage: stage.to_string(), share, bodies: self.bed.len(), steps: self.bed.steps() };
-        (self.tell)(&progress);
+        (self.tell)(&progress)
     }
 }
 
@@ -262,7 +264,7 @@ struct Pressing<'p, 'a, R: Real, T> {
     bears: bool,
 }
 
-impl<R: Real, T: FnMut(&Progress)> Waiting<R> for Pressing<'_, '_, R, T> {
+impl<R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Waiting<R> for Pressing<'_, '_, R, T> {
     type Error = PackingError;
 
     fn bed(&mut self) -> &mut Bed<R> {
@@ -283,8 +285,8 @@ impl<R: Real, T: FnMut(&Progress)> Waiting<R> for Pressing<'_, '_, R, T> {
         self.goal.pressure.map_or(0.0, |target| (self.press.pressure() / target - 1.0).abs())
     }
 
-    fn hear(&mut self, look: &Look) {
-        self.press.say(self.stage, (look.time / self.longest).min(1.0));
+    fn hear(&mut self, look: &Look) -> Result<(), PackingError> {
+        unless_stopped(self.press.say(self.stage, (look.time / self.longest).min(1.0)), PackingError::Stopped)
     }
 
     fn restless(&self, look: &Look) -> PackingError {

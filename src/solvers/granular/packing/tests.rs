@@ -138,7 +138,7 @@ fn lifts_are_as_thick_as_the_largest_grain() {
 #[test]
 fn a_bed_that_moves_on_is_refused() {
     let short = Rest { longest: 0.02, ..Rest::default() };
-    let outcome = |recipe: &Recipe| pack::<f32>(recipe, |_| ()).err().unwrap();
+    let outcome = |recipe: &Recipe| pack::<f32, _>(recipe, |_| ()).err().unwrap();
     // the plate comes down, and there is no time to press
     let error = outcome(&Recipe { rest: short, ..small() });
     assert!(matches!(&error, PackingError::Pressure { reached, target, .. } if reached < target), "{error}");

@@ -12,6 +12,7 @@ use super::super::body::BodyId;
 use super::super::failure::Failure;
 use super::super::grains::Random;
 use super::super::lanes::Real;
+use super::super::listen::{Answer, unless_stopped};
 use super::super::rest::{Criterion, Fading, Look, Waiting, until_rest};
 use super::describe::StageKind;
 use super::error::PackingError;
@@ -20,6 +21,7 @@ use super::packed::Packed;
 use super::progress::Progress;
 use super::recipe::Recipe;
 use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
 
 /// The cell of each bay.
 pub struct Order(pub(super) Vec<usize>);
@@ -87,16 +89,17 @@ impl Order {
     }
 }
 
-/// Lays packed cells of one recipe (but for its seed) side by side, from x = 0 on. `tell` hears how far it is.
+/// Lays packed cells of one recipe (but for its seed) side by side, from x = 0 on. `tell` hears how far it is, and may end it.
 ///
 /// # Panics
 /// If `order` is empty or names a cell that is not there.
-pub fn lay<R: Real>(
+pub fn lay<R: Real, A: Answer>(
     cells: &[Packed<R>],
     order: &Order,
     recipe: &Recipe,
-    mut tell: impl FnMut(&Progress),
+    mut tell: impl FnMut(&Progress) -> A,
 ) -> Result<TrackBed<R>, PackingError> {
+    let mut tell = |progress: &Progress| tell(progress).flow();
     let mut beds: Vec<Bed<R>> = cells.iter().map(|cell| cell.bed.clone()).collect();
     let bays = with_ends(&order.0);
     let all = Bed::side_by_side(&mut beds, &bays, -1, |_, _| true).map_err(failed)?;
@@ -231,7 +234,7 @@ fn settle<R: Real>(
     bed: &mut Bed<R>,
     recipe: &Recipe,
     unlike: bool,
-    tell: &mut impl FnMut(&Progress),
+    tell: &mut impl FnMut(&Progress) -> ControlFlow<()>,
 ) -> Result<f64, PackingError> {
     // where unlike cells meet, grains find their places for a second and more: as calm as a lift is calm enough there
     let unbalance = if unlike { recipe.rest.lift } else { recipe.rest.bed };
@@ -262,7 +265,7 @@ struct Settling<'s, R: Real, T> {
     tell: &'s mut T,
 }
 
-impl<R: Real, T: FnMut(&Progress)> Waiting<R> for Settling<'_, R, T> {
+impl<R: Real, T: FnMut(&Progress) -> ControlFlow<()>> Waiting<R> for Settling<'_, R, T> {
     type Error = PackingError;
 
     fn bed(&mut self) -> &mut Bed<R> {
@@ -273,10 +276,13 @@ impl<R: Real, T: FnMut(&Progress)> Waiting<R> for Settling<'_, R, T> {
         self.pace.run(self.bed, steps)
     }
 
-    fn hear(&mut self, look: &Look) {
+    fn hear(&mut self, look: &Look) -> Result<(), PackingError> {
         let share = self.fading.share(look.unbalance / self.limit);
         let (bodies, steps) = (self.bed.len(), self.bed.steps());
-        (self.tell)(&Progress { stage: StageKind::SideBySide.to_string(), share, bodies, steps });
+        unless_stopped(
+            (self.tell)(&Progress { stage: StageKind::SideBySide.to_string(), share, bodies, steps }),
+            PackingError::Stopped,
+        )
     }
 
     fn restless(&self, look: &Look) -> PackingError {

@@ -9,6 +9,7 @@ use super::super::body::BodyId;
 use super::super::grains::{Random, grains};
 use super::super::lanes::Real;
 use super::super::law::{ContactLaw, Dashpot, Linear};
+use super::super::listen::Answer;
 use super::super::packing::{Room, put, set_loose};
 use super::super::walls::WallId;
 use super::calm::{AT_REST, POURED};
@@ -29,11 +30,11 @@ const FALL: f64 = 1.0;
 const STREAM: u64 = 1 << 52;
 
 /// Fills the space between and beside sleepers that stand on a bed. `tell` hears the share that is done, an estimate.
-pub fn fill<R: Real>(
+pub fn fill<R: Real, A: Answer>(
     bed: &mut Bed<R>,
     (sleepers, walls): (&[Sleeper], &[WallId]),
     filling: &Filling,
-    mut tell: impl FnMut(f64),
+    mut tell: impl FnMut(f64) -> A,
 ) -> Result<(), RigError> {
     let laws = bed.laws().clone();
     bed.change_laws(damp);
@@ -48,13 +49,13 @@ pub fn fill<R: Real>(
             break;
         }
         pour_in(bed, &pocket, filling, (SOLID * empty, pour))?;
-        until_rest(bed, walls, (Resting::Crib, &POURED), |of_it| tell(share(pour, of_it)))?;
+        until_rest(bed, walls, (Resting::Crib, &POURED), |of_it| tell(share(pour, of_it)).flow())?;
     }
     let level = Pocket::around(bed, sleepers, walls, filling).underside + filling.crib.height;
     let higher = |body: u32| body >= first && bed.body_state(BodyId(body)).place[2] > level;
     let higher: Vec<bool> = (0..bed.len() as u32).map(higher).collect();
     bed.remove(|body| higher[body.0 as usize]).map_err(in_cycle(0))?;
-    until_rest(bed, walls, (Resting::Crib, &AT_REST), |of_it| tell(share(POURS, of_it)))?;
+    until_rest(bed, walls, (Resting::Crib, &AT_REST), |of_it| tell(share(POURS, of_it)).flow())?;
     bed.set_laws(laws);
     tell(1.0);
     Ok(())

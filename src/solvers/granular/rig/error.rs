@@ -22,6 +22,8 @@ pub enum RigError {
     NoRoom { layer: String },
     /// A grading that gives no grains for the cribs.
     Grading(GradingError),
+    /// Who listens has ended it.
+    Stopped,
     /// The motion of grains has run away.
     Failure { cycle: u64, failure: Failure },
 }
@@ -70,6 +72,7 @@ impl fmt::Display for RigError {
                  grading above"
             ),
             RigError::Grading(cause) => write!(f, "grains for the cribs: {cause}"),
+            RigError::Stopped => f.write_str("the test was stopped"),
             RigError::Failure { cycle: 0, failure } => write!(f, "as sleepers are set down: {failure}"),
             RigError::Failure { cycle, failure } => write!(f, "in cycle {cycle}: {failure}"),
         }

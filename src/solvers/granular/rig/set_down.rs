@@ -3,6 +3,7 @@
 use super::super::bed::Bed;
 use super::super::failure::Failure;
 use super::super::lanes::Real;
+use super::super::listen::{Answer, unless_stopped};
 use super::super::motion::{Pose, Push, WallMotion};
 use super::super::rest::{self, Criterion, Fading, Look, Waiting};
 use super::super::shape::Shape;
@@ -12,17 +13,18 @@ use super::calm::{AT_REST, DAMPING, calmed, restless};
 use super::description::Sleeper;
 use super::error::{Resting, RigError, in_cycle};
 use nalgebra::Vector3;
+use std::ops::ControlFlow;
 
 /// Sets sleepers down on a bed, each where it touches its first grain, and lets them come to rest under their own weight: what acts on
 /// them is not asked for. Gives their walls, in the order of the sleepers.
-pub fn stand<R: Real>(
+pub fn stand<R: Real, A: Answer>(
     bed: &mut Bed<R>,
     sleepers: &[Sleeper],
     gravity: f64,
-    tell: impl FnMut(f64),
+    mut tell: impl FnMut(f64) -> A,
 ) -> Result<Vec<WallId>, RigError> {
     let walls = place(bed, sleepers, gravity);
-    until_rest(bed, &walls, (Resting::Sleepers, &AT_REST), tell)?;
+    until_rest(bed, &walls, (Resting::Sleepers, &AT_REST), |share| tell(share).flow())?;
     Ok(walls)
 }
 
@@ -66,7 +68,7 @@ pub(super) fn until_rest<R: Real>(
     bed: &mut Bed<R>,
     walls: &[WallId],
     (stage, criterion): (Resting, &Criterion),
-    tell: impl FnMut(f64),
+    tell: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<(), RigError> {
     calmed(bed, |bed, stride| {
         let start = bed.time();
@@ -86,7 +88,7 @@ struct Standing<'s, R: Real, T> {
     tell: T,
 }
 
-impl<R: Real, T: FnMut(f64)> Waiting<R> for Standing<'_, R, T> {
+impl<R: Real, T: FnMut(f64) -> ControlFlow<()>> Waiting<R> for Standing<'_, R, T> {
     type Error = RigError;
 
     fn bed(&mut self) -> &mut Bed<R> {
@@ -101,9 +103,9 @@ impl<R: Real, T: FnMut(f64)> Waiting<R> for Standing<'_, R, T> {
         uncarried(self.bed, self.walls)
     }
 
-    fn hear(&mut self, look: &Look) {
+    fn hear(&mut self, look: &Look) -> Result<(), RigError> {
         let times = (look.unbalance / self.criterion.unbalance).max(look.missed / self.criterion.missed);
-        (self.tell)(self.fading.share(times));
+        unless_stopped((self.tell)(self.fading.share(times)), RigError::Stopped)
     }
 
     fn restless(&self, look: &Look) -> RigError {

@@ -7,6 +7,7 @@
 use super::super::bed::Bed;
 use super::super::failure::Failure;
 use super::super::lanes::Real;
+use super::super::listen::unless_stopped;
 use super::super::motion::WallMotion;
 use super::super::rest::{Criterion, Look, Waiting, until_rest};
 use super::super::stride::Stride;
@@ -15,6 +16,7 @@ use super::calm::{AT_REST, calmed, restless};
 use super::error::{Resting, RigError, in_cycle};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
 
 /// Largest speed of the sides, m/s; and the gain of their servos, the usual one: with less they lag behind a specimen that dilates.
 const SPEED: f64 = 0.1;
@@ -102,7 +104,7 @@ impl Specimen {
         plate: WallId,
         face: f64,
         push: impl FnMut(&mut Bed<R>, f64),
-        tell: impl FnMut(f64),
+        tell: impl FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Size, RigError> {
         let level = |bed: &Bed<R>| bed.wall(plate).pose(bed.domain()).position.z - face;
         calmed(bed, |bed, stride| {
@@ -160,7 +162,7 @@ struct Consolidation<'s, R: Real, L, P, T> {
     tell: T,
 }
 
-impl<R: Real, L: Fn(&Bed<R>) -> f64, P: FnMut(&mut Bed<R>, f64), T: FnMut(f64)> Waiting<R>
+impl<R: Real, L: Fn(&Bed<R>) -> f64, P: FnMut(&mut Bed<R>, f64), T: FnMut(f64) -> ControlFlow<()>> Waiting<R>
     for Consolidation<'_, R, L, P, T>
 {
     type Error = RigError;
@@ -183,8 +185,8 @@ impl<R: Real, L: Fn(&Bed<R>) -> f64, P: FnMut(&mut Bed<R>, f64), T: FnMut(f64)> 
         sides.fold((axial / pressure - 1.0).abs(), f64::max)
     }
 
-    fn hear(&mut self, look: &Look) {
-        (self.tell)((look.time / CONSOLIDATED.longest).min(1.0));
+    fn hear(&mut self, look: &Look) -> Result<(), RigError> {
+        unless_stopped((self.tell)((look.time / CONSOLIDATED.longest).min(1.0)), RigError::Stopped)
     }
 
     fn restless(&self, look: &Look) -> RigError {

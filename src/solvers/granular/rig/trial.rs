@@ -2,6 +2,7 @@
 
 use super::super::bed::Bed;
 use super::super::lanes::Real;
+use super::super::listen::Answer;
 use super::super::motion::{Push, WallMotion};
 use super::super::stride::{Sharing, Stride};
 use super::super::walls::WallId;
@@ -16,6 +17,7 @@ use super::set_down::{motion, place, until_rest};
 use super::specimen::{Size, SpecimenState};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
 
 /// Pieces of a cycle: forces and depths are looked at after each, sensors are read after every second one. The deepest place of a
 /// sine is missed by less than a thousandth.
@@ -67,7 +69,8 @@ pub(super) struct Current {
 
 impl<'a, R: Real> Trial<'a, R> {
     /// Sets the sleepers down, fills the cribs and lets all come to rest. `tell` hears the share of the longest time that this may take.
-    pub fn new(mut bed: Bed<R>, rig: &'a Rig, mut tell: impl FnMut(f64)) -> Result<Self, RigError> {
+    pub fn new<A: Answer>(mut bed: Bed<R>, rig: &'a Rig, mut tell: impl FnMut(f64) -> A) -> Result<Self, RigError> {
+        let mut tell = |share: f64| tell(share).flow();
         let before = bed.steps();
         let walls = place(&mut bed, &rig.sleepers, rig.gravity);
         until_rest(&mut bed, &walls, (Resting::Sleepers, &AT_REST), &mut tell)?;
@@ -300,7 +303,7 @@ fn consolidated<R: Real>(
     bed: &mut Bed<R>,
     rig: &Rig,
     walls: &[WallId],
-    tell: impl FnMut(f64),
+    tell: impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Option<Size>, RigError> {
     let (Some(specimen), [plate], [sleeper]) = (rig.specimen, walls, &rig.sleepers[..]) else { return Ok(None) };
     let push = |bed: &mut Bed<R>, force: f64| {

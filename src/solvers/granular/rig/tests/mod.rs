@@ -46,7 +46,7 @@ fn recipe(plan: [f64; 2], thickness: f64, sizes: [f64; 2], friction: f64, boxed:
 /// A bed of 0.6 m x 0.6 m x 0.2 m of coarse spheres, packed once.
 fn bed() -> Bed<f32> {
     static BED: OnceLock<Bed<f32>> = OnceLock::new();
-    let packed = || pack::<f32>(&recipe([0.6; 2], 0.2, [0.05, 0.07], 0.7, false), |_| {}).unwrap().bed;
+    let packed = || pack::<f32, _>(&recipe([0.6; 2], 0.2, [0.05, 0.07], 0.7, false), |_| {}).unwrap().bed;
     BED.get_or_init(packed).clone()
 }
 
@@ -154,7 +154,7 @@ fn what_no_bed_carries_is_told() {
 /// A box of 0.3 m x 0.3 m x 0.4 m of spheres with smooth walls, and the rig that shortens it by a tenth under 100 kPa.
 fn specimen(friction: f64) -> (Bed<f32>, Rig) {
     let recipe = recipe([0.3; 2], 0.4, [0.04, 0.05], friction, true);
-    let packed = pack::<f32>(&recipe, |_| {}).unwrap();
+    let packed = pack::<f32, _>(&recipe, |_| {}).unwrap();
     let plate = Sleeper { place: [0.15, 0.15], size: [0.3, 0.3, 0.02], mass: 14.0, load: Load::Strain(0.1) };
     let rig = Rig {
         sleepers: vec![plate],
