@@ -37,7 +37,8 @@ fn the_extension_can_be_packed() {
     copy(Path::new("editors/vscode"), folder.path());
     run(folder.path(), "npm", &["install", "--no-audit", "--no-fund"]).unwrap();
     run(folder.path(), "node", &["--check", "extension.js"]).unwrap();
-    run(folder.path(), "npx", &["--no-install", "vsce", "package", "--allow-missing-repository", "--skip-license"]).unwrap();
+    run(folder.path(), "npx", &["--no-install", "vsce", "package", "--allow-missing-repository", "--skip-license"])
+        .unwrap();
     let packed = fs::metadata(folder.path().join("trackbed-0.1.0.vsix")).unwrap();
     assert!(packed.len() > 100_000, "the language client is in it");
 }

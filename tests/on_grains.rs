@@ -124,7 +124,10 @@ fn a_track_on_grains_settles_and_a_run_that_was_stopped_ends_with_the_same_bits(
 
     // without a train it lies still
     let measured = Measured { steps: 200, energy: false, idle: true };
-    let idle = time_steps(&graph, &Beds::kept_in(folder.path()), measured, &mut |_, _| ControlFlow::Continue(())).unwrap().idle_m.unwrap();
+    let idle = time_steps(&graph, &Beds::kept_in(folder.path()), measured, &mut |_, _| ControlFlow::Continue(()))
+        .unwrap()
+        .idle_m
+        .unwrap();
     let an_axle = first[on_grains[1]] / 4.0;
     assert!(idle < an_axle, "{idle} m in a second, {an_axle} m an axle");
 

@@ -232,7 +232,7 @@ fn rows(columns: Columns, bytes: Vec<u8>, path: &Path) -> Result<Vec<Row>, Resul
     }
     for (number, (_, values)) in all.iter().enumerate() {
         if let Some((column, _)) = columns.1.iter().zip(values).find(|(_, value)| !value.is_finite()) {
-            return Err(ResultsError::read_not_finite(path, column, number + 1));
+            return Err(ResultsError::read_not_finite(path, column.0, number + 1));
         }
     }
     Ok(all)
