@@ -37,7 +37,7 @@ fn scenes(comparison: &Comparison) -> String {
     if edits.is_empty() {
         return "\nthe scenes are the same\n".to_owned();
     }
-    let shown = |text: &Option<String>| text.as_deref().map_or("-".to_owned(), |text| cut(text));
+    let shown = |text: &Option<String>| text.as_deref().map_or("-".to_owned(), cut);
     let row = |edit: &crate::compare::Edit| {
         std::iter::once(edit.path.clone()).chain(edit.texts.iter().map(shown)).collect::<Vec<_>>()
     };
