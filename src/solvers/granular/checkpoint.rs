@@ -203,6 +203,24 @@ impl<R: Real> Checkpoint<R> {
         if !self.bonds.iter().all(bound) {
             return Err(Inconsistent("a bond belongs to nothing"));
         }
-        Ok(())
+        self.is_finite().then_some(()).ok_or(Inconsistent("it holds a number that is none"))
+    }
+
+    /// Whether what no other check looks at is in numbers: damaged bytes hold any.
+    fn is_finite(&self) -> bool {
+        let real = |x: &R| x.to_f64().is_finite();
+        let share = |x: &f64| x.is_finite() && *x >= 0.0;
+        let of_walls = |wall: &Wall| wall.velocity.iter().chain(wall.spin.iter()).all(|x| x.is_finite());
+        self.pebbles.iter().all(|grain| grain.velocity.iter().chain(&grain.spin).all(real))
+            && self.bodies.iter().all(|body| share(&body.inverse_mass) && share(&body.inverse_inertia))
+            && self.clumps.iter().all(|clump| clump.turning.iter().all(|x| x.is_finite()))
+            && self.arms.iter().flatten().all(|x| x.is_finite())
+            && self.shear.iter().all(|carried| carried.shear.iter().chain(&carried.damping).all(real))
+            && self.kept.iter().all(|kept| kept.shear.iter().chain(&kept.damping).all(real))
+            && self.kept.iter().flat_map(|kept| &kept.normal).all(|x| x.is_finite())
+            && self.bonds.iter().all(|bond| bond.shear.iter().chain([&bond.start]).all(real))
+            && self.walls.iter().all(of_walls)
+            && self.time.is_finite()
+            && share(&self.skin)
     }
 }
