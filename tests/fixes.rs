@@ -7,7 +7,9 @@ use trackbed::diag::{Code, FileId};
 use trackbed::{Compiled, compile};
 
 mod common {
+    #[allow(dead_code, reason = "other tests ask more of it")]
     pub mod fixes;
+    #[allow(dead_code, reason = "other tests ask more of it")]
     pub mod program;
 }
 use common::fixes::useless;

@@ -5,6 +5,7 @@ mod dice;
 #[path = "../examples/soak/draw/mod.rs"]
 mod draw;
 #[path = "../examples/soak/trial.rs"]
+#[allow(dead_code, reason = "the command tells more than the tests ask")]
 mod trial;
 
 use draw::{Aim, Known};

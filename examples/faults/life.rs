@@ -60,7 +60,7 @@ impl<'a> Subject<'a> {
     pub fn kill(&self, after: f64) -> Result<bool, String> {
         let mut child = self.start()?;
         sleep(Duration::from_secs_f64(after));
-        if self.work.on_slurm && (after * 1e3) as u64 % 2 == 0 {
+        if self.work.on_slurm && ((after * 1e3) as u64).is_multiple_of(2) {
             self.kill_worker();
         }
         let ended = child.try_wait().map_err(|error| error.to_string())?.is_some();

@@ -11,6 +11,7 @@ mod coarse_cells;
 mod life;
 mod scenes;
 #[path = "../../tests/common/shared_packings.rs"]
+#[allow(dead_code, reason = "tests compare directories in their own way")]
 mod shared_packings;
 
 use life::{Subject, same_files};

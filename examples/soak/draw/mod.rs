@@ -176,7 +176,7 @@ impl Drawing<'_> {
         let wanted = want(self.aim, &format!("{}.{}", kind.name, field.name)).and_then(|want| want.chance);
         let share = match (chosen, wanted, field.need) {
             (Some(false), ..) => 0.0,
-            (_, Some(share), _) if share == 0.0 => 0.0,
+            (_, Some(0.0), _) => 0.0,
             _ if beside => 0.0,
             (Some(true), ..) | (_, _, Need::Required) => 1.0,
             (_, Some(share), _) => share,
