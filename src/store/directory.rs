@@ -36,6 +36,8 @@ pub struct Directory<D: Disk = FileSystem> {
     finished: Option<Finished>,
     /// Files of the next results, staged or kept from the last.
     files: Vec<FileRecord>,
+    /// The version that made results which are amended.
+    version: Option<String>,
     _lock: Lock,
 }
 
@@ -60,9 +62,9 @@ impl Directory {
             return Err(unfinished(&layout)?);
         }
         let finished = Finished::read_from(path)?.ok_or_else(nothing)?;
-        let (work, files) = (finished.manifest().work.clone(), finished.manifest().files.clone());
-        let unfinished = Unfinished { layout, work };
-        Ok(Directory { disk: FileSystem, unfinished, finished: Some(finished), files, _lock: lock })
+        let Manifest { version, work, files, .. } = finished.manifest().clone();
+        let (unfinished, version) = (Unfinished { layout, work }, Some(version));
+        Ok(Directory { disk: FileSystem, unfinished, finished: Some(finished), files, version, _lock: lock })
     }
 }
 
@@ -85,7 +87,7 @@ impl<D: Disk> Directory<D> {
             Mode::Force => recovery::discard(&disk, &layout).map(|()| None)?,
         };
         let unfinished = Unfinished { layout, work };
-        let directory = Directory { disk, unfinished, finished, files: Vec::new(), _lock: lock };
+        let directory = Directory { disk, unfinished, finished, files: Vec::new(), version: None, _lock: lock };
         if directory.finished.is_none() {
             let path = directory.layout().work();
             directory.replace(&path, &WORK.close_json(&path, directory.unfinished.work())?)?;
@@ -159,7 +161,7 @@ impl<D: Disk> Directory<D> {
     /// Puts everything that was staged in place of the old results, at once, and ends the unfinished work.
     pub fn commit(self) -> Result<Finished, StoreError> {
         let _gate = Lock::wait(&self.layout().gate())?;
-        let manifest = Manifest::new(self.unfinished.work.clone(), self.files.clone());
+        let manifest = Manifest::new(self.version.as_deref(), self.unfinished.work.clone(), self.files.clone());
         self.replace(&self.layout().intent(), &manifest.bytes())?;
         recovery::finish(&self.disk, self.layout(), &manifest)?;
         Ok(Finished::new(self.layout().root.clone(), manifest))

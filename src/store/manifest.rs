@@ -12,7 +12,7 @@ use std::path::Path;
 pub struct Manifest {
     /// Counts the formats of this file.
     format: u32,
-    /// The version of the program that wrote it.
+    /// The version of the program that made the results.
     pub version: String,
     pub work: Work,
     /// The files, sorted by name.
@@ -33,10 +33,11 @@ pub struct FileRecord {
 const FORMAT: u32 = 1;
 
 impl Manifest {
-    pub(super) fn new(work: Work, mut files: Vec<FileRecord>) -> Manifest {
+    /// Of results that a version of the program has made; that is this one where none is named.
+    pub(super) fn new(made_by: Option<&str>, work: Work, mut files: Vec<FileRecord>) -> Manifest {
+        let version = made_by.unwrap_or(version()).to_owned();
         files.sort_by(|a, b| a.name.cmp(&b.name));
-        let mut manifest =
-            Manifest { format: FORMAT, version: version().to_owned(), work, files, sha256: String::new() };
+        let mut manifest = Manifest { format: FORMAT, version, work, files, sha256: String::new() };
         manifest.sha256 = manifest.own_hash();
         manifest
     }

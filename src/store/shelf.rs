@@ -81,3 +81,45 @@ impl Shelf {
         Seal { kind: self.kind, key }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::sha256;
+
+    /// What can happen to a file, and whether it is told as damage: a value of another version is none.
+    fn changed(whole: &[u8]) -> Vec<(&'static str, Vec<u8>, bool)> {
+        let text = String::from_utf8(whole.to_vec()).unwrap();
+        let (_, sealed) = text.split_once('\n').unwrap();
+        let older = sealed.replacen(env!("CARGO_PKG_VERSION"), "0.0.9", 1);
+        let mut flipped = whole.to_vec();
+        flipped[whole.len() / 2] ^= 1;
+        vec![
+            ("a bit is flipped", flipped, true),
+            ("its end is missing", whole[..whole.len() / 2].to_vec(), true),
+            ("it is empty", Vec::new(), true),
+            ("it is of a later format", text.replacen("trackbed 1 ", "trackbed 2 ", 1).into_bytes(), true),
+            (
+                "it is of an older version",
+                format!("trackbed 1 {}\n{older}", sha256(older.as_bytes())).into_bytes(),
+                false,
+            ),
+        ]
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_never_taken_for_a_value() {
+        let folder = tempfile::tempdir().unwrap();
+        let shelf = Shelf::new(folder.path(), "bed");
+        shelf.put("a", &[0.1, 0.2, 0.3]).unwrap();
+        let whole = fs::read(shelf.path("a")).unwrap();
+        for (how, bytes, is_damage) in changed(&whole) {
+            fs::write(shelf.path("a"), bytes).unwrap();
+            let found = shelf.get::<[f64; 3]>("a");
+            assert_eq!(found.is_err(), is_damage, "{how}: {found:?}");
+            assert!(found.map_or_else(|error| error.to_string().contains("a.bed"), |value| value.is_none()), "{how}");
+            shelf.put("a", &[0.1, 0.2, 0.3]).unwrap();
+            assert_eq!(shelf.get::<[f64; 3]>("a").unwrap(), Some([0.1, 0.2, 0.3]), "{how}");
+        }
+    }
+}

@@ -62,43 +62,6 @@ fn a_damaged_state_is_named_and_not_gone_on_from() {
     same_results(&place.path("whole"), &place.path("damaged"));
 }
 
-/// Coarse spheres under one sleeper: a bed that is packed in a moment.
-const BED: &str = "use std
-grading coarse { passing = [45 mm: 0 %, 60 mm: 100 %] }
-granular stone {
-  grading = coarse, density = 2700 kg/m^3, contact_stiffness = 13 MN/m per contact, friction = 0.7
-  packing = { lifts = 1, pressure = 200 kPa }
-}
-trackform bed { sleeper = sleepers.B70, spacing = 0.6 m, layers = [stone: 150 mm] }
-track box { sections = [bed: 1 sleeper] }
-load actuator { on = sleepers, at = 1 sleeper, force = cyclic(5 .. 60 kN, 5 Hz) per sleeper }
-solve { substructure = full }
-";
-
-#[test]
-fn a_bed_that_cannot_be_read_is_packed_anew() {
-    let place = Place::new(BED);
-    let [scene, beds] = ["scene.track", "beds"].map(|name| place.path(name).display().to_string());
-    let packed = || trackbed(&["pack", &scene, "--cache", &beds, "--format", "json"]);
-    let first = packed();
-    assert!(first.status.success(), "{}", in_one_line(&first));
-    let kept = fs::read_dir(place.path("beds")).unwrap().map(|entry| entry.unwrap().path());
-    let file = kept.into_iter().find(|path| path.extension().is_some_and(|end| end == "bed")).unwrap();
-    let whole = fs::read(&file).unwrap();
-    for (how, bytes) in damages(&whole) {
-        fs::write(&file, bytes).unwrap();
-        let again = packed();
-        assert!(again.status.success() && again.stdout == first.stdout, "{how}: {}", in_one_line(&again));
-        assert!(in_one_line(&again).contains("the bed was packed anew"), "{how}: {}", in_one_line(&again));
-        assert!(fs::read(&file).unwrap() == whole, "{how}: the mended bed is kept");
-    }
-    // a bed of another version is none: nothing is said of it
-    fs::write(&file, of_version(&whole, "0.0.9")).unwrap();
-    let again = packed();
-    assert!(again.stdout == first.stdout && again.stderr.is_empty(), "{}", in_one_line(&again));
-    assert!(fs::read(&file).unwrap() == whole);
-}
-
 /// Results that another version has finished are shown, and not taken for those of this one without a word.
 #[test]
 fn results_of_an_older_version_are_read() {

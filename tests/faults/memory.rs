@@ -1,8 +1,8 @@
 //! A run that takes more memory than it may stops with what it has.
 
-use super::{Place, in_one_line, on_a_law, refused, same_results};
+use super::{Place, on_a_law, refused, same_results};
 
-/// The plan of this run needs 2 MB, which fit; what it records does not.
+/// What this run records takes more than its scene allows; the check warns of it (L1022), and the machine could hold it.
 #[test]
 fn a_run_that_outgrows_its_memory_stops_and_goes_on() {
     let scene = on_a_law(4000).replace("time_step = 2e-4 s }", "time_step = 2e-4 s, memory = 0.01 GiB }").replace(
@@ -12,7 +12,6 @@ fn a_run_that_outgrows_its_memory_stops_and_goes_on() {
     let place = Place::new(&scene);
     let stopped = place.run("cut", &[]);
     refused(&stopped, &["E0816", "it may take 0.0107 GB; the state is kept in", "`--resume --over-memory`"]);
-    assert!(!in_one_line(&stopped).contains("L1022"), "the plan fits: {}", in_one_line(&stopped));
     place.finish("cut", &["--resume", "--over-memory"]);
     place.finish("whole", &["--over-memory"]);
     same_results(&place.path("whole"), &place.path("cut"));
