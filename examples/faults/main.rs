@@ -4,7 +4,7 @@
 //!     cargo run --release --example faults -- 1000 [SEED] [TIER]
 //!     tests/slurm/cluster.sh cargo run --release --example faults -- 1000
 //!
-//! With a name of a tier only works whose names begin with it are done. The table of `docs/faults.md` is what this prints.
+//! With a name of a tier only works whose names begin with it are done. `docs/faults.md` says what the columns are.
 
 #[path = "../../tests/common/coarse_cells.rs"]
 mod coarse_cells;

@@ -33,7 +33,7 @@ pub struct FileRecord {
 const FORMAT: u32 = 1;
 
 impl Manifest {
-    /// Of results that a version of the program has made; that is this one where none is named.
+    /// The manifest of results that a version of the program has made; that is this one where none is named.
     pub(super) fn new(made_by: Option<&str>, work: Work, mut files: Vec<FileRecord>) -> Manifest {
         let version = made_by.unwrap_or(version()).to_owned();
         files.sort_by(|a, b| a.name.cmp(&b.name));
