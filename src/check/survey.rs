@@ -54,7 +54,7 @@ pub enum Content {
         /// The value of one rail, SI.
         of_rail: f64,
         dimension: Dimension,
-        /// As the language writes it.
+        /// The value in the words of the language.
         text: String,
     },
     /// An object: its name, and what it holds itself.
