@@ -264,7 +264,7 @@ struct Rigged {
 fn rigged(graph: &Graph) -> Rigged {
     let (bed, actuators) = graph.bed_under_actuators().expect("a rig");
     let ready = bed.bed.ready(1).expect("a recipe");
-    let packed = pack::<f32>(&ready.recipe, |_| {}).expect("a bed");
+    let packed = pack::<f32, _>(&ready.recipe, |_| {}).expect("a bed");
     let top = packed.levels.last().copied().unwrap_or_default();
     let trackbed::graph::Schedule::Actuators(tests) = &graph.schedule else { panic!("a rig has tests") };
     Rigged { rig: bed.rig(actuators, &ready.recipe, top, &tests.kept) }
@@ -339,7 +339,7 @@ const CLUMPS: &str = "# periodic x 0.6 m; rigid floor z = 0
 fn beds() -> Target {
     let plate = plan(PLATE);
     let (bed, _) = plate.bed_under_actuators().expect("a rig");
-    let packed = pack::<f32>(&bed.bed.ready(1).expect("a recipe").recipe, |_| {}).expect("a bed");
+    let packed = pack::<f32, _>(&bed.bed.ready(1).expect("a recipe").recipe, |_| {}).expect("a bed");
     let stored = serde_json::to_vec(&packed.store()).expect("a bed as JSON");
     let folder: RefCell<TempDir> = RefCell::new(tempfile::tempdir().expect("a folder"));
     let densities = packed.densities.clone();
