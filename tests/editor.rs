@@ -343,7 +343,7 @@ fn a_scene_has_an_outline_a_layout_colours_and_hints() {
     let colours = editor.ask("textDocument/semanticTokens/full", document.clone());
     let data: Vec<u64> = colours["data"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
     assert_eq!(data.len() % 5, 0);
-    assert!(data.len() / 5 > 80, "{}", data.len() / 5);
+    assert!(data.len() / 5 > 60, "{}", data.len() / 5);
     let options = json!({ "tabSize": 2, "insertSpaces": true });
     let layout = json!({ "textDocument": { "uri": file }, "options": options });
     assert_eq!(editor.ask("textDocument/formatting", layout.clone()), json!([]), "it is laid out");

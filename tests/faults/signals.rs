@@ -58,6 +58,7 @@ fn cells_stop_and_go_on() {
 }
 
 #[test]
+#[ignore = "takes more than a minute"]
 fn grains_that_exchange_with_the_track_stop_and_go_on() {
     stops_is_killed_and_goes_on(&on_grains(
         "solve { substructure = full, window = -1.8 .. 1.2 m, support_from = passage }",
@@ -66,6 +67,7 @@ fn grains_that_exchange_with_the_track_stop_and_go_on() {
 }
 
 #[test]
+#[ignore = "takes more than a minute"]
 fn vehicles_on_grains_stop_and_go_on() {
     stops_is_killed_and_goes_on(&on_grains(
         "solve { substructure = full, window = -1.8 .. 1.2 m, coupling = monolithic }",
