@@ -31,7 +31,7 @@ use std::time::Instant;
 /// Targets that read files.
 const FILES: [&str; 5] = ["stl", "csv", "results", "checkpoint", "bed"];
 /// Runs between two lines of progress.
-const CHUNK: u64 = 50_000;
+const CHUNK: u64 = 5_000;
 /// Memory that one run may ask for beyond what any before it did, MiB: files are shorter than a quarter of one.
 const MORE: f64 = 256.0;
 

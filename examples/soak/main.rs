@@ -4,7 +4,7 @@
 //! ```sh
 //! cargo run --release --example soak -- check 100000
 //! cargo run --release --example soak -- law 2000 --from 100000
-//! cargo run --release --example soak -- grains 200
+//! cargo run --release --example soak -- grains 200 --seconds 3600
 //! cargo run --release --example soak -- show 17
 //! ```
 //!
@@ -21,13 +21,13 @@ mod watchdog;
 
 use draw::{Aim, Known};
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use tally::Tally;
 use trial::Outcome;
 use watchdog::Watchdog;
 
-/// Scenes between two lines of progress.
-const CHUNK: u64 = 1000;
+/// Time between two lines of progress.
+const PAUSE: Duration = Duration::from_secs(20);
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -35,7 +35,7 @@ fn main() {
     let after = |flag: &str| arguments.iter().position(|a| a == flag).and_then(|i| number(arguments.get(i + 1)));
     let Some((what, count)) = arguments.first().zip(number(arguments.get(1))) else {
         return eprintln!(
-            "usage: soak check|law|grains COUNT [--from NUMBER], or soak show|show-law|show-grains NUMBER"
+            "usage: soak check|law|grains COUNT [--from NUMBER] [--seconds MOST], or soak show|show-law|show-grains NUMBER"
         );
     };
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -44,8 +44,8 @@ fn main() {
     let from = after("--from").unwrap_or(0);
     let mut trial: Box<dyn FnMut(u64, &str) -> Outcome> = match what.as_str() {
         "check" => Box::new(trial::checked(root)),
-        "law" => Box::new(trial::run(root, 5.0)),
-        "grains" => Box::new(trial::run(root, 60.0)),
+        "law" => Box::new(trial::run(root, 0.4)),
+        "grains" => Box::new(trial::run(root, 20.0)),
         "show" => return show(root, &draw::scene(&known, trial::aim(count), count)),
         "show-law" => return show(root, &draw::scene(&known, Aim::Law, count)),
         "show-grains" => return show(root, &draw::scene(&known, Aim::Rig, count)),
@@ -60,9 +60,10 @@ fn main() {
     std::panic::set_hook(Box::new(|_| ()));
     let (watchdog, started) = (Watchdog::start(), Instant::now());
     let mut tally = Tally::default();
-    let (mut scenes, mut done) = (0, 0);
+    let most = after("--seconds").map_or(Duration::MAX, Duration::from_secs);
+    let (mut scenes, mut done, mut told) = (0, 0, Duration::ZERO);
     // of runs, `count` are wanted that begin: scenes that the check refuses do not count
-    while done < count {
+    while done < count && started.elapsed() < most {
         let k = from + scenes;
         let text = draw::scene(&known, aim(k), k);
         watchdog.begins(k);
@@ -80,8 +81,9 @@ fn main() {
             }
         }
         tally.add(k, aim(k), &outcome);
-        if scenes % CHUNK == 0 || done == count {
-            let seconds = started.elapsed().as_secs_f64();
+        if started.elapsed() > told + PAUSE || done == count {
+            told = started.elapsed();
+            let seconds = told.as_secs_f64();
             eprintln!(
                 "{done} of {count}, {scenes} scenes, {seconds:.0} s, {:.0} MiB, {} failed",
                 memory::resident(),

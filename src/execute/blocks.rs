@@ -20,7 +20,7 @@ pub(super) fn run(
     from: Option<Checkpoint>,
 ) -> Result<Ending, RunError> {
     let at = |axles: u64| move |cause: NodeError| RunError::node(Clock::Axles(axles), cause);
-    let (done, axles, control, state) = restored(from)?;
+    let (done, axles, control, state) = restored(from, blocks)?;
     let done = done as usize;
     let mut stopped = false;
     let begun = machine.track_on_ground_that(|ground| match &state {
@@ -40,11 +40,16 @@ pub(super) fn run(
 }
 
 /// Blocks done, axles that have passed, what the next block hangs on and the state of the ground: those of a checkpoint, or of the
-/// beginning.
-pub(super) fn restored(from: Option<Checkpoint>) -> Result<(u64, u64, Control, Option<serde_json::Value>), RunError> {
+/// beginning. A checkpoint beyond the end of the schedule is of another one.
+pub(super) fn restored(
+    from: Option<Checkpoint>,
+    plan: &Blocks,
+) -> Result<(u64, u64, Control, Option<serde_json::Value>), RunError> {
     match from.map(|checkpoint| (checkpoint.clock, checkpoint.state)) {
         None => Ok((0, 0, Control::default(), None)),
-        Some((Clock::Axles(axles), ScheduleState::Blocks { blocks, control, ground })) => {
+        Some((Clock::Axles(axles), ScheduleState::Blocks { blocks, control, ground }))
+            if axles <= plan.total && blocks as u64 <= axles =>
+        {
             Ok((blocks as u64, axles, control, Some(ground)))
         }
         Some(_) => Err(RunError::ForeignCheckpoint),

@@ -18,7 +18,7 @@ pub(super) fn run(
     let at = |axles: u64| move |cause: NodeError| RunError::node(Clock::Axles(axles), cause);
     let no_grains = || NodeError::Other { node: "grains".into(), why: "no grains lie under a track".into() };
     let parts = machine.grain_parts().ok_or_else(no_grains).map_err(at(0))?;
-    let (mut done, mut axles, _, state) = restored(from)?;
+    let (mut done, mut axles, _, state) = restored(from, blocks)?;
     let mut ground = GrainGround::new(parts);
     let mut stopped = false;
     let mut tell = |stage: Stage, share: f64| stopped |= tell_stage(listener, stage, share).is_break();

@@ -195,7 +195,12 @@ impl Drawing<'_> {
                 let wanted = want(self.aim, &format!("{}.{field}", kind.name)).and_then(|want| want.chance);
                 wanted != Some(0.0) && !field.contains('.')
             };
-            let ways: Vec<_> = alternative.ways.iter().filter(|way| way.iter().any(|f| usable(f))).collect();
+            let mut ways: Vec<_> = alternative.ways.iter().filter(|way| way.iter().any(|f| usable(f))).collect();
+            // one that is rare is left out as often
+            let rare = |name: &str| want(self.aim, &format!("{}.{name}", kind.name)).and_then(|want| want.chance);
+            let shares: Vec<f64> = ways.iter().map(|way| rare(way[0]).unwrap_or(1.0)).collect();
+            let mut shares = shares.into_iter();
+            ways.retain(|_| self.chance(shares.next().unwrap_or(1.0)));
             let way = match alternative.default {
                 Some((field, _))
                     if kind.field(field).is_some_and(|f| f.need == Need::Alternative) && self.chance(0.4) =>
@@ -244,7 +249,10 @@ impl Drawing<'_> {
             wanted.is_none_or(|share| self.chance(share))
         });
         let Some(field) = fields.get(self.dice.roll(fields.len())) else { return Vec::new() };
-        let inner = object_kind(&field.form).filter(|_| self.chance(0.6));
+        // a part that every object has
+        let always =
+            want(self.aim, &format!("{}.{}", of.name, field.name)).is_some_and(|want| want.chance == Some(1.0));
+        let inner = object_kind(&field.form).filter(|_| always && self.chance(0.6));
         let (name, path, form) = match inner.map(|inner| (inner, self.dice.roll(inner.fields.len()))) {
             Some((inner, at)) => {
                 let part = &inner.fields[at];

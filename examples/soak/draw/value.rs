@@ -83,10 +83,11 @@ impl Drawing<'_> {
         let kind = kind(name)?;
         let library: Vec<&String> =
             self.known.library.iter().filter(|(of, _)| of == name).map(|(_, full)| full).collect();
-        let of_library = (!library.is_empty()).then(|| library[self.dice.roll(library.len())].clone());
+        let share = want(self.aim, &format!("library.{name}")).and_then(|want| want.chance).unwrap_or(0.55);
+        let of_library = (!library.is_empty() && share > 0.0).then(|| library[self.dice.roll(library.len())].clone());
         let there: Vec<String> =
             self.declared.iter().filter(|d| d.kind == name && !d.name.is_empty()).map(|d| d.name.clone()).collect();
-        if let (Some(full), true) = (&of_library, self.open >= DEEP || self.chance(0.55)) {
+        if let (Some(full), true) = (&of_library, self.open >= DEEP || self.chance(share)) {
             return Some(full.clone());
         }
         if self.open >= DEEP {
@@ -210,7 +211,7 @@ impl Drawing<'_> {
                 sizes.unit,
                 super::number::plain(share.round())
             ));
-            size = ((size * (1.1 + 0.5 * self.share())) * 1e4).round() / 1e4;
+            size = ((size * (1.05 + 0.25 * self.share())) * 1e4).round() / 1e4;
         }
         Some(format!("[{}]", points.join(", ")))
     }
