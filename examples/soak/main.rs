@@ -44,7 +44,7 @@ fn main() {
     let from = after("--from").unwrap_or(0);
     let mut trial: Box<dyn FnMut(u64, &str) -> Outcome> = match what.as_str() {
         "check" => Box::new(trial::checked(root)),
-        "law" => Box::new(trial::run(root, 1.0)),
+        "law" => Box::new(trial::run(root, 0.4)),
         "grains" => Box::new(trial::run(root, 20.0)),
         "show" => return show(root, &draw::scene(&known, trial::aim(count), count)),
         "show-law" => return show(root, &draw::scene(&known, Aim::Law, count)),

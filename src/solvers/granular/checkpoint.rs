@@ -10,7 +10,7 @@ use super::failure::{Failure, Limits};
 use super::gravity::Gravity;
 use super::integrate::Tally;
 use super::lanes::Real;
-use super::law::ContactLaws;
+use super::law::{ContactLaw, ContactLaws};
 use super::record::Record;
 use super::vector::Vec3;
 use super::walls::{Kept, Wall};
@@ -57,6 +57,10 @@ struct Grain<R: Real> {
     mass: R,
 }
 
+/// Forces, velocities and stiffnesses of a bed at most, in SI: their squares are numbers in either precision.
+const LARGEST: f64 = 1e15;
+/// Time step of a bed at most, s.
+const LONGEST: f64 = 1.0;
 /// Layout of a checkpoint; another one is refused.
 const VERSION: u32 = 2;
 
@@ -203,24 +207,31 @@ impl<R: Real> Checkpoint<R> {
         if !self.bonds.iter().all(bound) {
             return Err(Inconsistent("a bond belongs to nothing"));
         }
-        self.is_finite().then_some(()).ok_or(Inconsistent("it holds a number that is none"))
+        self.is_sane().then_some(()).ok_or(Inconsistent("it holds a number that no bed can hold"))
     }
 
-    /// Whether what no other check looks at is in numbers: damaged bytes hold any.
-    fn is_finite(&self) -> bool {
-        let real = |x: &R| x.to_f64().is_finite();
+    /// Whether what no other check looks at is in numbers of which forces can be computed: damaged bytes hold any.
+    fn is_sane(&self) -> bool {
+        let within = |x: f64| x.abs() <= LARGEST;
+        let real = |x: &R| within(x.to_f64());
         let share = |x: &f64| x.is_finite() && *x >= 0.0;
-        let of_walls = |wall: &Wall| wall.velocity.iter().chain(wall.spin.iter()).all(|x| x.is_finite());
+        let of_walls = |wall: &Wall| wall.velocity.iter().chain(wall.spin.iter()).all(|x| within(*x));
+        let stiff = |law: &ContactLaw| match law {
+            ContactLaw::Linear(law) => [law.normal_stiffness, law.shear_stiffness],
+            ContactLaw::HertzMindlin(law) => [law.effective_modulus, law.effective_shear_modulus],
+        };
         self.pebbles.iter().all(|grain| grain.velocity.iter().chain(&grain.spin).all(real))
             && self.bodies.iter().all(|body| share(&body.inverse_mass) && share(&body.inverse_inertia))
-            && self.clumps.iter().all(|clump| clump.turning.iter().all(|x| x.is_finite()))
+            && self.clumps.iter().all(|clump| clump.turning.iter().all(|x| within(*x)))
             && self.arms.iter().flatten().all(|x| x.is_finite())
             && self.shear.iter().all(|carried| carried.shear.iter().chain(&carried.damping).all(real))
             && self.kept.iter().all(|kept| kept.shear.iter().chain(&kept.damping).all(real))
             && self.kept.iter().flat_map(|kept| &kept.normal).all(|x| x.is_finite())
             && self.bonds.iter().all(|bond| bond.shear.iter().chain([&bond.start]).all(real))
             && self.walls.iter().all(of_walls)
+            && self.laws.all().iter().flat_map(stiff).all(within)
             && self.time.is_finite()
+            && self.dt <= LONGEST
             && share(&self.skin)
     }
 }

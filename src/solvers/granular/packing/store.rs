@@ -52,6 +52,9 @@ impl<R: Real> Packed<R> {
         if !of_all(self.samples.len()) || !of_all(self.levels.len()) || !of_all(self.bodies.len().wrapping_sub(1)) {
             return Err("what is known of its layers is not of all of them");
         }
+        if !self.plan.iter().chain(&self.densities).all(|x| x.is_finite() && *x > 0.0) {
+            return Err("its plan or a density is no size");
+        }
         if !self.bodies.is_sorted() || self.bodies.last().copied() != Some(self.bed.len() as u32) {
             return Err("its layers do not hold its bodies");
         }
