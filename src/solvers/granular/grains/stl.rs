@@ -163,7 +163,8 @@ fn welded(corners: &[[Vector3<f64>; 3]]) -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) {
     let mut number = |place: &Vector3<f64>| {
         *known.entry([place.x, place.y, place.z].map(f64::to_bits)).or_insert_with(|| {
             let cell = ((place - low) / near.max(f64::MIN_POSITIVE)).map(|x| x as i64);
-            let around = (0..27).map(|k| [0, 1, 2].map(|axis| cell[axis] + k / 3_i64.pow(axis as u32) % 3 - 1));
+            let around =
+                (0..27).map(|k| [0, 1, 2].map(|axis| cell[axis].saturating_add(k / 3_i64.pow(axis as u32) % 3 - 1)));
             let same = around
                 .filter_map(|cell| cells.get(&cell))
                 .flatten()
