@@ -91,7 +91,7 @@ fn of_files(name: &str, target: &files::Target, runs: std::ops::Range<u64>) -> u
         }
         most = most.max(peak);
         let done = k + 1 - runs.start;
-        if done % CHUNK == 0 || k + 1 == runs.end {
+        if done.is_multiple_of(CHUNK) || k + 1 == runs.end {
             tell(done, &runs, failed, started);
         }
     }

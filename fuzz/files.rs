@@ -25,8 +25,11 @@ pub struct Target {
     seeds: Vec<Vec<u8>>,
     /// Whether the bytes are JSON, or a sealed JSON.
     json: bool,
-    read: Box<dyn Fn(usize, &[u8])>,
+    read: Box<Read>,
 }
+
+/// Reads the bytes of a changed file, given its number in the list; panics where what is read cannot be.
+type Read = dyn Fn(usize, &[u8]);
 
 impl Target {
     /// The target of that name. Those of grains pack a small bed first.
@@ -169,7 +172,7 @@ fn table(number: usize, bytes: &[u8]) {
 
 fn curve(bytes: &[u8]) {
     let (curve, mistakes) = measured_curve(FileId(0), &String::from_utf8_lossy(bytes), 3);
-    assert!(curve.is_some() != !mistakes.is_empty(), "a curve beside mistakes, or neither");
+    assert!(curve.is_some() == mistakes.is_empty(), "a curve beside mistakes, or neither");
     assert!(curve.is_none_or(|curve| curve.settlement.iter().all(|x| x.is_finite())), "a settlement is no number");
 }
 

@@ -29,6 +29,9 @@ use watchdog::Watchdog;
 /// Time between two lines of progress.
 const PAUSE: Duration = Duration::from_secs(20);
 
+/// Tries a scene by its number and its text.
+type Trial = dyn FnMut(u64, &str) -> Outcome;
+
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let number = |text: Option<&String>| text.and_then(|t| t.parse::<u64>().ok());
@@ -42,7 +45,7 @@ fn main() {
     let texts = trial::shipped(root);
     let known = Known::read(texts.iter().map(String::as_str));
     let from = after("--from").unwrap_or(0);
-    let mut trial: Box<dyn FnMut(u64, &str) -> Outcome> = match what.as_str() {
+    let mut trial: Box<Trial> = match what.as_str() {
         "check" => Box::new(trial::checked(root)),
         "law" => Box::new(trial::run(root, 0.4)),
         "grains" => Box::new(trial::run(root, 20.0)),
