@@ -12,7 +12,12 @@ pub fn useless(text: &str, compiled: &Compiled, again: impl Fn(&str) -> Compiled
         for fix in mistake.fixes.iter().filter(|fix| fix.edits.iter().all(|edit| edit.span.file == FileId(0))) {
             let mended = fix.applied(FileId(0), text);
             let left = again(&mended);
-            if count(&left.diagnostics, mistake) >= count(&compiled.diagnostics, mistake) {
+            // one mistake may stand for several of its line: the edit mends the first, and the next one is told then
+            let end = fix.edits.iter().map(|edit| edit.span.start as usize + edit.text.len()).max().unwrap_or(0);
+            let is_next = |other: &&Diagnostic| other.labels.first().is_some_and(|l| l.span.start as usize >= end);
+            let mut same_left = left.diagnostics.iter().filter(|other| same(mistake, other));
+            let has_moved_on = fix.edits.len() == 1 && same_left.all(|other| is_next(&other));
+            if !has_moved_on && count(&left.diagnostics, mistake) >= count(&compiled.diagnostics, mistake) {
                 let (code, message) = (mistake.code, &mistake.message);
                 wrong.push(format!("{code}: {message}\n  `{}` leaves it:\n{mended}", fix.title));
             }
