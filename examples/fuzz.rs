@@ -31,7 +31,7 @@ use std::time::Instant;
 /// Targets that read files.
 const FILES: [&str; 5] = ["stl", "csv", "results", "checkpoint", "bed"];
 /// Runs between two lines of progress.
-const CHUNK: u64 = 5_000;
+const CHUNK: u64 = 20_000;
 /// Memory that one run may ask for beyond what any before it did, MiB: files are shorter than a quarter of one.
 const MORE: f64 = 256.0;
 
@@ -41,14 +41,15 @@ fn main() {
     let number = |text: Option<&String>| text.and_then(|t| t.parse::<u64>().ok());
     let runs = number(arguments.get(1)).unwrap_or(1_000_000);
     let from = arguments.iter().position(|a| a == "--from").and_then(|i| number(arguments.get(i + 1))).unwrap_or(0);
-    let text: Option<fn(&str)> = match name {
-        "parse" => Some(targets::parse),
-        "format" => Some(targets::format),
-        "check" => Some(targets::check),
+    let text: Option<(Text, fn(&str))> = match name {
+        "parse" => Some((mutate::piece, targets::parse)),
+        "format" => Some((mutate::piece, targets::format)),
+        // names must be found, so that numbers are looked at
+        "check" => Some((mutate::text, targets::check)),
         _ => None,
     };
     let failed = match (text, files::Target::named(name)) {
-        (Some(target), _) => texts(name, target, from..from + runs),
+        (Some((text, target)), _) => texts(name, text, target, from..from + runs),
         (None, Some(target)) => of_files(name, &target, from..from + runs),
         (None, None) => {
             return eprintln!("usage: fuzz parse|format|check|{} RUNS [--from NUMBER]", FILES.join("|"));
@@ -57,15 +58,18 @@ fn main() {
     std::process::exit(i32::from(failed > 0));
 }
 
+/// Makes the text of a run.
+type Text = fn(&[&str], u64) -> String;
+
 /// Texts on all cores.
-fn texts(name: &str, target: fn(&str), runs: std::ops::Range<u64>) -> u64 {
+fn texts(name: &str, text: Text, target: fn(&str), runs: std::ops::Range<u64>) -> u64 {
     let owned = seeds(Path::new(env!("CARGO_MANIFEST_DIR")));
     let seeds: Vec<&str> = owned.iter().map(String::as_str).collect();
     let (failed, started) = (AtomicU64::new(0), Instant::now());
     for start in runs.clone().step_by(CHUNK as usize) {
         let end = (start + CHUNK).min(runs.end);
         (start..end).into_par_iter().for_each(|k| {
-            let text = mutate::text(&seeds, k);
+            let text = text(&seeds, k);
             if catch_unwind(|| target(&text)).is_err() {
                 failed.fetch_add(1, Ordering::Relaxed);
                 keep(&format!("fuzz/corpus/{name}-{k}.track"), text.as_bytes());

@@ -21,6 +21,7 @@ fn each(target: fn(&str)) {
     }
     let seeds = [include_str!("../scenarios/transition.track"), include_str!("../scenarios/static_check.track")];
     (0..1500).for_each(|k| target(&mutate::text(&seeds, k)));
+    (0..1500).for_each(|k| target(&mutate::piece(&seeds, k)));
 }
 
 #[test]
