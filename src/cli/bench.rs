@@ -18,6 +18,9 @@ use std::path::{Path, PathBuf};
 
 /// Measure the speed of a solver on this machine
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed bench scene scenarios/transition_short.track --steps 400
+  trackbed bench grains --bed bed.txt --copies 2x2")]
 pub(super) struct Arguments {
     #[command(subcommand)]
     what: What,
@@ -33,6 +36,9 @@ enum What {
 ///
 /// The beds are packed, or taken from where they are kept, laid and brought to rest first; that is not timed.
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed bench scene scenarios/transition_short.track --steps 400
+  trackbed bench scene scenarios/transition_short.track --steps 400 --threads 2 --format json")]
 struct SceneSteps {
     #[command(flatten)]
     scene: SceneArguments,
@@ -59,6 +65,9 @@ struct SceneSteps {
 ///
 /// Linear springs of 13 MN/m, friction 0.7, a normal dashpot of 829 N s/m that may pull, 2700 kg/m3, steps of 10 us.
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed bench grains --bed bed.txt
+  trackbed bench grains --bed bed.txt --copies 2x2 --steps 500 --repeat 3")]
 struct Grains {
     /// A line of `x y z r` for each sphere, or `clump x y z r` for each pebble, in m. The first line says where the bed
     /// ends: `# periodic x 1.2 m, y 1.2 m; rigid floor z = 0`.

@@ -4,7 +4,7 @@ use super::scene::{SceneArguments, failed, not_yet, show};
 use super::{Format, Outcome, terminal};
 use crate::check::{self, MeasuredCurve, measured_curve};
 use crate::compile::Compiled;
-use crate::diag::{Code, Diagnostic, FileId, Span, nearest::nearest, or_list, render};
+use crate::diag::{Code, Diagnostic, FileId, Span, nearest::nearest, or_list};
 use crate::execute::passage_as_built;
 use crate::lower::supports;
 use crate::scenario::{Scenario, Seat, SettlementLaw, law_argument};
@@ -17,6 +17,9 @@ use std::path::PathBuf;
 
 /// Fit the settlement law of a scene to a measured curve
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed calibrate scenarios/transition.track --measured curve.csv
+  trackbed calibrate scenarios/transition.track --measured curve.csv --seat-load '40 kN' --fit gamma,beta")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
@@ -68,7 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             Outcome::Fine
         }
         Err(diagnostics) => {
-            terminal::note(&render::human(&diagnostics, &compiled.sources, terminal::colour(), terminal::width()));
+            terminal::diagnostics(&diagnostics, &compiled.sources);
             Outcome::Failed
         }
     }

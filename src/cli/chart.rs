@@ -11,6 +11,9 @@ use std::path::PathBuf;
 
 /// Chart the error of a passage against its time
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed chart scenarios/transition.track --out chart
+  trackbed chart scenarios/transition.track --after 0 --halvings 3 --out chart")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,

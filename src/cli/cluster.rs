@@ -137,7 +137,7 @@ impl Elsewhere<'_> {
             work.put(number, &task.pieces)?;
         }
         let (out, last) = (self.out.display(), tasks.len().saturating_sub(1));
-        terminal::out(&format!(
+        terminal::summary(&format!(
             "`{out}` holds {} with {}; start them on any machine that sees this directory, for example\n  \
              seq 0 {last} | xargs -P 4 -n 1 trackbed work '{out}'\n\
              then run the same command with `--resume` and without `--executor`: it gives the answer\n",

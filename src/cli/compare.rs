@@ -11,6 +11,9 @@ use std::path::{Path, PathBuf};
 ///
 /// The first directory is what the others are compared with. Differences over several packings have a 95 % interval.
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed compare as_it_is with_pads
+  trackbed compare as_it_is with_pads --out comparison")]
 pub(super) struct Arguments {
     /// Directories that `trackbed run` or `trackbed study` wrote with `--out`: two or more of one kind.
     #[arg(required = true, num_args = 2.., value_name = "DIR")]
@@ -34,7 +37,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Ok(page) => page,
         Err(error) => {
             let diagnostic = stored::diagnostic(&error);
-            terminal::note(&render::human(&[diagnostic], &Default::default(), terminal::colour(), terminal::width()));
+            terminal::diagnostics(&[diagnostic], &Default::default());
             return Outcome::Failed;
         }
     };
@@ -43,7 +46,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         Format::Json => return subject::json(&comparison.json()),
     }
     if let Some(page) = page {
-        terminal::out(&format!("{}\n", page.display()));
+        terminal::summary(&format!("{}\n", page.display()));
     }
     Outcome::Fine
 }

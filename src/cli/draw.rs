@@ -7,6 +7,9 @@ use std::path::PathBuf;
 
 /// Draw the scene to scale: long section, layers, cross-sections, gradings
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed draw scenarios/wedge.track
+  trackbed draw scenarios/wedge.track --out wedge.svg")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
@@ -30,7 +33,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
     });
     match arguments.scene.write_beside(&out, drawing_svg(scenario).as_bytes()) {
         Ok(()) => {
-            terminal::out(&format!("drew {}\n", out.display()));
+            terminal::summary(&format!("drew {}\n", out.display()));
             Outcome::Fine
         }
         Err(why) => {

@@ -5,6 +5,10 @@ use crate::diag::{Code, nearest::nearest};
 
 /// Explain a code such as E0302, with a failing and a passing example
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed explain
+  trackbed explain E0302
+  trackbed explain stiffness_jump")]
 pub(super) struct Arguments {
     /// The code; all of them where it is left out.
     code: Option<String>,

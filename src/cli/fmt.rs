@@ -2,13 +2,16 @@
 
 use super::{Outcome, terminal};
 use crate::check;
-use crate::diag::{Sources, render};
+use crate::diag::Sources;
 use crate::store::rewrite_atomically;
 use crate::syntax;
 use std::path::PathBuf;
 
 /// Lay files out in the one way
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed fmt zone.track
+  trackbed fmt --check scenarios/transition.track scenarios/wedge.track")]
 pub(super) struct Arguments {
     /// Files to rewrite in place.
     #[arg(required = true)]
@@ -26,12 +29,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             Ok(bytes) => match syntax::decode(&name, &bytes) {
                 Ok(text) => text,
                 Err(mistake) => {
-                    terminal::note(&render::human(
-                        &[mistake],
-                        &Sources::default(),
-                        terminal::colour(),
-                        terminal::width(),
-                    ));
+                    terminal::diagnostics(&[mistake], &Sources::default());
                     outcome = Outcome::Failed;
                     continue;
                 }
@@ -44,7 +42,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         match syntax::format(&text) {
             Ok(laid_out) if laid_out == text => {}
             Ok(_) if arguments.check => {
-                terminal::note(&format!("{name}: not laid out; `trackbed fmt {name}` does it\n"));
+                terminal::error(&format!("`{name}` is not in the standard layout; run `trackbed fmt {name}`"));
                 outcome = Outcome::Failed;
             }
             Ok(laid_out) => {
@@ -56,7 +54,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
             Err(mistakes) => {
                 let mut sources = Sources::default();
                 sources.add(name, text, false);
-                terminal::note(&render::human(&mistakes, &sources, terminal::colour(), terminal::width()));
+                terminal::diagnostics(&mistakes, &sources);
                 outcome = Outcome::Failed;
             }
         }

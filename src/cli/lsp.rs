@@ -6,6 +6,8 @@ use std::path::PathBuf;
 
 /// Help an editor while somebody types: it speaks the language server protocol on standard input and output
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed lsp")]
 pub(super) struct Arguments {
     /// What editors say by habit: standard input and output are used in any case.
     #[arg(long, hide = true)]

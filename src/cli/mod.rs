@@ -9,12 +9,14 @@ mod check;
 mod cluster;
 mod compare;
 mod compare_summary;
+mod completions;
 mod docs;
 mod draw;
 mod explain;
 mod fmt;
 mod interrupt;
 mod lsp;
+mod man;
 mod memory;
 mod new;
 mod pack;
@@ -44,7 +46,15 @@ use std::process::ExitCode;
 /// Railway transition zones: from a scene in a text file to a settlement picture.
 #[derive(Parser)]
 #[command(name = "trackbed", version, max_term_width = 100)]
+#[command(after_help = "Examples:
+  trackbed new zone.track
+  trackbed check zone.track
+  trackbed run zone.track --out out
+
+`trackbed COMMAND --help` has examples of each command.")]
 struct Cli {
+    #[command(flatten)]
+    manner: terminal::Manner,
     #[command(subcommand)]
     command: Command,
 }
@@ -70,6 +80,8 @@ enum Command {
     Docs(docs::Arguments),
     New(new::Arguments),
     Lsp(lsp::Arguments),
+    Completions(completions::Arguments),
+    Man(man::Arguments),
 }
 
 /// For whom the answer is.
@@ -105,6 +117,7 @@ pub fn main() -> ExitCode {
             return ExitCode::from(code);
         }
     };
+    terminal::speak(cli.manner);
     let outcome = match cli.command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Draw(arguments) => draw::run(&arguments),
@@ -125,6 +138,8 @@ pub fn main() -> ExitCode {
         Command::Docs(arguments) => docs::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Lsp(arguments) => lsp::run(&arguments),
+        Command::Completions(arguments) => completions::run(&arguments),
+        Command::Man(arguments) => man::run(&arguments),
     };
     let lost = terminal::lost();
     if let Some(cause) = lost {

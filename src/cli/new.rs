@@ -10,6 +10,8 @@ const TEMPLATE: &str = include_str!("template.track");
 
 /// Write a scene to begin with
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed new zone.track")]
 pub(super) struct Arguments {
     /// The file to write; it must not exist yet.
     file: PathBuf,
@@ -25,7 +27,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
         OpenOptions::new().write(true).create_new(true).open(&path).and_then(|mut f| f.write_all(TEMPLATE.as_bytes()));
     match written {
         Ok(()) => {
-            terminal::out(&format!("wrote {name}\nnext: trackbed check {name}\n      trackbed run {name} --out out\n"));
+            terminal::summary(&format!("wrote {name}\nnext: trackbed check {name}\n      trackbed run {name} --out out\n"));
             Outcome::Fine
         }
         Err(error) => {

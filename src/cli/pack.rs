@@ -5,7 +5,7 @@ use super::scene::{SceneArguments, failed, show};
 use super::{Format, Outcome, progress, stored, terminal};
 use crate::compile::Compiled;
 use crate::compile::fingerprint;
-use crate::diag::{Code, Diagnostic, render};
+use crate::diag::{Code, Diagnostic};
 use crate::graph::{BedError, BedPlan, BedRecipe};
 use crate::lower::{self, BedUse};
 use crate::report::{BedPage, Side};
@@ -17,6 +17,9 @@ use std::path::{Path, PathBuf};
 
 /// Build the bed of a scene from its grains: packed, described, drawn and kept for runs
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed pack scenarios/box_test.track --out bed
+  trackbed pack scenarios/box_test.track --seed 2 --out bed_2")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
@@ -176,7 +179,7 @@ fn read(cache: Option<&Path>, plan: &BedRecipe, packed: &Packed<f32>) -> Result<
 }
 
 fn stop(compiled: &Compiled, mistakes: &[Diagnostic]) -> Outcome {
-    terminal::note(&render::human(mistakes, &compiled.sources, terminal::colour(), terminal::width()));
+    terminal::diagnostics(mistakes, &compiled.sources);
     Outcome::Failed
 }
 
@@ -223,9 +226,9 @@ fn tell(arguments: &Arguments, summary: &BedSummary, kept: bool) -> Outcome {
             }
         };
     }
-    terminal::out(&text(summary, kept));
+    terminal::summary(&text(summary, kept));
     if let Some(out) = &arguments.out {
-        terminal::out(&format!("\nwrote {}\n", out.join("bed.html").display()));
+        terminal::summary(&format!("\nwrote {}\n", out.join("bed.html").display()));
     }
     Outcome::Fine
 }

@@ -50,7 +50,7 @@ pub(super) fn tell(laid: &mut TrackBed<f32>, out: Option<&Path>, format: Format)
         ends += &format!("; {removed} were in the way where unlike cells meet ({mass:.2} % of the mass)");
     }
     // JSON is that of the cell; the track has its own file
-    let say = if format == Format::Json { terminal::note } else { terminal::out };
+    let say = if format == Format::Json { terminal::note } else { terminal::summary };
     say(&format!(
         "\ntrack of {} bays: {:.1} m, {} grains; {ends}; at rest after {:.3} s ({} steps), forces \
          out of balance by {:.1e}\n",

@@ -6,6 +6,9 @@ use clap::ValueEnum;
 
 /// Print the solver graph, the passes and the estimate
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed plan scenarios/transition.track
+  trackbed plan scenarios/transition.track --format dot | dot -Tsvg -o plan.svg")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,

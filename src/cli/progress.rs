@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 /// A bar that knows how much is left.
 pub(super) fn bar() -> ProgressBar {
-    if !std::io::stderr().is_terminal() {
+    if !is_watched() {
         return ProgressBar::hidden();
     }
     let bar = ProgressBar::new(1).with_style(
@@ -19,6 +19,11 @@ pub(super) fn bar() -> ProgressBar {
     bar.set_draw_target(ProgressDrawTarget::stderr());
     bar.enable_steady_tick(Duration::from_millis(200));
     bar
+}
+
+/// Whether somebody watches a terminal and wants to see progress.
+fn is_watched() -> bool {
+    std::io::stderr().is_terminal() && !terminal::is_quiet()
 }
 
 /// A bar of work whose steps differ in cost.
@@ -66,7 +71,7 @@ impl Patient {
     /// One that is seen at once: the first word of the work may be minutes away.
     pub(super) fn seen(message: &'static str) -> Patient {
         let mut patient = Patient::new(message);
-        if std::io::stderr().is_terminal() {
+        if is_watched() {
             set(patient.shown(), 0, 1);
         }
         patient
@@ -77,7 +82,7 @@ impl Patient {
         if self.bar.is_none() && self.start.elapsed() < Duration::from_secs(2) {
             return;
         }
-        if !std::io::stderr().is_terminal() {
+        if !is_watched() {
             return self.tell(done, all);
         }
         let is_new = self.bar.is_none();

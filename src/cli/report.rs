@@ -10,6 +10,9 @@ use std::path::{Path, PathBuf};
 ///
 /// A run that goes on now, or was interrupted, gets the page `so_far.html`: what it has recorded so far.
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed report out
+  trackbed report out --figures")]
 pub(super) struct Arguments {
     /// The directory that `trackbed run --out` wrote.
     directory: PathBuf,
@@ -21,7 +24,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Outcome {
     match found(&arguments.directory, arguments.figures) {
         Ok(told) => {
-            terminal::out(&format!("{told}\n"));
+            terminal::summary(&format!("{told}\n"));
             Outcome::Fine
         }
         Err(error) => {

@@ -6,6 +6,9 @@ use std::path::PathBuf;
 
 /// Write the scene out with every default and library value, and where each comes from
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed resolve scenarios/transition.track
+  trackbed resolve scenarios/transition.track --set 'open.pad=pads.soft' --out soft.track")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,

@@ -8,7 +8,7 @@ use super::scene::{PassArguments, SceneArguments, SeedArgument, failed, not_yet,
 use super::task::Packings;
 use super::{Outcome, interrupt, memory, pack, report, stored, terminal};
 use crate::compile::{Compiled, fingerprint};
-use crate::diag::{Code, Diagnostic, render};
+use crate::diag::{Code, Diagnostic};
 use crate::execute::{self, Both, Ending, Executor};
 use crate::graph::Graph;
 use crate::lower::Parameter;
@@ -26,6 +26,11 @@ use std::time::Instant;
 
 /// Run a scene and write its results and report
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed run scenarios/transition.track --out out
+  trackbed run scenarios/transition.track --out out --resume
+  trackbed run scenarios/transition.track --set 'traffic.total=1000 axles' --out longer
+  trackbed run scenarios/transition_full.track --out full --executor slurm --dry-run")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
@@ -381,7 +386,7 @@ fn again(finished: &Finished, out: &Path, compiled: &Compiled) -> Outcome {
         Err(error) => return stop(compiled, results_diagnostic(&error)),
     };
     let (page, version) = (out.join(report::PAGE).display().to_string(), &finished.manifest().version);
-    terminal::out(&match version == env!("CARGO_PKG_VERSION") {
+    terminal::summary(&match version == env!("CARGO_PKG_VERSION") {
         true => format!("{page} was finished before\n"),
         false => format!("{page} was finished before by version {version}: `--force` runs it anew with this one\n"),
     });
@@ -399,11 +404,11 @@ fn warn(run: &Run, compiled: &Compiled) {
         Some(span) => diagnostic.label(span, "too long between two exchanges"),
         None => diagnostic,
     };
-    terminal::note(&render::human(&[diagnostic], &compiled.sources, terminal::colour(), terminal::width()));
+    terminal::diagnostics(&[diagnostic], &compiled.sources);
 }
 
 fn stop(compiled: &Compiled, diagnostic: Diagnostic) -> Outcome {
-    terminal::note(&render::human(&[diagnostic], &compiled.sources, terminal::colour(), terminal::width()));
+    terminal::diagnostics(&[diagnostic], &compiled.sources);
     Outcome::Failed
 }
 
@@ -471,7 +476,7 @@ fn summary(run: &Run, page: &Path, seconds: f64) {
         out.push_str(&format!("  {sentence}\n"));
     }
     out.push_str(&format!("{} ({} s)\n", page.display(), number((seconds * 10.0).round() / 10.0)));
-    terminal::out(&out);
+    terminal::summary(&out);
 }
 
 /// A line for each scalar that there is, in its unit. Its band of confidence or its scatter over packings follows where it has one.
@@ -506,6 +511,6 @@ fn verdicts(verdicts: &[Verdict], scenario: &Scenario, compiled: &Compiled) -> O
     if missed.is_empty() {
         return Outcome::Fine;
     }
-    terminal::note(&render::human(&missed, &compiled.sources, terminal::colour(), terminal::width()));
+    terminal::diagnostics(&missed, &compiled.sources);
     Outcome::Failed
 }

@@ -3,10 +3,11 @@
 use super::{Outcome, terminal};
 use crate::check::{self, Folder, Modules, Override, Remembered};
 use crate::compile::{Compiled, compile_with};
-use crate::diag::{self, render};
+use crate::diag;
 use crate::lower::{NoSuchPass, Planner};
 use crate::store::write_atomically;
 use crate::syntax;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// The scene a command works on.
@@ -116,7 +117,7 @@ impl SceneArguments {
 
     fn compile_by(&self, planner: &Planner, modules: &dyn Modules) -> Option<Compiled> {
         let name = self.file.display().to_string();
-        let bytes = match check::read_bounded(&self.file) {
+        let bytes = match read(&self.file) {
             Ok(bytes) => bytes,
             Err(error) => {
                 terminal::error(&format!("cannot read `{name}`: {error}"));
@@ -130,11 +131,17 @@ impl SceneArguments {
     }
 }
 
+/// The name that stands for standard input.
+const STANDARD_INPUT: &str = "-";
+
+/// Reads a file, or standard input.
+fn read(file: &Path) -> io::Result<Vec<u8>> {
+    if file == Path::new(STANDARD_INPUT) { check::read_all(io::stdin().lock()) } else { check::read_bounded(file) }
+}
+
 /// Shows diagnostics on standard error.
 pub(super) fn show(compiled: &Compiled) {
-    if !compiled.diagnostics.is_empty() {
-        terminal::note(&render::human(&compiled.diagnostics, &compiled.sources, terminal::colour(), terminal::width()));
-    }
+    terminal::diagnostics(&compiled.diagnostics, &compiled.sources);
 }
 
 /// Whether anything stands against a run.

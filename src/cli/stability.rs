@@ -10,6 +10,8 @@ use std::path::PathBuf;
 
 /// Map where a passage is stable, and try the scene under stress
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed stability scenarios/transition.track --out stability")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,

@@ -11,7 +11,7 @@ use crate::check::{self, Folder, Remembered};
 use crate::cluster::ClusterError;
 use crate::compile::Compiled;
 use crate::diag::nearest::nearest;
-use crate::diag::{Code, Diagnostic, has_errors, or_list, render};
+use crate::diag::{Code, Diagnostic, has_errors, or_list};
 use crate::execute;
 use crate::nodes::turns;
 use crate::report;
@@ -26,6 +26,10 @@ use std::time::Instant;
 
 /// Run a study of a scene: its points, its best design
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed study scenarios/study_usp.track --out pads
+  trackbed study scenarios/study_usp.track --out pads --resume
+  trackbed study scenarios/study_usp.track --out pads --executor slurm --dry-run")]
 pub(super) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
@@ -208,7 +212,7 @@ fn run_study(arguments: &Arguments, scene: Scene<'_>, compiled: &Compiled, study
         say(&[stored::diagnostic(&error)], compiled);
         return Outcome::Failed;
     }
-    terminal::out(&study_summary::text(&answer, &arguments.out, seconds));
+    terminal::summary(&study_summary::text(&answer, &arguments.out, seconds));
     let against = study_summary::diagnostics(&answer);
     say(&against, compiled);
     if has_errors(&against) { Outcome::Failed } else { Outcome::Fine }
@@ -223,9 +227,7 @@ fn mode(arguments: &Arguments) -> Mode {
 }
 
 fn say(diagnostics: &[Diagnostic], compiled: &Compiled) {
-    if !diagnostics.is_empty() {
-        terminal::note(&render::human(diagnostics, &compiled.sources, terminal::colour(), terminal::width()));
-    }
+    terminal::diagnostics(diagnostics, &compiled.sources);
 }
 
 /// Says why a cluster does not do the study.

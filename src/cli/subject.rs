@@ -2,7 +2,7 @@
 use super::scene::{SceneArguments, failed, not_yet, show};
 use super::{Outcome, terminal};
 use crate::compile::Compiled;
-use crate::diag::{Code, Diagnostic, render};
+use crate::diag::{Code, Diagnostic};
 use crate::execute::{self, RunError};
 use crate::graph::Clock;
 use crate::nodes::NodeError;
@@ -70,7 +70,7 @@ impl<'a> Subject<'a> {
 }
 
 fn stop(compiled: &Compiled, diagnostic: Diagnostic) -> Outcome {
-    terminal::note(&render::human(&[diagnostic], &compiled.sources, terminal::colour(), terminal::width()));
+    terminal::diagnostics(&[diagnostic], &compiled.sources);
     Outcome::Failed
 }
 
@@ -85,7 +85,7 @@ pub(super) fn write(directory: Option<&Path>, files: &[(&str, String)]) -> Resul
     written.map_err(|cause| {
         let diagnostic = Diagnostic::new(Code::E0802, format!("cannot write into `{}`: {cause}", directory.display()))
             .help("give another `--out`");
-        terminal::note(&render::human(&[diagnostic], &Default::default(), terminal::colour(), terminal::width()));
+        terminal::diagnostics(&[diagnostic], &Default::default());
         Outcome::Failed
     })
 }

@@ -1,7 +1,47 @@
 //! What a person sees: plain text where it is piped, colour on a terminal that wants it.
 
+use crate::diag::{Diagnostic, Sources, render};
+use clap::ValueEnum;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::OnceLock;
+
+/// When messages have colour.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub(super) enum Colour {
+    /// On a terminal, unless the environment variable `NO_COLOR` is set.
+    #[default]
+    Auto,
+    Always,
+    Never,
+}
+
+/// How the program speaks: options of every command.
+#[derive(Debug, Clone, Copy, Default, clap::Args)]
+pub(super) struct Manner {
+    /// When messages have colour
+    #[arg(long = "color", alias = "colour", value_name = "WHEN", value_enum, default_value = "auto", global = true)]
+    colour: Colour,
+    /// Print errors and the requested output only: no warnings, no progress, no summary
+    #[arg(short, long, global = true)]
+    quiet: bool,
+}
+
+/// The manner that the command line asked for.
+static MANNER: OnceLock<Manner> = OnceLock::new();
+
+/// Sets how the program speaks, once, before anything is printed.
+pub(super) fn speak(manner: Manner) {
+    let _ = MANNER.set(manner);
+}
+
+fn manner() -> Manner {
+    MANNER.get().copied().unwrap_or_default()
+}
+
+/// Whether only errors and the requested output are printed.
+pub(super) fn is_quiet() -> bool {
+    manner().quiet
+}
 
 /// Why standard output has not taken all that was written, once it has not.
 static LOST: OnceLock<String> = OnceLock::new();
@@ -17,28 +57,54 @@ pub(super) fn out(text: &str) {
     }
 }
 
+/// Writes a summary to standard output, unless the command is quiet.
+pub(super) fn summary(text: &str) {
+    if !is_quiet() {
+        out(text);
+    }
+}
+
 /// Why something that was written to standard output is lost; `None` where all has arrived.
 pub(super) fn lost() -> Option<&'static str> {
     LOST.get().map(String::as_str)
 }
 
 /// Writes to standard error.
-pub(super) fn note(text: &str) {
+fn say(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
+}
+
+/// Writes to standard error, unless the command is quiet.
+pub(super) fn note(text: &str) {
+    if !is_quiet() {
+        say(text);
+    }
 }
 
 /// `error: ...` on standard error, for mistakes that stand in no file.
 pub(super) fn error(text: &str) {
-    note(&format!("error: {text}\n"));
+    say(&format!("error: {text}\n"));
 }
 
-/// Whether standard error is a terminal that shows colour.
-pub(super) fn colour() -> bool {
-    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
+/// Draws diagnostics over their sources on standard error; a quiet command shows errors only.
+pub(super) fn diagnostics(diagnostics: &[Diagnostic], sources: &Sources) {
+    let shown: Vec<Diagnostic> = diagnostics.iter().filter(|d| d.is_error() || !is_quiet()).cloned().collect();
+    if !shown.is_empty() {
+        say(&render::human(&shown, sources, has_colour(), width()));
+    }
+}
+
+/// Whether messages have colour.
+fn has_colour() -> bool {
+    match manner().colour {
+        Colour::Always => true,
+        Colour::Never => false,
+        Colour::Auto => std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none(),
+    }
 }
 
 /// Columns of the terminal, for wrapping.
-pub(super) fn width() -> usize {
+fn width() -> usize {
     std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok()).filter(|w| *w >= 40).unwrap_or(110).min(140)
 }
 

@@ -5,7 +5,7 @@ use super::task::{Packings, Task};
 use super::{Outcome, interrupt, pack, run, stored, terminal};
 use crate::check::{self, Folder, Remembered};
 use crate::compile::fingerprint;
-use crate::diag::{Code, Diagnostic, Sources, render};
+use crate::diag::{Code, Diagnostic, Sources};
 use crate::execute::Executor;
 use crate::store::{StoreError, Unfinished};
 use crate::study::{self, Runs, Scene, TaskRun};
@@ -16,6 +16,9 @@ use std::time::Instant;
 
 /// Compute what a study or a run with `--executor workers` or `slurm` has left to other processes
 #[derive(clap::Args)]
+#[command(after_help = "Examples:
+  trackbed work pads
+  trackbed work pads 3")]
 pub(super) struct Arguments {
     /// The directory of the study or of the run.
     directory: PathBuf,
@@ -39,7 +42,7 @@ pub(super) fn run(arguments: &Arguments) -> Outcome {
 }
 
 fn fail(diagnostic: Diagnostic) -> Outcome {
-    terminal::note(&render::human(&[diagnostic], &Sources::default(), terminal::colour(), terminal::width()));
+    terminal::diagnostics(&[diagnostic], &Sources::default());
     Outcome::Failed
 }
 
@@ -119,7 +122,7 @@ fn one_run(
     let Some(done) = study::perform(scene, &task.study, &run.overrides, executor, asked) else { return Ok(true) };
     let bytes = done.bytes().map_err(|cause| of_store(&StoreError::unwritable(study.path(), cause)))?;
     let is_kept = study.add(&run.key, &bytes).map_err(|error| of_store(&error))?;
-    terminal::out(&match is_kept {
+    terminal::summary(&match is_kept {
         true => format!("{}: {:.1} s\n", run.name, started.elapsed().as_secs_f64()),
         false => "the study has ended: nothing is left to do\n".to_owned(),
     });

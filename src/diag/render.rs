@@ -58,7 +58,12 @@ fn plain(diagnostic: &Diagnostic, sources: &Sources) -> String {
 
 /// The diagnostics as data: lines and columns count from 1, what is unknown is null.
 pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Value {
-    let entries: Vec<Value> = diagnostics
+    json!({ "diagnostics": entries(diagnostics, sources) })
+}
+
+/// Each diagnostic as data.
+pub fn entries(diagnostics: &[Diagnostic], sources: &Sources) -> Vec<Value> {
+    diagnostics
         .iter()
         .map(|diagnostic| {
             let span = diagnostic.labels.first().map(|label| label.span);
@@ -78,8 +83,7 @@ pub fn json(diagnostics: &[Diagnostic], sources: &Sources) -> Value {
                 "fixes": diagnostic.fixes.iter().map(|fix| fix_json(fix, sources)).collect::<Vec<_>>(),
             })
         })
-        .collect();
-    json!({ "diagnostics": entries })
+        .collect()
 }
 
 /// An edit as data: its parts of the files in bytes from 0, the end excluded, and what takes their place.

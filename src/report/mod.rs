@@ -55,6 +55,7 @@ mod templates;
 mod thin;
 mod vehicle;
 mod view;
+mod vocabulary;
 mod wheels;
 mod work_precision;
 
@@ -70,6 +71,7 @@ pub use scene::scene_svg;
 pub use stability::stability_svg;
 pub use study::study_page;
 pub use templates::grain_templates_svg;
+pub use vocabulary::{Topic, listing, nearest_topic, vocabulary};
 pub use work_precision::chart_svg;
 
 use crate::results::Run;

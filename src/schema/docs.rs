@@ -93,6 +93,13 @@ pub fn page(kind: &Kind) -> String {
     out
 }
 
+/// Everything about one field.
+pub fn field_page(kind: &Kind, field: &Field) -> String {
+    let mut out = format!("{}.{}\n\n", kind.name, field.name);
+    describe(&mut out, field, 2);
+    out
+}
+
 fn describe(out: &mut String, field: &Field, indent: usize) {
     let pad = " ".repeat(indent);
     let need = match field.need {

@@ -13,7 +13,7 @@ mod results;
 mod traffic;
 
 pub use called::{Names, called};
-pub use docs::{form_text, index, page, section};
+pub use docs::{field_page, form_text, index, page, section};
 pub use kinds::{COMMON, KINDS, RANDOM};
 pub use reads::{Reader, Reads};
 

@@ -1,6 +1,6 @@
 //! The standard library, embedded: files in the language itself.
 
-use crate::diag::FileId;
+use crate::diag::{FileId, Span};
 use crate::schema::{KINDS, Need};
 use crate::syntax::parse;
 use crate::syntax::tree::{Declaration, Item, ValueKind};
@@ -35,19 +35,24 @@ pub struct Entry {
     pub source: String,
     /// `read`, `derived` or `unchecked`.
     pub evidence: String,
+    /// The entry of the same module that it extends.
+    pub base: Option<String>,
+    /// Paths of its own fields with their values as written, without source and evidence.
+    pub fields: Vec<(String, String)>,
 }
 
 /// Every entry of the standard library, module by module, in the order of their files.
 pub fn library() -> Vec<Entry> {
-    let of_module = |(module, text): &(&'static str, &str)| {
-        let (tree, _) = parse(FileId(0), text);
-        let entries = tree.items.into_iter().filter_map(|item| match item {
-            Item::Declaration(declaration) => entry(module, declaration),
-            _ => None,
-        });
-        entries.collect::<Vec<_>>()
-    };
-    MODULES.iter().flat_map(of_module).collect()
+    MODULES.iter().flat_map(|(module, text)| entries(module, text)).collect()
+}
+
+fn entries(module: &'static str, text: &str) -> Vec<Entry> {
+    let (tree, _) = parse(FileId(0), text);
+    let declared = tree.items.into_iter().filter_map(|item| match item {
+        Item::Declaration(declaration) => entry(module, text, declaration),
+        _ => None,
+    });
+    declared.collect()
 }
 
 /// What a check reads of the library. To read all of it takes longer than most scenes.
@@ -169,13 +174,16 @@ fn outline(text: &'static str) -> impl Iterator<Item = (&'static str, Range<usiz
     })
 }
 
-fn entry(module: &'static str, declared: Declaration) -> Option<Entry> {
+fn entry(module: &'static str, text: &str, declared: Declaration) -> Option<Entry> {
     let field = |name: &str| match &declared.fields.iter().find(|f| f.path.text() == name)?.value.kind {
         ValueKind::Text(text) => Some(text.clone()),
         ValueKind::Path(path) => Some(path.text()),
         _ => None,
     };
     let lines: Vec<&str> = declared.docs.iter().map(|line| line.trim()).collect();
+    let value = |span: Span| text.get(span.start as usize..span.end as usize).unwrap_or_default().to_string();
+    let own = declared.fields.iter().filter(|field| !["source", "evidence"].contains(&field.path.text().as_str()));
+    let fields = own.map(|field| (field.path.text(), value(field.value.span))).collect();
     Some(Entry {
         module,
         kind: declared.kind.text.clone(),
@@ -183,6 +191,8 @@ fn entry(module: &'static str, declared: Declaration) -> Option<Entry> {
         doc: lines.join(" "),
         source: field("source").unwrap_or_default(),
         evidence: field("evidence").unwrap_or_default(),
+        base: declared.base.as_ref().map(|path| path.text()),
+        fields,
     })
 }
 

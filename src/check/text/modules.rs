@@ -61,8 +61,13 @@ const ENDLESS: u64 = 8 * LARGEST_DATA_FILE;
 
 /// The bytes of a file or a pipe; fails above 64 MiB, and where the operating system refuses.
 pub fn read_bounded(path: &Path) -> io::Result<Vec<u8>> {
+    read_all(File::open(path)?)
+}
+
+/// All bytes of a reader; fails above 64 MiB, and where the operating system refuses.
+pub fn read_all(reader: impl Read) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    let read = File::open(path)?.take(ENDLESS + 1).read_to_end(&mut bytes)? as u64;
+    let read = reader.take(ENDLESS + 1).read_to_end(&mut bytes)? as u64;
     if read > ENDLESS {
         return Err(io::Error::other(format!("it has more than {} MiB", ENDLESS >> 20)));
     }
