@@ -69,5 +69,5 @@ fn warnings_assumptions_and_spread_stand_on_the_first_page() {
     }
     // and the headline says why the structure lies lower
     assert!(summary["settlement_step"]["value"].as_f64().unwrap() < 0.0);
-    assert!(page[..start].contains("knows no subgrade"), "{}", &page[..start]);
+    assert!(page[..start].contains("does not model the subgrade"), "{}", &page[..start]);
 }

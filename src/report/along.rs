@@ -17,9 +17,10 @@ pub fn settlement(run: &Run) -> Option<Figure> {
     let mut chart = track_chart(run, "Settlement", "m", true);
     chart.series = per_seat(run, true, |row| row.settlement_m);
     chart.series.retain(|series| series.points.iter().any(|point| point.1.is_finite() && point.1 != 0.0));
-    let caption = "Permanent settlement of each sleeper's support, downward as in the track; seats are numbered from the \
-         transition (dashed), negative on its softer side; shaded where no ballast carries the seats. Lighter near \
-         the ends: not every wheel of a train passes these sleepers, and they take the mean of ten neighbours.";
+    let caption = "Permanent settlement of each sleeper's support, positive downward. Seats are numbered from the \
+         transition (dashed line), with negative numbers on its softer side. Shaded: seats not carried by ballast. \
+         Paler near the ends: not every wheel of a train passes these sleepers, so each takes the mean settlement of \
+         ten neighbours.";
     figure(&chart, "settlement", "Settlement along the track", &with_thin_curves(run, caption))
 }
 
@@ -27,8 +28,8 @@ pub fn settlement(run: &Run) -> Option<Figure> {
 pub fn rail_level(run: &Run) -> Option<Figure> {
     let mut chart = track_chart(run, "Rail level below as built", "m", true);
     chart.series = counts::shown(run).iter().map(|count| along_rail(run, "rail_level", count)).collect();
-    let caption = "Level of the unloaded rail under its own weight, downward from the track as built: where it lies above \
-                   the settled supports, sleepers hang from it.";
+    let caption = "Level of the unloaded rail under its own weight, measured downward from the track as built. If the \
+                   rail lies above the settled supports, sleepers hang from it.";
     figure(&chart, "rail_level", "Rail level without a vehicle", caption)
 }
 
@@ -36,8 +37,8 @@ pub fn rail_level(run: &Run) -> Option<Figure> {
 pub fn seat_loads(run: &Run) -> Option<Figure> {
     let mut chart = track_chart(run, "Largest rail seat load", "N", false);
     chart.series = per_seat(run, false, |row| row.max_rail_seat_load_N);
-    let caption = "Largest force of the rail on each pad during one passage, per seat, in compression positive. The seat on \
-                   the stiff edge takes what its hanging neighbours leave.";
+    let caption = "Largest force of the rail on each pad during one passage, per seat; compression is positive. The \
+                   seat on the stiff edge also carries the load that the hanging sleepers beside it do not carry.";
     figure(&chart, "rail_seat_load", "Rail seat loads along the track", &with_thin_curves(run, caption))
 }
 
@@ -45,8 +46,8 @@ pub fn seat_loads(run: &Run) -> Option<Figure> {
 pub fn gravity_contact(run: &Run) -> Option<Figure> {
     let mut chart = track_chart(run, "Contact force without a vehicle", "N", false);
     chart.series = per_seat(run, true, |row| row.gravity_contact_force_N);
-    let caption = "Force of each half sleeper on its support under dead load alone: a sleeper at zero hangs, and its \
-                   neighbours carry its weight.";
+    let caption = "Force of each half sleeper on its support under dead load alone. A sleeper with zero force hangs \
+                   from the rail, and its neighbours carry its weight.";
     let title = "Sleeper\u{2013}ballast contact under dead load";
     figure(&chart, "gravity_contact_force", title, &with_thin_curves(run, caption))
 }
@@ -83,8 +84,10 @@ pub fn seat_shares(run: &Run) -> Option<Figure> {
     let mut shares: Vec<f64> = rows.iter().map(|row| 100.0 * row.max_rail_seat_load_N / total).collect();
     shares.sort_by(|a, b| b.total_cmp(a));
     let largest = shares.iter().take(3).map(|share| significant(*share, 3)).collect::<Vec<_>>().join(", ");
-    let caption =
-        format!("Rail seat loads as shares of the whole load of {} kN; the largest are {largest} %.", whole_kn(total));
+    let caption = format!(
+        "Rail seat loads as shares of the total load of {} kN. The largest shares are {largest} %.",
+        whole_kn(total)
+    );
     figure(&chart, "seat_shares", "Load shares of the seats", &caption)
 }
 

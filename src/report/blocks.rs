@@ -40,11 +40,11 @@ pub fn lengths(run: &Run) -> Option<Figure> {
 pub fn said(run: &Run) -> String {
     let errors = run.blocks.iter().map(|b| b.error_m).filter(|error| error.is_finite());
     let sum = format!(
-        "Their estimated errors of settlement add up to {} \u{b5}m.",
+        "The estimated settlement errors of all blocks add up to {} \u{b5}m.",
         significant(errors.sum::<f64>() * 1e6, 2)
     );
     match BlockRow::overshoot(&run.blocks) {
-        Some(found) => format!("{sum} Mind: {found}."),
+        Some(found) => format!("{sum} Note: {found}."),
         None => sum,
     }
 }

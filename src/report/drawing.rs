@@ -1,4 +1,5 @@
-//! A scene before it runs, to be looked at: the track to scale, its layers, its cross-sections, their gradings and their grains.
+//! A scene before it runs, to be looked at: the track to scale, its layers, its cross-sections, their gradings and
+//! their grains.
 
 use super::scene::draw_scene;
 use super::svg::Svg;
@@ -33,13 +34,14 @@ pub(super) fn ground_figures(scenario: &Scenario) -> Vec<Figure> {
     let along = [
         "layers",
         "The layers along the track",
-        "To scale, at each transition with the stretches near it that change the layers: thickness and Young's modulus of each \
-         layer, wedges, approach slabs, and pads under sleepers, which are drawn thicker where they would not be seen.",
+        "To scale: each transition, with the stretches near it that change the layers. Shown are thickness and Young's \
+         modulus of each layer, wedges, approach slabs and under sleeper pads. Thin pads are drawn thicker, so that \
+         they can be seen.",
     ];
     let across = [
         "cross_sections",
         "Sections across the track",
-        "To scale: each kind of sleeper on each kind of ground, as near to a transition as such sleepers lie.",
+        "To scale: each type of sleeper on each type of ground, at the sleeper of this type nearest to a transition.",
     ];
     [figure(layers::draw, along), figure(cross_section::draw, across)].into_iter().flatten().collect()
 }

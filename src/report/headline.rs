@@ -30,15 +30,15 @@ pub fn headline(html: &mut String, run: &Run) {
     let after = run.summary.scalars.get("axles").map_or(0.0, |s| s.value) as u64;
     let caption = match run.scenario.loading {
         Some(Loading::Static(_)) => "Under the test loads, per rail.".to_owned(),
-        _ => format!("After {} axles; forces and moments are the extremes of one passage, of one rail.", whole(after)),
+        _ => format!("After {} axles. Forces and moments are the extremes of one passage, for one rail.", whole(after)),
     };
     let limited = lines.iter().any(|line| !line.limit.is_empty());
-    let against = if limited { "held against" } else { "" };
+    let against = if limited { "limit" } else { "" };
     let _ = write!(
         html,
-        "<section id=\"headline\"><h2>At a glance</h2><p class=\"caption\">{caption}</p><div class=\"scroll\"><table class=\"wide\">\
-         <thead><tr><th class=\"text\">quantity</th><th>value</th><th class=\"text\">where</th>\
-         <th class=\"text\">{against}</th><th class=\"text\"></th></tr></thead><tbody>"
+        "<section id=\"headline\"><h2>At a glance</h2><p class=\"caption\">{caption}</p><div class=\"scroll\"><table \
+         class=\"wide\"><thead><tr><th class=\"text\">quantity</th><th>value</th><th class=\"text\">where</th><th \
+         class=\"text\">{against}</th><th class=\"text\"></th></tr></thead><tbody>"
     );
     for line in &lines {
         let (class, word) = match line.kept {
@@ -58,8 +58,8 @@ pub fn headline(html: &mut String, run: &Run) {
     }
     *html += "</tbody></table></div>";
     if limited {
-        *html += "<p class=\"note\">Limits as standards are commonly quoted, unchecked against their texts; what holds on a \
-                  line is its owner's to say.</p>";
+        *html += "<p class=\"note\">The limits are commonly quoted values and were not checked against the standards. \
+                  The owner of the line decides which limits apply.</p>";
     }
     *html += "</section>\n";
 }
@@ -107,15 +107,10 @@ fn settlement_lines(run: &Run) -> Vec<Line> {
     });
     let lines = [
         line("Step at the structure", scalar(run, "settlement_step"), "m", step_place(run)),
-        line(
-            "Change of level, wheelbase",
-            scalar(run, "level_change_wheelbase"),
-            "m",
-            "of the unloaded rail".to_owned(),
-        ),
-        line("Change of level over 3 m", scalar(run, "level_change_3m"), "m", "of the unloaded rail".to_owned()),
+        line("Change of level, wheelbase", scalar(run, "level_change_wheelbase"), "m", "unloaded rail".to_owned()),
+        line("Change of level over 3 m", scalar(run, "level_change_3m"), "m", "unloaded rail".to_owned()),
         line("Largest settlement", scalar(run, "max_settlement"), "m", at_largest(run, |row| row.settlement_m)),
-        line("Dip below the far field", scalar(run, "differential_settlement"), "m", far.unwrap_or_default()),
+        line("Settlement below the far field", scalar(run, "differential_settlement"), "m", far.unwrap_or_default()),
         voids,
         broken_bonds(run),
     ];
@@ -144,7 +139,11 @@ fn step_place(run: &Run) -> String {
     let at = named.filter(|name| !name.is_empty()).find(of_name).map_or(String::new(), |name| format!(", at {name}"));
     let law = &run.scenario.solve.law;
     let why = match step < 0.0 && law.law.knows_forces_alone() {
-        true => format!(": law {} counts the larger forces there and knows no subgrade", law.name),
+        true => format!(
+            ": law {} uses only the forces on the ballast, which are larger there; it does not model the \
+            subgrade",
+            law.name
+        ),
         false => String::new(),
     };
     format!("{lower}{at}{why}")
@@ -173,7 +172,7 @@ fn force_lines(run: &Run) -> Vec<Line> {
         lines.push(Line {
             name: "Least wheel force",
             value: amount(row.min_wheel_force_N, "N"),
-            place: format!("{missing} % missing of {}", static_load(run, row)),
+            place: format!("{missing} % below {}", static_load(run, row)),
             limit: format!("{} %", plain(100.0 * limits::UNLOADING, 2)),
             kept: Some(row.wheel_unloading <= limits::UNLOADING),
         });

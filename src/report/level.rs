@@ -33,10 +33,10 @@ pub fn level_d1(run: &Run) -> Option<Figure> {
     let limit = limits.map_or(String::new(), |limits| add_limits(&mut charts, limits));
     share_scale(charts.iter_mut(), HEIGHT - 90.0);
     let caption = format!(
-        "Level of the rail after the filter of EN 13848-1 for wavelengths of 3 to 25 m, downward as in the track: a \
-         fourth-order Butterworth band run forward and back, so that nothing is shifted; the profile goes on level for 150 m \
-         beyond where wheels run. Above without a vehicle, below under the mean wheel load standing at each place, as \
-         a loaded recording car sees it.{limit}"
+        "Level of the rail after the EN 13848-1 filter for wavelengths of 3 to 25 m, positive downward. The filter is \
+         a fourth-order Butterworth band-pass, run forward and backward, so that nothing is shifted. Beyond the range \
+         of the wheels the profile continues level for 150 m. Top: without a vehicle. Bottom: under the mean wheel \
+         load standing at each place, as a loaded recording car measures it.{limit}"
     );
     let names = Names { id: "longitudinal_level", title: "Longitudinal level, 3 to 25 m (D1)", caption: &caption };
     panels(&names, &charts.map(|chart| (chart, HEIGHT)), 1)
@@ -64,8 +64,8 @@ fn add_limits(charts: &mut [Chart; 2], limits: LevelLimits) -> String {
         }
     }
     format!(
-        " EN 13848-5 at this speed (unchecked): alert from {} to {} mm, intervention from {} to {} mm, immediate action {} \
-         mm; limits far above the curves are not drawn.",
+        " EN 13848-5 at this speed (unchecked): alert from {} to {} mm, intervention from {} to {} mm, immediate \
+         action {} mm. Limits far above the curves are not drawn.",
         mm(limits.alert.0),
         mm(limits.alert.1),
         mm(limits.intervention.0),

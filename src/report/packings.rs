@@ -25,9 +25,10 @@ pub fn packings(html: &mut String, run: &Run) {
     let seeds: Vec<String> = run.packings.iter().map(|packing| packing.seed.to_string()).collect();
     let _ = write!(
         html,
-        "<section id=\"packings\"><h2>Over packings</h2><p class=\"caption\">The same scene on {} packings of its grains: this page shows \
-         seed {}, thin curves those of seed {}. A standard deviation is that of one packing.</p><div class=\"scroll\"><table>\
-         <tr><th class=\"text\"></th><th></th><th>this packing</th><th>mean</th><th>standard deviation</th><th>least</th><th>largest</th></tr>",
+        "<section id=\"packings\"><h2>Over packings</h2><p class=\"caption\">The same scene with {} packings of its \
+         grains. This page shows seed {}; thin curves show seed {}. The standard deviation is for one packing.</p><div \
+         class=\"scroll\"><table><tr><th class=\"text\"></th><th></th><th>this packing</th><th>mean</th><th>standard \
+         deviation</th><th>least</th><th>largest</th></tr>",
         run.packings.len() + 1,
         run.scenario.solve.seed,
         seeds.join(", ")
@@ -47,7 +48,7 @@ pub fn packings(html: &mut String, run: &Run) {
 pub fn with_thin_curves(run: &Run, caption: &str) -> String {
     match run.packings.len() {
         0 => caption.to_owned(),
-        1 => format!("{caption} Thin: another packing of the same grains."),
-        count => format!("{caption} Thin: {count} other packings of the same grains."),
+        1 => format!("{caption} Thin curves: another packing of the same grains."),
+        count => format!("{caption} Thin curves: {count} other packings of the same grains."),
     }
 }

@@ -16,7 +16,7 @@ pub fn reliance(html: &mut String, reliance: &Reliance) {
         let place = if warned.place.is_empty() { String::new() } else { format!(", {}", warned.place) };
         format!("{} <small>({}{})</small>", prose(&warned.message), warned.code, escape(&place))
     });
-    group(html, "Warned of", warned);
+    group(html, "Warnings", warned);
     let silenced = reliance.silenced.iter().map(|silenced| {
         format!(
             "{}: <q>{}</q> <small>({})</small>",
@@ -33,7 +33,7 @@ pub fn reliance(html: &mut String, reliance: &Reliance) {
         .map(|entry| format!("<span title=\"{}\"><code>{}</code></span>", escape(&entry.source), escape(&entry.name)));
     let names: Vec<String> = names.collect();
     let unchecked = (!names.is_empty())
-        .then(|| format!("{} of the library: data that nobody has checked against its source", names.join(", ")));
+        .then(|| format!("{} of the library: data not checked against the source", names.join(", ")));
     group(html, "Unchecked", unchecked.into_iter());
     *html += "</dl></section>\n";
 }

@@ -54,9 +54,9 @@ pub fn wheel_force(run: &Run) -> Option<Figure> {
     let load = load.map_or(String::new(), |f| format!(", {} kN", significant(f / 1e3, 3)));
     let place = if close.is_some() { " around the first transition" } else { "" };
     let caption = format!(
-        "Force of each wheel of the leading vehicle on one rail, where the wheel stands{place}; dotted the static load{load}; the \
-         legend counts the axles that had passed. The ripple is that of the sleepers, stiffer than the bays between them. \
-         All panels have one scale."
+        "Force of each wheel of the leading vehicle on one rail, at the place of the wheel{place}. Dotted: static \
+         load{load}. The legend gives the number of axles that have passed. The ripple comes from the sleepers: the \
+         track is stiffer over a sleeper than between sleepers. All panels have one scale."
     );
     let charts: Vec<(Chart, f64)> = charts.into_iter().map(|chart| (chart, HEIGHT)).collect();
     panels(&Names { id: "wheel_force", title: "Wheel\u{2013}rail forces", caption: &caption }, &charts, 2)

@@ -86,7 +86,7 @@ pub fn bed_svg(bed: &BedView) -> String {
         draw_chains(svg, bed, &view, &chains);
     });
     let bottom = view.frame.y + view.frame.height + 44.0;
-    svg.finish(WIDTH, bottom, &format!("{}: the bed from the side", bed.title))
+    svg.finish(WIDTH, bottom, &format!("{}: side view of the bed", bed.title))
 }
 
 /// From the world to the picture.

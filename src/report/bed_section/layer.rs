@@ -150,14 +150,14 @@ impl Layer<'_> {
     fn forces(&self) -> (&BedsAtCount, f64, &'static str) {
         let [rest, under_train] = self.scales.forces;
         match self.loaded {
-            Some(loaded) => (loaded, under_train, "as the leading bogie of the next train passes"),
+            Some(loaded) => (loaded, under_train, "under the leading bogie of the next train"),
             None => (self.beds, rest, "without a train"),
         }
     }
 
     fn about_forces(&self) -> String {
         let (_, force, when) = self.forces();
-        format!("Contact forces {when}; widest line {} kN", significant(force / 1e3, 2))
+        format!("Contact forces {when}; widest line: {} kN", significant(force / 1e3, 2))
     }
 
     /// Lines of each width as one path, the thinnest first.

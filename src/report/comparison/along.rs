@@ -98,14 +98,14 @@ fn of_seats(comparison: &Comparison, axles: u64, what: &OfSeats) -> Option<Figur
         chart.series.extend(seats_of(run, axles, (&subject.name, &class), what));
     }
     let caption =
-        format!("{} Sections are those of the first run, the dashed line its transition.", said(axles, comparison));
+        format!("{} Sections and transition (dashed line) are those of the first run.", said(axles, comparison));
     figure(&chart, what.id, what.title, &caption)
 }
 
 /// `After 500 axles.`, and what thin curves are.
 fn said(axles: u64, comparison: &Comparison) -> String {
     let thin = comparison.subjects.iter().filter_map(|subject| subject.run()).any(|run| !run.packings.is_empty());
-    let thin = if thin { " Thin: the same on further packings of its grains." } else { "" };
+    let thin = if thin { " Thin curves: further packings of the same grains." } else { "" };
     format!("After {} axles.{thin}", whole(axles))
 }
 

@@ -15,7 +15,7 @@ pub(super) fn figures(comparison: &Comparison) -> Vec<Figure> {
     let stiffness = Axis { from_zero: true, ..Axis::new("Resilient stiffness", ("MN/m", 1e6)) };
     let deviator = Axis { from_zero: true, ..Axis::new("Deviator", ("kPa", 1e3)) };
     let volume = Axis { from_zero: true, ..Axis::new("Volume strain", ("%", 0.01)) };
-    let thin = "Each packing has a curve; those of one result have one colour.";
+    let thin = "One curve for each packing; curves of one result have the same colour.";
     let figures = [
         drawn(comparison, (cycles(), settlement), &|test| of_cycles(test, |cycle| cycle.settlement))
             .and_then(|chart| figure(&chart, "settlement", "Settlement against cycles", thin)),

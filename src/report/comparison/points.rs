@@ -1,4 +1,5 @@
-//! Studies in one figure: what is measured against the one number that varies, else point for point against the first study.
+//! Studies in one figure: what is measured against the one number that varies, else point for point against the first
+//! study.
 
 use super::coloured;
 use crate::compare::{Comparison, PointRow};
@@ -27,12 +28,13 @@ fn drawn(comparison: &Comparison, index: usize, of: (&str, &str), rows: &[&Point
         Some((path, unit)) => {
             let mut chart = Chart::new(axis(&path, &unit), axis(of.0, of.1));
             chart.series = curves(comparison, rows);
-            figure(&chart, &id, of.0, "Each point of a study by the value that varies.")
+            figure(&chart, &id, of.0, "Each point of a study against the varied value.")
         }
         None => {
             let mut chart = Chart::new(axis(&format!("in {}", comparison.subjects[0].name), of.1), axis(of.0, of.1));
             chart.series = against_the_first(comparison, rows);
-            let caption = "Each point of a study against the same point of the first: on the line nothing differs.";
+            let caption = "Each point of a study against the same point of the first study. On the line both values \
+                are equal.";
             figure(&chart, &id, of.0, caption)
         }
     }

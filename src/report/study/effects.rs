@@ -55,18 +55,18 @@ pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
         svg.group(r#"class="chart""#, |svg| panel(svg, answer, *m, measured[*m], *axis, frame));
     }
     let height = (panels.len() / each * rows_each) as f64 * (HEIGHT + GAP);
-    let mut caption = "Dots: the mean over all points that share a value (or lie in one of six pieces of its range). \
-                       Bars: from the smallest to the largest of them. Rings: the points. A level line says that the value \
-                       hardly matters."
+    let mut caption = "Dots: mean over all points with the same value (or in the same sixth of its range). Bars: from \
+                       the smallest to the largest of these points. Rings: the points. A level line means that the \
+                       value has almost no effect."
         .to_owned();
     if answer.as_it_is().is_some_and(|row| row.values().is_some()) {
         caption += " Dashed: the scene as it is.";
     }
     if answer.study.repeats > 1 {
-        caption +=
-            " Whiskers: a standard deviation of the repeats up and down; what is smaller than they are may be chance.";
+        caption += " Whiskers: plus and minus one standard deviation of the repeats. A difference smaller than the \
+            whiskers may be chance.";
     }
-    Some((svg.finish(WIDTH, height, "Main effects of what varies"), caption))
+    Some((svg.finish(WIDTH, height, "Main effects of the varied values"), caption))
 }
 
 fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize, frame: Frame) {
