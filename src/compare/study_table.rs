@@ -37,7 +37,7 @@ impl StudyTable {
     /// Reads the directory of a study.
     pub(super) fn read(finished: &Finished, path: &Path) -> Result<StudyTable, CompareError> {
         let file = |name: &str| -> Result<Vec<u8>, CompareError> {
-            finished.read(name)?.ok_or_else(|| damaged(path, name, "the manifest does not name it"))
+            finished.read(name)?.ok_or_else(|| damaged(path, name, "it is not named in the manifest"))
         };
         let found: Value =
             serde_json::from_slice(&file("study.json")?).map_err(|cause| damaged(path, "study.json", cause))?;

@@ -43,10 +43,10 @@ impl fmt::Display for RunError {
         match self {
             RunError::Faults(faults) => {
                 let faults: Vec<String> = faults.iter().map(Fault::to_string).collect();
-                write!(f, "the plan does not fit together: {}", faults.join("; "))
+                write!(f, "the plan is not consistent: {}", faults.join("; "))
             }
             RunError::Node { clock, cause } => write!(f, "after {clock}: {cause}"),
-            RunError::ForeignCheckpoint => f.write_str("the checkpoint is of another schedule"),
+            RunError::ForeignCheckpoint => f.write_str("the checkpoint belongs to another schedule"),
             RunError::NoSchedule { kind } => write!(f, "no schedule `{kind}` is known to this program"),
         }
     }

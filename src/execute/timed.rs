@@ -22,8 +22,8 @@ pub struct Measured {
 /// Time without a train, s.
 const IDLE: f64 = 1.0;
 
-/// Builds a track on grains, lets its first train come and times steps under its wheels. Fails where no grains lie under a track with
-/// trains.
+/// Builds a track on grains, lets its first train come and times steps under its wheels. Fails where the scene has no
+/// grains under a track with trains.
 pub fn time_steps(
     graph: &Graph,
     beds: &Beds,
@@ -35,7 +35,7 @@ pub fn time_steps(
 }
 
 fn timed(machine: &Machine<'_>, measured: Measured, tell: &mut Telling<'_>) -> Result<TimedSteps, NodeError> {
-    let no_grains = NodeError::Other { node: "grains".into(), why: "no grains lie under a track".into() };
+    let no_grains = NodeError::Other { node: "grains".into(), why: "the scene has no grains under a track".into() };
     let parts = machine.grain_parts().ok_or(no_grains)?;
     let blocks = machine.graph.blocks().ok_or(NodeError::NoTrain)?;
     let mut ground = GrainGround::new(parts);

@@ -34,7 +34,8 @@ pub enum NodeError {
     NoBuilder { node: String, kind: String },
     /// A seat that has settled (m) by more than the ballast below it is thick.
     Sunk { seat: usize, settlement: f64 },
-    /// Who listens has ended the run, before its first step or in the middle of a block; what was kept before goes on from there.
+    /// Who listens has ended the run, before its first step or in the middle of a block; what was kept before goes on
+    /// from there.
     Stopped,
     /// What a node of another program says.
     Other { node: String, why: String },
@@ -49,15 +50,15 @@ impl fmt::Display for NodeError {
             NodeError::Rig(cause) => cause.fmt(f),
             NodeError::Grains(cause) => write!(f, "the grains under the track: {cause}"),
             NodeError::Soil(cause) => write!(f, "the soil below the grains: {cause}"),
-            NodeError::NoGround => f.write_str("the track stands on no ground"),
+            NodeError::NoGround => f.write_str("the track has no ground below it"),
             NodeError::NoTrain => f.write_str("no train runs over the track"),
             NodeError::Sunk { settlement, .. } => {
-                write!(f, "a sleeper has settled by {settlement:.2} m, more than the ballast below it is thick")
+                write!(f, "a sleeper has settled by {settlement:.2} m, more than the thickness of the ballast below it")
             }
             NodeError::Stopped => f.write_str("the run was stopped"),
             NodeError::Foreign { node, why } => write!(f, "the kept state of the {node} cannot be used: {why}"),
             NodeError::NoBuilder { node, kind } => {
-                write!(f, "node `{node}` is of a kind `{kind}` that this program cannot run")
+                write!(f, "node `{node}` has kind `{kind}`, which this program cannot run")
             }
             NodeError::Other { node, why } => write!(f, "node `{node}`: {why}"),
         }

@@ -35,8 +35,8 @@ pub struct BedLayer {
     pub inner_porosity: f64,
     /// Largest distance between the curve that was asked for and that of the grains, as a share of the mass.
     pub grading_error: f64,
-    /// Neighbours a body under the plate, before friction came back; then in the finished bed, of all bodies and of those
-    /// that are no rattlers.
+    /// Neighbours a body under the plate, before friction came back; then in the finished bed, of all bodies and of
+    /// those that are no rattlers.
     pub coordination_pressed: f64,
     pub coordination: f64,
     pub coordination_without_rattlers: f64,
@@ -75,7 +75,8 @@ impl BedLayer {
             let mm = |length: f64| (1e3 * length).round();
             let (name, reached, asked) = (&self.name, mm(reached), mm(asked));
             format!(
-                "`{name}` has become {reached} mm thick, not {asked} mm: what it holds is guessed before it is packed."
+                "`{name}` is {reached} mm thick, not {asked} mm as asked. The number of grains is estimated before \
+                packing."
             )
         })
     }
@@ -121,7 +122,7 @@ mod tests {
             rattlers: 0.0,
         };
         assert_eq!((of(0.29).missed(), of(0.312).missed()), (None, None));
-        let told = "`gravel` has become 259 mm thick, not 300 mm: what it holds is guessed before it is packed.";
+        let told = "`gravel` is 259 mm thick, not 300 mm as asked. The number of grains is estimated before packing.";
         assert_eq!(of(0.2592).missed().as_deref(), Some(told));
         assert!(of(0.341).missed().is_some());
     }

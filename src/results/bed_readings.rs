@@ -76,7 +76,8 @@ pub fn read_bed(
     let forces = ForceSpread::from_pushes(survey.pushes());
     let row = |slab: &[f64; 2]| Some(profile_row(slab, &survey.slab(*slab, packed.area())?));
     let mut notes = Vec::new();
-    let plate = press(plan, packed, &slabs, tell).map_err(|why| notes.push(format!("No stiffness: {why}."))).ok();
+    let plate =
+        press(plan, packed, &slabs, tell).map_err(|why| notes.push(format!("Stiffness was not measured: {why}."))).ok();
     Ok(BedReadings {
         profile: slabs.iter().filter_map(row).collect(),
         directions: Directions::of_contacts(&survey, 0.0),

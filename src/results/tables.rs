@@ -30,15 +30,15 @@ pub struct SleeperRow {
     /// Stiffness of support and under sleeper pad in series.
     pub support_stiffness_N_per_m: f64,
     pub contact_loss_s: f64,
-    /// Kinds of trains of which every wheel comes and goes over it. Near the ends of the way wheels start and stop: of a kind that does
-    /// not pass whole its forces, displacement and contact loss are the means of the nearest ten seats of the section that it passes.
-    /// A seat that no kind passes is no extreme of the summary.
+    /// Kinds of trains of which every wheel comes and goes over it. Near the ends of the way wheels start and stop: of
+    /// a kind that does not pass whole its forces, displacement and contact loss are the means of the nearest ten seats
+    /// of the section that it passes. A seat that no kind passes is no extreme of the summary.
     pub trains_passing: usize,
 }
 
 impl SleeperRow {
-    /// Those of some rows that count in extremes: that a train passes whole; all of them where none does, as on a track shorter than the
-    /// trains, or in a static check.
+    /// Those of some rows that count in extremes: that a train passes whole; all of them where none does, as on a track
+    /// shorter than the trains, or in a static check.
     pub fn that_count<'a>(rows: impl Iterator<Item = &'a SleeperRow>) -> Vec<&'a SleeperRow> {
         let all: Vec<&SleeperRow> = rows.collect();
         let whole: Vec<&SleeperRow> = all.iter().copied().filter(|row| row.trains_passing > 0).collect();
@@ -115,8 +115,8 @@ pub struct TrainRow {
     pub max_rail_seat_load_N: f64,
     pub max_contact_force_N: f64,
     pub max_rail_moment_N_m: f64,
-    /// Largest force of any wheel over the static force of this wheel, and the largest share of its static force that a wheel lacks;
-    /// 0 without gravity.
+    /// Largest force of any wheel over the static force of this wheel, and the largest share of its static force that a
+    /// wheel lacks; 0 without gravity.
     pub dynamic_amplification: f64,
     pub wheel_unloading: f64,
 }
@@ -172,8 +172,8 @@ pub struct BlockRow {
     pub max_settlement_step_m: f64,
     /// Estimated error of settlement that the block adds at the worst seat; 0 for a block of one train, which has none.
     pub error_m: f64,
-    /// By how much a disturbance comes back with the other sign: the exchange overshoots above 1 and grows above 2. 0 where
-    /// the track moved too evenly to tell.
+    /// By how much a disturbance comes back with the other sign: the exchange overshoots above 1 and grows above 2. 0
+    /// where the track moved too evenly to tell.
     pub overshoot: f64,
     /// Amplitude of a sawtooth along the track in what the block settled, as a share of `max_settlement_step_m`.
     pub sawtooth: f64,
@@ -214,7 +214,7 @@ impl BlockRow {
         let shortest = cured.iter().map(|b| b.block_axles).min();
         let cured = shortest.map(|shortest| {
             let tried: u64 = cured.iter().map(|b| b.overshot).sum();
-            format!("{tried} blocks overshot and were done again in halves, down to {shortest} axles")
+            format!("{tried} blocks overshot and were repeated with half the length, down to {shortest} axles")
         });
         let said: Vec<String> = cured.into_iter().chain(sawtooth).collect();
         (!said.is_empty()).then(|| said.join("; "))

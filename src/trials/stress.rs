@@ -242,7 +242,7 @@ fn free_vibration(scenario: &Scenario, method: Integrator, coarser: f64) -> Opti
             Ok(ratio) if ratio <= 1.0 + ENERGY => Verdict::Stable { error: (ratio - 1.0).max(0.0) },
             Ok(ratio) => match foreseen.warning() {
                 Some(code) => Verdict::Coarse { error: ratio - 1.0, code },
-                None => Verdict::Wrong { why: format!("the energy grows to {ratio:.2} times that of the start") },
+                None => Verdict::Wrong { why: format!("the energy grows to {ratio:.2} times its initial value") },
             },
         };
     let name = format!("let go without damping: {method}, {} ms", number(time_step * 1e3));

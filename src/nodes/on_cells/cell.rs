@@ -1,7 +1,7 @@
 //! One cell at work: sleepers without a rail on a periodic bed, each under the forces of its seat.
 //!
-//! The forces are those on the support, which have the inertia of the sleeper in them already. So the sleepers of a cell are light; where
-//! the support bears nothing they lie on it with what they weigh.
+//! The forces are those on the support, which have the inertia of the sleeper in them already. So the sleepers of a
+//! cell are light; where the support bears nothing they lie on it with what they weigh.
 
 use super::forces::TrainForces;
 use crate::graph::{BedPlan, CellPlan, CellsNode, SleeperOnGrains};
@@ -19,13 +19,13 @@ const OF_SLEEPER: f64 = 0.2;
 /// Steps between looks at inertia, and at how deep the sleepers are, s.
 const HOLD: u64 = 200;
 const LOOK: f64 = 0.5e-3;
-/// Before a train the force goes to that between two trains in this time, and stands; over the last part of that time the level of a
-/// sleeper is read, s.
+/// Before a train the force goes to that between two trains in this time, and stands; over the last part of that time
+/// the level of a sleeper is read, s.
 const LEAD: f64 = 0.02;
 const STAND: f64 = 0.02;
 const READ: f64 = 0.005;
-/// Static load on every sleeper, N, about what bears on one under a wheel of 20 t an axle; time in which it grows and stands, s; local
-/// damping (Cundall) meanwhile.
+/// Static load on every sleeper, N, about what bears on one under a wheel of 20 t an axle; time in which it grows and
+/// stands, s; local damping (Cundall) meanwhile.
 const PRESS: f64 = 40e3;
 const PRESSING: [f64; 2] = [0.06, 0.03];
 const DAMPING: f64 = 0.7;
@@ -113,7 +113,7 @@ impl Cell {
         self.run(STAND - READ, |_| ())?;
         let after = self.mean_level(READ)?;
         if after > SUNK * self.height {
-            let why = format!("a sleeper has sunk by {:.0} mm: nothing carries it", 1e3 * after);
+            let why = format!("a sleeper has sunk by {:.0} mm: the grains do not carry it", 1e3 * after);
             return Err(NodeError::Other { node: "cells".into(), why });
         }
         let load = train.load(self.middle);

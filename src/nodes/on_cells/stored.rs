@@ -45,7 +45,7 @@ impl Cell {
         let bed = Bed::restore(bed).map_err(foreign)?;
         let is_whole = [walls.len(), forces.len(), weights.len()] == [sleepers; 3] && middle < sleepers;
         if !is_whole || walls.iter().any(|wall| wall.0 as usize >= bed.walls().len()) {
-            return Err(foreign("a cell of it has other sleepers"));
+            return Err(foreign("one cell has other sleepers"));
         }
         Ok(Cell { bed, walls, stride, forces, weights, middle, height })
     }

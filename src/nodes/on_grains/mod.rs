@@ -1,8 +1,9 @@
 //! A track whose sleepers stand on grains: packed beds under a rail, and soil below (the paper's DEM-FDM model).
 //!
-//! Between two exchanges the wheel forces of the plane track run over the rail of this model, and what they leave goes back: settlement
-//! of every support, and how stiff it is (the paper's Fig. 3). Sleepers beyond the grains stand on springs; their supports settle as the
-//! median of the outer third of the sleepers on grains, and so do those in the last bay before grains that are held.
+//! Between two exchanges the wheel forces of the plane track run over the rail of this model, and what they leave goes
+//! back: settlement of every support, and how stiff it is (the paper's Fig. 3). Sleepers beyond the grains stand on
+//! springs; their supports settle as the median of the outer third of the sleepers on grains, and so do those in the
+//! last bay before grains that are held.
 
 mod build;
 mod energy;
@@ -60,11 +61,11 @@ impl fmt::Display for Stage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Stage::Packing => "packing a cell",
-            Stage::Laying => "cells side by side",
-            Stage::Sleepers => "sleepers are set down",
-            Stage::Cribs => "cribs are filled",
+            Stage::Laying => "placing cells side by side",
+            Stage::Sleepers => "setting down sleepers",
+            Stage::Cribs => "filling cribs",
             Stage::Soil => "soil below",
-            Stage::Rail => "rail laid on, coming to rest",
+            Stage::Rail => "laying the rail, coming to rest",
             Stage::StaticLoad => "static load on the sleepers",
             Stage::Passage => "trains on grains",
             Stage::Rest => "coming to rest",

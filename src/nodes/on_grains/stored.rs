@@ -85,7 +85,7 @@ impl Live {
                     Some(SoilBelow::restore(&bed, parts.floor(number), parts.lies(number), node, state)?)
                 }
                 (None, None) => None,
-                _ => return Err(foreign("it holds soil that is not there, or none")),
+                _ => return Err(foreign("it holds soil that the scene does not have, or lacks the soil of the scene")),
             };
             Ok(StandingBed { bed, sleepers: stored.sleepers, soil })
         };
