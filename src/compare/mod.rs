@@ -36,7 +36,7 @@ pub struct Comparison {
     pub kind: Kind,
     /// The first is what the others are compared with.
     pub subjects: Vec<Subject>,
-    /// What differs between their scenes; `None` where an older version has kept no whole scene.
+    /// What differs between their scenes; `None` if an older version has kept no whole scene.
     pub edits: Option<Vec<Edit>>,
     /// Scalars of runs and tests.
     pub numbers: Vec<NumberRow>,
@@ -47,7 +47,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Reads two directories or more. Fails where one holds no finished results, or not of the kind of the first.
+    /// Reads two directories or more. Fails if one holds no finished results, or not of the kind of the first.
     pub fn read(directories: &[PathBuf]) -> Result<Comparison, CompareError> {
         let subjects: Vec<Subject> =
             names::of_paths(directories).into_iter().zip(directories).map(Subject::read).collect::<Result<_, _>>()?;

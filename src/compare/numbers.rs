@@ -13,7 +13,7 @@ pub struct NumberRow {
     pub unit: String,
     /// What it is called and shown in, where people ask for it first.
     pub label: Option<Label>,
-    /// `None` where a result has no such scalar.
+    /// `None` if a result has no such scalar.
     pub values: Vec<Option<Number>>,
 }
 

@@ -12,7 +12,7 @@ pub struct PointRow {
     pub levels: Vec<String>,
     pub measured: String,
     pub unit: String,
-    /// In that unit; `None` where a study has no such point, or it failed there.
+    /// In that unit; `None` if a study has no such point, or it failed there.
     pub values: Vec<Option<f64>>,
     /// From the first study.
     pub from_first: Vec<Option<Difference>>,

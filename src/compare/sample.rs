@@ -16,11 +16,11 @@ pub struct Sample {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Difference {
     pub difference: f64,
-    /// The same as a share of the mean of the first; `None` where that is 0.
+    /// The same as a share of the mean of the first; `None` if that is 0.
     pub share: Option<f64>,
     /// Half the width of the 95 % interval of the difference; `None` without packings to tell it.
     pub confidence: Option<f64>,
-    /// Packings of both with the same seeds, by whose differences the interval is told; 0 where there are none.
+    /// Packings of both with the same seeds, by whose differences the interval is told; 0 if there are none.
     pub pairs: usize,
 }
 

@@ -12,11 +12,11 @@ use std::collections::BTreeMap;
 pub struct Edit {
     /// The name that `--set` takes: `open.support.stiffness`.
     pub path: String,
-    /// The text in each scene; `None` where it has no such value.
+    /// The text in each scene; `None` if it has no such value.
     pub texts: Vec<Option<String>>,
 }
 
-/// What differs; `None` where not every result has its whole scene.
+/// What differs; `None` if not every result has its whole scene.
 pub fn edits(subjects: &[Subject]) -> Option<Vec<Edit>> {
     let scenes: Vec<&str> = subjects.iter().map(|subject| subject.resolved.as_deref()).collect::<Option<_>>()?;
     Some(between(&scenes))

@@ -68,7 +68,7 @@ pub struct SeatDifference {
     pub seats: usize,
 }
 
-/// The last axle count that all runs have recorded; `None` where they share none.
+/// The last axle count that all runs have recorded; `None` if they share none.
 pub fn common_count<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Option<u64> {
     let counts = |run: &Run| run.sleepers.iter().map(|row| row.axles).collect::<BTreeSet<u64>>();
     let shared = runs.into_iter().map(counts).reduce(|all, own| all.intersection(&own).copied().collect())?;

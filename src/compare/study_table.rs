@@ -28,7 +28,7 @@ pub struct StudyPoint {
     pub as_it_is: bool,
     /// The texts of what varies, as the axes are ordered.
     pub levels: Vec<String>,
-    /// By the measured expressions, in their units; nothing where the point failed.
+    /// By the measured expressions, in their units; nothing if the point failed.
     pub values: Vec<Sample>,
     pub best: bool,
 }

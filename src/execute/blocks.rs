@@ -55,7 +55,7 @@ pub(super) fn restored(
     }
 }
 
-/// The first passage of a graph, over the track as the scene starts it; `None` where no train runs, and where grains would have to be
+/// The first passage of a graph, over the track as the scene starts it; `None` if no train runs, and where grains would have to be
 /// packed for it.
 pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunError> {
     let Some(blocks) = graph.blocks() else { return Ok(None) };
@@ -75,7 +75,7 @@ pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunErro
 /// Settlement beyond which a run stops, m: more than ballast below a sleeper is thick, so that no law and no linear track holds.
 const SUNK: f64 = 0.5;
 
-/// Fails where a seat has settled (m) beyond all sense.
+/// Fails if a seat has settled (m) beyond all sense.
 pub(super) fn bearable(axles: u64, settlement: &[f64]) -> Result<(), RunError> {
     match settlement.iter().position(|settled| settled.abs() > SUNK) {
         Some(seat) => Err(RunError::node(Clock::Axles(axles), NodeError::Sunk { seat, settlement: settlement[seat] })),

@@ -9,7 +9,7 @@ pub(super) struct Exchange {
     pub axles: u64,
     /// Settlement of every seat, m.
     pub settlement: Vec<f64>,
-    /// Passages that are recorded, one of each kind of train, the leading one first; empty where nothing is.
+    /// Passages that are recorded, one of each kind of train, the leading one first; empty if nothing is.
     shown: Vec<Runner>,
     pub unloaded: Option<Unloaded>,
     /// In the order of the kinds of trains, forward before backward.
@@ -52,7 +52,7 @@ impl Exchange {
         self.passages.iter().find(|(other, _)| *other == runner).map(|(_, passage)| passage)
     }
 
-    /// The passages that a record shows, with the track before them; `None` where nothing is recorded.
+    /// The passages that a record shows, with the track before them; `None` if nothing is recorded.
     pub fn recorded(&self) -> Option<(&Unloaded, Vec<(Runner, &PassageOutcome)>)> {
         let shown: Vec<(Runner, &PassageOutcome)> =
             self.shown.iter().filter_map(|runner| Some((*runner, self.passage(*runner)?))).collect();

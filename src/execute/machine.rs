@@ -62,7 +62,7 @@ pub struct Machine<'a> {
 }
 
 impl<'a> Machine<'a> {
-    /// The track of the graph, its name first; `None` where there is none.
+    /// The track of the graph, its name first; `None` if there is none.
     fn track_node(&self) -> Option<(&'a str, &'a TrackNode)> {
         self.graph.nodes.iter().find_map(|node| match &node.model {
             Model::Track(track) | Model::Riding(track) => Some((node.name.as_str(), &**track)),
@@ -113,7 +113,7 @@ impl<'a> Machine<'a> {
         Ok((track, ground))
     }
 
-    /// Grains under the track of the graph, with the soil below them; `None` where there are none.
+    /// Grains under the track of the graph, with the soil below them; `None` if there are none.
     pub(super) fn grain_parts(&self) -> Option<GrainParts<'a>> {
         let nodes = || self.graph.nodes.iter().map(|node| &node.model);
         let grains = nodes().find_map(|model| if let Model::Grains(grains) = model { Some(grains) } else { None })?;

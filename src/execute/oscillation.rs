@@ -11,7 +11,7 @@ use std::ops::Range;
 /// Second differences below this share of the move are of an even track and say nothing.
 const EVEN: f64 = 1e-3;
 
-/// The amplification A, see above; `None` where the track moved too evenly to tell. Both are of every seat, of those that
+/// The amplification A, see above; `None` if the track moved too evenly to tell. Both are of every seat, of those that
 /// cannot settle too: beside them the track bends most.
 pub(super) fn amplification(moved: &[f64], change: &[f64]) -> Option<f64> {
     let (of_move, of_change) = (bends(moved), bends(change));

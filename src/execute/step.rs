@@ -14,7 +14,7 @@ pub struct BlockMeasures {
     /// of one train, and by trains that the ground leaves out.
     pub error: f64,
     /// By how much a disturbance of the settlement comes back with the other sign: above 1 the exchange overshoots, above 2
-    /// it grows. `None` where the track moved too evenly to tell.
+    /// it grows. `None` if the track moved too evenly to tell.
     pub overshoot: Option<f64>,
     /// Amplitude of a sawtooth along x in what the block settled, as a share of the most that it settled anywhere.
     pub sawtooth: f64,
@@ -78,7 +78,7 @@ impl Pair<'_> {
     }
 
     /// How much more the trains of a block from `here` would settle with the forces of `there`, m: those of each kind all in
-    /// a direction that was run at both. `None` where none was.
+    /// a direction that was run at both. `None` if none was.
     fn change(&self, here: &Exchange, there: &Exchange, block: &Block) -> Result<Option<Vec<f64>>, RunError> {
         let runs = self.runs_of_both(here, there, block);
         if runs.is_empty() {

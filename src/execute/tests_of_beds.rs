@@ -60,7 +60,7 @@ struct Test<'a, 'l> {
 }
 
 impl Test<'_, '_> {
-    /// Packs and tests, from what was kept of the test on; `None` where a listener ended it.
+    /// Packs and tests, from what was kept of the test on; `None` if a listener ended it.
     fn run(&mut self, running: Option<TestState>) -> Result<Option<(Tested, Bed<f32>)>, RunError> {
         let seed = self.bed.bed.seed().wrapping_add(self.done.len() as u64);
         let ready = self.bed.bed.ready(seed).map_err(|cause| failed_after(0, NodeError::Bed(cause)))?;

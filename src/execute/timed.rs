@@ -22,7 +22,7 @@ pub struct Measured {
 /// Time without a train, s.
 const IDLE: f64 = 1.0;
 
-/// Builds a track on grains, lets its first train come and times steps under its wheels. Fails where the scene has no
+/// Builds a track on grains, lets its first train come and times steps under its wheels. Fails if the scene has no
 /// grains under a track with trains.
 pub fn time_steps(
     graph: &Graph,

@@ -72,7 +72,7 @@ pub struct Request<'a> {
 
 /// Rails, sleepers and vehicles: settlement and responses of the ground in, states of rest and passages out.
 pub trait Superstructure: Sync {
-    /// Takes the responses of the ground. Costs nothing where their revision is known.
+    /// Takes the responses of the ground. Costs nothing if their revision is known.
     fn stand_on(&mut self, responses: &Responses) -> Result<(), NodeError>;
 
     /// The track at rest under test loads, on the settlement of every seat, m.
@@ -131,7 +131,7 @@ pub trait Substructure: Send + Sync {
     /// Settlement of every seat, m: that of the start and what traffic has added.
     fn settlement(&self) -> Vec<f64>;
 
-    /// Settlement of every seat by each of the laws that are compared, the driving one first, m; empty where nothing settles by laws.
+    /// Settlement of every seat by each of the laws that are compared, the driving one first, m; empty if nothing settles by laws.
     fn settlement_by_law(&self) -> Vec<Vec<f64>> {
         Vec::new()
     }
@@ -186,7 +186,7 @@ pub trait Substructure: Send + Sync {
         false
     }
 
-    /// The beds of grains under the track as they lie now; none where it stands on something else. What comes later does not know that
+    /// The beds of grains under the track as they lie now; none if it stands on something else. What comes later does not know that
     /// somebody has looked.
     fn beds(&mut self) -> Result<Vec<BedUnderTrack<'_>>, NodeError> {
         Ok(Vec::new())
@@ -204,6 +204,6 @@ pub trait Substructure: Send + Sync {
     /// The state as data, to go on from in another process.
     fn save(&self) -> Result<serde_json::Value, NodeError>;
 
-    /// Takes up a state that was saved; fails where it is of another substructure.
+    /// Takes up a state that was saved; fails if it is of another substructure.
     fn restore(&mut self, state: &serde_json::Value) -> Result<(), NodeError>;
 }

@@ -10,7 +10,7 @@ pub struct Unloaded {
     /// Every rail node, left to right.
     pub rail: Vec<RailPoint>,
     pub seats: Vec<UnloadedSeat>,
-    /// The rail as a measuring wheel finds it, left to right; empty where nobody records it.
+    /// The rail as a measuring wheel finds it, left to right; empty if nobody records it.
     pub profile: Vec<RailPlace>,
 }
 
@@ -75,7 +75,7 @@ pub struct PassageOutcome {
     pub rail_displacements: Vec<(f64, f64)>,
     pub time_steps: u64,
     pub newton_iterations: u64,
-    /// Histories; empty where the passage is not recorded.
+    /// Histories; empty if the passage is not recorded.
     pub samples: Vec<Sample>,
     /// The force of every sleeper on its support over the passage, where the substructure takes it.
     pub forces: Option<SeatForces>,

@@ -56,7 +56,7 @@ impl Observer for Sampler {
     }
 }
 
-/// A quantity at a seat; `None` where it does not exist there.
+/// A quantity at a seat; `None` if it does not exist there.
 fn at_seat(view: &StepView<'_>, seat: usize, quantity: History) -> Option<f64> {
     let node = view.track().seat_node(seat);
     Some(match quantity {

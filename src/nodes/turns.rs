@@ -14,7 +14,7 @@ pub fn cores() -> usize {
     thread::available_parallelism().map_or(1, NonZero::get)
 }
 
-/// What `run` makes of each item, in their order, so many at a time on so many threads. Fails where threads cannot be started.
+/// What `run` makes of each item, in their order, so many at a time on so many threads. Fails if threads cannot be started.
 pub fn each<T: Sync, A: Send>(
     items: &[T],
     at_a_time: usize,

@@ -164,7 +164,7 @@ fn along_rail(run: &Run, quantity: &str, count: &Count) -> Series {
     Series::new(&count.name, &count.class, Mark::Line, points)
 }
 
-/// A figure of one chart over the full width; `None` where there is nothing to see.
+/// A figure of one chart over the full width; `None` if there is nothing to see.
 pub fn figure(chart: &Chart, id: &str, title: &str, caption: &str) -> Option<Figure> {
     if chart.is_empty() {
         return None;

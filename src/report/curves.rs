@@ -110,7 +110,7 @@ pub struct Chart {
     pub seats: Vec<(f64, i32)>,
     /// A second scale of the upright axis: its title, and its value per SI of the first.
     pub second: Option<(String, f64)>,
-    /// Names of the steps through which the page's script moves the curves; none where they stand.
+    /// Names of the steps through which the page's script moves the curves; none if they stand.
     pub steps: Vec<String>,
 }
 

@@ -110,7 +110,7 @@ pub fn draw_pebbles(svg: &mut Svg, id: &str, pebbles: &[Pebble], look: &Look, at
     }
 }
 
-/// The outline of the convex part of a ball that shows; `None` where nothing does.
+/// The outline of the convex part of a ball that shows; `None` if nothing does.
 fn outline(pebble: &Pebble, shows: impl Fn(f64, f64) -> bool) -> Option<Vec<(f64, f64)>> {
     let centre = pebble.centre;
     let place = |k: i32| {

@@ -18,7 +18,7 @@ struct Line {
     kept: Option<bool>,
 }
 
-/// Writes the table; nothing where the run has no numbers.
+/// Writes the table; nothing if the run has no numbers.
 pub fn headline(html: &mut String, run: &Run) {
     let lines = match run.scenario.loading {
         Some(Loading::Static(_)) => static_lines(run),

@@ -19,7 +19,7 @@ const FIRM: f64 = 300e6;
 const SOFT: f64 = 5e6;
 const SLAB: f64 = 0.25;
 
-/// Draws the layers at every transition; gives the height. Nothing where the scene has none.
+/// Draws the layers at every transition; gives the height. Nothing if the scene has none.
 pub(super) fn draw(svg: &mut Svg, scenario: &Scenario) -> f64 {
     let track = &scenario.track;
     if track.sections.iter().all(|section| section.layers.is_empty()) {

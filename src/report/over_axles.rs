@@ -113,7 +113,7 @@ fn per_seat(
     [series(&|i| whole[i]), pale].into_iter().flatten().collect()
 }
 
-/// A curve that moves through the counts and stands at the last one; none where it has no value.
+/// A curve that moves through the counts and stands at the last one; none if it has no value.
 fn moved((name, class): (&str, &str), places: &[f64], moving: Vec<Vec<f64>>) -> Option<Series> {
     if !moving.iter().flatten().any(|value| value.is_finite()) {
         return None;

@@ -17,7 +17,7 @@ const ROWS: [(&str, &str, &str, f64); 9] = [
     ("max_rail_displacement", "Largest rail displacement", "mm", 1e-3),
 ];
 
-/// The table over packings; nothing where there is one.
+/// The table over packings; nothing if there is one.
 pub fn packings(html: &mut String, run: &Run) {
     if run.packings.is_empty() {
         return;

@@ -14,7 +14,7 @@ pub struct Names<'a> {
     pub caption: &'a str,
 }
 
-/// A figure of charts, each with its height in px, in rows of `columns`; `None` where none of them shows anything.
+/// A figure of charts, each with its height in px, in rows of `columns`; `None` if none of them shows anything.
 pub fn panels(names: &Names<'_>, charts: &[(Chart, f64)], columns: usize) -> Option<Figure> {
     if charts.iter().all(|(chart, _)| chart.is_empty()) {
         return None;

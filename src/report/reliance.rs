@@ -5,7 +5,7 @@ use super::svg::escape;
 use crate::results::Reliance;
 use std::fmt::Write;
 
-/// Writes the section; nothing where there is nothing to say.
+/// Writes the section; nothing if there is nothing to say.
 pub fn reliance(html: &mut String, reliance: &Reliance) {
     if *reliance == Reliance::default() {
         return;
@@ -38,7 +38,7 @@ pub fn reliance(html: &mut String, reliance: &Reliance) {
     *html += "</dl></section>\n";
 }
 
-/// A group of sentences, already HTML; nothing where there is none.
+/// A group of sentences, already HTML; nothing if there is none.
 fn group(html: &mut String, name: &str, sentences: impl Iterator<Item = String>) {
     let items: Vec<String> = sentences.map(|sentence| format!("<li>{}</li>", capitalised(&sentence))).collect();
     if !items.is_empty() {

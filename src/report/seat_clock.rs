@@ -34,7 +34,7 @@ impl<'a> Passages<'a> {
         of_part.and_then(|counts| counts.get(&axles)).map_or(&[], Vec::as_slice)
     }
 
-    /// A history of a part of the track at a count, over the time of the place; both by the names that they have in files. Empty where
+    /// A history of a part of the track at a count, over the time of the place; both by the names that they have in files. Empty if
     /// there is none.
     pub fn history(&self, quantity: &str, id: &str, axles: u64) -> Vec<(f64, f64)> {
         let rows = self.rows(quantity, id, axles);

@@ -11,7 +11,7 @@ use crate::scenario::{Scenario, Seat, Track};
 use crate::syntax::tree::{BinaryOp, Comparison};
 use std::collections::{BTreeMap, HashMap};
 
-/// What an expression can be about.
+/// The tables that an expression can read.
 #[derive(Debug, Clone, Copy)]
 pub struct Tables<'a> {
     pub sleepers: SleeperTable<'a>,
@@ -37,7 +37,7 @@ pub enum SleeperTable<'a> {
 type Reading<'a> = (u64, &'a str, f64, f64);
 
 impl<'a> SleeperTable<'a> {
-    /// What its rows count.
+    /// Unit of the count of its rows: axles or cycles.
     fn clock(self) -> fn(u64) -> Clock {
         match self {
             SleeperTable::Axles(_) => Clock::Axles,
@@ -45,7 +45,7 @@ impl<'a> SleeperTable<'a> {
         }
     }
 
-    /// The column of a response, of the seats that count in extremes or of those `everywhere`; `None` where the table
+    /// The column of a response, for the seats that count in extremes or for all (`everywhere`); `None` if the table
     /// has none.
     fn column(self, response: Response, everywhere: bool) -> Option<Vec<Reading<'a>>> {
         Some(match self {
@@ -142,7 +142,7 @@ pub fn known(expression: &Expression) -> Option<f64> {
     }
 }
 
-/// A function of one value or more; `None` where it has no value.
+/// A function of one value or more; `None` if it has no value.
 fn apply(function: Function, values: &[f64]) -> Option<f64> {
     let first = *values.first()?;
     match function {
@@ -215,7 +215,7 @@ fn percentile(values: &[(f64, f64)], share: f64) -> Option<f64> {
     Some(below + place.fract() * (above - below))
 }
 
-/// Root of the mean square of what the values depart from measured ones, at the measured places that they reach.
+/// Root mean square difference between values and measured values, at the measured places inside their range.
 fn misfit(measure: &Measure, mut values: Vec<(f64, f64)>, measured: &[(f64, f64)]) -> Result<f64, String> {
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     values.dedup_by(|next, kept| (next.0 - kept.0).abs() < PLACE_TOLERANCE);

@@ -1,11 +1,11 @@
-//! How the scalars of a summary are called that people ask for first, and in which units they read them.
+//! Labels and units of the most important scalars of a summary.
 
 /// A scalar of a summary as a line of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Label {
     /// Its name in `summary.json`.
     pub name: &'static str,
-    /// What it is called; two spaces at the front where it says more of the line above.
+    /// Its label; two leading spaces mark a detail of the line above.
     pub text: &'static str,
     pub unit: &'static str,
     /// The unit in SI.

@@ -1,4 +1,4 @@
-//! What several laws make of the same forces: the table `laws.csv`, their scalars and their spread.
+//! Settlement by several laws under the same forces: the table `laws.csv`, its scalars and the spread of the laws.
 
 use super::summarise::largest;
 use super::{BlockRow, Row, Scalar};
@@ -53,8 +53,8 @@ pub fn law_rows(scenario: &Scenario, counts: &[LawCount]) -> Vec<LawRow> {
     rows
 }
 
-/// `laws.NAME.max_settlement` and `laws.NAME.far_field_settlement` after the last count, and `law_spread`: the largest
-/// of the first over the least. No spread where a law settles nothing.
+/// `laws.NAME.max_settlement` and `laws.NAME.far_field_settlement` after the last count, and `law_spread`: ratio of the
+/// largest to the smallest `max_settlement`. No spread if the settlement by one law is zero.
 pub fn summarise_laws(scenario: &Scenario, rows: &[LawRow]) -> BTreeMap<String, Scalar> {
     let mut scalars = BTreeMap::new();
     let last = rows.iter().map(|row| row.axles).max();
@@ -77,7 +77,7 @@ pub fn summarise_laws(scenario: &Scenario, rows: &[LawRow]) -> BTreeMap<String, 
     scalars
 }
 
-/// Settlement that nobody measures, m: under a law with a threshold the forces were below it nearly everywhere.
+/// Settlement too small to measure, m: under a law with a threshold, almost all forces were below the threshold.
 const NOTHING: f64 = 1e-5;
 
 /// A sentence for each law under which nothing has settled in a run with traffic, with the force that would have been
@@ -96,7 +96,7 @@ pub fn unsettled(scenario: &Scenario, blocks: &[BlockRow], rows: &[LawRow]) -> V
     laws(scenario).enumerate().filter_map(|(index, law)| sentence(law, most(index, law), force)).collect()
 }
 
-/// Nothing is said of a law under which something has settled; `force` (N) is the largest of the run.
+/// `None` for a law under which a sleeper has settled; `force` (N) is the largest of the run.
 fn sentence(law: &SettlementLaw, most: f64, force: f64) -> Option<String> {
     let threshold = law.law.threshold();
     if most > if threshold.is_some() { NOTHING } else { 0.0 } {

@@ -1,5 +1,4 @@
-//! What the answers of a run rest on, in sentences: what was warned of, what decides the answer, and how far to trust
-//! it.
+//! Limits of the results of a run, in sentences: warnings, assumptions, and confidence.
 
 use super::{RunTables, Scalar, SleeperRow};
 use crate::diag::{Code, Diagnostic, Severity, Sources, and_list};
@@ -9,7 +8,7 @@ use crate::units::number;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What a reader has to know before a number is used. Sentences have source text in backticks.
+/// Information that a reader needs before using a number. Sentences have source text in backticks.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Reliance {
     /// How far the answer can be trusted, and how that is known.
@@ -18,9 +17,9 @@ pub struct Reliance {
     pub warnings: Vec<Warned>,
     /// Rules that the scene silences.
     pub silenced: Vec<Silenced>,
-    /// What the model takes for granted and the answer depends on.
+    /// Assumptions of the model that affect the answer.
     pub assumptions: Vec<String>,
-    /// Values of the library that nobody has checked against their source.
+    /// Values of the library that were not checked against their source.
     pub unchecked: Vec<Unchecked>,
 }
 
@@ -29,7 +28,7 @@ pub struct Reliance {
 pub struct Warned {
     pub code: String,
     pub message: String,
-    /// File and line: `bridge.track:34`; empty where no line is to blame.
+    /// File and line: `bridge.track:34`; empty if no line is to blame.
     pub place: String,
 }
 
@@ -37,7 +36,7 @@ pub struct Warned {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Silenced {
     pub rule: String,
-    /// What the rule warns of.
+    /// Title of the rule.
     pub title: String,
     pub reason: String,
 }
@@ -50,8 +49,7 @@ pub struct Unchecked {
 }
 
 impl Reliance {
-    /// What the answers rest on of a run whose check said `diagnostics` of `sources`, and which has these tables and
-    /// scalars.
+    /// The reliance of a run with these `diagnostics` of `sources`, tables and scalars.
     pub fn new(
         scenario: &Scenario,
         graph: &Graph,
@@ -98,7 +96,7 @@ fn unchecked(scenario: &Scenario) -> Vec<Unchecked> {
     found
 }
 
-/// What is known of the error: of the laws, of the exchanges, of packings.
+/// Known errors: of the laws, of the exchanges, and of packings.
 fn confidence(
     scenario: &Scenario,
     graph: &Graph,
@@ -147,7 +145,7 @@ fn confidence(
     told
 }
 
-/// How far sleepers have risen over grains under trains, where they have.
+/// Rise of sleepers over grains under trains, if any.
 fn risen(tables: &RunTables) -> Option<String> {
     let start = |row: &SleeperRow| tables.sleepers.iter().find(|first| first.sleeper == row.sleeper);
     let last = tables.sleepers.last()?.axles;
@@ -165,10 +163,10 @@ fn risen(tables: &RunTables) -> Option<String> {
     })
 }
 
-/// Rise of a sleeper that is told, m.
+/// Smallest rise of a sleeper that is reported, m.
 const RISEN: f64 = 1e-6;
 
-/// How far the laws of the scene lie from each other, and which of them are asked beyond their calibration.
+/// Spread between the laws of the scene, and the laws that are used outside their calibration.
 fn spread_of_laws(scenario: &Scenario, warnings: &[Warned], scalars: &BTreeMap<String, Scalar>) -> String {
     let laws: Vec<&SettlementLaw> = std::iter::once(&scenario.solve.law).chain(&scenario.solve.other_laws).collect();
     let beyond = |law: &&&SettlementLaw| {
@@ -275,7 +273,7 @@ fn supports(graph: &Graph) -> Option<String> {
     Some(format!("the sleepers stand on springs of {range} MN/m per seat with constant stiffness{how}"))
 }
 
-/// How many passages stood for how many trains.
+/// Number of computed passages, and of the trains that they represent.
 fn shared(graph: &Graph, tables: &RunTables) -> Option<String> {
     let trains = graph.blocks()?.trains_left(0);
     let passages: u64 = tables.blocks.iter().map(|block| block.passages).sum();

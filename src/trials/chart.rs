@@ -111,7 +111,7 @@ impl Outcome {
     }
 }
 
-/// Observed order of an integrator in the time step; none where too few of its steps gave an answer.
+/// Observed order of an integrator in the time step; none if too few of its steps gave an answer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Order {
     pub method: Integrator,
@@ -141,7 +141,7 @@ pub struct Chart {
     pub points: Vec<Point>,
     pub orders: Vec<Order>,
     pub cheapest: Vec<Cheapest>,
-    /// Euler–Bernoulli against Timoshenko, both at their finest; none where one of them failed.
+    /// Euler–Bernoulli against Timoshenko, both at their finest; none if one of them failed.
     pub model_error: Option<Errors>,
 }
 
@@ -159,7 +159,7 @@ pub const QUANTITIES: [(&str, ReadError); 4] = [
 /// Errors that a user may ask for.
 pub const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
-/// Compares; fails where the references do.
+/// Compares; fails if the references do.
 pub fn chart(
     planned: &Planned,
     settled: &Settled,

@@ -15,7 +15,7 @@ pub struct Planned {
 }
 
 impl Planned {
-    /// The passages of a plan; `None` where no train runs over a track.
+    /// The passages of a plan; `None` if no train runs over a track.
     pub fn new(graph: &Graph, origins: &Origins) -> Option<Planned> {
         let (node, blocks) = (graph.track()?.clone(), graph.blocks()?.clone());
         let seats = graph.supports.iter().map(|support| support.spring).collect();

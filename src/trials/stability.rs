@@ -60,7 +60,7 @@ const REFERENCE_STEP: f64 = 1.0 / 16.0;
 /// Run of the leading wheel before and after the transition, m.
 const APPROACH: f64 = 5.0;
 
-/// Maps a scene and tries it under stress. Fails where the scene itself cannot be prepared.
+/// Maps a scene and tries it under stress. Fails if the scene itself cannot be prepared.
 pub fn stability(
     scenario: &Scenario,
     planned: &Planned,

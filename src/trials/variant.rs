@@ -322,7 +322,7 @@ pub struct Errors {
     pub seat_load: f64,
     /// Sum over seats of the difference of the time without contact, s.
     pub contact_loss_s: f64,
-    /// The same over the sum of those times; none where the reference keeps contact everywhere.
+    /// The same over the sum of those times; none if the reference keeps contact everywhere.
     pub contact_loss: Option<f64>,
     pub rail_moment: f64,
 }

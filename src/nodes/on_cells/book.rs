@@ -58,7 +58,7 @@ impl Book {
         }
     }
 
-    /// What a run of trains adds of which the first `now` are computed, with the law where there is one; `None` where others must be computed.
+    /// What a run of trains adds of which the first `now` are computed, with the law where there is one; `None` if others must be computed.
     pub fn jump(&self, law: Option<&Hardening>, now: usize, passed: u64, trains: u64) -> Option<Jump> {
         let known = self.known();
         match law {

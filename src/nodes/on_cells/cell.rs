@@ -55,7 +55,7 @@ pub(super) struct Cell {
 pub(super) struct Passed {
     /// m.
     pub added: f64,
-    /// Secant of its largest force, N/m; `None` where the train hardly loads the cell.
+    /// Secant of its largest force, N/m; `None` if the train hardly loads the cell.
     pub stiffness: Option<f64>,
 }
 

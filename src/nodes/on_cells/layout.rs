@@ -68,7 +68,7 @@ impl Layout {
         with_load.filter(|(load, _)| (load - own).abs() > apart).collect()
     }
 
-    /// Adds a cell that parts from another one, at a seat; gives its number, `None` where there is no such cell or seat.
+    /// Adds a cell that parts from another one, at a seat; gives its number, `None` if there is no such cell or seat.
     fn add(&mut self, node: &CellsNode, from: usize, seat: usize) -> Option<usize> {
         let at = node.seats.get(seat)?.as_ref()?;
         let mut plan = CellPlan { x: at.x, ..self.plans.get(from)?.clone() };

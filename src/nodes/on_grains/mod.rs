@@ -76,7 +76,7 @@ impl fmt::Display for Stage {
 /// Hears what is being done, and the share of it that is done. A break ends it.
 pub type Telling<'a> = dyn FnMut(Stage, f64) -> ControlFlow<()> + 'a;
 
-/// Fails where who listens has ended the run.
+/// Fails if who listens has ended the run.
 pub(super) fn going_on(told: ControlFlow<()>) -> Result<(), NodeError> {
     match told {
         ControlFlow::Continue(()) => Ok(()),

@@ -91,7 +91,7 @@ impl Watched {
         if self.rises && !ringing { Some(self.now) } else { self.last }
     }
 
-    /// Secant of the support from where the last loading begins to its largest force, N/m; `None` where no wheel loads it.
+    /// Secant of the support from where the last loading begins to its largest force, N/m; `None` if no wheel loads it.
     pub fn stiffness(&self) -> Option<f64> {
         let told = self.told()?;
         let way = told.peak.level - told.begin.level;
@@ -99,7 +99,7 @@ impl Watched {
     }
 
     /// Level at which the support carries nothing, m, by its state at rest and a stiffness (N/m); for a sleeper that hangs, the one at
-    /// which it last left its support. `None` where it hangs and no wheel has pressed it down: nobody has seen its support.
+    /// which it last left its support. `None` if it hangs and no wheel has pressed it down: nobody has seen its support.
     pub fn unloaded_level(&self, rest: Reading, stiffness: f64) -> Option<f64> {
         match self.left {
             _ if rest.force > LIFTED => Some(rest.level - rest.force / stiffness),

@@ -17,7 +17,7 @@ pub struct Riders<'a> {
     pub trains: u64,
     /// Axles that have passed before.
     pub axles: u64,
-    /// What the first of them is recorded for; `None` where it is not.
+    /// What the first of them is recorded for; `None` if it is not.
     pub records: Option<&'a [Record]>,
 }
 

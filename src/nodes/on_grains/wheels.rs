@@ -18,7 +18,7 @@ impl<'a> WheelRun<'a> {
         WheelRun { histories, starts: (0..trains).map(|train| train as f64 * headway).collect() }
     }
 
-    /// The time between which a wheel is between two places (m), s; `None` where none ever is.
+    /// The time between which a wheel is between two places (m), s; `None` if none ever is.
     pub fn within(&self, [left, right]: [f64; 2]) -> Option<[f64; 2]> {
         let inside = |instant: &[(f64, f64)]| instant.iter().any(|(x, _)| (left..=right).contains(x));
         let instants: Vec<usize> =

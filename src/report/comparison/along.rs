@@ -59,7 +59,7 @@ const OF_SEATS: [OfSeats; 4] = [
     },
 ];
 
-/// The figures of runs; none where they share no axle count.
+/// The figures of runs; none if they share no axle count.
 pub(super) fn figures(comparison: &Comparison) -> Vec<Figure> {
     let runs = || comparison.subjects.iter().filter_map(|subject| subject.run());
     let Some(axles) = common_count(runs()) else { return Vec::new() };

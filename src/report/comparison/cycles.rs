@@ -32,7 +32,7 @@ pub(super) fn figures(comparison: &Comparison) -> Vec<Figure> {
 /// Points of a test, and whether there are several of them.
 type Points = Vec<(f64, f64)>;
 
-/// A chart with a curve for each packing of each result; `None` where none has two points.
+/// A chart with a curve for each packing of each result; `None` if none has two points.
 fn drawn(comparison: &Comparison, (x, y): (Axis, Axis), of: &dyn Fn(&BedTest) -> Points) -> Option<Chart> {
     let mut chart = Chart::new(x, y);
     for (subject, class) in coloured(comparison) {

@@ -25,7 +25,7 @@ struct Group {
     rows: Vec<usize>,
 }
 
-/// The picture with its caption; none where fewer than two points ran.
+/// The picture with its caption; none if fewer than two points ran.
 pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
     let measured = answer.study.measured();
     let done = answer.designs().filter(|(_, row)| row.values().is_some()).count();

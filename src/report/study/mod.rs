@@ -156,7 +156,7 @@ fn written_out(html: &mut String, answer: &Answer, row: &Row, file: &str) {
     );
 }
 
-/// How the designs do against each constraint; nothing where there is none.
+/// How the designs do against each constraint; nothing if there is none.
 fn constraints(html: &mut String, answer: &Answer) {
     let all = answer.constraints();
     if all.is_empty() {

@@ -25,7 +25,7 @@ const RADII: std::ops::RangeInclusive<f64> = 1e-5..=100.0;
 /// Bodies of a file.
 #[derive(Debug, Clone)]
 pub struct Pile {
-    /// Along x and y \[m\]; none where the bed is open.
+    /// Along x and y \[m\]; none if the bed is open.
     periods: [Option<f64>; 2],
     /// Level of a rigid floor \[m\].
     floor: Option<f64>,
