@@ -1,12 +1,13 @@
-//! Takes histories of a passage: every wheel force, what the scene records, and the forces of sleepers where the ground takes
-//! them whole.
+//! Takes histories of a passage: every wheel force, what the scene records, and the force histories of sleepers if the
+//! ground needs them.
 
 use super::{Forces, Sample, SampledPart, SeatForces, WheelHistories};
 use crate::graph::{History, Record};
 use crate::solvers::track::{Observer, StepView};
 
 pub(super) struct Sampler {
-    /// Seats and quantities, each once, in the order of the scene, with the distance of a wheel within which they are kept.
+    /// Seats and quantities, each once, in the order of the scene, with the distance of a wheel within which they are
+    /// kept.
     wanted: Vec<(usize, History, f64)>,
     every: usize,
     recorded: bool,

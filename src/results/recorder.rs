@@ -92,14 +92,14 @@ pub struct RunRecorder<'a> {
     /// In the parts before this one, and when this one began.
     spent: Spent,
     begun: Instant,
-    /// What the run is busy with, and the share of it that is done.
+    /// The present stage of the run, and the share of this stage that is done.
     stage: Option<(String, f64)>,
     records: &'a [Record],
     supports: &'a [SupportNode],
     /// Chainages between which every wheel of a train passes, m, for each kind of train.
     passed: Vec<Range<f64>>,
     directory: Option<&'a Directory>,
-    /// Becomes true where somebody wants the run to keep its state and stop.
+    /// Becomes true when the run must store its state and stop.
     interrupted: Option<&'a AtomicBool>,
     /// When a checkpoint is due.
     due: Option<Instant>,
@@ -115,7 +115,7 @@ pub struct RunRecorder<'a> {
     bed: Option<BedSummary>,
     /// The bed of the last test, as it ended.
     pub last_bed: Option<Bed<f32>>,
-    /// Why nothing more could be kept: it has ended the run.
+    /// Error in storing that has ended the run.
     failure: Option<ResultsError>,
 }
 
@@ -123,7 +123,8 @@ pub struct RunRecorder<'a> {
 /// at most.
 const KEEP: Duration = Duration::from_secs(2);
 const SHARE: u32 = 20;
-/// What checkpoints write in the mean at most: those of a track on grains have 100 MB, and a night has many of them.
+/// Limit of the mean rate at which checkpoints write: a checkpoint of a track on grains has 100 MB, and a night has
+/// many checkpoints.
 const BYTES_A_SECOND: u64 = 1 << 20;
 
 impl<'a> RunRecorder<'a> {
@@ -166,12 +167,12 @@ impl<'a> RunRecorder<'a> {
         RunRecorder { interrupted: Some(asked), ..self }
     }
 
-    /// The same, that shows beside its checkpoints what there is so far of a run that these texts made.
+    /// The same, and it stores the results so far of a run of these texts beside its checkpoints.
     pub fn made_by(self, source: Source<'a>) -> Self {
         RunRecorder { source: Some(source), ..self }
     }
 
-    /// What there is of the run; `None` if nobody has said what made it.
+    /// The results so far; `None` if the texts of the run are not known.
     pub fn gather(&self) -> Option<Run> {
         Some(Run::gather(self, self.scenario, self.graph, self.source?))
     }
@@ -186,12 +187,12 @@ impl<'a> RunRecorder<'a> {
         self.spent.parts + 1
     }
 
-    /// What the run is busy with, and the share of it that is done.
+    /// The present stage of the run, and the share of this stage that is done.
     pub fn stage(&self) -> Option<&(String, f64)> {
         self.stage.as_ref()
     }
 
-    /// Takes up what an interrupted run has left in the directory; `None` if it left nothing.
+    /// Continues from the state of an interrupted run in the directory; `None` if there is no such state.
     pub fn resume(&mut self) -> Result<Option<Checkpoint>, ResultsError> {
         let Some(directory) = self.directory else { return Ok(None) };
         let Some(saved) = directory.read_checkpoint::<Saved>()? else { return Ok(None) };

@@ -173,8 +173,8 @@ pub struct BlockRow {
     pub max_settlement_step_m: f64,
     /// Estimated error of settlement that the block adds at the worst seat; 0 for a block of one train, which has none.
     pub error_m: f64,
-    /// By how much a disturbance comes back with the other sign: the exchange overshoots above 1 and grows above 2. 0
-    /// where the track moved too evenly to tell.
+    /// Factor by which a disturbance comes back with the opposite sign: the exchange overshoots above 1 and grows above
+    /// 2. 0 if the track moved too evenly to measure it.
     pub overshoot: f64,
     /// Sawtooth amplitude of the block's settlement along the track, as a share of `max_settlement_step_m`.
     pub sawtooth: f64,
