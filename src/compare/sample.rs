@@ -12,7 +12,7 @@ pub struct Sample {
     pub told: Option<(f64, f64, usize)>,
 }
 
-/// How far the mean of a value is from that of the first result, SI.
+/// Difference of the mean of a value from the mean of the first result, SI.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Difference {
     pub difference: f64,
@@ -73,7 +73,7 @@ impl Sample {
     pub fn difference(&self, other: &Sample) -> Option<Difference> {
         let pairs: Vec<f64> = self.values.iter().filter_map(|(seed, own)| Some(other.on(*seed)? - own)).collect();
         let (before, after) = (self.mean()?, other.mean()?);
-        // equal beds on both sides: what scatters from bed to bed cancels
+        // equal beds on both sides: the scatter from bed to bed cancels
         let is_paired = pairs.len() >= 2 && pairs.len() == self.values.len() && pairs.len() == other.values.len();
         let (difference, confidence) = match is_paired {
             true => mean_and_confidence(&pairs),

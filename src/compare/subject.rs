@@ -99,7 +99,7 @@ impl Subject {
     }
 }
 
-/// What a finished directory holds, by the files that it has.
+/// Type of the results in a finished directory, by its files.
 fn content(finished: &Finished, path: &Path) -> Result<(Content, Made), CompareError> {
     let manifest = finished.manifest();
     let has = |name: &str| manifest.file(name).is_some();

@@ -1,4 +1,4 @@
-//! One exchange: the track as it lies after so many axles, and the passages of trains over it, each computed once.
+//! One exchange: the track after so many axles, and the passages of trains over it, each computed once.
 
 use crate::graph::{Block, Runner};
 use crate::nodes::{Forces, Kept, Load, NodeError, PassageOutcome, Request, Superstructure, Unloaded};
@@ -22,7 +22,7 @@ impl Exchange {
         Exchange { axles, settlement, shown, unloaded: None, passages: Vec::new() }
     }
 
-    /// Computes the passages that are missing, all at once, with what the ground needs of their forces.
+    /// Computes the missing passages, all at once, with the forces that the ground needs.
     pub fn ensure(&mut self, track: &impl Superstructure, runners: &[Runner], forces: Forces) -> Result<(), NodeError> {
         let missing: Vec<Runner> = runners.iter().copied().filter(|runner| self.passage(*runner).is_none()).collect();
         let run = |runner: &Runner| {
@@ -59,7 +59,7 @@ impl Exchange {
         Some((self.unloaded.as_ref()?, shown)).filter(|(_, shown)| !shown.is_empty())
     }
 
-    /// What its passages took.
+    /// Cost of its passages.
     pub fn work(&self) -> Work {
         self.passages().fold(Work::default(), |work, passage| Work {
             passages: work.passages + 1,
@@ -72,8 +72,8 @@ impl Exchange {
         self.passages.iter().map(|(_, passage)| passage)
     }
 
-    /// The trains of these blocks, one after the other, as loads of the ground with the forces computed here; those without a
-    /// passage load nothing.
+    /// The trains of these blocks, one after the other, as loads of the ground with the forces computed here; those
+    /// without a passage load nothing.
     pub fn loads(&self, blocks: &[Block]) -> Vec<Load<'_>> {
         let runs = blocks.iter().flat_map(|block| &block.runs);
         runs.filter_map(|(runner, trains)| Some(Load { passage: self.passage(*runner)?, trains: *trains })).collect()

@@ -1,4 +1,4 @@
-//! A run that stopped, said to a person: which block of the scene is responsible, and what to write there instead.
+//! Diagnostics of a run that stopped: the block of the scene that is responsible, and the text to write instead.
 
 use super::RunError;
 use crate::diag::{Code, Diagnostic, Span};
@@ -61,7 +61,7 @@ fn of_track(clock: Clock, cause: &TrackError, graph: &Graph, origins: &Origins) 
     labels.fold(Diagnostic::new(code, message).help(help), |d, (span, text)| d.label(span, text))
 }
 
-/// Time in which a support comes back, s, that is longer than a bogie needs to pass.
+/// Limit of the return time of a support, s: longer than a bogie needs to pass.
 const SLOW: f64 = 0.05;
 const LESS_DAMPING: &str =
     "write less `damping` for that support: published ones need 1 to 5 ms (`damping_time = 1 ms`)";
@@ -164,8 +164,8 @@ impl Scene<'_> {
         (0..seats.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
     }
 
-    /// The support nearest to a place, where its damper holds it down long after a wheel has passed. No step is short
-    /// enough for that.
+    /// The support nearest to a place, if its damper holds it down long after a wheel has passed. A shorter time step
+    /// does not help then.
     fn slow_support(&self, x: f64) -> Option<(Option<Span>, String)> {
         let seat = self.nearest_seat(x)?;
         let Spring { stiffness, damping, .. } = self.graph.supports.get(seat)?.spring?;

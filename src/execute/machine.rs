@@ -1,4 +1,4 @@
-//! A graph with the means to build its nodes, how its run ends and why it fails.
+//! A graph with the builders of its nodes, and the end or failure of its run.
 
 use crate::graph::quantity::SETTLEMENT;
 use crate::graph::{Blocks, Clock, Fault, Graph, Model, Node, TrackNode};
@@ -9,7 +9,7 @@ use crate::store::Beds;
 use std::fmt;
 use std::ops::ControlFlow;
 
-/// How a run ended that did not fail.
+/// End of a run without failure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ending {
     /// The schedule is done.
@@ -18,21 +18,21 @@ pub enum Ending {
     Stopped,
 }
 
-/// Why a run failed.
+/// Failure of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RunError {
-    /// The nodes and edges of the graph do not fit together.
+    /// The nodes and edges of the graph are not consistent.
     Faults(Vec<Fault>),
-    /// A node found no answer.
+    /// A node failed.
     Node { clock: Clock, cause: Box<NodeError> },
     /// A checkpoint of another schedule.
     ForeignCheckpoint,
-    /// A schedule of another program, which nobody here can run.
+    /// A schedule of another program, which this program cannot run.
     NoSchedule { kind: String },
 }
 
 impl RunError {
-    /// The failure of a node, and how far the schedule was.
+    /// The failure of a node, and the progress of the schedule.
     pub fn node(clock: Clock, cause: NodeError) -> RunError {
         RunError::Node { clock, cause: Box::new(cause) }
     }
@@ -54,7 +54,7 @@ impl fmt::Display for RunError {
 
 impl std::error::Error for RunError {}
 
-/// A graph with the means to build its nodes.
+/// A graph with the builders of its nodes.
 pub struct Machine<'a> {
     pub graph: &'a Graph,
     pub(super) builders: &'a Builders,

@@ -1,5 +1,5 @@
-//! The schedule of trains that ride on a rail over grains: nothing is exchanged between blocks, which only say when the
-//! state is told.
+//! The schedule of trains that ride on a rail over grains: nothing is exchanged between blocks; a block only sets when
+//! the state is reported.
 
 use super::Between;
 use super::blocks::{bearable, restored};

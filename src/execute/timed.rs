@@ -1,4 +1,4 @@
-//! How fast the steps of a graph with grains under its track are, without running it.
+//! Speed of the steps of a graph with grains under its track, without a full run.
 
 use super::machine::{Machine, RunError};
 use crate::graph::{Clock, Graph, Runner};
@@ -8,14 +8,14 @@ use crate::nodes::{
 };
 use crate::store::Beds;
 
-/// What is measured of a track on grains under its first train.
+/// Measurements of a track on grains under its first train.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Measured {
     /// Steps that are timed.
     pub steps: u64,
     /// Whether a whole passage is run too, with an account of its energy.
     pub energy: bool,
-    /// Whether the track lies for a second without a train too, to see how far it moves.
+    /// Whether the track is also computed for a second without a train, to measure its movement.
     pub idle: bool,
 }
 

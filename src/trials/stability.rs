@@ -1,8 +1,10 @@
-//! Where a passage fails: integrators, time steps, contacts and voids, most of them beyond what a scene may state.
+//! Map of passages that fail: integrators, time steps, contacts and voids, most of them outside the range that a scene
+//! may have.
 //!
-//! Every cell of the map is a passage of the first bogie over the transition. It is compared with a passage over the same
-//! track, contact and void at a sixteenth of the scene's step. A cell that is far from it, that has run away or holds what is
-//! no number, and of which nothing has warned, is **wrong**: the one end that must not be.
+//! Every cell of the map is a passage of the first bogie over the transition. It is compared with a passage over the
+//! same track, contact and void at a sixteenth of the scene's step. A cell is **wrong** if it differs much from this
+//! passage, is unstable or holds a value that is not a number, and no diagnostic has warned of it. No cell may be
+//! wrong.
 
 use super::planned::Planned;
 use super::stress::{Stress, stresses};

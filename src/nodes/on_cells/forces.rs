@@ -30,7 +30,7 @@ impl TrainForces {
             Some(headway) => close(&histories, middle, (headway / forces.interval).round().max(1.0) as usize),
             None => alone(&histories, (MARGIN / forces.interval).ceil() as usize),
         };
-        // a headway is not a whole number of intervals: the interval of the values is lengthened to fit
+        // a headway is not a whole number of intervals: the interval of the values is scaled to fit
         let interval = headway.map_or(forces.interval, |headway| headway / sleepers[0].len() as f64);
         Some(TrainForces { interval, sleepers })
     }

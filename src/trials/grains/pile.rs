@@ -1,8 +1,8 @@
 //! A bed in a file: a line of text for each pebble, read one at a time, and copies of it side by side.
 //!
-//! The first line says where the bed ends: `# periodic x 1.2 m, y 1.2 m; rigid floor z = 0`, either half of which may
-//! be absent. The others hold `x y z r` of a sphere or `clump x y z r` of a pebble, in m; the pebbles of a clump stand
-//! together.
+//! The first line gives the limits of the bed: `# periodic x 1.2 m, y 1.2 m; rigid floor z = 0`, either half of which
+//! may be absent. The others hold `x y z r` of a sphere or `clump x y z r` of a pebble, in m; the pebbles of a clump
+//! stand together.
 
 use crate::solvers::granular::clump::{Pebble, Template};
 use crate::solvers::granular::{Bed, ContactLaws, Domain, Placed, Real, Sphere};
@@ -40,7 +40,7 @@ enum Piece {
     Clump(Template),
 }
 
-/// Why a file is no bed.
+/// Why a file cannot be read as a bed.
 #[derive(Debug)]
 pub enum PileError {
     Unreadable(io::Error),
