@@ -1,4 +1,4 @@
-//! What happens along the track: settlement, level, loads and moments, one curve a recorded axle count.
+//! Figures along the track: settlement, level, loads and moments, one curve for each recorded axle count.
 
 use super::Figure;
 use super::counts::{self, Count};
@@ -42,7 +42,7 @@ pub fn seat_loads(run: &Run) -> Option<Figure> {
     figure(&chart, "rail_seat_load", "Rail seat loads along the track", &with_thin_curves(run, caption))
 }
 
-/// How the dead load of the track rests on the ballast.
+/// Contact forces on the ballast under the dead load of the track.
 pub fn gravity_contact(run: &Run) -> Option<Figure> {
     let mut chart = track_chart(run, "Contact force without a vehicle", "N", false);
     chart.series = per_seat(run, true, |row| row.gravity_contact_force_N);
@@ -117,8 +117,8 @@ pub fn along_profile(run: &Run, count: &Count, value: fn(&RailRow) -> f64) -> Se
     Series::new(&count.name, &count.class, Mark::Line, rows.map(|row| (row.x_m, value(row))).collect())
 }
 
-/// One series a count over the seats, of the ballasted ones only where the quantity is the ballast's; seats that not every train passes
-/// whole in a paler one, further packings in thin ones.
+/// One series for each count over the seats; only ballasted seats for a quantity of the ballast. Seats that not every
+/// train passes with every wheel are in a paler series, further packings in thin ones.
 fn per_seat(run: &Run, ballasted: bool, value: fn(&SleeperRow) -> f64) -> Vec<Series> {
     let names = ballasted_names(&run.scenario);
     let trains = match &run.scenario.loading {
@@ -164,7 +164,7 @@ fn along_rail(run: &Run, quantity: &str, count: &Count) -> Series {
     Series::new(&count.name, &count.class, Mark::Line, points)
 }
 
-/// A figure of one chart over the full width; `None` if there is nothing to see.
+/// A figure of one chart over the full width; `None` if the chart is empty.
 pub fn figure(chart: &Chart, id: &str, title: &str, caption: &str) -> Option<Figure> {
     if chart.is_empty() {
         return None;

@@ -1,4 +1,5 @@
-//! The page of a test rig: settlement and stiffness against cycles, loops, what sensors read, and the bed with its chains.
+//! The page of a test rig: settlement and stiffness against cycles, loops, sensor readings, and the bed with its force
+//! chains.
 
 use super::Figure;
 use super::bed::{BedView, Colour, Side, bed_svg};
@@ -30,7 +31,7 @@ impl<'a> BedTestsPage<'a> {
         BedTestsPage { run: &view.run, tests: &view.tests, view }
     }
 
-    /// The whole page, which needs nothing from elsewhere.
+    /// The whole page, in one file without external parts.
     pub fn html(&self) -> String {
         let run = self.run;
         let mut html = opening(&run.scenario.title, &subtitle(&run.scenario));
@@ -103,7 +104,7 @@ impl<'a> BedTestsPage<'a> {
         let mut figures = Vec::new();
         figures.extend(self.deviator());
         figures.extend(self.volume());
-        // a bed that is shortened once has nothing to show against cycles
+        // a bed that is shortened once has no curve against cycles
         if self.tests.tests.iter().any(|test| test.answer.cycles.iter().any(|cycle| cycle.number > 1)) {
             figures.extend([self.against_cycles(false), self.against_cycles(true), self.stiffness()]);
         }
@@ -194,11 +195,11 @@ impl<'a> BedTestsPage<'a> {
         figure(chart, "loops", "Force against depth", &caption)
     }
 
-    /// Deviator stress of a specimen whose sides give way.
+    /// Deviator stress of a specimen with movable sides.
     fn deviator(&self) -> Option<Figure> {
         let y = Axis { from_zero: true, ..Axis::new("Deviator", ("kPa", 1e3)) };
-        let caption = "Vertical stress minus lateral stress. The vertical stress is measured at plate and floor; the lateral \
-            stress at the four sides, which hold a constant pressure.";
+        let caption = "Vertical stress minus lateral stress. The vertical stress is measured at plate and floor; the \
+            lateral stress at the four sides, which hold a constant pressure.";
         self.against_strain(y, SpecimenState::deviator, "deviator", "Deviator against strain", caption)
     }
 
@@ -269,7 +270,7 @@ impl<'a> BedTestsPage<'a> {
         self.at_sensors(y, |reading| reading.velocity, "velocity", "Velocity at the sensors", caption)
     }
 
-    /// What sensors of the first packing read over the last cycle that is kept.
+    /// Sensor readings of the first packing over the last recorded cycle.
     fn at_sensors(
         &self,
         y: Axis,

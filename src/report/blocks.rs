@@ -1,4 +1,4 @@
-//! How long the blocks were, and what each was worth.
+//! Length and estimated error of the blocks.
 
 use super::Figure;
 use super::curves::{Axis, Chart, Mark, Series};
@@ -36,7 +36,7 @@ pub fn lengths(run: &Run) -> Option<Figure> {
     })
 }
 
-/// What the exchanges of the run were worth, in a sentence or two.
+/// Accuracy of the exchanges of the run, in a sentence or two.
 pub fn said(run: &Run) -> String {
     let errors = run.blocks.iter().map(|b| b.error_m).filter(|error| error.is_finite());
     let sum = format!(

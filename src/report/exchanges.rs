@@ -10,7 +10,7 @@ use crate::results::{Run, SleeperRow};
 
 /// Curves that a reader can tell apart.
 const MOST: usize = 4;
-/// Ratio of the last count to the first from which a logarithmic scale shows more.
+/// Smallest ratio of the last count to the first for which a logarithmic scale is drawn.
 const DECADES: f64 = 20.0;
 /// Distance from every transition at which the far field begins, m.
 const FAR_FIELD: f64 = 10.0;
@@ -74,7 +74,7 @@ fn of_sleeper(run: &Run, sleeper: &str) -> Vec<(f64, f64)> {
 }
 
 /// Rows of the last count: the sleeper that settled most, the one nearest to a transition, one of the far field, and
-/// what the scene records besides.
+/// further sleepers that the scene records.
 fn telling_seats(run: &Run) -> Vec<(&SleeperRow, &'static str)> {
     let names = ballasted_names(&run.scenario);
     let last = run.sleepers.iter().map(|row| row.axles).max();

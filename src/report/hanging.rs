@@ -1,5 +1,5 @@
-//! How a hanging sleeper meets its ballast, beside one of the far field: contact force, velocity and acceleration
-//! during a passage, shaded while there is no contact (paper, Figs. 16 and 17).
+//! A hanging sleeper beside one of the far field: contact force, velocity and acceleration during a passage, shaded
+//! while there is no contact (paper, Figs. 16 and 17).
 
 use super::curves::Chart;
 use super::panels::{Names, panels, share_scale};

@@ -1,4 +1,4 @@
-//! The table at the head of the page: what an engineer asks for first, where it stands and what it is held against.
+//! The table at the head of the page: the most important results, their places and their limits.
 
 use super::limits;
 use super::number::{plain, shown_unit, significant, whole};
@@ -11,7 +11,7 @@ use std::fmt::Write;
 struct Line {
     name: &'static str,
     value: String,
-    /// Where it stands, or what it is of.
+    /// Its place, or its reference.
     place: String,
     limit: String,
     /// Whether the limit is kept, where there is one.
@@ -130,7 +130,7 @@ fn broken_bonds(run: &Run) -> Option<Line> {
     })
 }
 
-/// What the step says: which side lies lower, and at which transition where several have one.
+/// The lower side of the step, and its transition if there are several.
 fn step_place(run: &Run) -> String {
     let Some(step) = scalar(run, "settlement_step") else { return String::new() };
     let lower = if step >= 0.0 { "the softer side lies lower" } else { "the stiffer side lies lower" };
@@ -160,7 +160,7 @@ fn force_lines(run: &Run) -> Vec<Line> {
             limit: format!("{} kN (EN 14363)", plain(limits::WHEEL_FORCE / 1e3, 3)),
             kept: Some(force <= limits::WHEEL_FORCE),
         });
-        // where another train has the largest force of its own static load
+        // if another train has the largest force relative to its own static load
         let amplified = worst_train(&run.trains, |row| row.dynamic_amplification);
         if let Some(amplified) = amplified.filter(|amplified| row.is_some_and(|row| row.train != amplified.train)) {
             let place = times_static(run, amplified);
@@ -191,12 +191,12 @@ fn force_lines(run: &Run) -> Vec<Line> {
     lines
 }
 
-/// The largest force of a train over its static load, and whose it is.
+/// The largest force of a train relative to its static load, and the name of the train.
 fn times_static(run: &Run, row: &TrainRow) -> String {
     format!("{} \u{d7} {}", significant(row.dynamic_amplification, 3), static_load(run, row))
 }
 
-/// The static wheel load of a train, which is named where several run.
+/// The static wheel load of a train, with its name if several trains run.
 fn static_load(run: &Run, row: &TrainRow) -> String {
     let load = amount(row.static_wheel_load_N, "N");
     match &run.scenario.loading {

@@ -1,4 +1,4 @@
-//! What rail and seats do while a vehicle passes, at the recorded sleepers (paper, Figs. 13 to 15).
+//! Histories of rail and seats while a vehicle passes, at the recorded sleepers (paper, Figs. 13 to 15).
 
 use super::curves::Chart;
 use super::panels::{Names, panels, share_scale};
@@ -9,7 +9,8 @@ use crate::scenario::response::Response;
 
 const HEIGHT: f64 = 225.0;
 
-/// Quantities with what their figure says. What sleepers do on their supports has a figure of its own, see `hanging`.
+/// Quantities with title and caption of their figure. The motion of sleepers on their supports has its own figure, see
+/// `hanging`.
 const SHOWN: [(Response, &str, &str); 4] = [
     (
         Response::RailSeatLoad,
@@ -35,7 +36,7 @@ const SHOWN: [(Response, &str, &str); 4] = [
     ),
 ];
 
-/// One figure a quantity, one panel a seat, one curve a count.
+/// One figure for each quantity, one panel for each seat, one curve for each count.
 pub fn histories(run: &Run) -> Vec<Figure> {
     let passages = Passages::new(run);
     SHOWN.iter().filter_map(|(quantity, title, what)| history((run, &passages), *quantity, title, what)).collect()

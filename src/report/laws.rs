@@ -1,5 +1,5 @@
-//! What several settlement laws make of the same forces: along the track, and with the axles where the first settles
-//! most.
+//! Settlement by several laws under the same forces: along the track, and against the axles at the seat with the
+//! largest settlement by the first law.
 
 use super::Figure;
 use super::along::{figure, track_chart};
@@ -21,7 +21,7 @@ pub fn spread(run: &Run) -> Vec<Figure> {
     [along_the_track(run, &names), with_the_axles(run, &names)].into_iter().flatten().collect()
 }
 
-/// Says under which laws nothing settled.
+/// Writes a note for each law under which nothing settled.
 pub fn remarks(html: &mut String, run: &Run) {
     for sentence in unsettled(&run.scenario, &run.blocks, &run.laws) {
         let _ = writeln!(html, "<p class=\"caption\" role=\"note\">Note: {}.</p>", prose(&sentence));

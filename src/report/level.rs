@@ -11,7 +11,7 @@ use crate::results::{RailRow, Run, loaded_level, longitudinal_level};
 use crate::scenario::Loading;
 
 const HEIGHT: f64 = 260.0;
-/// A limit is drawn where the curves come this near to it.
+/// A limit is drawn if the curves reach this share of it.
 const NEAR: f64 = 0.4;
 
 /// Chainage and level of the rail at one count, m.
@@ -48,7 +48,7 @@ fn filtered(run: &Run, count: &Count, of: Profile) -> Option<Series> {
     Some(Series::new(&count.name, &count.class, Mark::Line, level.points))
 }
 
-/// Draws the limits that are near enough to be seen, and says all of them.
+/// Draws the limits that the curves come near to, and returns all limits as text.
 fn add_limits(charts: &mut [Chart; 2], limits: LevelLimits) -> String {
     let peaks = charts.iter().flat_map(|chart| &chart.series).flat_map(|series| &series.points);
     let peak = peaks.map(|point| point.1.abs()).fold(0.0, f64::max);

@@ -1,5 +1,5 @@
-//! Bending of the rail along the track: what a passage makes of it, with the stress in the foot, and what stays without
-//! a vehicle.
+//! Bending moment of the rail along the track: during a passage, with the stress in the rail foot, and without a
+//! vehicle.
 
 use super::along::{along_profile, track_chart};
 use super::curves::Series;

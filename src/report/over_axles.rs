@@ -11,7 +11,7 @@ use crate::scenario::Loading;
 use std::collections::{BTreeSet, HashMap};
 
 const HEIGHT: f64 = 230.0;
-/// Counts that the page holds, spread evenly where there are more.
+/// Counts that the page holds at most, spread evenly.
 const MOST: usize = 40;
 /// Places of the rail that the page holds: a picture has no more pixels.
 const PLACES: usize = 420;
@@ -81,8 +81,8 @@ fn rail_level(run: &Run, counts: &[u64]) -> Option<Series> {
     moved(("rail", "s0"), &places, moving.collect())
 }
 
-/// Values of the seats, of the ballasted ones only where the quantity is the ballast's: of those that every train
-/// passes whole, and of the others in a paler curve that meets it.
+/// Values of the seats; only ballasted seats for a quantity of the ballast. Seats that every train passes with every
+/// wheel are in one curve, the others in a paler curve that joins it.
 fn per_seat(
     run: &Run,
     counts: &[u64],

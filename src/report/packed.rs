@@ -1,4 +1,4 @@
-//! The page of a packed bed: what it is like, how it was made, and what it looks like.
+//! The page of a packed bed: its properties, its making, and its pictures.
 
 use super::Figure;
 use super::bed::{BedView, Colour, Side, bed_svg};
@@ -20,7 +20,7 @@ const HEIGHT: f64 = 300.0;
 /// A bed as the page shows it.
 pub struct BedPage<'a> {
     pub summary: &'a BedSummary,
-    /// What was taken of each grading, from the floor upwards.
+    /// The sample of each grading, from the floor upwards.
     pub samples: &'a [Sample],
     pub grains: &'a [Grain],
     pub links: &'a [Link],
@@ -29,7 +29,7 @@ pub struct BedPage<'a> {
 }
 
 impl BedPage<'_> {
-    /// The whole page, which needs nothing from elsewhere.
+    /// The whole page, in one file without external parts.
     pub fn html(&self) -> String {
         let summary = self.summary;
         let [length, width] = summary.plan_m;

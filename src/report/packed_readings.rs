@@ -1,4 +1,4 @@
-//! What was measured in a packed bed: over its height, in its contacts, under a plate.
+//! Measurements in a packed bed: over its height, in its contacts, under a plate.
 
 use super::Figure;
 use super::curves::{Axis, Chart, Mark, Series};
@@ -15,7 +15,7 @@ const PROFILE: f64 = 340.0;
 const CONTACTS: f64 = 320.0;
 const ROSE: f64 = 118.0;
 const CURVE: f64 = 300.0;
-/// On which the axis of porosity ends.
+/// The axis of porosity ends on a multiple of this value.
 const ROUND: f64 = 0.05;
 /// Force over its mean from which the tail is fitted.
 const FIT: f64 = 1.0;

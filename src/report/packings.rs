@@ -1,10 +1,10 @@
-//! What scatters from packing to packing: a table of the page.
+//! Scatter from packing to packing: a table of the page.
 
 use super::number::plain;
 use crate::results::Run;
 use std::fmt::Write;
 
-/// Scalars of the table: name, how it is called, its unit and that unit in SI.
+/// Scalars of the table: name, label, unit, and the size of the unit in SI.
 const ROWS: [(&str, &str, &str, f64); 9] = [
     ("settlement_step", "Step at the structure", "mm", 1e-3),
     ("max_settlement", "Largest settlement", "mm", 1e-3),
@@ -44,7 +44,7 @@ pub fn packings(html: &mut String, run: &Run) {
     *html += "</table></div></section>\n";
 }
 
-/// A caption with a word on the thin curves, where there are some.
+/// A caption with a note on the thin curves, if there are any.
 pub fn with_thin_curves(run: &Run, caption: &str) -> String {
     match run.packings.len() {
         0 => caption.to_owned(),

@@ -1,4 +1,4 @@
-//! The report of a run: one HTML page with its pictures inside, that needs nothing from elsewhere and is whole without
+//! The report of a run: one HTML page with its pictures inside, without external parts; the page is complete without
 //! its script.
 
 use super::headline::headline;
@@ -19,7 +19,7 @@ pub fn page(run: &Run) -> String {
     page_with(run, "")
 }
 
-/// The page of a run that is not finished: what there is so far.
+/// The page of an unfinished run, with the results so far.
 pub fn page_so_far(so_far: &SoFar) -> String {
     let notice = format!(
         "<section id=\"unfinished\"><h2>Not finished</h2><p class=\"caption\">{}. Figures and tables show the records \
@@ -29,8 +29,7 @@ pub fn page_so_far(so_far: &SoFar) -> String {
     page_with(&so_far.run, &notice)
 }
 
-/// Where a run stands that is not finished: `40 of 500 axles after 1.2 h of computing; now trains on grains, 43 %
-/// done`.
+/// Progress of an unfinished run: `40 of 500 axles after 1.2 h of computing; now trains on grains, 43 % done`.
 pub fn standing(so_far: &SoFar) -> String {
     let done = match (so_far.clock, &so_far.run.scenario.loading) {
         (Clock::Axles(axles), Some(Loading::Traffic(traffic))) => {
@@ -123,7 +122,7 @@ pub(super) fn subtitle(scenario: &Scenario) -> String {
     text
 }
 
-/// Where to find what.
+/// The contents of the page.
 fn contents(html: &mut String, figures: &[Figure], run: &Run) {
     *html += "<nav id=\"contents\"><h2>Contents</h2><ol>";
     for figure in figures {
@@ -176,7 +175,7 @@ pub(super) fn picture(html: &mut String, figure: &Figure) {
     );
 }
 
-/// What each kind of train does at the last count, against its own static load.
+/// Results of each type of train at the last count, compared with its own static load.
 fn trains(html: &mut String, run: &Run) {
     let Some(last) = run.trains.iter().map(|row| row.axles).max() else { return };
     let heads = [

@@ -1,5 +1,4 @@
-//! What pebbles buy and what they cost: the error of shape against their number, and the tests of contacts that they
-//! make.
+//! Accuracy and cost of pebbles: the error of shape and the number of contact tests against the number of pebbles.
 
 use super::curves::{Axis, Chart, Mark, Series};
 use super::svg::{Anchor, Frame, Svg};
@@ -9,7 +8,7 @@ use super::view::WIDTH;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PebbleRow {
     pub pebbles: usize,
-    /// Share of the volume that lies elsewhere.
+    /// Share of the volume outside the surface.
     pub volume: f64,
     /// Mean distance of the surfaces over the size of the grain.
     pub distance: f64,

@@ -1,11 +1,11 @@
-//! What the numbers rest on, on the first page: a reader sees what was warned of before a number is used.
+//! Warnings, assumptions and confidence on the first page, so that a reader sees them before using a number.
 
 use super::prose::prose;
 use super::svg::escape;
 use crate::results::Reliance;
 use std::fmt::Write;
 
-/// Writes the section; nothing if there is nothing to say.
+/// Writes the section; nothing if it is empty.
 pub fn reliance(html: &mut String, reliance: &Reliance) {
     if *reliance == Reliance::default() {
         return;

@@ -1,5 +1,5 @@
 //! The picture of a stability map: a panel for each integrator and void, time steps across and contacts upwards, and
-//! the list of hard scenes below. Shade is error, a sign is an end; both are told apart in grey.
+//! the list of hard scenes below. The shade is the error, a sign is the result; both can be read in grey.
 
 use super::number::significant;
 use super::svg::{Anchor, Frame, Svg};

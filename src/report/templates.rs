@@ -1,4 +1,4 @@
-//! Templates of grains: surfaces beside the clumps that stand for them.
+//! Templates of grains: surfaces beside their clumps.
 
 use super::grain::{Look, draw_pebbles, draw_surface};
 use super::number::plain;

@@ -13,10 +13,10 @@ use crate::scenario::Track;
 const HEIGHT: f64 = 250.0;
 /// Wheels that get a panel: those of the leading vehicle.
 const WHEELS: usize = 4;
-/// Half the length that is shown, m: the ripple of single sleepers is to be seen.
+/// Half the length that is shown, m: the ripple of single sleepers must be visible.
 const CLOSE: f64 = 15.0;
 
-/// The first transition and what is near it, where the track is longer.
+/// The range near the first transition, if the track is longer.
 fn close_up(track: &Track) -> Option<(f64, f64)> {
     let x = track.transitions.first()?.x;
     let (left, right) = ((x - CLOSE).max(track.start()), (x + CLOSE).min(track.end()));

@@ -68,7 +68,7 @@ impl<'a> Picture<'a> {
         Picture { chart, beam, methods, decades, most: 10f64.powf(largest.log10().ceil().min(1.0)) }
     }
 
-    /// Points of a line, from the cheapest to the dearest, whatever became of them.
+    /// Points of a line, from the cheapest to the most expensive, including failed ones.
     fn line(&self, method: Integrator, beam: Beam) -> Vec<&'a Point> {
         let of_line = |p: &&Point| {
             p.level == Level::Settled
@@ -333,7 +333,7 @@ fn percent(decade: i32) -> f64 {
     10f64.powi(decade + 2)
 }
 
-/// A tick without the dust of a power of ten.
+/// A tick without the rounding error of a power of ten.
 fn round(value: f64) -> String {
     number((value * 1e6).round() / 1e6)
 }

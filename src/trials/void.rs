@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct Void {
     /// m.
     pub depth: f64,
-    /// Number of sleepers nearest to the transition; if absent, all supports of the soft side lie lower.
+    /// Number of sleepers nearest to the transition; if absent, all ballasted supports lie lower.
     pub sleepers: Option<usize>,
 }
 

@@ -87,7 +87,7 @@ fn spread(run: &Run) -> Vec<&BedsAtCount> {
     }
 }
 
-/// The beds under the leading bogie of the train after a count, where they were told.
+/// The beds under the leading bogie of the train after a count, if they were recorded.
 fn under_train(run: &Run, axles: u64) -> Option<BedsAtCount> {
     run.beds.iter().find(|beds| beds.under_train && beds.axles == axles).map(|beds| section(run, beds))
 }

@@ -43,7 +43,7 @@ fn heads<'a>(comparison: &'a Comparison, first: &'a str, differences: bool) -> V
     heads
 }
 
-/// The scalars that people ask for first, then all others folded away.
+/// The most important scalars, then all others in a closed list.
 pub(super) fn numbers(html: &mut String, comparison: &Comparison) {
     if comparison.numbers.is_empty() {
         return;
@@ -116,7 +116,7 @@ fn differs(difference: &Difference, size: f64) -> String {
     if difference.is_sure() == Some(true) { format!("<b>{text}</b>") } else { text }
 }
 
-/// Where along the track runs part most.
+/// The largest differences between runs along the track.
 pub(super) fn seats(html: &mut String, comparison: &Comparison) {
     let Some(any) = comparison.seats.first() else { return };
     let caption = format!(
@@ -175,7 +175,7 @@ pub(super) fn point_table(html: &mut String, comparison: &Comparison) {
     *html += END;
 }
 
-/// What made each result.
+/// Provenance of each result.
 pub(super) fn made(html: &mut String, comparison: &Comparison) {
     *html += &table_head("How these were made", "", &["", "title", "file", "seed", "program", "SHA-256"]);
     for subject in &comparison.subjects {

@@ -1,4 +1,4 @@
-//! Studies in one figure: what is measured against the one number that varies, else point for point against the first
+//! Studies in one figure: measured values against the one number that varies, or point for point against the first
 //! study.
 
 use super::coloured;
@@ -44,7 +44,7 @@ fn axis(label: &str, unit: &str) -> Axis {
     Axis { unit: unit.to_owned().into(), ..Axis::new(label, ("", 1.0)) }
 }
 
-/// The path and unit of what varies where all studies vary one number.
+/// Path and unit of the varied number, if all studies vary one number.
 fn the_number_that_varies(comparison: &Comparison) -> Option<(String, String)> {
     let axes: BTreeSet<_> = comparison.subjects.iter().filter_map(|s| s.study()).map(|study| &study.axes).collect();
     let [axes] = axes.into_iter().collect::<Vec<_>>()[..] else { return None };

@@ -1,4 +1,4 @@
-//! Main effects: the mean of what is measured over the points that share a value, for every value that varies.
+//! Main effects: the mean of a measured quantity over the points with the same value, for every varied value.
 
 use super::plane::{Plane, cut, range, titled};
 use crate::report::curves::{Mark, Series};
@@ -37,7 +37,7 @@ pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
     if axes.is_empty() {
         return None;
     }
-    // what is measured of one value that varies lies side by side, else the values do
+    // with one varied value its measured quantities lie side by side, otherwise the varied values do
     let panels: Vec<(usize, usize)> = (0..measured.len()).flat_map(|m| axes.iter().map(move |a| (m, *a))).collect();
     let each = if axes.len() == 1 { panels.len() } else { axes.len() };
     let beside = each.min(ACROSS);
@@ -129,7 +129,7 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
     });
     svg.group(r#"class="series" data-series="0""#, |svg| {
         let places: Vec<(f64, f64)> = means.iter().map(|at| plane.point(*at)).collect();
-        // between words lies nothing
+        // no line between words
         if !worded {
             svg.path("line s0", &places, false, "");
         }
@@ -140,7 +140,7 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
     });
 }
 
-/// The mean of what is measured over the points of a group.
+/// The mean of a measured quantity over the points of a group.
 fn mean(group: &Group, value: &impl Fn(usize) -> Option<f64>) -> f64 {
     let values: Vec<f64> = group.rows.iter().filter_map(|row| value(*row)).collect();
     values.iter().sum::<f64>() / values.len() as f64
@@ -155,7 +155,7 @@ fn whisker(svg: &mut Svg, low: (f64, f64), high: (f64, f64)) {
     }
 }
 
-/// Where a row stands on the level scale of an axis: its number, else the place of its value in the list.
+/// Place of a row on the x axis: its number, or the place of its value in the list.
 fn place(answer: &Answer, axis: usize) -> impl Fn(usize) -> f64 + '_ {
     let numeric = answer.designs().all(|(_, row)| row.levels[axis].number.is_some());
     move |row: usize| {

@@ -1,5 +1,5 @@
-//! The page of a study: the best designs beside the scene as it is, with the lines to paste; what misses its
-//! constraints; the Pareto front, main effects, and every point.
+//! The page of a study: the best designs beside the scene as it is, with the lines to paste; missed constraints; the
+//! Pareto front, main effects, and every point.
 
 mod effects;
 mod front;
@@ -15,7 +15,7 @@ use crate::study::{Answer, MetAndMissed, Miss, Row, amount};
 use std::fmt::Write;
 use table::table;
 
-/// Best designs that the page spells out.
+/// Number of best designs that the page shows in full.
 const MOST_SHOWN: usize = 12;
 
 /// Makes the whole page. `file` is the name of the scene's file, `design` the scene of the first of the best points,
@@ -90,8 +90,8 @@ fn goal(goal: Goal) -> &'static str {
     }
 }
 
-/// The best design or the designs of the front, each against the scene as it is; where none meets every constraint, the
-/// nearest.
+/// The best design or the designs of the front, each against the scene as it is; the nearest design if none meets every
+/// constraint.
 fn best(html: &mut String, answer: &Answer, file: &str) {
     let best = answer.best();
     if let Some(nearest) = answer.nearest() {
@@ -122,7 +122,7 @@ fn best(html: &mut String, answer: &Answer, file: &str) {
     written_out(html, answer, &answer.rows[*first], file);
 }
 
-/// No design is feasible: the one that misses least.
+/// If no design is feasible: the design with the smallest miss.
 fn nearest_design(html: &mut String, answer: &Answer, nearest: usize, file: &str) {
     let row = &answer.rows[nearest];
     let _ = write!(
@@ -156,7 +156,7 @@ fn written_out(html: &mut String, answer: &Answer, row: &Row, file: &str) {
     );
 }
 
-/// How the designs do against each constraint; nothing if there is none.
+/// Number of designs that meet each constraint; nothing if there is no constraint.
 fn constraints(html: &mut String, answer: &Answer) {
     let all = answer.constraints();
     if all.is_empty() {
