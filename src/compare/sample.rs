@@ -69,7 +69,7 @@ impl Sample {
         }
     }
 
-    /// How far another sample is from this one.
+    /// Difference of another sample from this one.
     pub fn difference(&self, other: &Sample) -> Option<Difference> {
         let pairs: Vec<f64> = self.values.iter().filter_map(|(seed, own)| Some(other.on(*seed)? - own)).collect();
         let (before, after) = (self.mean()?, other.mean()?);

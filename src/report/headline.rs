@@ -117,7 +117,7 @@ fn settlement_lines(run: &Run) -> Vec<Line> {
     lines.into_iter().flatten().collect()
 }
 
-/// How many bonds of glued grains have broken, where there are any.
+/// Number of broken bonds of glued grains, if there are any bonds.
 fn broken_bonds(run: &Run) -> Option<Line> {
     let bonds = run.blocks.last()?.bonds();
     let share = scalar(run, "broken_bonds_share")?;

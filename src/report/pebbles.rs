@@ -8,7 +8,7 @@ use super::view::WIDTH;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PebbleRow {
     pub pebbles: usize,
-    /// Share of the volume outside the surface.
+    /// Share of the volume that differs between clump and surface.
     pub volume: f64,
     /// Mean distance of the surfaces over the size of the grain.
     pub distance: f64,

@@ -1,4 +1,4 @@
-//! Where data lie on a picture: the plane between two axes, and round marks on them.
+//! Frame of the data on a picture: the plane between two axes, and round marks on them.
 
 use super::number::ticks;
 use super::svg::Frame;

@@ -1,4 +1,4 @@
-//! What is measured in a packed bed: over its height, in its contacts, and under a plate.
+//! Measurements in a packed bed: over its height, in its contacts, and under a plate.
 
 use crate::graph::BedRecipe;
 use crate::solvers::granular::measure::{Fabric, ForceSpread, Reading, Region, Rose, Survey};

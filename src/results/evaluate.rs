@@ -20,7 +20,7 @@ pub struct Tables<'a> {
     pub histories: &'a [HistoryRow],
     pub scalars: &'a BTreeMap<String, Scalar>,
     pub track: &'a Track,
-    /// What carries each of its seats; none in a rig.
+    /// The support of each of its seats; none in a rig.
     pub supports: &'a [SupportNode],
 }
 

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 /// Information that a reader needs before using a number. Sentences have source text in backticks.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Reliance {
-    /// How far the answer can be trusted, and how that is known.
+    /// Confidence in the answer, and its basis.
     pub confidence: Vec<String>,
     /// Warnings of the check.
     pub warnings: Vec<Warned>,

@@ -136,7 +136,7 @@ fn of_steps(scenario: &Scenario, sleepers: &[SleeperRow], blocks: &[BlockRow]) -
     std::iter::once(entry("settlement_step", largest_step, "m")).chain(named).collect()
 }
 
-/// How the exchanges went, and the wheels after the last of them.
+/// Scalars of the exchanges, and of the wheels after the last exchange.
 fn of_blocks(blocks: &[BlockRow], trains: &[TrainRow]) -> Vec<Entry> {
     let Some(block) = blocks.last() else { return Vec::new() };
     let worst = |measure: fn(&TrainRow) -> f64| worst_train(trains, measure).map(measure);

@@ -72,7 +72,7 @@ pub(super) fn beds_at_count(
 }
 
 impl BedsAtCount {
-    /// What lies about a line so far from the centre line (m), without the weakest contacts.
+    /// The section about a line at this distance from the centre line (m), without the weakest contacts.
     pub fn along_seats(mut self, y: f64) -> BedsAtCount {
         let mean = self.grains.iter().map(|grain| grain.radius).sum::<f64>() / self.grains.len().max(1) as f64;
         let half = THICK * mean;

@@ -23,7 +23,7 @@ pub struct Request {
     pub halvings: u32,
 }
 
-/// How the track lies under a passage.
+/// State of the track under a passage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
@@ -279,7 +279,7 @@ fn cost(variant: &Variant) -> f64 {
 const SHORT: f64 = 0.4;
 
 struct Bench {
-    /// What the scene says, and the same in even steps.
+    /// The numerics of the scene, and the same with even steps.
     scene: Variant,
     own: Variant,
     references: Vec<(Level, Beam, Measured)>,

@@ -18,9 +18,9 @@ pub(super) struct Book {
     /// By all trains so far, and the standard error of it, m.
     pub settled: f64,
     pub error: f64,
-    /// What the last block added to this error, m.
+    /// Error added by the last block, m.
     pub error_added: f64,
-    /// What the last train added, m.
+    /// Settlement added by the last train, m.
     pub rate: f64,
     /// Trains that were computed under about the same load, run by run; the last one goes on.
     pub computed: Vec<Vec<Computed>>,

@@ -51,8 +51,8 @@ impl Hardening {
         Some(Hardening { exponent: exponent(best), error: below.max(above) })
     }
 
-    /// What a run of `trains` adds behind `passed` others. A cell has computed `known` trains under such forces, the
-    /// last `now` of them in this run, as its first ones.
+    /// Settlement added by a run of `trains` after `passed` other trains. A cell has computed `known` trains under such
+    /// forces; the last `now` of them are the first trains of this run.
     pub fn settled(&self, known: &[Computed], now: usize, passed: u64, trains: u64) -> Jump {
         let q = self.exponent;
         let number = |at: usize| (passed + at as u64 + 1) as f64;

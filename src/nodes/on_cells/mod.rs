@@ -108,7 +108,7 @@ impl Substructure for CellGround<'_> {
         Forces::Histories
     }
 
-    /// What the last train added, once more for each.
+    /// Prediction: each train adds the settlement of the last train.
     fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError> {
         let trains = loads.iter().map(|load| load.trains).sum::<u64>() as f64;
         let live = self.live()?;
@@ -257,9 +257,9 @@ impl Live {
         Ok(())
     }
 
-    /// What the run under way adds to each cell; `None` for a cell that must compute a further train first. Each cell
-    /// computes at least one train: forces have changed since the last run, and this train shows if the law no longer
-    /// holds.
+    /// Settlement that the run under way adds to each cell; `None` for a cell that must compute a further train first.
+    /// Each cell computes at least one train: forces have changed since the last run, and this train shows if the law
+    /// no longer holds.
     fn jumps(&self, node: &CellsNode, trains: u64) -> Vec<Option<Jump>> {
         let plans = &self.layout.plans;
         let laws = laws(node.beds.len(), plans, &self.books);
@@ -330,7 +330,7 @@ fn no_forces() -> NodeError {
     NodeError::Other { node: "cells".into(), why: "a passage brings no forces of sleepers".into() }
 }
 
-/// What a train adds to the force on the support of each seat that it passes whole, N.
+/// Force that a train adds on the support of each seat that it passes with every wheel, N.
 fn loads_of_seats(node: &CellsNode, load: &Load<'_>) -> Result<Vec<Option<f64>>, NodeError> {
     let forces = load.passage.forces.as_ref().ok_or_else(no_forces)?;
     let of_seat = |(number, seat): (usize, &Option<SeatOnCell>)| {

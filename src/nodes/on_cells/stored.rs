@@ -10,7 +10,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::{Deserialize, Serialize};
 
-/// What [`Live`] holds.
+/// Content of [`Live`].
 #[derive(Serialize, Deserialize)]
 struct Stored {
     layout: StoredLayout,

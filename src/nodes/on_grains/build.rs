@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// updates of the inertia. At 0.95, and with one update per passage, loaded sleepers made the step too long and the run
 /// stopped.
 pub const OF_STRIDE: f64 = 0.9;
-/// How grains share contacts when inertia is added for the step.
+/// Rule for sharing contacts between grains when inertia is added for the step.
 pub const SHARING: Sharing = Sharing::ByNeed;
 
 /// Version: increased when the same parts are built in another way, or stored in another form.

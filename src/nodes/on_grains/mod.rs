@@ -127,7 +127,7 @@ pub(super) struct Books {
     rest: Vec<Reading>,
     /// Level of every support without load below the level as built, m, of the seats.
     settlement: Vec<f64>,
-    /// What the last train added, m.
+    /// Settlement added by the last train, m.
     rate: Vec<f64>,
     /// Grows whenever a stiffness changes.
     revision: u64,

@@ -36,7 +36,7 @@ pub struct Coupled {
     pub spent: Spent,
 }
 
-/// Where the time of steps goes beside the grains.
+/// Time of steps outside the grains.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Spent {
     pub rail: Duration,

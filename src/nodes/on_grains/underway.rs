@@ -67,8 +67,8 @@ pub(super) struct RideUnderway {
     pub seen: Seen,
     /// Whether vehicles are on the rail.
     pub on_rail: bool,
-    /// How rail and vehicles move, where that was stored in the middle of a passage: the vehicles must be there before
-    /// it is taken over.
+    /// Motion of rail and vehicles, if it was stored in the middle of a passage. The vehicles must exist before the
+    /// motion is restored.
     #[serde(skip)]
     pub motion: Option<LeapfrogState>,
 }

@@ -58,7 +58,7 @@ pub struct Request {
     /// Steps before those that are timed.
     pub warm: u64,
     pub steps: u64,
-    /// How often all is done anew, from the file's state; at least once. The run of middle length is told.
+    /// Number of repetitions from the file's state; at least one. The run with the median time is reported.
     pub repeat: u32,
 }
 
