@@ -104,7 +104,7 @@ impl<'a> Picture<'a> {
         svg.text("", (x + 18.0, y), Anchor::Start, "elements per bay");
         x += 128.0;
         svg.circle("ring", (x + 8.0, y - 4.0), 8.0, "");
-        svg.text("", (x + 22.0, y), Anchor::Start, "setting of the scene");
+        svg.text("", (x + 22.0, y), Anchor::Start, "scene's setting");
         x += 142.0;
         svg.line("frontier", (x + 4.0, y - 4.0), (x + 24.0, y - 4.0));
         svg.text("", (x + 34.0, y), Anchor::Start, "best at this cost");
