@@ -149,7 +149,7 @@ fn a_track_that_sinks_out_of_its_ballast_stops_the_run() {
     };
     let (code, said) = run(&law("1 mm"));
     assert_eq!(code, Some(1), "{said}");
-    assert!(said.contains("E0814") && said.contains("more than the ballast below it is thick"), "{said}");
+    assert!(said.contains("E0814") && said.contains("more than the thickness of the ballast below it"), "{said}");
     assert!(said.contains("lies in `open`"), "the place is marked: {said}");
     let (_, said) = run(&law("1e-3 mm"));
     assert!(!said.contains("E0814") && said.contains("report.html"), "{said}");

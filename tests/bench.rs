@@ -144,7 +144,7 @@ fn mistakes_are_named() {
     let (code, said) = refused(&write("words.xyzr", &format!("{HEADER}0.1 0.1 0.1 0.01\n0.1 0.2 high 0.01\n")), &[]);
     assert!(code == 1 && said.contains("words.xyzr`, line 3: expected a number, found `high`"), "{said}");
     let (code, said) = refused(&write("bare.xyzr", "0.1 0.1 0.1 0.01\n"), &[]);
-    assert!(code == 1 && said.contains("line 1: expected where the bed ends: `# periodic x"), "{said}");
+    assert!(code == 1 && said.contains("line 1: expected the limits of the bed: `# periodic x"), "{said}");
     let small = HEADER.replace("0.3 m", "0.02 m");
     let (code, said) =
         refused(&write("tight.xyzr", &format!("{small}0.001 0.01 0.02 0.03\n0.011 0.01 0.05 0.03\n")), &[]);

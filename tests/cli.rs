@@ -134,9 +134,13 @@ fn an_overshooting_run_says_so() {
     let out = dir.path().join("run");
     let output = trackbed(&["run", scene.to_str().unwrap(), "--out", out.to_str().unwrap()]);
     assert_eq!(code(&output), 0, "{}", said(&output));
-    assert!(said(&output).contains("E0807") && said(&output).contains("done again in halves"), "{}", said(&output));
+    assert!(
+        said(&output).contains("E0807") && said(&output).contains("repeated with half the length"),
+        "{}",
+        said(&output)
+    );
     assert!(scalar(&out, "overshot_blocks") > 0.0 && scalar(&out, "max_overshoot") > 0.0);
-    assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("done again in halves"));
+    assert!(fs::read_to_string(out.join("report.html")).unwrap().contains("repeated with half the length"));
 }
 
 /// Everything but `timings.json` is equal to the last bit.

@@ -207,7 +207,7 @@ fn a_run_in_which_nothing_settles_says_so() {
         .unwrap();
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(said.contains("nothing settled under law `first`: the largest contact force was "), "{said}");
-    assert!(said.contains("kN a seat, its threshold is 60 kN"), "{said}");
+    assert!(said.contains("kN per seat, and the threshold of the law is 60 kN"), "{said}");
     let page = std::fs::read_to_string(out.join("report.html")).unwrap();
     assert!(page.contains("nothing settled under law <code>first</code>"));
     assert!(!Path::new(&out.join("laws.csv")).exists(), "one law is no comparison");

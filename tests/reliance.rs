@@ -46,7 +46,9 @@ fn warnings_assumptions_and_spread_stand_on_the_first_page() {
     let spread = summary["law_spread"]["value"].as_f64();
     let first = &texts("confidence", None)[0];
     match spread {
-        Some(_) => assert!(first.starts_with("largest over smallest settlement of the 2 laws: "), "{first}"),
+        Some(_) => {
+            assert!(first.starts_with("ratio of the largest to the smallest settlement of the 2 laws: "), "{first}")
+        }
         None => assert!(first.contains("differ by a factor of ten"), "{first}"),
     }
     let assumed = texts("assumptions", None).join("\n");
@@ -55,7 +57,7 @@ fn warnings_assumptions_and_spread_stand_on_the_first_page() {
         "springs of 50 to 120 MN/m",
         "level as built",
         "part of each train",
-        "3 passages stand for 10 trains",
+        "3 passages represent 10 trains",
     ] {
         assert!(assumed.contains(text), "{text}: {assumed}");
     }
@@ -69,5 +71,5 @@ fn warnings_assumptions_and_spread_stand_on_the_first_page() {
     }
     // and the headline says why the structure lies lower
     assert!(summary["settlement_step"]["value"].as_f64().unwrap() < 0.0);
-    assert!(page[..start].contains("knows no subgrade"), "{}", &page[..start]);
+    assert!(page[..start].contains("does not model the subgrade"), "{}", &page[..start]);
 }

@@ -255,7 +255,7 @@ fn a_triaxial_test_gives_the_strength_of_its_grains() {
     let scene = scene(directory.path(), &triaxial());
     let (out, cache) = (directory.path().join("out").display().to_string(), directory.path().join("cache"));
     let run = trackbed(&["run", &scene, "--out", &out, "--cache", cache.to_str().unwrap()]);
-    assert!(run.status.success() && said(&run).contains("largest angle of friction"), "{}", said(&run));
+    assert!(run.status.success() && said(&run).contains("largest friction angle"), "{}", said(&run));
     let summary: Value = serde_json::from_str(&fs::read_to_string(format!("{out}/summary.json")).unwrap()).unwrap();
     let of = |name: &str| summary[name]["value"].as_f64().unwrap();
     // published ballast at such pressures: 40 to 60 degrees; a few spheres between smooth walls half of it

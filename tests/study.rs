@@ -159,6 +159,9 @@ fn a_support_that_its_damper_holds_down_is_named() {
     let output = trackbed(&["run", file.to_str().unwrap(), "--out", dir.path().join("out").to_str().unwrap()]);
     assert_eq!(output.status.code(), Some(1));
     let text = said(&output);
-    assert!(text.contains("needs 1.81 s to let 1.9 MN/m come back") && text.contains("damping_time = 1 ms"), "{text}");
+    assert!(
+        text.contains("needs 1.81 s until its 1.9 MN/m spring has returned") && text.contains("damping_time = 1 ms"),
+        "{text}"
+    );
     assert!(!text.contains("write `time_step"), "{text}");
 }

@@ -162,7 +162,7 @@ fn a_block_far_too_long_oscillates_and_is_cured() {
     let beyond = |b: &&BlockRow| b.block_axles > 4 && b.overshoot > 1.0;
     assert_eq!(cured.iter().filter(beyond).count(), 0, "only single trains cannot be shortened");
     assert!(apart(&near, &reference) < 0.01 * deepest(&reference), "{} m", apart(&near, &reference));
-    assert!(BlockRow::overshoot(&cured).unwrap().contains("done again in halves"));
+    assert!(BlockRow::overshoot(&cured).unwrap().contains("repeated with half the length"));
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What a directory holds.
+/// Type of the results in a directory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     Run,

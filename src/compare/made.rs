@@ -1,8 +1,8 @@
-//! What made a result: its scene, its seed and the program.
+//! Provenance of a result: its scene, its seed and the program.
 
 use crate::results::Summary;
 
-/// What made a result.
+/// Provenance of a result.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Made {
     pub title: String,

@@ -1,7 +1,8 @@
-//! Results side by side: what differs between runs, tests or studies, and between the scenes that made them.
+//! Results side by side: differences between runs, tests or studies, and between their scenes.
 //!
-//! [`Comparison::read`] takes their directories; the first one is what the others are compared with. Values are SI. A difference of
-//! means over packings has a 95 % interval: of the differences seed by seed where both ran on the same seeds, else Welch's.
+//! [`Comparison::read`] takes their directories; the first one is what the others are compared with. Values are SI. A
+//! difference of means over packings has a 95 % interval: of the differences seed by seed where both ran on the same
+//! seeds, else Welch's.
 
 mod error;
 mod json;
@@ -36,7 +37,7 @@ pub struct Comparison {
     pub kind: Kind,
     /// The first is what the others are compared with.
     pub subjects: Vec<Subject>,
-    /// What differs between their scenes; `None` where an older version has kept no whole scene.
+    /// Differences between their scenes; `None` if an older version did not store the whole scene.
     pub edits: Option<Vec<Edit>>,
     /// Scalars of runs and tests.
     pub numbers: Vec<NumberRow>,
@@ -47,7 +48,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Reads two directories or more. Fails where one holds no finished results, or not of the kind of the first.
+    /// Reads two directories or more. Fails if one holds no finished results, or not of the kind of the first.
     pub fn read(directories: &[PathBuf]) -> Result<Comparison, CompareError> {
         let subjects: Vec<Subject> =
             names::of_paths(directories).into_iter().zip(directories).map(Subject::read).collect::<Result<_, _>>()?;

@@ -11,9 +11,9 @@ pub struct NumberRow {
     pub name: String,
     /// SI; `1` for a count or a ratio.
     pub unit: String,
-    /// What it is called and shown in, where people ask for it first.
+    /// Its label and shown unit, if it is one of the most important scalars.
     pub label: Option<Label>,
-    /// `None` where a result has no such scalar.
+    /// `None` if a result has no such scalar.
     pub values: Vec<Option<Number>>,
 }
 
@@ -24,7 +24,7 @@ pub struct Number {
     pub value: f64,
     /// Half the width of the 95 % interval of that mean; `None` of one packing.
     pub confidence: Option<f64>,
-    /// From the first result; `None` for the first itself, and where that has no such scalar.
+    /// From the first result; `None` for the first result, and if the first result has no such scalar.
     pub from_first: Option<Difference>,
 }
 
@@ -35,7 +35,7 @@ impl NumberRow {
     }
 }
 
-/// Whether people ask for a scalar first.
+/// Whether a scalar is one of the most important.
 pub fn is_named(row: &NumberRow) -> bool {
     row.label.is_some()
 }

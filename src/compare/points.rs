@@ -1,4 +1,4 @@
-//! Studies side by side: their points with equal values of what varies, and what was measured there.
+//! Studies side by side: points with equal varied values, and their measured values.
 
 use super::study_table::{Key, StudyPoint, StudyTable};
 use super::{Difference, Sample, Subject};
@@ -8,11 +8,11 @@ use super::{Difference, Sample, Subject};
 pub struct PointRow {
     /// `the scene as it is`, or `pad.stiffness = 40 MN/m, ...`
     pub point: String,
-    /// The texts of what varies; nothing for the scene as it is.
+    /// The texts of the varied values; empty for the scene as it is.
     pub levels: Vec<String>,
     pub measured: String,
     pub unit: String,
-    /// In that unit; `None` where a study has no such point, or it failed there.
+    /// In that unit; `None` if a study has no such point, or it failed there.
     pub values: Vec<Option<f64>>,
     /// From the first study.
     pub from_first: Vec<Option<Difference>>,

@@ -12,15 +12,15 @@ pub struct Sample {
     pub told: Option<(f64, f64, usize)>,
 }
 
-/// How far the mean of a value is from that of the first result, SI.
+/// Difference of the mean of a value from the mean of the first result, SI.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Difference {
     pub difference: f64,
-    /// The same as a share of the mean of the first; `None` where that is 0.
+    /// The same as a share of the mean of the first; `None` if that is 0.
     pub share: Option<f64>,
     /// Half the width of the 95 % interval of the difference; `None` without packings to tell it.
     pub confidence: Option<f64>,
-    /// Packings of both with the same seeds, by whose differences the interval is told; 0 where there are none.
+    /// Packings of both with the same seeds, by whose differences the interval is told; 0 if there are none.
     pub pairs: usize,
 }
 
@@ -69,11 +69,11 @@ impl Sample {
         }
     }
 
-    /// How far another sample is from this one.
+    /// Difference of another sample from this one.
     pub fn difference(&self, other: &Sample) -> Option<Difference> {
         let pairs: Vec<f64> = self.values.iter().filter_map(|(seed, own)| Some(other.on(*seed)? - own)).collect();
         let (before, after) = (self.mean()?, other.mean()?);
-        // equal beds on both sides: what scatters from bed to bed cancels
+        // equal beds on both sides: the scatter from bed to bed cancels
         let is_paired = pairs.len() >= 2 && pairs.len() == self.values.len() && pairs.len() == other.values.len();
         let (difference, confidence) = match is_paired {
             true => mean_and_confidence(&pairs),

@@ -1,4 +1,4 @@
-//! What differs between whole scenes, value by value, under the names that `--set` takes.
+//! Differences between whole scenes, value by value, under the names that `--set` takes.
 
 use super::Subject;
 use crate::diag::{FileId, Span};
@@ -12,17 +12,17 @@ use std::collections::BTreeMap;
 pub struct Edit {
     /// The name that `--set` takes: `open.support.stiffness`.
     pub path: String,
-    /// The text in each scene; `None` where it has no such value.
+    /// The text in each scene; `None` if it has no such value.
     pub texts: Vec<Option<String>>,
 }
 
-/// What differs; `None` where not every result has its whole scene.
+/// The differences; `None` if not every result has its whole scene.
 pub fn edits(subjects: &[Subject]) -> Option<Vec<Edit>> {
     let scenes: Vec<&str> = subjects.iter().map(|subject| subject.resolved.as_deref()).collect::<Option<_>>()?;
     Some(between(&scenes))
 }
 
-/// What differs between the texts of whole scenes, in the order of the first that has it.
+/// Differences between the texts of whole scenes, in the order of the first scene that has the value.
 fn between(scenes: &[&str]) -> Vec<Edit> {
     let values: Vec<Values> = scenes.iter().map(|scene| Values::read(scene)).collect();
     let mut paths: Vec<&String> = Vec::new();
@@ -106,10 +106,10 @@ mod tests {
 
     #[test]
     fn every_value_has_the_name_that_set_takes() {
-        let before = "track line { sections = [open: 42 m] } // the way\n\
-                      trackform open { spacing = 0.6 m, support = { stiffness = 50 MN/m per seat // soft\n } }\nsolve { seed = 1 }\n";
-        let after = "track line { sections = [open: 42 m] }\n\
-                     trackform open { spacing = 0.6 m, usp = medium, support = { stiffness = 80 MN/m per seat } }\nsolve { seed = 1 }\n";
+        let before = "track line { sections = [open: 42 m] } // the way\ntrackform open { spacing = 0.6 m, support = { \
+                      stiffness = 50 MN/m per seat // soft\n } }\nsolve { seed = 1 }\n";
+        let after = "track line { sections = [open: 42 m] }\ntrackform open { spacing = 0.6 m, usp = medium, support = \
+                     { stiffness = 80 MN/m per seat } }\nsolve { seed = 1 }\n";
         let edit = |path: &str, one: Option<&str>, other: Option<&str>| Edit {
             path: path.to_owned(),
             texts: vec![one.map(str::to_owned), other.map(str::to_owned)],

@@ -1,4 +1,5 @@
-//! Where along the track runs differ most, at the last axle count that all of them have recorded.
+//! The places of the largest differences between runs along the track, at the last axle count that all runs have
+//! recorded.
 
 use super::Subject;
 use crate::results::{Run, SleeperRow};
@@ -12,7 +13,7 @@ const SAME_PLACE: f64 = 0.01;
 #[derive(Debug, Clone, Copy)]
 pub struct Column {
     pub name: &'static str,
-    /// What it is called, its unit, and that unit in SI.
+    /// Its label, its unit, and the size of this unit in SI.
     pub text: &'static str,
     pub unit: &'static str,
     pub size: f64,
@@ -22,7 +23,7 @@ pub struct Column {
 }
 
 impl Column {
-    /// What is compared along the track.
+    /// Columns compared along the track.
     pub const ALL: [Column; 7] = [
         Column::new("settlement_m", ("settlement", "mm", 1e-3), true, |row| row.settlement_m),
         Column::new("void_m", ("void", "mm", 1e-3), true, |row| row.void_m),
@@ -68,14 +69,15 @@ pub struct SeatDifference {
     pub seats: usize,
 }
 
-/// The last axle count that all runs have recorded; `None` where they share none.
+/// The last axle count that all runs have recorded; `None` if they share none.
 pub fn common_count<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Option<u64> {
     let counts = |run: &Run| run.sleepers.iter().map(|row| row.axles).collect::<BTreeSet<u64>>();
     let shared = runs.into_iter().map(counts).reduce(|all, own| all.intersection(&own).copied().collect())?;
     shared.into_iter().next_back()
 }
 
-/// A row for each further run and column. Seats are the same where they lie at one chainage; both must be passed by whole trains.
+/// A row for each further run and column. Seats are the same where they lie at one chainage; both must be passed by
+/// whole trains.
 pub fn seat_differences(subjects: &[Subject]) -> Vec<SeatDifference> {
     let runs: Vec<&Run> = subjects.iter().filter_map(Subject::run).collect();
     let (Some(axles), Some((first, others))) = (common_count(runs.iter().copied()), runs.split_first()) else {

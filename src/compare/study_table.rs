@@ -1,4 +1,4 @@
-//! What a study has found, read from its directory: a row a point, what varies and what was measured.
+//! Results of a study, read from its directory: one row for each point, with varied and measured values.
 
 use super::made::Made;
 use super::{CompareError, Sample};
@@ -8,13 +8,13 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
 
-/// What a study has found, read from its directory.
+/// Results of a study, read from its directory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyTable {
     pub name: String,
-    /// What varies: paths and units.
+    /// Varied values: paths and units.
     pub axes: Vec<(String, String)>,
-    /// What is measured: expressions and units.
+    /// Measured values: expressions and units.
     pub measured: Vec<(String, String)>,
     pub points: Vec<StudyPoint>,
     /// The lines of the best designs.
@@ -26,9 +26,9 @@ pub struct StudyTable {
 pub struct StudyPoint {
     pub number: usize,
     pub as_it_is: bool,
-    /// The texts of what varies, as the axes are ordered.
+    /// The texts of the varied values, in the order of the axes.
     pub levels: Vec<String>,
-    /// By the measured expressions, in their units; nothing where the point failed.
+    /// By the measured expressions, in their units; nothing if the point failed.
     pub values: Vec<Sample>,
     pub best: bool,
 }
@@ -37,7 +37,7 @@ impl StudyTable {
     /// Reads the directory of a study.
     pub(super) fn read(finished: &Finished, path: &Path) -> Result<StudyTable, CompareError> {
         let file = |name: &str| -> Result<Vec<u8>, CompareError> {
-            finished.read(name)?.ok_or_else(|| damaged(path, name, "the manifest does not name it"))
+            finished.read(name)?.ok_or_else(|| damaged(path, name, "it is not named in the manifest"))
         };
         let found: Value =
             serde_json::from_slice(&file("study.json")?).map_err(|cause| damaged(path, "study.json", cause))?;
@@ -114,7 +114,7 @@ impl StudyTable {
     }
 }
 
-/// By what points are the same.
+/// Key by which points are equal.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Key {
     AsItIs,

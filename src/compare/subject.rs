@@ -16,7 +16,7 @@ pub struct Subject {
     pub name: String,
     pub path: PathBuf,
     pub content: Content,
-    /// The whole scene as one file; `None` where an older version has not kept it.
+    /// The whole scene as one file; `None` if an older version has not kept it.
     pub resolved: Option<String>,
     /// The program that made it, its file and its seed.
     pub made: Made,
@@ -99,7 +99,7 @@ impl Subject {
     }
 }
 
-/// What a finished directory holds, by the files that it has.
+/// Type of the results in a finished directory, by its files.
 fn content(finished: &Finished, path: &Path) -> Result<(Content, Made), CompareError> {
     let manifest = finished.manifest();
     let has = |name: &str| manifest.file(name).is_some();

@@ -4,7 +4,7 @@
 use super::{Comparison, Difference, NumberRow};
 
 impl Comparison {
-    /// Every table that has rows, with its file's name. Fails where a text cannot be written.
+    /// Every table that has rows, with its file's name. Fails if a text cannot be written.
     pub fn tables(&self) -> Result<Vec<(String, Vec<u8>)>, csv::Error> {
         let tables = [
             ("scenes.csv", self.scene_rows()),

@@ -38,8 +38,8 @@ pub(super) fn run(
     })
 }
 
-/// Blocks done, axles that have passed, what the next block hangs on and the state of the ground: those of a checkpoint, or of the
-/// beginning. A checkpoint beyond the end of the schedule is of another one.
+/// Blocks done, axles that have passed, the data for the length of the next block, and the state of the ground: from a
+/// checkpoint, or at the beginning. A checkpoint beyond the end of the schedule belongs to another schedule.
 pub(super) fn restored(
     from: Option<Checkpoint>,
     plan: &Blocks,
@@ -55,8 +55,8 @@ pub(super) fn restored(
     }
 }
 
-/// The first passage of a graph, over the track as the scene starts it; `None` where no train runs, and where grains would have to be
-/// packed for it.
+/// The first passage of a graph, over the track as the scene starts it; `None` if no train runs, and where grains would
+/// have to be packed for it.
 pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunError> {
     let Some(blocks) = graph.blocks() else { return Ok(None) };
     if graph.has_grains_under_track() {
@@ -72,10 +72,11 @@ pub fn passage_as_built(graph: &Graph) -> Result<Option<PassageOutcome>, RunErro
     Ok(Some(passage))
 }
 
-/// Settlement beyond which a run stops, m: more than ballast below a sleeper is thick, so that no law and no linear track holds.
+/// Settlement at which a run stops, m: more than the thickness of ballast below a sleeper, so that no settlement law
+/// and no linear track model is valid.
 const SUNK: f64 = 0.5;
 
-/// Fails where a seat has settled (m) beyond all sense.
+/// Fails if the settlement (m) of a seat is above the limit.
 pub(super) fn bearable(axles: u64, settlement: &[f64]) -> Result<(), RunError> {
     match settlement.iter().position(|settled| settled.abs() > SUNK) {
         Some(seat) => Err(RunError::node(Clock::Axles(axles), NodeError::Sunk { seat, settlement: settlement[seat] })),
@@ -116,7 +117,7 @@ macro_rules! going {
 impl Run<'_, '_> {
     fn go(&mut self, axles: u64) -> Going<()> {
         let mut here = self.pair.arrive(axles, self.pair.ground.settlement())?;
-        // what goes on in the middle of a block has told all that comes before it
+        // a run that continues in the middle of a block has already reported everything before it
         let mut told = self.pair.ground.is_underway();
         if self.done == 0 && !told {
             tell!(self, Event::Laws { axles: 0, settlement: &self.pair.ground.settlement_by_law() });
@@ -138,7 +139,7 @@ impl Run<'_, '_> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Tells the state and the passages that a record shows.
+    /// Reports the state and the passages that a record shows.
     fn show(&mut self, here: &Exchange) -> Going<()> {
         let Some((state, passages)) = here.recorded() else { return Ok(ControlFlow::Continue(())) };
         tell!(self, Event::Rest { axles: here.axles, state });
@@ -200,7 +201,8 @@ impl Run<'_, '_> {
         work.add(&here, Work::default());
         let after = self.pair.ground.settlement();
         bearable(here.axles + block.axles, &after)?;
-        // what the ground did may differ from what it predicted, and it may answer otherwise: the passages ahead are lost then
+        // the settlement of the ground may differ from its prediction, and its responses may change: the passages
+        // computed ahead are then discarded
         let same = |next: &Exchange| next.settlement == after && self.pair.ground.responses().revision == revision;
         let (next, lost) = if next.as_ref().is_some_and(same) { (next, None) } else { (None, next) };
         lost.iter().for_each(|lost| work.add(lost, Work::default()));
@@ -251,7 +253,7 @@ impl Run<'_, '_> {
         Ok(ControlFlow::Continue(exchange))
     }
 
-    /// Blocks from an axle count to the end, as far as one can know.
+    /// Estimated number of blocks from an axle count to the end.
     fn blocks_left(&self, axles: u64, last: u64) -> u64 {
         let left = self.pair.blocks.total - axles;
         match self.pair.blocks.update {

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 
 /// A track of more elements is checked at rest on fewer of them.
 const MANY: usize = 100_000;
-/// Elements of a bay there: cubic elements are exact at their nodes under what a track at rest carries.
+/// Elements per bay in this check: cubic elements are exact at their nodes under the loads of a track at rest.
 const ELEMENTS: u32 = 2;
 
 pub(super) fn run(machine: &Machine<'_>, loads: &[PointLoad], listener: &mut dyn Listener) -> Result<Ending, RunError> {
@@ -25,8 +25,8 @@ pub(super) fn run(machine: &Machine<'_>, loads: &[PointLoad], listener: &mut dyn
     Ok(Ending::Finished)
 }
 
-/// The state of rest with which the run of a graph begins: a check that computes it says what the run would fail by. Nothing is computed
-/// of a graph without a track, or on a ground of another program.
+/// The state of rest at the beginning of a run: computing it in the check finds errors before the run. Nothing is
+/// computed for a graph without a track, or on a ground of another program.
 pub fn at_rest(graph: &Graph) -> Result<(), RunError> {
     let known = |model: &Model| matches!(model, Model::Track(_) | Model::Law(_) | Model::Springs(_));
     if graph.track().is_none() || !graph.nodes.iter().all(|node| known(&node.model)) {

@@ -1,4 +1,4 @@
-//! One exchange: the track as it lies after so many axles, and the passages of trains over it, each computed once.
+//! One exchange: the track after so many axles, and the passages of trains over it, each computed once.
 
 use crate::graph::{Block, Runner};
 use crate::nodes::{Forces, Kept, Load, NodeError, PassageOutcome, Request, Superstructure, Unloaded};
@@ -9,7 +9,7 @@ pub(super) struct Exchange {
     pub axles: u64,
     /// Settlement of every seat, m.
     pub settlement: Vec<f64>,
-    /// Passages that are recorded, one of each kind of train, the leading one first; empty where nothing is.
+    /// Passages that are recorded, one of each kind of train, the leading one first; empty if nothing is.
     shown: Vec<Runner>,
     pub unloaded: Option<Unloaded>,
     /// In the order of the kinds of trains, forward before backward.
@@ -22,7 +22,7 @@ impl Exchange {
         Exchange { axles, settlement, shown, unloaded: None, passages: Vec::new() }
     }
 
-    /// Computes the passages that are missing, all at once, with what the ground needs of their forces.
+    /// Computes the missing passages, all at once, with the forces that the ground needs.
     pub fn ensure(&mut self, track: &impl Superstructure, runners: &[Runner], forces: Forces) -> Result<(), NodeError> {
         let missing: Vec<Runner> = runners.iter().copied().filter(|runner| self.passage(*runner).is_none()).collect();
         let run = |runner: &Runner| {
@@ -52,14 +52,14 @@ impl Exchange {
         self.passages.iter().find(|(other, _)| *other == runner).map(|(_, passage)| passage)
     }
 
-    /// The passages that a record shows, with the track before them; `None` where nothing is recorded.
+    /// The passages that a record shows, with the track before them; `None` if nothing is recorded.
     pub fn recorded(&self) -> Option<(&Unloaded, Vec<(Runner, &PassageOutcome)>)> {
         let shown: Vec<(Runner, &PassageOutcome)> =
             self.shown.iter().filter_map(|runner| Some((*runner, self.passage(*runner)?))).collect();
         Some((self.unloaded.as_ref()?, shown)).filter(|(_, shown)| !shown.is_empty())
     }
 
-    /// What its passages took.
+    /// Cost of its passages.
     pub fn work(&self) -> Work {
         self.passages().fold(Work::default(), |work, passage| Work {
             passages: work.passages + 1,
@@ -72,8 +72,8 @@ impl Exchange {
         self.passages.iter().map(|(_, passage)| passage)
     }
 
-    /// The trains of these blocks, one after the other, as loads of the ground with the forces computed here; those without a
-    /// passage load nothing.
+    /// The trains of these blocks, one after the other, as loads of the ground with the forces computed here; those
+    /// without a passage load nothing.
     pub fn loads(&self, blocks: &[Block]) -> Vec<Load<'_>> {
         let runs = blocks.iter().flat_map(|block| &block.runs);
         runs.filter_map(|(runner, trains)| Some(Load { passage: self.passage(*runner)?, trains: *trains })).collect()

@@ -8,7 +8,7 @@ use crate::nodes::Builders;
 use crate::store::Beds;
 use std::collections::BTreeMap;
 
-/// What a schedule of another program does: it advances the nodes of the graph and tells what happens.
+/// A schedule of another program: it advances the nodes of the graph and reports events.
 pub type Custom = dyn Fn(&Machine<'_>, &serde_json::Value, &mut dyn Listener, Option<serde_json::Value>) -> Result<Ending, RunError>
     + Send
     + Sync;
@@ -38,8 +38,8 @@ impl Executor {
         self
     }
 
-    /// Runs a graph, from its beginning or from a checkpoint. May be called from several threads at once; what does not need each
-    /// other runs in the thread pool of the caller, and the result does not depend on the number of its threads.
+    /// Runs a graph, from its beginning or from a checkpoint. May be called from several threads at once. Independent
+    /// parts run in the thread pool of the caller, and the result does not depend on the number of threads.
     pub fn run(
         &self,
         graph: &Graph,

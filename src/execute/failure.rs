@@ -1,4 +1,4 @@
-//! A run that stopped, said to a person: which block of the scene is responsible, and what to write there instead.
+//! Diagnostics of a run that stopped: the block of the scene that is responsible, and the text to write instead.
 
 use super::RunError;
 use crate::diag::{Code, Diagnostic, Span};
@@ -32,7 +32,7 @@ fn of_node(clock: Clock, cause: &NodeError, graph: &Graph, origins: &Origins) ->
             said(Code::E0811).help("give the `packing` of the material more `pressure`, or its grains more `friction`")
         }
         NodeError::Rig(RigError::NoRoom { .. } | RigError::Grading(_)) => said(Code::E0610),
-        NodeError::Rig(_) => said(Code::E0812).help("is the `force` meant `per sleeper` or `per seat`?"),
+        NodeError::Rig(_) => said(Code::E0812).help("check if the `force` is `per sleeper` or `per seat`"),
         NodeError::Grains(_) => said(Code::E0801).help("write a shorter `grain_step`"),
         NodeError::Soil(_) => said(Code::E0801).help("give the soil more strength, or less load"),
         NodeError::Foreign { .. } => said(Code::E0803).help("run with `--force`"),
@@ -61,7 +61,7 @@ fn of_track(clock: Clock, cause: &TrackError, graph: &Graph, origins: &Origins) 
     labels.fold(Diagnostic::new(code, message).help(help), |d, (span, text)| d.label(span, text))
 }
 
-/// Time in which a support comes back, s, that is longer than a bogie needs to pass.
+/// Limit of the return time of a support, s: longer than a bogie needs to pass.
 const SLOW: f64 = 0.05;
 const LESS_DAMPING: &str =
     "write less `damping` for that support: published ones need 1 to 5 ms (`damping_time = 1 ms`)";
@@ -89,13 +89,11 @@ impl Scene<'_> {
             }
             TrackError::NoEquilibrium { x, .. } => (
                 vec![self.place(*x), self.support(*x)],
-                "let gravity and the supports hold the track: `gravity = 9.81 m/s^2`, no load that lifts the rail"
-                    .into(),
+                "write `gravity = 9.81 m/s^2`, and remove loads that lift the rail".into(),
             ),
-            TrackError::Mechanism { x } => (
-                vec![self.place(*x)],
-                "let something hold it: `rail_ends = clamped`, or more seats in `sections`".into(),
-            ),
+            TrackError::Mechanism { x } => {
+                (vec![self.place(*x)], "fix the rail: write `rail_ends = clamped`, or more seats in `sections`".into())
+            }
             TrackError::OffTrack { x, start, end } => {
                 let given = [(Parameter::Start, "starts here"), (Parameter::Finish, "ends here")];
                 let mut labels: Labels =
@@ -112,14 +110,15 @@ impl Scene<'_> {
             TrackError::RanAway { x, .. } => {
                 let speed = self.train().map(|train| train.speed);
                 let help = format!(
-                    "the linear track cannot follow: write a lower `speed`{}, a stiffer support, or a smaller step in settlement",
+                    "the linear track model does not apply here: write a lower `speed`{}, a stiffer support, or a \
+                    smaller step in settlement",
                     speed.map_or(String::new(), |v| format!(", {} km/h", number((v * 1.8).round())))
                 );
                 let fast = (self.span_of(Parameter::Speed(0)), "at this speed".into());
                 (vec![self.place(*x), self.support(*x), fast], help)
             }
             TrackError::Model { x, .. } => {
-                (vec![self.place(*x)], "change the value that the message names, in that section".into())
+                (vec![self.place(*x)], "change the value named in the message, in this section".into())
             }
             TrackError::Parameter { name, expected, .. } => {
                 (vec![self.parameter(*name)], format!("write a {name} {expected}"))
@@ -165,13 +164,14 @@ impl Scene<'_> {
         (0..seats.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
     }
 
-    /// The support nearest to a place, where its damper holds it down long after a wheel has passed. No step is short enough for that.
+    /// The support nearest to a place, if its damper holds it down long after a wheel has passed. A shorter time step
+    /// does not help then.
     fn slow_support(&self, x: f64) -> Option<(Option<Span>, String)> {
         let seat = self.nearest_seat(x)?;
         let Spring { stiffness, damping, .. } = self.graph.supports.get(seat)?.spring?;
         let time = damping / stiffness;
         let text = format!(
-            "the damper of this support needs {} s to let {} MN/m come back",
+            "the damper of this support needs {} s until its {} MN/m spring has returned",
             number((time * 1e2).round() / 1e2),
             number((stiffness / 1e4).round() / 1e2)
         );
@@ -179,7 +179,7 @@ impl Scene<'_> {
     }
 
     fn time_step(&self) -> (Option<Span>, String) {
-        (self.span_of(Parameter::TimeStep), "too coarse here".into())
+        (self.span_of(Parameter::TimeStep), "too long here".into())
     }
 
     fn contact(&self) -> (Option<Span>, String) {
@@ -204,7 +204,7 @@ impl Scene<'_> {
             Update::Geometric { first, .. } => first,
             // the shortest is one train already
             Update::Adaptive { .. } => {
-                return "let the supports settle less at once: check the settlement law".into();
+                return "reduce the settlement per train: check the settlement law".into();
             }
         };
         let half = (present / 2 / trains).max(1) * trains;

@@ -1,4 +1,4 @@
-//! A graph with the means to build its nodes, how its run ends and why it fails.
+//! A graph with the builders of its nodes, and the end or failure of its run.
 
 use crate::graph::quantity::SETTLEMENT;
 use crate::graph::{Blocks, Clock, Fault, Graph, Model, Node, TrackNode};
@@ -9,7 +9,7 @@ use crate::store::Beds;
 use std::fmt;
 use std::ops::ControlFlow;
 
-/// How a run ended that did not fail.
+/// End of a run without failure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ending {
     /// The schedule is done.
@@ -18,21 +18,21 @@ pub enum Ending {
     Stopped,
 }
 
-/// Why a run failed.
+/// Failure of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RunError {
-    /// The nodes and edges of the graph do not fit together.
+    /// The nodes and edges of the graph are not consistent.
     Faults(Vec<Fault>),
-    /// A node found no answer.
+    /// A node failed.
     Node { clock: Clock, cause: Box<NodeError> },
     /// A checkpoint of another schedule.
     ForeignCheckpoint,
-    /// A schedule of another program, which nobody here can run.
+    /// A schedule of another program, which this program cannot run.
     NoSchedule { kind: String },
 }
 
 impl RunError {
-    /// The failure of a node, and how far the schedule was.
+    /// The failure of a node, and the progress of the schedule.
     pub fn node(clock: Clock, cause: NodeError) -> RunError {
         RunError::Node { clock, cause: Box::new(cause) }
     }
@@ -43,10 +43,10 @@ impl fmt::Display for RunError {
         match self {
             RunError::Faults(faults) => {
                 let faults: Vec<String> = faults.iter().map(Fault::to_string).collect();
-                write!(f, "the plan does not fit together: {}", faults.join("; "))
+                write!(f, "the plan is not consistent: {}", faults.join("; "))
             }
             RunError::Node { clock, cause } => write!(f, "after {clock}: {cause}"),
-            RunError::ForeignCheckpoint => f.write_str("the checkpoint is of another schedule"),
+            RunError::ForeignCheckpoint => f.write_str("the checkpoint belongs to another schedule"),
             RunError::NoSchedule { kind } => write!(f, "no schedule `{kind}` is known to this program"),
         }
     }
@@ -54,7 +54,7 @@ impl fmt::Display for RunError {
 
 impl std::error::Error for RunError {}
 
-/// A graph with the means to build its nodes.
+/// A graph with the builders of its nodes.
 pub struct Machine<'a> {
     pub graph: &'a Graph,
     pub(super) builders: &'a Builders,
@@ -62,7 +62,7 @@ pub struct Machine<'a> {
 }
 
 impl<'a> Machine<'a> {
-    /// The track of the graph, its name first; `None` where there is none.
+    /// The track of the graph, its name first; `None` if there is none.
     fn track_node(&self) -> Option<(&'a str, &'a TrackNode)> {
         self.graph.nodes.iter().find_map(|node| match &node.model {
             Model::Track(track) | Model::Riding(track) => Some((node.name.as_str(), &**track)),
@@ -113,7 +113,7 @@ impl<'a> Machine<'a> {
         Ok((track, ground))
     }
 
-    /// Grains under the track of the graph, with the soil below them; `None` where there are none.
+    /// Grains under the track of the graph, with the soil below them; `None` if there are none.
     pub(super) fn grain_parts(&self) -> Option<GrainParts<'a>> {
         let nodes = || self.graph.nodes.iter().map(|node| &node.model);
         let grains = nodes().find_map(|model| if let Model::Grains(grains) = model { Some(grains) } else { None })?;

@@ -1,7 +1,7 @@
-//! The one executor: it checks that a graph fits together, builds its nodes, and advances them as the schedule says.
+//! The executor: it checks a graph, builds its nodes, and advances them by the schedule.
 //!
-//! Whoever wants to know what happens listens: recorders, progress, checkpoints, studies and charts hear the same
-//! [`Event`]s, and each may end the run.
+//! Listeners follow a run: recorders, progress, checkpoints, studies and charts get the same [`Event`]s, and each may
+//! end the run.
 
 mod blocks;
 mod equilibrium;
@@ -35,8 +35,8 @@ pub fn execute(graph: &Graph, listener: &mut dyn Listener) -> Result<Ending, Run
     Executor::default().run(graph, listener, None)
 }
 
-/// Runs several graphs at once, each from its beginning, and keeps their order. The results are those of [`execute`], bit for
-/// bit.
+/// Runs several graphs at once, each from its beginning, and keeps their order. The results are those of [`execute`],
+/// bit for bit.
 pub fn execute_all<L: Listener + Send>(runs: &mut [(&Graph, L)]) -> Vec<Result<Ending, RunError>> {
     runs.par_iter_mut().map(|(graph, listener)| execute(graph, listener)).collect()
 }

@@ -1,18 +1,18 @@
-//! Signs that an exchange overshoots, from what it did along the track.
+//! Signs that an exchange overshoots, from its settlement along the track.
 //!
-//! An exchange is explicit: a disturbance e of the settlement comes back as (1 - A) e, where A is what the settlement of a
-//! block changes by when the track has moved by e. Moving everywhere alike changes no force and says nothing; short waves
-//! change most. So A is taken of second differences along x, in which the far field vanishes and a sawtooth counts
-//! sixteenfold: A = -<D g, D s> / <D s, D s>, s the move of the seats and g the change of the block's settlement that
-//! follows from it. A < 1 is monotone, A > 1 overshoots, A > 2 grows.
+//! An exchange is explicit: a disturbance e of the settlement comes back as (1 - A) e. A is the change of a block's
+//! settlement divided by the movement e of the track. An equal movement everywhere changes no force and gives no
+//! information; short waves change most. So A is taken of second differences along x, in which the far field vanishes
+//! and a sawtooth counts sixteenfold: A = -<D g, D s> / <D s, D s>, s the move of the seats and g the change of the
+//! block's settlement that follows from it. A < 1 is monotone, A > 1 overshoots, A > 2 grows.
 
 use std::ops::Range;
 
-/// Second differences below this share of the move are of an even track and say nothing.
+/// Second differences below this share of the movement belong to an even track and give no information.
 const EVEN: f64 = 1e-3;
 
-/// The amplification A, see above; `None` where the track moved too evenly to tell. Both are of every seat, of those that
-/// cannot settle too: beside them the track bends most.
+/// The amplification A, see above; `None` if the track moved too evenly to tell. Both cover every seat, also seats that
+/// cannot settle: beside these the track bends most.
 pub(super) fn amplification(moved: &[f64], change: &[f64]) -> Option<f64> {
     let (of_move, of_change) = (bends(moved), bends(change));
     let sharpest = of_move.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
@@ -24,9 +24,9 @@ pub(super) fn amplification(moved: &[f64], change: &[f64]) -> Option<f64> {
     Some(-product / square)
 }
 
-/// The amplitude of a sawtooth in what the seats of `runs`, stretches of neighbours that settle, settled, as a share of the most that any settled. Only second differences
-/// that change sign from seat to seat four times on end count: a dip, however narrow, has fewer, and rounding noise has no
-/// amplitude.
+/// Sawtooth amplitude of settlement along each of `runs`, runs of neighbouring seats that can settle, relative to the
+/// largest settlement. Only second differences that change sign from seat to seat four times in a row count: a dip has
+/// fewer changes of sign, and rounding noise has no amplitude.
 pub(super) fn sawtooth(runs: &[Range<usize>], settled: &[f64]) -> f64 {
     let most = largest(settled);
     if most <= 0.0 {

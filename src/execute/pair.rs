@@ -1,4 +1,5 @@
-//! The track and the ground under it on their way through the blocks: what a block may ask of both, whatever sets its length.
+//! The track and the ground under it during the blocks: the operations that a block needs, independent of the control
+//! of its length.
 
 use super::exchange::Exchange;
 use super::machine::RunError;
@@ -60,7 +61,8 @@ impl Pair<'_> {
         self.ground.settlement()
     }
 
-    /// Lets a block pass, after which the track stands on what the ground answers then. A ground that fails is left as it was.
+    /// Lets a block pass, after which the track stands on what the ground answers then. If the ground fails, its state
+    /// does not change.
     pub fn advance(&mut self, axles: u64, loads: &[Load<'_>], follow: &mut Following<'_>) -> Result<(), RunError> {
         let mark = self.ground.mark();
         if let Err(cause) = self.ground.advance_and_follow(loads, follow) {

@@ -1,4 +1,5 @@
-//! The schedule of trains that ride on a rail over grains: nothing is exchanged between blocks, which only say when the state is told.
+//! The schedule of trains that ride on a rail over grains: nothing is exchanged between blocks; a block only sets when
+//! the state is reported.
 
 use super::Between;
 use super::blocks::{bearable, restored};
@@ -16,7 +17,7 @@ pub(super) fn run(
     from: Option<Checkpoint>,
 ) -> Result<Ending, RunError> {
     let at = |axles: u64| move |cause: NodeError| RunError::node(Clock::Axles(axles), cause);
-    let no_grains = || NodeError::Other { node: "grains".into(), why: "no grains lie under a track".into() };
+    let no_grains = || NodeError::Other { node: "grains".into(), why: "the scene has no grains under a track".into() };
     let parts = machine.grain_parts().ok_or_else(no_grains).map_err(at(0))?;
     let (mut done, mut axles, _, state) = restored(from, blocks)?;
     let mut ground = GrainGround::new(parts);

@@ -1,4 +1,4 @@
-//! One block: as long as the scene prescribes and its exchange stays calm, or as long as its error allows.
+//! One block: its length is prescribed by the scene, unless the exchange overshoots, or limited by its error.
 
 use super::exchange::{Exchange, Work};
 use super::machine::RunError;
@@ -7,24 +7,24 @@ use super::pair::Pair;
 use crate::graph::Block;
 use crate::nodes::{Bonds, Following};
 
-/// What the exchange of a block was worth, and what it took.
+/// Accuracy and cost of the exchange of a block.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BlockMeasures {
-    /// Estimate of the error of settlement that the block adds at the worst seat, m: by forces that stay the same over it, 0 for a block
-    /// of one train, and by trains that the ground leaves out.
+    /// Estimate of the error of settlement that the block adds at the worst seat, m: the error from constant forces
+    /// over the block (0 for a block of one train), and the error from trains that the ground does not compute.
     pub error: f64,
-    /// By how much a disturbance of the settlement comes back with the other sign: above 1 the exchange overshoots, above 2
-    /// it grows. `None` where the track moved too evenly to tell.
+    /// Factor by which a disturbance of the settlement comes back with the opposite sign: above 1 the exchange
+    /// overshoots, above 2 it grows. `None` if the track moved too evenly to tell.
     pub overshoot: Option<f64>,
-    /// Amplitude of a sawtooth along x in what the block settled, as a share of the most that it settled anywhere.
+    /// Sawtooth amplitude of the block's settlement along x, relative to its largest settlement.
     pub sawtooth: f64,
-    /// Longer blocks that were tried from the same start and thrown away.
+    /// Longer blocks that were tried from the same start and rejected.
     pub rejected: u64,
-    /// Those of them that overshot.
+    /// Number of rejected blocks that overshot.
     pub overshot: u64,
     /// Bonds of glued grains after it.
     pub bonds: Bonds,
-    /// All passages for it, those of blocks thrown away too, and their work.
+    /// All passages for this block, including rejected blocks, and their work.
     pub passages: u64,
     pub time_steps: u64,
     pub newton_iterations: u64,
@@ -37,15 +37,15 @@ pub(super) struct Done {
     pub next: Option<Exchange>,
 }
 
-/// Largest amplification at which a disturbance keeps its sign, and what a block that is shortened must come down to.
+/// Largest amplification at which a disturbance keeps its sign, and the target for a block that is shortened.
 const MONOTONE: f64 = 1.0;
 const CALM: f64 = 0.5;
 /// Amplification from which the second-order step grows disturbances; it never turns their sign.
 const UNSTABLE: f64 = 2.0;
 
 impl Pair<'_> {
-    /// A block of the length that the scene prescribes, with the forces of its start. Where it overshoots it is done again
-    /// in halves until it is far from that, down to one train.
+    /// A block of the prescribed length, with the forces of its start. If it overshoots, it is repeated with half the
+    /// length until it is far below the limit, down to one train.
     pub fn prescribed(&mut self, here: &mut Exchange, follow: &mut Following<'_>) -> Result<Done, RunError> {
         let wanted = self.blocks.wanted(here.axles).unwrap_or(1);
         let mut measured = BlockMeasures::default();
@@ -60,7 +60,7 @@ impl Pair<'_> {
             let change = self.change(here, &next, &block)?;
             measured.overshoot = change.as_ref().and_then(|change| amplification(&settled, change));
             measured.sawtooth = sawtooth(&self.runs, &settled);
-            // the mean of the forces of both ends would settle half the change more
+            // with the mean of the forces of both ends the settlement would be larger by half the change
             measured.error = if trains > 1 { change.map_or(0.0, |change| largest(&change) / 2.0) } else { 0.0 };
             let bound = if self.control.limit.is_some() { CALM } else { MONOTONE };
             if trains > 1 && measured.overshoot.is_some_and(|a| a > bound) && self.blocks.cure {
@@ -77,8 +77,8 @@ impl Pair<'_> {
         }
     }
 
-    /// How much more the trains of a block from `here` would settle with the forces of `there`, m: those of each kind all in
-    /// a direction that was run at both. `None` where none was.
+    /// Additional settlement of the trains of a block from `here` with the forces of `there`, m. All trains of each
+    /// type take a direction that was computed at both. `None` if none was.
     fn change(&self, here: &Exchange, there: &Exchange, block: &Block) -> Result<Option<Vec<f64>>, RunError> {
         let runs = self.runs_of_both(here, there, block);
         if runs.is_empty() {
@@ -91,9 +91,9 @@ impl Pair<'_> {
 
     /// A block as long as its error allows.
     ///
-    /// It is done in one piece with the forces of its start, and in two halves with forces computed anew between them; the
-    /// difference is the error of the first. What is kept is of second order: the first train passes with the forces of the
-    /// start, as it truly does, all others with those of the middle. Two trains are therefore exact.
+    /// It is done in one piece with the forces of its start, and in two halves with forces computed anew between them;
+    /// the difference is the error of the first. The result that is kept is of second order: the first train passes
+    /// with the forces of the start, all others with the forces of the middle. Two trains are therefore exact.
     pub fn adaptive(
         &mut self,
         here: &mut Exchange,
@@ -164,8 +164,8 @@ impl Pair<'_> {
         self.advance(here.axles, &[first, between.loads(&self.blocks.parts(&others))].concat(), follow)
     }
 
-    /// Trains of the next block: as many as settle the aim of the control with the forces of the start. Of unlike trains their order
-    /// does not matter here.
+    /// Trains of the next block: the number whose settlement with the forces of the start equals the target of the
+    /// control. The order of different trains does not matter here.
     fn chosen(&self, here: &Exchange, most: u64, left: u64) -> Result<u64, RunError> {
         let mut failure = None;
         let trains = self.control.choose(most, left, |trains| {
@@ -193,7 +193,7 @@ impl BlockMeasures {
         }
     }
 
-    /// Counts the work of an exchange beyond what was `known` of it before.
+    /// Counts the work of an exchange beyond the work `known` before.
     pub(super) fn add(&mut self, exchange: &Exchange, known: Work) {
         let work = exchange.work();
         self.passages += work.passages - known.passages;

@@ -1,4 +1,4 @@
-//! The schedule of test rigs: one bed after the other is packed, or taken from where beds are kept, and tested.
+//! The schedule of test rigs: each bed is packed, or read from the store of beds, and tested.
 
 use super::event::tell_stage;
 use super::machine::{Ending, Machine, RunError};
@@ -60,7 +60,7 @@ struct Test<'a, 'l> {
 }
 
 impl Test<'_, '_> {
-    /// Packs and tests, from what was kept of the test on; `None` where a listener ended it.
+    /// Packs and tests, or continues a stored test; `None` if a listener ended it.
     fn run(&mut self, running: Option<TestState>) -> Result<Option<(Tested, Bed<f32>)>, RunError> {
         let seed = self.bed.bed.seed().wrapping_add(self.done.len() as u64);
         let ready = self.bed.bed.ready(seed).map_err(|cause| failed_after(0, NodeError::Bed(cause)))?;

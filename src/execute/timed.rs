@@ -1,4 +1,4 @@
-//! How fast the steps of a graph with grains under its track are, without running it.
+//! Speed of the steps of a graph with grains under its track, without a full run.
 
 use super::machine::{Machine, RunError};
 use crate::graph::{Clock, Graph, Runner};
@@ -8,22 +8,22 @@ use crate::nodes::{
 };
 use crate::store::Beds;
 
-/// What is measured of a track on grains under its first train.
+/// Measurements of a track on grains under its first train.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Measured {
     /// Steps that are timed.
     pub steps: u64,
     /// Whether a whole passage is run too, with an account of its energy.
     pub energy: bool,
-    /// Whether the track lies for a second without a train too, to see how far it moves.
+    /// Whether the track is also computed for a second without a train, to measure its movement.
     pub idle: bool,
 }
 
 /// Time without a train, s.
 const IDLE: f64 = 1.0;
 
-/// Builds a track on grains, lets its first train come and times steps under its wheels. Fails where no grains lie under a track with
-/// trains.
+/// Builds a track on grains, lets its first train come and times steps under its wheels. Fails if the scene has no
+/// grains under a track with trains.
 pub fn time_steps(
     graph: &Graph,
     beds: &Beds,
@@ -35,7 +35,7 @@ pub fn time_steps(
 }
 
 fn timed(machine: &Machine<'_>, measured: Measured, tell: &mut Telling<'_>) -> Result<TimedSteps, NodeError> {
-    let no_grains = NodeError::Other { node: "grains".into(), why: "no grains lie under a track".into() };
+    let no_grains = NodeError::Other { node: "grains".into(), why: "the scene has no grains under a track".into() };
     let parts = machine.grain_parts().ok_or(no_grains)?;
     let blocks = machine.graph.blocks().ok_or(NodeError::NoTrain)?;
     let mut ground = GrainGround::new(parts);

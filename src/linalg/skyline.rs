@@ -1,9 +1,9 @@
 //! Symmetric systems whose rows reach back a different way each, in scratch that is reused without allocation.
 //!
-//! Row i is kept from its first entry to the diagonal. `A = L D Lᵀ` without pivoting fills nothing in front of a row's first
-//! entry, so rows that reach back a bounded way make the cost linear in their number. Without pivoting is stable for positive
-//! definite and for quasi-definite matrices (Vanderbei 1995): a positive definite block and a negative definite one with any
-//! coupling between them, in any order.
+//! Row i is kept from its first entry to the diagonal. `A = L D Lᵀ` without pivoting fills nothing in front of a row's
+//! first entry, so rows that reach back a bounded way make the cost linear in their number. Without pivoting is stable
+//! for positive definite and for quasi-definite matrices (Vanderbei 1995): a positive definite block and a negative
+//! definite one with any coupling between them, in any order.
 
 /// The lower triangle of a symmetric matrix, row by row.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -13,7 +13,7 @@ pub struct Skyline {
     values: Vec<f64>,
 }
 
-/// A pivot smaller than this part of what was summed to it is rounding.
+/// A pivot smaller than this part of the sum of its terms is rounding.
 const SINGULAR: f64 = 1e-14;
 
 impl Skyline {
@@ -66,8 +66,8 @@ impl Skyline {
         }
     }
 
-    /// Replaces the right-hand side by the solution and the matrix by its factors; fails with the row of a pivot that is
-    /// zero but for rounding, or not finite.
+    /// Replaces the right-hand side by the solution and the matrix by its factors; fails with the row of a pivot that
+    /// is zero but for rounding, or not finite.
     pub fn solve_in_place(&mut self, b: &mut [f64]) -> Result<(), usize> {
         let order = self.order();
         for i in 0..order {

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 type SubstructureBuilder = Box<dyn Fn(&CustomNode) -> Result<Box<dyn Substructure>, NodeError> + Send + Sync>;
 
-/// How nodes are built: those of this crate, and those that a program adds by their kind.
+/// Builders of nodes: the nodes of this crate, and nodes that a program adds by their kind.
 #[derive(Default)]
 pub struct Builders {
     substructures: BTreeMap<String, SubstructureBuilder>,

@@ -1,4 +1,4 @@
-//! Why a node could not do what the schedule asked of it.
+//! Errors of a node.
 
 use crate::graph::BedError;
 use crate::solvers::continuum::SoilError;
@@ -16,7 +16,7 @@ pub enum NodeError {
     Track(TrackError),
     /// A bed that has no recipe.
     Bed(BedError),
-    /// Packing, or a kept bed that does not come back.
+    /// Packing, or a stored bed that cannot be read.
     Packing(BedsError),
     /// A test.
     Rig(RigError),
@@ -24,19 +24,20 @@ pub enum NodeError {
     Grains(Failure),
     /// The soil below them.
     Soil(SoilError),
-    /// A track that stands on nothing yet.
+    /// A track without ground yet.
     NoGround,
     /// A passage of a schedule without trains.
     NoTrain,
-    /// A state that was kept and is not of this node.
+    /// A stored state of another node.
     Foreign { node: &'static str, why: String },
-    /// A node of the graph for which nobody has a builder.
+    /// A node of the graph without a builder.
     NoBuilder { node: String, kind: String },
-    /// A seat that has settled (m) by more than the ballast below it is thick.
+    /// A seat whose settlement (m) is larger than the thickness of the ballast below it.
     Sunk { seat: usize, settlement: f64 },
-    /// Who listens has ended the run, before its first step or in the middle of a block; what was kept before goes on from there.
+    /// A listener has ended the run, before its first step or in the middle of a block. The run can continue from the
+    /// state stored before.
     Stopped,
-    /// What a node of another program says.
+    /// Error of a node of another program.
     Other { node: String, why: String },
 }
 
@@ -49,15 +50,15 @@ impl fmt::Display for NodeError {
             NodeError::Rig(cause) => cause.fmt(f),
             NodeError::Grains(cause) => write!(f, "the grains under the track: {cause}"),
             NodeError::Soil(cause) => write!(f, "the soil below the grains: {cause}"),
-            NodeError::NoGround => f.write_str("the track stands on no ground"),
+            NodeError::NoGround => f.write_str("the track has no ground below it"),
             NodeError::NoTrain => f.write_str("no train runs over the track"),
             NodeError::Sunk { settlement, .. } => {
-                write!(f, "a sleeper has settled by {settlement:.2} m, more than the ballast below it is thick")
+                write!(f, "a sleeper has settled by {settlement:.2} m, more than the thickness of the ballast below it")
             }
             NodeError::Stopped => f.write_str("the run was stopped"),
             NodeError::Foreign { node, why } => write!(f, "the kept state of the {node} cannot be used: {why}"),
             NodeError::NoBuilder { node, kind } => {
-                write!(f, "node `{node}` is of a kind `{kind}` that this program cannot run")
+                write!(f, "node `{node}` has kind `{kind}`, which this program cannot run")
             }
             NodeError::Other { node, why } => write!(f, "node `{node}`: {why}"),
         }

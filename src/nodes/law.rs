@@ -21,7 +21,7 @@ pub struct LawGround<'a> {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct State {
     supports: Vec<Vec<SupportState>>,
-    /// Settlement of every seat from which its law counts, m: that of the start, and what tamping left.
+    /// Settlement of every seat from which its law counts, m: the settlement at the start, or after tamping.
     level: Vec<Vec<f64>>,
 }
 
@@ -84,7 +84,7 @@ impl Substructure for LawGround<'_> {
         self.settlements(&self.state)
     }
 
-    /// Laws are exact: this is what [`Substructure::advance`] leaves, to the last bit.
+    /// Laws are exact: this equals the result of [`Substructure::advance`], to the last bit.
     fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError> {
         if self.laws.is_empty() {
             return Ok(self.initial.clone());
@@ -113,9 +113,9 @@ impl Substructure for LawGround<'_> {
         }
     }
 
-    /// Tamping loosens the ballast that traffic had packed, so that each law begins afresh there: in the published curves N
-    /// counts from the last tamping, and the fast settlement of the first cycles comes back (Dahlberg 2001; Selig and Waters
-    /// 1994, section 8).
+    /// Tamping loosens the ballast that traffic had packed, so that each law begins afresh there: in the published
+    /// curves N counts from the last tamping, and the fast settlement of the first cycles comes back (Dahlberg 2001;
+    /// Selig and Waters 1994, section 8).
     fn tamp(&mut self, seats: &[usize], left: f64) -> Result<(), NodeError> {
         let settled = self.settlements(&self.state);
         let State { supports, level } = &mut self.state;

@@ -1,7 +1,8 @@
-//! Solvers behind ports: what a schedule needs of a superstructure and of a substructure, and one adapter a node.
+//! Solvers behind ports: the traits that a schedule needs of superstructure and substructure, and one adapter for each
+//! node.
 //!
-//! A node is built from its data in the graph ([`build`]). What passes between two of them is a type of this folder; what
-//! a port is called, its unit and its rate stand in the graph.
+//! A node is built from its data in the graph ([`build`]). Data between two nodes have a type of this folder; name,
+//! unit and rate of a port are in the graph.
 
 mod build;
 mod error;
@@ -38,7 +39,7 @@ use crate::solvers::granular::{Bed, Real};
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 
-/// What a passage keeps beside its outcome.
+/// Records of a passage in addition to its outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kept {
     Nothing,
@@ -47,14 +48,14 @@ pub enum Kept {
     Profile,
 }
 
-/// What a substructure needs of the forces of a passage.
+/// Forces of a passage that a substructure needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Forces {
     /// The peak under each wheel.
     Peaks,
     /// Peaks and the whole history at every seat.
     Histories,
-    /// Peaks, and where every wheel was and how it pressed.
+    /// Peaks, and place and force of every wheel.
     Wheels,
 }
 
@@ -72,7 +73,7 @@ pub struct Request<'a> {
 
 /// Rails, sleepers and vehicles: settlement and responses of the ground in, states of rest and passages out.
 pub trait Superstructure: Sync {
-    /// Takes the responses of the ground. Costs nothing where their revision is known.
+    /// Takes the responses of the ground. It costs no time if their revision is known.
     fn stand_on(&mut self, responses: &Responses) -> Result<(), NodeError>;
 
     /// The track at rest under test loads, on the settlement of every seat, m.
@@ -118,9 +119,9 @@ impl std::iter::Sum for Bonds {
 /// A state to which a substructure can be rolled back.
 pub struct Mark(pub Box<dyn Any + Send>);
 
-/// What carries the sleepers: forces in, responses and settlement out.
+/// The ground below the sleepers: forces in, responses and settlement out.
 pub trait Substructure: Send + Sync {
-    /// Builds what takes its time to be built; `tell` hears how far it is. Not asked of one whose state is restored.
+    /// Builds the parts that take long to build; `tell` gets the progress. It is not called if the state is restored.
     fn prepare(&mut self, _tell: &mut Telling<'_>) -> Result<(), NodeError> {
         Ok(())
     }
@@ -131,12 +132,13 @@ pub trait Substructure: Send + Sync {
     /// Settlement of every seat, m: that of the start and what traffic has added.
     fn settlement(&self) -> Vec<f64>;
 
-    /// Settlement of every seat by each of the laws that are compared, the driving one first, m; empty where nothing settles by laws.
+    /// Settlement of every seat by each of the laws that are compared, the driving one first, m; empty if nothing
+    /// settles by laws.
     fn settlement_by_law(&self) -> Vec<Vec<f64>> {
         Vec::new()
     }
 
-    /// What it needs of a passage.
+    /// The forces of a passage that it needs.
     fn forces(&self) -> Forces {
         Forces::Peaks
     }
@@ -147,21 +149,22 @@ pub trait Substructure: Send + Sync {
     /// Lets trains pass. After an error the state is that of the last mark only once it is rolled back.
     fn advance(&mut self, loads: &[Load<'_>]) -> Result<(), NodeError>;
 
-    /// The same; `follow` hears how far it is and may keep the state on the way. Where a state of before is restored, the same trains go on
-    /// from there.
+    /// The same; `follow` gets the progress and may store the state on the way. If an earlier state is restored, the
+    /// same trains continue from there.
     fn advance_and_follow(&mut self, loads: &[Load<'_>], _follow: &mut Following<'_>) -> Result<(), NodeError> {
         self.advance(loads)
     }
 
-    /// Records the first passage of the next block, as one after so many axles, where it has volumes that are recorded then.
+    /// Records the first passage of the next block, as a passage after so many axles, if volumes are recorded at that
+    /// count.
     fn record(&mut self, _axles: u64) {}
 
-    /// What was recorded in the last block; it is told once.
+    /// The records of the last block; they are given once.
     fn recorded(&mut self) -> Vec<VolumeSample> {
         Vec::new()
     }
 
-    /// Lets a train pass only to record it, as one after so many axles, and changes nothing.
+    /// Lets a train pass only to record it, as a passage after so many axles, and changes nothing.
     fn record_alone(
         &mut self,
         _axles: u64,
@@ -176,7 +179,7 @@ pub trait Substructure: Send + Sync {
         Bonds::default()
     }
 
-    /// Standard error of what the last block added to the settlement, at the worst seat, m.
+    /// Standard error of the settlement added by the last block, at the worst seat, m.
     fn error_added(&self) -> f64 {
         0.0
     }
@@ -186,8 +189,8 @@ pub trait Substructure: Send + Sync {
         false
     }
 
-    /// The beds of grains under the track as they lie now; none where it stands on something else. What comes later does not know that
-    /// somebody has looked.
+    /// The beds of grains under the track as they lie now; none if it stands on something else. Reading the beds does
+    /// not change later results.
     fn beds(&mut self) -> Result<Vec<BedUnderTrack<'_>>, NodeError> {
         Ok(Vec::new())
     }
@@ -204,6 +207,6 @@ pub trait Substructure: Send + Sync {
     /// The state as data, to go on from in another process.
     fn save(&self) -> Result<serde_json::Value, NodeError>;
 
-    /// Takes up a state that was saved; fails where it is of another substructure.
+    /// Takes up a state that was saved; fails if it is of another substructure.
     fn restore(&mut self, state: &serde_json::Value) -> Result<(), NodeError>;
 }

@@ -1,4 +1,4 @@
-//! What the track node yields: the track at rest, and what a passage did to it.
+//! Results of the track node: the track at rest, and the effects of a passage.
 
 use crate::graph::{History, TrackNode};
 use crate::solvers::settlement::Peak;
@@ -10,7 +10,7 @@ pub struct Unloaded {
     /// Every rail node, left to right.
     pub rail: Vec<RailPoint>,
     pub seats: Vec<UnloadedSeat>,
-    /// The rail as a measuring wheel finds it, left to right; empty where nobody records it.
+    /// The rail as a measuring wheel finds it, left to right; empty if nobody records it.
     pub profile: Vec<RailPlace>,
 }
 
@@ -33,7 +33,7 @@ pub struct RailPlace {
     pub level: f64,
     /// Unloaded, sagging, N m.
     pub moment: f64,
-    /// The mean wheel load of the train over the deflection that it adds standing here, N/m.
+    /// The train's mean wheel load at rest here, divided by the deflection that it adds, N/m.
     pub stiffness: f64,
 }
 
@@ -53,20 +53,21 @@ pub struct UnloadedSeat {
     pub support_stiffness: f64,
 }
 
-/// What one passage did to the track.
+/// Effects of one passage on the track.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PassageOutcome {
     pub seats: Vec<SeatOutcome>,
-    /// For every seat what each wheel of the train does to its support at most.
+    /// Largest force of each wheel of the train on the support of every seat.
     pub peaks: Vec<Vec<Peak>>,
     /// N.
     pub max_wheel_force: f64,
     pub min_wheel_force: f64,
-    /// Largest force of any wheel over the static force of this wheel, and the largest share of its static force that a wheel lacks;
-    /// `None` without gravity.
+    /// Largest ratio of a wheel's force to its static force, and the largest unloading of a wheel as a share of its
+    /// static force; `None` without gravity.
     pub amplification: Option<f64>,
     pub unloading: Option<f64>,
-    /// Largest sagging moment, N m, and downward displacement from the unloaded state, m, of the rail nodes that every wheel passes.
+    /// Largest sagging moment, N m, and downward displacement from the unloaded state, m, of the rail nodes that every
+    /// wheel passes.
     pub max_rail_moment: f64,
     pub max_rail_displacement: f64,
     /// Smallest and largest sagging moment of every rail node, N m.
@@ -75,11 +76,11 @@ pub struct PassageOutcome {
     pub rail_displacements: Vec<(f64, f64)>,
     pub time_steps: u64,
     pub newton_iterations: u64,
-    /// Histories; empty where the passage is not recorded.
+    /// Histories; empty if the passage is not recorded.
     pub samples: Vec<Sample>,
-    /// The force of every sleeper on its support over the passage, where the substructure takes it.
+    /// The force of every sleeper on its support over the passage, if the substructure needs it.
     pub forces: Option<SeatForces>,
-    /// Where every wheel was and how it pressed, where the substructure takes it.
+    /// Place and force of every wheel, if the substructure needs them.
     pub wheels: Option<WheelHistories>,
 }
 

@@ -1,9 +1,11 @@
-//! The rail as a measuring wheel finds it: level, moment and static stiffness at rail level along the track (paper, Fig. 8).
+//! The rail as a measuring wheel finds it: level, moment and static stiffness at rail level along the track (paper,
+//! Fig. 8).
 //!
-//! The stiffness is the secant one, `k = F / (w_F - w_0)`: F stands still at the place, w_F and w_0 are the deflections with
-//! and without it, each in equilibrium with its own lost contacts. On a track without voids it is the paper's, which inverts
-//! the assembled matrix with all supports closed; over a void it is lower, as the wheel must close the gap first. Where no wheel runs there is no
-//! profile: near the ends of the model a wheel would feel what holds the rail, not the track.
+//! The stiffness is the secant one, `k = F / (w_F - w_0)`: F stands still at the place, w_F and w_0 are the deflections
+//! with and without it, each in equilibrium with its own lost contacts. On a track without voids it is the paper's,
+//! which inverts the assembled matrix with all supports closed; over a void it is lower, as the wheel must close the
+//! gap first. There is no profile outside the range of the wheels: near the ends of the model the supports of the rail
+//! ends would affect the result.
 
 use super::RailPlace;
 use crate::solvers::track::{StaticState, Track, TrackError, TrackLevel, standing_stiffness};

@@ -1,12 +1,13 @@
-//! Takes histories of a passage: every wheel force, what the scene records, and the forces of sleepers where the ground takes
-//! them whole.
+//! Takes histories of a passage: every wheel force, what the scene records, and the force histories of sleepers if the
+//! ground needs them.
 
 use super::{Forces, Sample, SampledPart, SeatForces, WheelHistories};
 use crate::graph::{History, Record};
 use crate::solvers::track::{Observer, StepView};
 
 pub(super) struct Sampler {
-    /// Seats and quantities, each once, in the order of the scene, with the distance of a wheel within which they are kept.
+    /// Seats and quantities, each once, in the order of the scene, with the distance of a wheel within which they are
+    /// kept.
     wanted: Vec<(usize, History, f64)>,
     every: usize,
     recorded: bool,
@@ -56,7 +57,7 @@ impl Observer for Sampler {
     }
 }
 
-/// A quantity at a seat; `None` where it does not exist there.
+/// A quantity at a seat; `None` if it does not exist there.
 fn at_seat(view: &StepView<'_>, seat: usize, quantity: History) -> Option<f64> {
     let node = view.track().seat_node(seat);
     Some(match quantity {

@@ -19,7 +19,7 @@ pub struct TrackSystem<'a> {
     built: Option<Built>,
 }
 
-/// What hangs on the responses of the ground.
+/// The parts that depend on the responses of the ground.
 struct Built {
     responses: Responses,
     track: Arc<Track>,
@@ -30,11 +30,12 @@ struct Built {
 /// Seats whose mean stands for those near the ends of the model, see [`TrackSystem::complete`].
 const NEIGHBOURS: usize = 10;
 
-/// Wheel forces beyond so many static ones are no answer: rails break long before.
+/// Wheel forces above this multiple of the static force are not a valid result: rails break at much smaller forces.
 pub const RUNAWAY: f64 = 10.0;
 
 impl<'a> TrackSystem<'a> {
-    /// A track that stands on nothing yet; `blocks` say which trains run over it, `records` which histories are kept.
+    /// A track without ground yet; `blocks` gives the trains that run over it, `records` the histories that are
+    /// recorded.
     pub fn new(node: &'a TrackNode, blocks: Option<&'a Blocks>, records: &'a [Record]) -> Self {
         TrackSystem { node, records, blocks, built: None }
     }
@@ -97,7 +98,7 @@ impl<'a> TrackSystem<'a> {
         Ok((unloaded, outcome))
     }
 
-    /// Extremes of a passage, without what it took and what was recorded of it.
+    /// Extremes of a passage, without its cost and records.
     fn extremes(
         &self,
         train: &Train,
@@ -134,14 +135,14 @@ impl<'a> TrackSystem<'a> {
         }
     }
 
-    /// Extremes of every seat, and what each wheel does to its support at most, as if trains came from afar.
+    /// Extremes of every seat, and the largest force of each wheel on its support, as if trains came from far away.
     fn at_seats(&self, envelope: &Envelope, passed: Range<f64>) -> (Vec<SeatOutcome>, Vec<Vec<Peak>>) {
         let (mut outcomes, mut peaks) = at_seats(envelope, self.node.seats.len());
         self.complete(passed, &mut outcomes, &mut peaks);
         (outcomes, peaks)
     }
 
-    /// Refuses an outcome that has run away: it would settle the track by forces that no track bears.
+    /// Refuses an unstable outcome: it would settle the track by unrealistic forces.
     fn bounded(&self, train: &Train, outcome: &PassageOutcome) -> Result<(), TrackError> {
         let times = outcome.max_wheel_force / (train.mass() * self.node.gravity / train.axles() as f64);
         if times <= RUNAWAY {
@@ -153,9 +154,10 @@ impl<'a> TrackSystem<'a> {
         Err(TrackError::RanAway { x, force: outcome.max_wheel_force, times })
     }
 
-    /// Trains start and stop on the track, so seats near its ends see only some of their wheels. Such a seat takes the mean of
-    /// the nearest ten of its section that every wheel passes, as if trains came from afar: otherwise a false step in the
-    /// settlement would grow where they start. A section of which no seat is passed keeps what it saw.
+    /// Trains start and stop on the track, so seats near its ends are passed by only some of the wheels. Such a seat
+    /// takes the mean of the nearest ten seats of its section that every wheel passes, as if trains came from far away.
+    /// Otherwise a false step in the settlement would grow at the start of the trains. A section without such a seat
+    /// keeps its own values.
     fn complete(&self, passed: Range<f64>, outcomes: &mut [SeatOutcome], peaks: &mut [Vec<Peak>]) {
         let seats = &self.node.seats;
         for (i, seat) in seats.iter().enumerate().filter(|(_, s)| !passed.contains(&s.x)) {
@@ -184,7 +186,7 @@ impl<'a> TrackSystem<'a> {
     }
 }
 
-/// Extremes of every seat over a passage, and what each wheel of the train does to its support at most.
+/// Extremes of every seat over a passage, and the largest force of each wheel of the train on its support.
 fn at_seats(envelope: &Envelope, seats: usize) -> (Vec<SeatOutcome>, Vec<Vec<Peak>>) {
     let outcome = |i: usize| SeatOutcome {
         max_rail_seat_load: envelope.seat_loads[i].1,
@@ -231,7 +233,8 @@ impl Superstructure for TrackSystem<'_> {
     }
 }
 
-/// The least and the largest force of any wheel over its static force; `None` without gravity. Forces are of wheel after wheel.
+/// The least and the largest force of any wheel over its static force; `None` without gravity. Forces are of wheel
+/// after wheel.
 fn shares_of_static(train: &Train, gravity: f64, forces: &[(f64, f64)]) -> Option<(f64, f64)> {
     let loads = train.static_wheel_loads(gravity);
     let shares = forces

@@ -1,7 +1,7 @@
 //! Work in turns: some pieces at a time, each with its share of the cores.
 //!
-//! Threads of a pool that wait for another pool take up further work meanwhile, and all of it would run at once; so these are not of a
-//! pool.
+//! Threads of a pool that wait for another pool take up further work meanwhile, and all of it would run at once; so
+//! these are not of a pool.
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::num::NonZero;
@@ -14,7 +14,8 @@ pub fn cores() -> usize {
     thread::available_parallelism().map_or(1, NonZero::get)
 }
 
-/// What `run` makes of each item, in their order, so many at a time on so many threads. Fails where threads cannot be started.
+/// Results of `run` for each item, in their order, so many at a time on so many threads. Fails if threads cannot be
+/// started.
 pub fn each<T: Sync, A: Send>(
     items: &[T],
     at_a_time: usize,

@@ -1,4 +1,4 @@
-//! What happens along the track: settlement, level, loads and moments, one curve a recorded axle count.
+//! Figures along the track: settlement, level, loads and moments, one curve for each recorded axle count.
 
 use super::Figure;
 use super::counts::{self, Count};
@@ -17,9 +17,10 @@ pub fn settlement(run: &Run) -> Option<Figure> {
     let mut chart = track_chart(run, "Settlement", "m", true);
     chart.series = per_seat(run, true, |row| row.settlement_m);
     chart.series.retain(|series| series.points.iter().any(|point| point.1.is_finite() && point.1 != 0.0));
-    let caption = "Permanent settlement of each sleeper's support, downward as in the track; seats are numbered from the \
-         transition (dashed), negative on its softer side; shaded where no ballast carries the seats. Lighter near \
-         the ends: not every wheel of a train passes these sleepers, and they take the mean of ten neighbours.";
+    let caption = "Permanent settlement of each sleeper's support, positive downward. Seats are numbered from the \
+         transition (dashed line), with negative numbers on its softer side. Shaded: seats not carried by ballast. \
+         Paler near the ends: not every wheel of a train passes these sleepers, so each takes the mean settlement of \
+         ten neighbours.";
     figure(&chart, "settlement", "Settlement along the track", &with_thin_curves(run, caption))
 }
 
@@ -27,8 +28,8 @@ pub fn settlement(run: &Run) -> Option<Figure> {
 pub fn rail_level(run: &Run) -> Option<Figure> {
     let mut chart = track_chart(run, "Rail level below as built", "m", true);
     chart.series = counts::shown(run).iter().map(|count| along_rail(run, "rail_level", count)).collect();
-    let caption = "Level of the unloaded rail under its own weight, downward from the track as built: where it lies above \
-                   the settled supports, sleepers hang from it.";
+    let caption = "Level of the unloaded rail under its own weight, measured downward from the track as built. If the \
+                   rail lies above the settled supports, sleepers hang from it.";
     figure(&chart, "rail_level", "Rail level without a vehicle", caption)
 }
 
@@ -36,17 +37,17 @@ pub fn rail_level(run: &Run) -> Option<Figure> {
 pub fn seat_loads(run: &Run) -> Option<Figure> {
     let mut chart = track_chart(run, "Largest rail seat load", "N", false);
     chart.series = per_seat(run, false, |row| row.max_rail_seat_load_N);
-    let caption = "Largest force of the rail on each pad during one passage, per seat, in compression positive. The seat on \
-                   the stiff edge takes what its hanging neighbours leave.";
+    let caption = "Largest force of the rail on each pad during one passage, per seat; compression is positive. The \
+                   seat on the stiff edge also carries the load that the hanging sleepers beside it do not carry.";
     figure(&chart, "rail_seat_load", "Rail seat loads along the track", &with_thin_curves(run, caption))
 }
 
-/// How the dead load of the track rests on the ballast.
+/// Contact forces on the ballast under the dead load of the track.
 pub fn gravity_contact(run: &Run) -> Option<Figure> {
     let mut chart = track_chart(run, "Contact force without a vehicle", "N", false);
     chart.series = per_seat(run, true, |row| row.gravity_contact_force_N);
-    let caption = "Force of each half sleeper on its support under dead load alone: a sleeper at zero hangs, and its \
-                   neighbours carry its weight.";
+    let caption = "Force of each half sleeper on its support under dead load alone. A sleeper with zero force hangs \
+                   from the rail, and its neighbours carry its weight.";
     let title = "Sleeper\u{2013}ballast contact under dead load";
     figure(&chart, "gravity_contact_force", title, &with_thin_curves(run, caption))
 }
@@ -83,8 +84,10 @@ pub fn seat_shares(run: &Run) -> Option<Figure> {
     let mut shares: Vec<f64> = rows.iter().map(|row| 100.0 * row.max_rail_seat_load_N / total).collect();
     shares.sort_by(|a, b| b.total_cmp(a));
     let largest = shares.iter().take(3).map(|share| significant(*share, 3)).collect::<Vec<_>>().join(", ");
-    let caption =
-        format!("Rail seat loads as shares of the whole load of {} kN; the largest are {largest} %.", whole_kn(total));
+    let caption = format!(
+        "Rail seat loads as shares of the total load of {} kN. The largest shares are {largest} %.",
+        whole_kn(total)
+    );
     figure(&chart, "seat_shares", "Load shares of the seats", &caption)
 }
 
@@ -114,8 +117,8 @@ pub fn along_profile(run: &Run, count: &Count, value: fn(&RailRow) -> f64) -> Se
     Series::new(&count.name, &count.class, Mark::Line, rows.map(|row| (row.x_m, value(row))).collect())
 }
 
-/// One series a count over the seats, of the ballasted ones only where the quantity is the ballast's; seats that not every train passes
-/// whole in a paler one, further packings in thin ones.
+/// One series for each count over the seats; only ballasted seats for a quantity of the ballast. Seats that not every
+/// train passes with every wheel are in a paler series, further packings in thin ones.
 fn per_seat(run: &Run, ballasted: bool, value: fn(&SleeperRow) -> f64) -> Vec<Series> {
     let names = ballasted_names(&run.scenario);
     let trains = match &run.scenario.loading {
@@ -161,7 +164,7 @@ fn along_rail(run: &Run, quantity: &str, count: &Count) -> Series {
     Series::new(&count.name, &count.class, Mark::Line, points)
 }
 
-/// A figure of one chart over the full width; `None` where there is nothing to see.
+/// A figure of one chart over the full width; `None` if the chart is empty.
 pub fn figure(chart: &Chart, id: &str, title: &str, caption: &str) -> Option<Figure> {
     if chart.is_empty() {
         return None;

@@ -39,10 +39,11 @@ pub fn ballast_response(run: &Run) -> Option<Figure> {
     let others = volumes(run).len() - chosen.len();
     let rest = if others > 0 { " Other volumes are in histories.parquet." } else { "" };
     let caption = format!(
-        "From the 3D model: the sleeper, and the mean of the grains in the measurement volume below it, while the leading train passes over \
-         the grains. Shaded while the sleeper has no contact with the grains, {last}. Velocity and acceleration are positive and drawn \
-         downward. The acceleration of the ballast is the change of its mean velocity between two samples. Time counts from the leading \
-         wheel over the sleeper; the legend counts the axles that had passed.{rest}"
+        "3D model: the sleeper, and the mean over the grains in the measurement volume below it, while the leading \
+         train passes over the grains. Shaded: the sleeper has no contact with the grains, {last}. Velocity and \
+         acceleration are positive downward. The acceleration of the ballast is the change of its mean velocity \
+         between two samples. Time is zero when the leading wheel stands over the sleeper. The legend gives the number \
+         of axles that have passed.{rest}"
     );
     let names = Names { id: "ballast_response", title: "Sleepers and ballast in the 3D model", caption: &caption };
     panels(&names, &charts, chosen.len())

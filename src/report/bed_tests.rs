@@ -1,4 +1,5 @@
-//! The page of a test rig: settlement and stiffness against cycles, loops, what sensors read, and the bed with its chains.
+//! The page of a test rig: settlement and stiffness against cycles, loops, sensor readings, and the bed with its force
+//! chains.
 
 use super::Figure;
 use super::bed::{BedView, Colour, Side, bed_svg};
@@ -30,7 +31,7 @@ impl<'a> BedTestsPage<'a> {
         BedTestsPage { run: &view.run, tests: &view.tests, view }
     }
 
-    /// The whole page, which needs nothing from elsewhere.
+    /// The whole page, in one file without external parts.
     pub fn html(&self) -> String {
         let run = self.run;
         let mut html = opening(&run.scenario.title, &subtitle(&run.scenario));
@@ -53,13 +54,13 @@ impl<'a> BedTestsPage<'a> {
             ("Oedometric modulus, resilient, last cycle", "oedometric_modulus", "MPa", 1e6),
             ("Oedometric modulus, first loading", "first_oedometric_modulus", "MPa", 1e6),
             ("Largest deviator", "peak_deviator", "kPa", 1e3),
-            ("Largest angle of friction that is mobilised", "peak_friction_angle", "\u{b0}", 1.0_f64.to_radians()),
+            ("Largest mobilised friction angle", "peak_friction_angle", "\u{b0}", 1.0_f64.to_radians()),
             ("Strain at the largest deviator", "peak_strain", "%", 0.01),
-            ("Secant modulus to half of it", "secant_modulus", "MPa", 1e6),
-            ("Least volume strain", "least_volume_strain", "%", 0.01),
-            ("Greatest volume strain", "greatest_volume_strain", "%", 0.01),
+            ("Secant modulus to half the largest deviator", "secant_modulus", "MPa", 1e6),
+            ("Smallest volume strain", "least_volume_strain", "%", 0.01),
+            ("Largest volume strain", "greatest_volume_strain", "%", 0.01),
             ("Largest force of the bed on a sleeper or plate", "max_contact_force", "kN", 1e3),
-            ("Broken bonds, of those between glued grains", "broken_bonds_share", "%", 0.01),
+            ("Broken bonds, share of all bonds between glued grains", "broken_bonds_share", "%", 0.01),
             ("Grains", "grains", "", 1.0),
             ("Porosity inside the top layer, as packed", "porosity", "", 1.0),
             ("Coordination number inside the top layer, as packed", "coordination_number", "", 1.0),
@@ -71,8 +72,8 @@ impl<'a> BedTestsPage<'a> {
             n => format!("{} cycles", whole(n)),
         };
         let counts = match self.tests.tests.iter().any(|test| !test.answer.specimen.is_empty()) {
-            true => "Settlement and strains count from the end of consolidation",
-            false => "Settlement counts from rest under the sleeper's or plate's own weight",
+            true => "Settlement and strains are measured from the end of consolidation",
+            false => "Settlement is measured from rest under the sleeper's or plate's own weight",
         };
         let packings = match self.tests.tests.len() {
             1 => "one packing".to_owned(),
@@ -80,8 +81,8 @@ impl<'a> BedTestsPage<'a> {
         };
         let _ = write!(
             html,
-            "<section id=\"headline\"><h2>At a glance</h2><p class=\"caption\">{cycles} on {packings}. {counts}. Forces and stiffness \
-             are of {}.</p><div class=\"scroll\"><table><tbody>",
+            "<section id=\"headline\"><h2>At a glance</h2><p class=\"caption\">{cycles} on {packings}. {counts}. \
+             Forces and stiffness are for {}.</p><div class=\"scroll\"><table><tbody>",
             if self.run.scenario.solve.grains.both_rails { "both rails" } else { "one rail" }
         );
         for (label, name, unit, size) in lines {
@@ -103,7 +104,7 @@ impl<'a> BedTestsPage<'a> {
         let mut figures = Vec::new();
         figures.extend(self.deviator());
         figures.extend(self.volume());
-        // a bed that is shortened once has nothing to show against cycles
+        // a bed that is shortened once has no curve against cycles
         if self.tests.tests.iter().any(|test| test.answer.cycles.iter().any(|cycle| cycle.number > 1)) {
             figures.extend([self.against_cycles(false), self.against_cycles(true), self.stiffness()]);
         }
@@ -111,8 +112,13 @@ impl<'a> BedTestsPage<'a> {
         figures.extend(self.strain());
         figures.extend(self.stress());
         figures.extend(self.velocity());
-        figures.push(self.bed(Side::X, "along", "The bed along the track", "At the end, under the lower force."));
-        figures.push(self.bed(Side::Y, "across", "The bed across", "Lines join grains that press on each other."));
+        figures.push(self.bed(
+            Side::X,
+            "along",
+            "The bed along the track",
+            "State at the end of the test, under the lower force.",
+        ));
+        figures.push(self.bed(Side::Y, "across", "The bed across", "Lines join grains that are in contact."));
         figures
     }
 
@@ -142,11 +148,15 @@ impl<'a> BedTestsPage<'a> {
         let mut chart = Chart::new(x, y);
         chart.series = self.series(|cycle| cycle.settlement);
         let (id, title, caption) = match logarithmic {
-            false => ("settlement", "Settlement against cycles", "At the lower force after every cycle, downwards."),
+            false => (
+                "settlement",
+                "Settlement against cycles",
+                "Settlement at the lower force after each cycle, positive downward.",
+            ),
             true => (
                 "settlement_log",
                 "Settlement against the logarithm of cycles",
-                "A straight line settles with the logarithm.",
+                "A straight line means that settlement grows with the logarithm of the cycles.",
             ),
         };
         figure(chart, id, title, caption)
@@ -160,7 +170,7 @@ impl<'a> BedTestsPage<'a> {
             chart,
             "stiffness",
             "Stiffness against cycles",
-            "Range of the force over the rebound from the deepest place.",
+            "Force range of the cycle divided by the rebound from the deepest position.",
         )
     }
 
@@ -178,24 +188,24 @@ impl<'a> BedTestsPage<'a> {
             chart.series.push(Series::new(&format!("cycle {cycle}"), &class_of(number), Mark::Line, points));
         }
         let caption = format!(
-            "Sleeper {}, seed {}: what a loop encloses is work that the bed keeps.",
+            "Sleeper {}, seed {}. The area inside a loop is the work that the bed dissipates.",
             self.tests.sleepers.get(worst).map_or("", |(name, _)| name),
             test.answer.seed
         );
         figure(chart, "loops", "Force against depth", &caption)
     }
 
-    /// Deviator stress of a specimen whose sides give way.
+    /// Deviator stress of a specimen with movable sides.
     fn deviator(&self) -> Option<Figure> {
         let y = Axis { from_zero: true, ..Axis::new("Deviator", ("kPa", 1e3)) };
-        let caption =
-            "Vertical less lateral stress: of plate and floor, and of the four sides, which keep their pressure.";
+        let caption = "Vertical stress minus lateral stress. The vertical stress is measured at plate and floor; the \
+            lateral stress at the four sides, which hold a constant pressure.";
         self.against_strain(y, SpecimenState::deviator, "deviator", "Deviator against strain", caption)
     }
 
     fn volume(&self) -> Option<Figure> {
         let y = Axis { from_zero: true, ..Axis::new("Volume strain", ("%", 0.01)) };
-        let caption = "Positive where the specimen is compressed, negative where it dilates.";
+        let caption = "Positive: the specimen is compressed. Negative: it dilates.";
         self.against_strain(y, |state| state.volume_strain, "volume", "Volume strain against axial strain", caption)
     }
 
@@ -243,7 +253,8 @@ impl<'a> BedTestsPage<'a> {
             let points = of.map(|sample| (sample.depth / height, sample.force / area)).collect();
             chart.series.push(Series::new(&format!("cycle {cycle}"), &class_of(number), Mark::Line, points));
         }
-        let caption = "Of the plate, from rest under its own weight; sides do not give way: an oedometer.";
+        let caption = "Stress and strain of the plate, measured from rest under its own weight. The sides are rigid, \
+            as in an oedometer.";
         Some(figure(chart, "strain", "Stress against strain", caption))
     }
 
@@ -255,11 +266,11 @@ impl<'a> BedTestsPage<'a> {
 
     fn velocity(&self) -> Option<Figure> {
         let y = Axis::new("Velocity", ("mm/s", 1e-3));
-        let caption = "The mean of the grains inside, positive downwards";
+        let caption = "Mean of the grains inside the sensor, positive downward";
         self.at_sensors(y, |reading| reading.velocity, "velocity", "Velocity at the sensors", caption)
     }
 
-    /// What sensors of the first packing read over the last cycle that is kept.
+    /// Sensor readings of the first packing over the last recorded cycle.
     fn at_sensors(
         &self,
         y: Axis,
@@ -277,7 +288,7 @@ impl<'a> BedTestsPage<'a> {
             chart.series.push(Series::new("", &class_of(index), Mark::Faint, line(1)));
             chart.series.push(Series::new(&format!("sleeper {name}"), &class_of(index), Mark::Line, line(last)));
         }
-        Some(figure(chart, id, title, &format!("{caption}, in cycle {last}; thin lines are the first cycle.")))
+        Some(figure(chart, id, title, &format!("{caption}. Thick lines: cycle {last}. Thin lines: first cycle.")))
     }
 
     fn bed(&self, side: Side, id: &str, title: &str, caption: &str) -> Figure {
@@ -290,7 +301,8 @@ impl<'a> BedTestsPage<'a> {
             side,
             colour: Colour::Force,
         });
-        let caption = format!("{caption} Grains nearest to the eye, coloured by the largest force on them.");
+        let caption =
+            format!("{caption} The grains in front are shown, coloured by the largest contact force on each.");
         Figure { id: id.to_owned(), title: title.to_owned(), caption, svg }
     }
 

@@ -1,4 +1,4 @@
-//! How long the blocks were, and what each was worth.
+//! Length and estimated error of the blocks.
 
 use super::Figure;
 use super::curves::{Axis, Chart, Mark, Series};
@@ -36,15 +36,15 @@ pub fn lengths(run: &Run) -> Option<Figure> {
     })
 }
 
-/// What the exchanges of the run were worth, in a sentence or two.
+/// Accuracy of the exchanges of the run, in a sentence or two.
 pub fn said(run: &Run) -> String {
     let errors = run.blocks.iter().map(|b| b.error_m).filter(|error| error.is_finite());
     let sum = format!(
-        "Their estimated errors of settlement add up to {} \u{b5}m.",
+        "The estimated settlement errors of all blocks add up to {} \u{b5}m.",
         significant(errors.sum::<f64>() * 1e6, 2)
     );
     match BlockRow::overshoot(&run.blocks) {
-        Some(found) => format!("{sum} Mind: {found}."),
+        Some(found) => format!("{sum} Note: {found}."),
         None => sum,
     }
 }

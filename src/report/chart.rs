@@ -1,7 +1,7 @@
 //! One diagram: axes with units, series, shaded stretches and reference lines, drawn into a frame of a picture.
 //!
-//! Data come in SI and are shown in the axis's unit. What is not finite is a gap, never a mark. Long series are thinned
-//! to what the pixels can show, with every peak kept.
+//! Data are in SI and are shown in the axis's unit. A value that is not finite is a gap. Long series are thinned to the
+//! resolution of the pixels, and every peak is kept.
 
 use super::curves::{Chart, Mark, Series};
 use super::number::{nice_step, plain, tick_label, ticks};
@@ -163,7 +163,7 @@ impl Chart {
         svg.text("", (frame.x + frame.width / 2.0, bottom + 35.0), Anchor::Middle, &self.x.title());
     }
 
-    /// Seat numbers over the plane: round ones, as many as have room.
+    /// Seat numbers over the plane: round ones, as many as fit.
     fn draw_seats(&self, svg: &mut Svg, plane: &Plane) {
         let Frame { x: left, y: top, width, .. } = plane.frame;
         let (Some(first), Some(last)) = (self.seats.first(), self.seats.last()) else { return };

@@ -1,7 +1,7 @@
-//! Colours for a quantity that runs from little to much: from dark blue over green to light yellow, in steps that look equal.
+//! Colours for a quantity from small to large: from dark blue over green to light yellow, in steps that look equal.
 //!
-//! The path is drawn in Oklab (Ottosson 2020), where equal distances look about equally large, lightness rising all the way,
-//! so that it reads in grey too; the steps are equal lengths of it.
+//! The path is drawn in Oklab (Ottosson 2020), in which equal distances look about equally large. Lightness rises along
+//! the whole path, so the colours can also be read in grey. The steps are equal lengths of the path.
 
 /// Lightness, chroma and hue (degrees) along the path; straight between them.
 const PATH: [[f64; 3]; 5] =
@@ -9,7 +9,7 @@ const PATH: [[f64; 3]; 5] =
 /// Pieces that the path's length is measured in.
 const PIECES: usize = 512;
 
-/// `count` colours from little to much, as red, green and blue.
+/// `count` colours from small to large values, as red, green and blue.
 pub(super) fn colours(count: usize) -> Vec<[u8; 3]> {
     let points: Vec<[f64; 3]> = (0..=PIECES).map(|k| oklab(k as f64 / PIECES as f64)).collect();
     let mut length = vec![0.0];

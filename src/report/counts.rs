@@ -26,7 +26,7 @@ impl Count {
     }
 }
 
-/// The counts at which sleepers were recorded; six of them, spread evenly, where there are more.
+/// The counts at which sleepers were recorded; at most six of them, spread evenly.
 pub fn shown(run: &Run) -> Vec<Count> {
     let of_sleepers = run.sleepers.iter().map(|row| row.axles);
     let of_levels = run.histories.iter().filter(|row| row.quantity == "rail_level").map(|row| row.axles);
@@ -44,7 +44,7 @@ pub fn shown(run: &Run) -> Vec<Count> {
     chosen.into_iter().enumerate().map(count).collect()
 }
 
-/// Bands that mark the sections: shaded where no ballast carries the track, named where there are several.
+/// Bands that mark the sections: shaded if no ballast carries the track, named if there are several.
 pub fn sections(scenario: &Scenario) -> Vec<Band> {
     let track = &scenario.track;
     let several = track.sections.len() > 1;

@@ -12,7 +12,7 @@ const COLUMNS: usize = 3;
 const MARGIN: f64 = 26.0;
 /// Room beside a bed for the names of its layers, px.
 const NAMES: f64 = 92.0;
-/// What of a deep layer is shown, m.
+/// Largest depth of a layer that is shown, m.
 const DEEPEST: f64 = 1.5;
 const RAIL_WIDTH: f64 = 0.15;
 
@@ -35,18 +35,19 @@ impl Place {
     }
 }
 
-/// What is cut: a section, its sleeper, and its ground at a chainage.
+/// A cut: a section, its sleeper, and its ground at a chainage.
 struct Cut<'a> {
     section: &'a Section,
     sleeper: &'a SleeperBody,
     usp: Option<&'a Usp>,
     ground: Groundwork,
-    /// Whether a stretch made it what it is.
+    /// Whether a stretch changed the ground.
     changed: bool,
     x: f64,
 }
 
-/// One cut for each kind of sleeper on each kind of ground; where the ground varies, as near to a transition as sleepers lie.
+/// One cut for each kind of sleeper on each kind of ground; where the ground varies, as near to a transition as
+/// sleepers lie.
 fn cuts(scenario: &Scenario) -> Vec<Cut<'_>> {
     let track = &scenario.track;
     let grounds: Vec<Vec<Groundwork>> = (0..track.sections.len()).map(|section| track.ground(section)).collect();
@@ -167,7 +168,7 @@ fn draw_section(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place
     bottom + 58.0
 }
 
-/// What lies beside the sleeper, down to its underside, m.
+/// Crib and shoulder beside the sleeper, down to its underside, m.
 fn draw_beside(svg: &mut Svg, scenario: &Scenario, cut: &Cut<'_>, place: &Place, (ballast, foot): (&Material, f64)) {
     let (half, height) = (half_width(scenario, cut.sleeper), cut.sleeper.height);
     let beside = height_beside(scenario, cut.section, height);

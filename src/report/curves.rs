@@ -1,4 +1,4 @@
-//! What a diagram shows: axes with units, curves, shaded stretches and reference lines. Data are SI.
+//! Content of a diagram: axes with units, curves, shaded stretches and reference lines. Data are SI.
 
 use super::plane::finite;
 use std::borrow::Cow;
@@ -15,7 +15,7 @@ pub struct Axis {
     /// In SI; the extent of the data where absent.
     pub range: Option<(f64, f64)>,
     pub from_zero: bool,
-    /// Powers of ten at equal distances; values are above zero. Bars and second scales are not drawn so.
+    /// Powers of ten at equal distances; values are above zero. Not used for bars and second scales.
     pub logarithmic: bool,
     /// Marks at whole numbers only: counts of few things.
     pub whole: bool,
@@ -65,9 +65,9 @@ pub struct Series {
     pub class: String,
     pub mark: Mark,
     pub points: Vec<(f64, f64)>,
-    /// What each point is, for those who point at it.
+    /// Label of each point, shown under the pointer.
     pub labels: Vec<String>,
-    /// Whether it is drawn lighter: it belongs to the figure, and less is known of it.
+    /// Whether it is drawn paler, because its values are less certain.
     pub pale: bool,
     /// Upright values at each step of a chart that moves, over the places of `points`, which hold the last step.
     pub moving: Vec<Vec<f64>>,
@@ -110,7 +110,7 @@ pub struct Chart {
     pub seats: Vec<(f64, i32)>,
     /// A second scale of the upright axis: its title, and its value per SI of the first.
     pub second: Option<(String, f64)>,
-    /// Names of the steps through which the page's script moves the curves; none where they stand.
+    /// Names of the steps through which the page's script moves the curves; none if the curves do not move.
     pub steps: Vec<String>,
 }
 

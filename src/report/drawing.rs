@@ -1,4 +1,5 @@
-//! A scene before it runs, to be looked at: the track to scale, its layers, its cross-sections, their gradings and their grains.
+//! Drawings of a scene before it runs: the track to scale, its layers, its cross-sections, their gradings and their
+//! grains.
 
 use super::scene::draw_scene;
 use super::svg::Svg;
@@ -9,7 +10,7 @@ use crate::scenario::Scenario;
 /// Fields that only drawings read.
 pub const DRAWN: &[&str] = &["rail.height", "usp.thickness"];
 
-/// Everything that can be drawn of a scene, one below the other, as one picture that is valid on its own.
+/// All drawings of a scene, one below the other, as one complete picture.
 pub fn drawing_svg(scenario: &Scenario) -> String {
     let mut svg = Svg::default();
     let mut y = draw_scene(&mut svg, scenario);
@@ -21,7 +22,7 @@ pub fn drawing_svg(scenario: &Scenario) -> String {
     svg.finish(WIDTH, y, &format!("{}: the scene to scale", scenario.title))
 }
 
-/// The drawings of what lies under the track, as figures of a report: the layers along it, and sections across it.
+/// The drawings of the ground under the track, as figures of a report: the layers along it, and sections across it.
 pub(super) fn ground_figures(scenario: &Scenario) -> Vec<Figure> {
     let figure = |draw: fn(&mut Svg, &Scenario) -> f64, [id, title, caption]: [&str; 3]| {
         let mut svg = Svg::default();
@@ -33,13 +34,14 @@ pub(super) fn ground_figures(scenario: &Scenario) -> Vec<Figure> {
     let along = [
         "layers",
         "The layers along the track",
-        "To scale, at each transition with the stretches near it that change the layers: thickness and Young's modulus of each \
-         layer, wedges, approach slabs, and pads under sleepers, which are drawn thicker where they would not be seen.",
+        "To scale: each transition, with the stretches near it that change the layers. Shown are thickness and Young's \
+         modulus of each layer, wedges, approach slabs and under sleeper pads. Thin pads are drawn thicker, so that \
+         they can be seen.",
     ];
     let across = [
         "cross_sections",
         "Sections across the track",
-        "To scale: each kind of sleeper on each kind of ground, as near to a transition as such sleepers lie.",
+        "To scale: each type of sleeper on each type of ground, at the sleeper of this type nearest to a transition.",
     ];
     [figure(layers::draw, along), figure(cross_section::draw, across)].into_iter().flatten().collect()
 }

@@ -10,7 +10,7 @@ use crate::results::{Run, SleeperRow};
 
 /// Curves that a reader can tell apart.
 const MOST: usize = 4;
-/// Ratio of the last count to the first from which a logarithmic scale shows more.
+/// Smallest ratio of the last count to the first for which a logarithmic scale is drawn.
 const DECADES: f64 = 20.0;
 /// Distance from every transition at which the far field begins, m.
 const FAR_FIELD: f64 = 10.0;
@@ -38,11 +38,11 @@ pub fn settlement_with_axles(run: &Run) -> Option<Figure> {
     let last = counts.iter().copied().fold(0.0, f64::max);
     let mut charts = vec![(chart.clone(), 300.0)];
     let mut caption =
-        "Settlement against the axles passed; each symbol is an exchange of forces and settlement between \
-                       track and supports. Sleepers by number, negative on the softer side."
+        "Settlement against the axles passed. Each symbol is an exchange of forces and settlement between track and \
+                       supports. Sleepers are numbered from the transition, with negative numbers on its softer side."
             .to_owned();
     if !chart.uprights.is_empty() {
-        caption += " Dashed where sleepers are tamped.";
+        caption += " Dashed lines: tamping of sleepers.";
     }
     if last / first >= DECADES {
         let mut logarithmic = chart;
@@ -51,8 +51,8 @@ pub fn settlement_with_axles(run: &Run) -> Option<Figure> {
             series.points.retain(|point| point.0 > 0.0);
         }
         charts.push((logarithmic, 300.0));
-        caption += " Right, the same over the logarithm of the axles: a straight line there is settlement that grows by \
-                    equal steps with every tenfold of axles.";
+        caption += " Right: the same with a logarithmic scale of axles. A straight line means that settlement grows by \
+                    the same amount each time the number of axles grows tenfold.";
     }
     let caption = with_thin_curves(run, &caption);
     let columns = charts.len();
@@ -73,8 +73,8 @@ fn of_sleeper(run: &Run, sleeper: &str) -> Vec<(f64, f64)> {
     points
 }
 
-/// Rows of the last count: the sleeper that settled most, the one nearest to a transition, one of the far field, and what
-/// the scene records besides.
+/// Rows of the last count: the sleeper that settled most, the one nearest to a transition, one of the far field, and
+/// further sleepers that the scene records.
 fn telling_seats(run: &Run) -> Vec<(&SleeperRow, &'static str)> {
     let names = ballasted_names(&run.scenario);
     let last = run.sleepers.iter().map(|row| row.axles).max();

@@ -1,4 +1,4 @@
-//! Sieve curves of the granular layers: the whole curve, and what of it is modelled.
+//! Sieve curves of the granular layers: the whole curve, and the modelled part.
 
 use super::curves::{Axis, Chart, Mark, Series};
 use super::number::plain;

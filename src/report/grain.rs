@@ -1,4 +1,5 @@
-//! One grain as it looks: its surface in light and shadow, or the pebbles of a clump, each cut where it meets the others.
+//! One grain as it looks: its surface in light and shadow, or the pebbles of a clump, each cut where it meets the
+//! others.
 
 use super::svg::Svg;
 use crate::solvers::granular::clump::Pebble;
@@ -10,13 +11,13 @@ use std::f64::consts::TAU;
 const OUTLINE: usize = 60;
 /// Points across a pebble among which one that shows is looked for.
 const GRID: i32 = 12;
-/// How far facets reach over their edges, px, so that no paper shines through.
+/// Overlap of facets over their edges, px, so that no gaps are visible.
 const OVER: f64 = 0.35;
 /// Colours of stone in shadow and in light.
 const DARK: [f64; 3] = [104.0, 88.0, 66.0];
 const LIGHT: [f64; 3] = [244.0, 236.0, 220.0];
 
-/// How grains are looked at: an upright plane in front of them, x to the right, y up, z to the eye.
+/// View of the grains: an upright plane in front of them, x to the right, y up, z to the eye.
 #[derive(Debug, Clone, Copy)]
 pub struct Look {
     turn: Matrix3<f64>,
@@ -110,7 +111,7 @@ pub fn draw_pebbles(svg: &mut Svg, id: &str, pebbles: &[Pebble], look: &Look, at
     }
 }
 
-/// The outline of the convex part of a ball that shows; `None` where nothing does.
+/// The outline of the convex part of a ball that shows; `None` if nothing does.
 fn outline(pebble: &Pebble, shows: impl Fn(f64, f64) -> bool) -> Option<Vec<(f64, f64)>> {
     let centre = pebble.centre;
     let place = |k: i32| {

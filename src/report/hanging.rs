@@ -1,5 +1,5 @@
-//! How a hanging sleeper meets its ballast, beside one of the far field: contact force, velocity and acceleration during a
-//! passage, shaded while there is no contact (paper, Figs. 16 and 17).
+//! A hanging sleeper beside one of the far field: contact force, velocity and acceleration during a passage, shaded
+//! while there is no contact (paper, Figs. 16 and 17).
 
 use super::curves::Chart;
 use super::panels::{Names, panels, share_scale};
@@ -35,15 +35,17 @@ pub fn hanging_sleeper(run: &Run) -> Option<Figure> {
         }
     }
     let others = seats(run, Response::ContactForce).len() - chosen.len();
-    let mut caption = "Left the recorded sleeper with the largest void, right one of the far field, both by number. Shaded while the sleeper \
-                       has no contact with its support at the last count: a hanging sleeper is lifted before the wheel \
-                       comes, meets the ballast with a blow and leaves it again between the bogies. Contact force of half a \
-                       sleeper, never negative; velocity and acceleration positive and drawn downward. Time counts from the \
-                       leading wheel over the sleeper."
+    let mut caption = "Left: the recorded sleeper with the largest void. Right: a sleeper of the far field. Titles \
+                       begin with the sleeper number. Shaded: the sleeper has no contact with its support at the last \
+                       count. A hanging sleeper is lifted before the wheel comes, hits the ballast, and leaves it \
+                       again between the bogies. The contact force is for half a sleeper and is never negative. \
+                       Velocity and acceleration are positive downward. Time is zero when the leading wheel stands \
+                       over the sleeper."
         .to_owned();
     if chosen.len() == 1 {
         caption = caption.replace(
-            "Left the recorded sleeper with the largest void, right one of the far field, both by number. ",
+            "Left: the recorded sleeper with the largest void. Right: a sleeper of the far field. Titles begin with \
+            the sleeper number. ",
             "",
         );
     }
@@ -52,7 +54,7 @@ pub fn hanging_sleeper(run: &Run) -> Option<Figure> {
     }
     let in_grains = run.histories.iter().any(|row| row.quantity == InVolume::SleeperForce.name());
     if in_grains && !run.scenario.solve.grains.monolithic {
-        caption += " All of it is of the plane track; the next figure shows sleepers of the 3D model.";
+        caption += " All curves are for the plane track; the next figure shows sleepers of the 3D model.";
     }
     let names = Names { id: "hanging_sleeper", title: "Sleeper and ballast during a passage", caption: &caption };
     panels(&names, &charts, chosen.len())

@@ -1,4 +1,4 @@
-//! The table at the head of the page: what an engineer asks for first, where it stands and what it is held against.
+//! The table at the head of the page: the most important results, their places and their limits.
 
 use super::limits;
 use super::number::{plain, shown_unit, significant, whole};
@@ -11,14 +11,14 @@ use std::fmt::Write;
 struct Line {
     name: &'static str,
     value: String,
-    /// Where it stands, or what it is of.
+    /// Its place, or its reference.
     place: String,
     limit: String,
     /// Whether the limit is kept, where there is one.
     kept: Option<bool>,
 }
 
-/// Writes the table; nothing where the run has no numbers.
+/// Writes the table; nothing if the run has no numbers.
 pub fn headline(html: &mut String, run: &Run) {
     let lines = match run.scenario.loading {
         Some(Loading::Static(_)) => static_lines(run),
@@ -30,15 +30,15 @@ pub fn headline(html: &mut String, run: &Run) {
     let after = run.summary.scalars.get("axles").map_or(0.0, |s| s.value) as u64;
     let caption = match run.scenario.loading {
         Some(Loading::Static(_)) => "Under the test loads, per rail.".to_owned(),
-        _ => format!("After {} axles; forces and moments are the extremes of one passage, of one rail.", whole(after)),
+        _ => format!("After {} axles. Forces and moments are the extremes of one passage, for one rail.", whole(after)),
     };
     let limited = lines.iter().any(|line| !line.limit.is_empty());
-    let against = if limited { "held against" } else { "" };
+    let against = if limited { "limit" } else { "" };
     let _ = write!(
         html,
-        "<section id=\"headline\"><h2>At a glance</h2><p class=\"caption\">{caption}</p><div class=\"scroll\"><table class=\"wide\">\
-         <thead><tr><th class=\"text\">quantity</th><th>value</th><th class=\"text\">where</th>\
-         <th class=\"text\">{against}</th><th class=\"text\"></th></tr></thead><tbody>"
+        "<section id=\"headline\"><h2>At a glance</h2><p class=\"caption\">{caption}</p><div class=\"scroll\"><table \
+         class=\"wide\"><thead><tr><th class=\"text\">quantity</th><th>value</th><th class=\"text\">where</th><th \
+         class=\"text\">{against}</th><th class=\"text\"></th></tr></thead><tbody>"
     );
     for line in &lines {
         let (class, word) = match line.kept {
@@ -58,8 +58,8 @@ pub fn headline(html: &mut String, run: &Run) {
     }
     *html += "</tbody></table></div>";
     if limited {
-        *html += "<p class=\"note\">Limits as standards are commonly quoted, unchecked against their texts; what holds on a \
-                  line is its owner's to say.</p>";
+        *html += "<p class=\"note\">The limits are commonly quoted values and were not checked against the standards. \
+                  The owner of the line decides which limits apply.</p>";
     }
     *html += "</section>\n";
 }
@@ -107,22 +107,17 @@ fn settlement_lines(run: &Run) -> Vec<Line> {
     });
     let lines = [
         line("Step at the structure", scalar(run, "settlement_step"), "m", step_place(run)),
-        line(
-            "Change of level, wheelbase",
-            scalar(run, "level_change_wheelbase"),
-            "m",
-            "of the unloaded rail".to_owned(),
-        ),
-        line("Change of level over 3 m", scalar(run, "level_change_3m"), "m", "of the unloaded rail".to_owned()),
+        line("Change of level, wheelbase", scalar(run, "level_change_wheelbase"), "m", "unloaded rail".to_owned()),
+        line("Change of level over 3 m", scalar(run, "level_change_3m"), "m", "unloaded rail".to_owned()),
         line("Largest settlement", scalar(run, "max_settlement"), "m", at_largest(run, |row| row.settlement_m)),
-        line("Dip below the far field", scalar(run, "differential_settlement"), "m", far.unwrap_or_default()),
+        line("Settlement below the far field", scalar(run, "differential_settlement"), "m", far.unwrap_or_default()),
         voids,
         broken_bonds(run),
     ];
     lines.into_iter().flatten().collect()
 }
 
-/// How many bonds of glued grains have broken, where there are any.
+/// Number of broken bonds of glued grains, if there are any bonds.
 fn broken_bonds(run: &Run) -> Option<Line> {
     let bonds = run.blocks.last()?.bonds();
     let share = scalar(run, "broken_bonds_share")?;
@@ -135,7 +130,7 @@ fn broken_bonds(run: &Run) -> Option<Line> {
     })
 }
 
-/// What the step says: which side lies lower, and at which transition where several have one.
+/// The lower side of the step, and its transition if there are several.
 fn step_place(run: &Run) -> String {
     let Some(step) = scalar(run, "settlement_step") else { return String::new() };
     let lower = if step >= 0.0 { "the softer side lies lower" } else { "the stiffer side lies lower" };
@@ -144,7 +139,11 @@ fn step_place(run: &Run) -> String {
     let at = named.filter(|name| !name.is_empty()).find(of_name).map_or(String::new(), |name| format!(", at {name}"));
     let law = &run.scenario.solve.law;
     let why = match step < 0.0 && law.law.knows_forces_alone() {
-        true => format!(": law {} counts the larger forces there and knows no subgrade", law.name),
+        true => format!(
+            ": law {} uses only the forces on the ballast, which are larger there; it does not model the \
+            subgrade",
+            law.name
+        ),
         false => String::new(),
     };
     format!("{lower}{at}{why}")
@@ -161,7 +160,7 @@ fn force_lines(run: &Run) -> Vec<Line> {
             limit: format!("{} kN (EN 14363)", plain(limits::WHEEL_FORCE / 1e3, 3)),
             kept: Some(force <= limits::WHEEL_FORCE),
         });
-        // where another train has the largest force of its own static load
+        // if another train has the largest force relative to its own static load
         let amplified = worst_train(&run.trains, |row| row.dynamic_amplification);
         if let Some(amplified) = amplified.filter(|amplified| row.is_some_and(|row| row.train != amplified.train)) {
             let place = times_static(run, amplified);
@@ -173,7 +172,7 @@ fn force_lines(run: &Run) -> Vec<Line> {
         lines.push(Line {
             name: "Least wheel force",
             value: amount(row.min_wheel_force_N, "N"),
-            place: format!("{missing} % missing of {}", static_load(run, row)),
+            place: format!("{missing} % below {}", static_load(run, row)),
             limit: format!("{} %", plain(100.0 * limits::UNLOADING, 2)),
             kept: Some(row.wheel_unloading <= limits::UNLOADING),
         });
@@ -192,12 +191,12 @@ fn force_lines(run: &Run) -> Vec<Line> {
     lines
 }
 
-/// The largest force of a train over its static load, and whose it is.
+/// The largest force of a train relative to its static load, and the name of the train.
 fn times_static(run: &Run, row: &TrainRow) -> String {
     format!("{} \u{d7} {}", significant(row.dynamic_amplification, 3), static_load(run, row))
 }
 
-/// The static wheel load of a train, which is named where several run.
+/// The static wheel load of a train, with its name if several trains run.
 fn static_load(run: &Run, row: &TrainRow) -> String {
     let load = amount(row.static_wheel_load_N, "N");
     match &run.scenario.loading {

@@ -1,4 +1,4 @@
-//! What rail and seats do while a vehicle passes, at the recorded sleepers (paper, Figs. 13 to 15).
+//! Histories of rail and seats while a vehicle passes, at the recorded sleepers (paper, Figs. 13 to 15).
 
 use super::curves::Chart;
 use super::panels::{Names, panels, share_scale};
@@ -9,33 +9,34 @@ use crate::scenario::response::Response;
 
 const HEIGHT: f64 = 225.0;
 
-/// Quantities with what their figure says. What sleepers do on their supports has a figure of its own, see `hanging`.
+/// Quantities with title and caption of their figure. The motion of sleepers on their supports has its own figure, see
+/// `hanging`.
 const SHOWN: [(Response, &str, &str); 4] = [
     (
         Response::RailSeatLoad,
         "Rail seat loads during a passage",
-        "Force of the rail on each pad, per seat, in compression positive: below zero the rail lifts the sleeper.",
+        "Force of the rail on each pad, per seat; compression is positive. Below zero the rail lifts the sleeper.",
     ),
     (
         Response::RailDisplacement,
         "Rail displacement during a passage",
-        "Displacement of the rail over each seat from the unloaded level of that axle count, downward as in the track; \
-         settlement so far is left out, so that the counts can be compared.",
+        "Displacement of the rail over each seat, measured from the unloaded level at that axle count, positive \
+         downward. Earlier settlement is left out, so that the counts can be compared.",
     ),
     (
         Response::RailMoment,
         "Rail moment during a passage",
-        "Bending moment of one rail over each seat, drawn on the tension side: sagging positive, downward. Where sleepers \
-         hang it is not zero before the vehicle comes.",
+        "Bending moment of one rail over each seat, drawn on the tension side: sagging is positive and drawn downward. \
+         If sleepers hang, the moment is not zero before the vehicle comes.",
     ),
     (
         Response::SleeperDisplacement,
         "Sleeper displacement during a passage",
-        "Displacement of each sleeper from the unloaded level of that axle count, downward as in the track.",
+        "Displacement of each sleeper, measured from the unloaded level at that axle count, positive downward.",
     ),
 ];
 
-/// One figure a quantity, one panel a seat, one curve a count.
+/// One figure for each quantity, one panel for each seat, one curve for each count.
 pub fn histories(run: &Run) -> Vec<Figure> {
     let passages = Passages::new(run);
     SHOWN.iter().filter_map(|(quantity, title, what)| history((run, &passages), *quantity, title, what)).collect()
@@ -51,11 +52,11 @@ fn history((run, passages): (&Run, &Passages<'_>), quantity: Response, title: &s
         .collect();
     share_scale(charts.iter_mut(), HEIGHT - 70.0);
     let mut caption = format!(
-        "{what} Time counts from the leading wheel over the seat; the legend counts the axles that had passed; all panels \
-         have one scale."
+        "{what} Time is zero when the leading wheel stands over the seat. The legend gives the number of axles that \
+         have passed. All panels have one scale."
     );
     if charts.iter().any(|chart| !chart.bands.is_empty()) {
-        caption += " Shaded while the sleeper has lost its support at the last count.";
+        caption += " Shaded: the sleeper has no contact with its support at the last count.";
     }
     let columns = if charts.len() == 1 { 1 } else { 2 };
     let charts: Vec<(Chart, f64)> = charts.into_iter().map(|chart| (chart, HEIGHT)).collect();

@@ -1,4 +1,5 @@
-//! What several settlement laws make of the same forces: along the track, and with the axles where the first settles most.
+//! Settlement by several laws under the same forces: along the track, and against the axles at the seat with the
+//! largest settlement by the first law.
 
 use super::Figure;
 use super::along::{figure, track_chart};
@@ -20,7 +21,7 @@ pub fn spread(run: &Run) -> Vec<Figure> {
     [along_the_track(run, &names), with_the_axles(run, &names)].into_iter().flatten().collect()
 }
 
-/// Says under which laws nothing settled.
+/// Writes a note for each law under which nothing settled.
 pub fn remarks(html: &mut String, run: &Run) {
     for sentence in unsettled(&run.scenario, &run.blocks, &run.laws) {
         let _ = writeln!(html, "<p class=\"caption\" role=\"note\">Note: {}.</p>", prose(&sentence));
@@ -57,7 +58,8 @@ fn along_the_track(run: &Run, names: &[&str]) -> Option<Figure> {
         chart.series.push(series);
     }
     let caption = format!(
-        "Settlement after {} axles by each law, all under the forces to which the first, {}, leads. {}",
+        "Settlement after {} axles by each law. All laws get the same forces: the forces computed with the first law, \
+        {}. {}",
         whole(last),
         names[0],
         spread_sentence(run, names, last)
@@ -76,11 +78,11 @@ fn spread_sentence(run: &Run, names: &[&str], axles: u64) -> String {
     let millimetres = |value: f64| format!("{} mm", significant(value * 1e3, 3));
     let ratio = match least {
         least if *least > 0.0 => format!("a ratio of {}", plain(greatest / least, 2)),
-        _ => "so that no ratio can be given".to_owned(),
+        _ => "and no ratio can be given".to_owned(),
     };
     format!(
-        "The largest settlement lies between {} ({weakest}) and {} ({strongest}), {ratio}: the spread between laws is what this \
-         tier does not know.",
+        "The largest settlement lies between {} ({weakest}) and {} ({strongest}), {ratio}. This spread between laws is \
+         the uncertainty of this tier.",
         millimetres(*least),
         millimetres(*greatest)
     )
@@ -98,7 +100,8 @@ fn with_the_axles(run: &Run, names: &[&str]) -> Option<Figure> {
         chart.series.push(Series::new(name, class(index), Mark::Dots, points));
     }
     let caption = format!(
-        "Settlement of sleeper {} against the axles passed, by each law: there the first law settles most.",
+        "Settlement of sleeper {} against the axles passed, by each law. The first law has its largest settlement at \
+        this sleeper.",
         deepest.sleeper.replace('-', "\u{2212}")
     );
     figure(&chart, "laws_with_the_axles", "Settlement by law with the axles", &caption)
@@ -129,7 +132,7 @@ mod tests {
         let figures = spread(&two_laws(3.0));
         assert_eq!(figures.len(), 2);
         assert!(
-            figures[0].caption.contains("3.00 mm (varandas) and 9.00 mm (other), a ratio of 3:"),
+            figures[0].caption.contains("3.00 mm (varandas) and 9.00 mm (other), a ratio of 3."),
             "{}",
             figures[0].caption
         );

@@ -19,7 +19,7 @@ const FIRM: f64 = 300e6;
 const SOFT: f64 = 5e6;
 const SLAB: f64 = 0.25;
 
-/// Draws the layers at every transition; gives the height. Nothing where the scene has none.
+/// Draws the layers at every transition; gives the height. Nothing if the scene has none.
 pub(super) fn draw(svg: &mut Svg, scenario: &Scenario) -> f64 {
     let track = &scenario.track;
     if track.sections.iter().all(|section| section.layers.is_empty()) {
@@ -74,7 +74,7 @@ fn base(scenario: &Scenario, number: usize) -> f64 {
     seat_depth(&scenario.track.sections[number]) + sleeper.map_or(SLAB, |sleeper| sleeper.height)
 }
 
-/// From where to where a transition is drawn, m: with the stretches near it that change the layers.
+/// Range in which a transition is drawn, m: with the stretches near it that change the layers.
 fn shown(scenario: &Scenario, place: f64) -> (f64, f64) {
     let track = &scenario.track;
     let near = |work: &&Groundwork| work.start < place + HALF && work.end > place - HALF;
@@ -204,7 +204,7 @@ fn label(layer: &Layer, places: &[f64]) -> String {
     text
 }
 
-/// How a material is coloured.
+/// Colour of a material.
 pub(super) fn class(material: &Material) -> &'static str {
     match material {
         Material::Granular(granular) if granular.bond.is_some() => "bonded",

@@ -11,7 +11,7 @@ use crate::results::{RailRow, Run, loaded_level, longitudinal_level};
 use crate::scenario::Loading;
 
 const HEIGHT: f64 = 260.0;
-/// A limit is drawn where the curves come this near to it.
+/// A limit is drawn if the curves reach this share of it.
 const NEAR: f64 = 0.4;
 
 /// Chainage and level of the rail at one count, m.
@@ -33,10 +33,10 @@ pub fn level_d1(run: &Run) -> Option<Figure> {
     let limit = limits.map_or(String::new(), |limits| add_limits(&mut charts, limits));
     share_scale(charts.iter_mut(), HEIGHT - 90.0);
     let caption = format!(
-        "Level of the rail after the filter of EN 13848-1 for wavelengths of 3 to 25 m, downward as in the track: a \
-         fourth-order Butterworth band run forward and back, so that nothing is shifted; the profile goes on level for 150 m \
-         beyond where wheels run. Above without a vehicle, below under the mean wheel load standing at each place, as \
-         a loaded recording car sees it.{limit}"
+        "Level of the rail after the EN 13848-1 filter for wavelengths of 3 to 25 m, positive downward. The filter is \
+         a fourth-order Butterworth band-pass, run forward and backward, so that nothing is shifted. Beyond the range \
+         of the wheels the profile continues level for 150 m. Top: without a vehicle. Bottom: under the mean wheel \
+         load standing at each place, as a loaded recording car measures it.{limit}"
     );
     let names = Names { id: "longitudinal_level", title: "Longitudinal level, 3 to 25 m (D1)", caption: &caption };
     panels(&names, &charts.map(|chart| (chart, HEIGHT)), 1)
@@ -48,7 +48,7 @@ fn filtered(run: &Run, count: &Count, of: Profile) -> Option<Series> {
     Some(Series::new(&count.name, &count.class, Mark::Line, level.points))
 }
 
-/// Draws the limits that are near enough to be seen, and says all of them.
+/// Draws the limits that the curves come near to, and returns all limits as text.
 fn add_limits(charts: &mut [Chart; 2], limits: LevelLimits) -> String {
     let peaks = charts.iter().flat_map(|chart| &chart.series).flat_map(|series| &series.points);
     let peak = peaks.map(|point| point.1.abs()).fold(0.0, f64::max);
@@ -64,8 +64,8 @@ fn add_limits(charts: &mut [Chart; 2], limits: LevelLimits) -> String {
         }
     }
     format!(
-        " EN 13848-5 at this speed (unchecked): alert from {} to {} mm, intervention from {} to {} mm, immediate action {} \
-         mm; limits far above the curves are not drawn.",
+        " EN 13848-5 at this speed (unchecked): alert from {} to {} mm, intervention from {} to {} mm, immediate \
+         action {} mm. Limits far above the curves are not drawn.",
         mm(limits.alert.0),
         mm(limits.alert.1),
         mm(limits.intervention.0),

@@ -1,24 +1,25 @@
-//! Limits that engineers hold results against, from standards as they are commonly quoted: not checked against their texts.
+//! Limits for results, from standards as they are commonly quoted; they were not checked against the texts of the
+//! standards.
 
 /// Sleeper on ballast, concrete sleepers (UIC), Pa.
 pub const CONTACT_PRESSURE: f64 = 0.5e6;
 /// Wheel on rail, vertical (EN 14363, depends on the class of the line), N.
 pub const WHEEL_FORCE: f64 = 160e3;
-/// Part of the static wheel load that may be missing.
+/// Allowed unloading, as a share of the static wheel load.
 pub const UNLOADING: f64 = 0.6;
 
 /// Longitudinal level D1 of EN 13848-5, from mean to peak, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelLimits {
-    /// Alert: to be watched and planned for; a range, as networks choose.
+    /// Alert: the defect must be watched and its repair planned; a range, because networks choose different values.
     pub alert: (f64, f64),
-    /// Intervention: to be mended before long.
+    /// Intervention: the defect must be corrected soon.
     pub intervention: (f64, f64),
     /// Immediate action: speed restriction or closure.
     pub immediate: f64,
 }
 
-/// Up to which speed (km/h) which limits hold, mm.
+/// Limits (mm) up to each speed (km/h).
 const LEVEL: [(f64, [f64; 5]); 5] = [
     (80.0, [12.0, 18.0, 17.0, 21.0, 28.0]),
     (120.0, [10.0, 16.0, 13.0, 19.0, 26.0]),

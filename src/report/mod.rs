@@ -1,8 +1,8 @@
-//! Pictures and pages of a run: the scene to scale, what happens along the track, in time and with the axles.
+//! Pictures and pages of a run: the scene to scale, and results along the track, in time and against the axles.
 //!
-//! [`page`] is the whole report in one file that needs nothing else; [`figures`] are its pictures one by one, each an
-//! SVG that stands on its own; [`drawing_svg`] draws a scene that has not been run. Nothing here computes physics: the
-//! numbers are those of the run's tables.
+//! [`page`] is the whole report in one file without external parts; [`figures`] are its pictures, each a complete SVG;
+//! [`drawing_svg`] draws a scene that has not been run. Nothing here computes physics: the numbers are those of the
+//! run's tables.
 
 mod along;
 mod ballast_response;
@@ -83,7 +83,7 @@ pub struct Figure {
     /// Short name, fit for a file name and an anchor.
     pub id: String,
     pub title: String,
-    /// What is to be seen, in a sentence or two.
+    /// Description of the picture, in a sentence or two.
     pub caption: String,
     /// A whole SVG document with its own style, light and dark.
     pub svg: String,

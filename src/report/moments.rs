@@ -1,4 +1,4 @@
-//! Bending of the rail along the track: what a passage makes of it, with the stress in the foot, and what stays without a
+//! Bending moment of the rail along the track: during a passage, with the stress in the rail foot, and without a
 //! vehicle.
 
 use super::along::{along_profile, track_chart};
@@ -29,18 +29,18 @@ pub fn rail_moments(run: &Run) -> Option<Figure> {
         Some(modulus) if same => {
             traffic.second = Some(("Foot stress [MPa]".to_owned(), 1e-6 / modulus));
             format!(
-                " The right scale is the stress at the foot, tension positive, with a section modulus of {} cm\u{b3}: second \
-                 moment of area over half the rail's height, for steel of 210 GPa. It takes the neutral axis at half the \
-                 height and leaves out residual and thermal stress.",
+                " The right scale is the stress at the rail foot, tension positive, with a section modulus of {} \
+                 cm\u{b3}: second moment of area divided by half the rail's height, for steel of 210 GPa. The neutral \
+                 axis is assumed at half the height. Residual and thermal stress are not included.",
                 significant(modulus * 1e6, 3)
             )
         }
         _ => String::new(),
     };
     let caption = format!(
-        "Largest sagging and hogging moment of one rail at each place, drawn on the tension side: sagging positive, \
-         downward. The curves reach as far as wheels run; towards their ends only some wheels pass.{stress} Below, the moment \
-         that stays in the unloaded rail: it is bent where it bridges sleepers that hang."
+        "Top: largest sagging and hogging moment of one rail at each place, drawn on the tension side: sagging is \
+         positive and drawn downward. The curves cover the range of the wheels; near their ends only some wheels \
+         pass.{stress} Bottom: moment in the unloaded rail, which bends if it bridges hanging sleepers."
     );
     let names = Names { id: "rail_moment", title: "Rail bending moment along the track", caption: &caption };
     panels(&names, &[(traffic, 320.0), (unloaded, 240.0)], 1)

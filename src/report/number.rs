@@ -1,4 +1,4 @@
-//! Numbers as a reader wants them: round ticks, a sensible count of digits, engineering units.
+//! Numbers for readers: round ticks, few digits, engineering units.
 
 /// Round steps that cut `low .. high` into about `count` pieces: multiples of 1, 2 or 5 times a power of ten.
 pub fn ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
@@ -40,7 +40,8 @@ pub fn significant(value: f64, digits: usize) -> String {
     fixed(value, (digits as f64 - 1.0 - magnitude).clamp(0.0, 9.0) as usize)
 }
 
-/// The number as [`significant`] writes it, without zeros behind the point: for numbers that a person chose, as a spacing of 0.6 m.
+/// The number as [`significant`] writes it, without zeros behind the point: for numbers that a user chose, for example
+/// a spacing of 0.6 m.
 pub fn plain(value: f64, digits: usize) -> String {
     let text = significant(value, digits);
     if text.contains('.') && !text.contains('e') {

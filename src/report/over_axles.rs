@@ -1,5 +1,5 @@
-//! Rail level, voids and forces along the track after every recorded count of axles: the picture shows the last one, the
-//! page's script has a slider that moves through all.
+//! Rail level, voids and forces along the track after every recorded count of axles: the picture shows the last one,
+//! the page's script has a slider that moves through all.
 
 use super::Figure;
 use super::along::{ballasted_names, track_chart};
@@ -11,7 +11,7 @@ use crate::scenario::Loading;
 use std::collections::{BTreeSet, HashMap};
 
 const HEIGHT: f64 = 230.0;
-/// Counts that the page holds, spread evenly where there are more.
+/// Counts that the page holds at most, spread evenly.
 const MOST: usize = 40;
 /// Places of the rail that the page holds: a picture has no more pixels.
 const PLACES: usize = 420;
@@ -39,10 +39,10 @@ pub fn over_axles(run: &Run) -> Option<Figure> {
     let charts: Vec<(Chart, f64)> =
         [level, voids, forces].into_iter().filter(|chart| !chart.is_empty()).map(|chart| (chart, HEIGHT)).collect();
     let caption = format!(
-        "After {} axles. Above, the level of the rail without a vehicle and of the settled supports: where the rail lies higher, \
-         sleepers hang, and where they rest, the weight of the track presses it a little lower. In the middle the void between \
-         sleeper and support. Below, the largest forces of one passage at that count, per seat. Lighter near the ends, where not \
-         every wheel passes.",
+        "After {} axles. Top: level of the rail without a vehicle, and level of the settled supports. If the rail lies \
+         higher, sleepers hang; if the sleepers rest, the weight of the track presses the rail a little lower. Middle: \
+         void between sleeper and support. Bottom: largest forces of one passage at that count, per seat. Paler near \
+         the ends: not every wheel passes there.",
         whole(counts[counts.len() - 1])
     );
     panels(&Names { id: "over_axles", title: "Level, voids and forces as axles pass", caption: &caption }, &charts, 1)
@@ -81,8 +81,8 @@ fn rail_level(run: &Run, counts: &[u64]) -> Option<Series> {
     moved(("rail", "s0"), &places, moving.collect())
 }
 
-/// Values of the seats, of the ballasted ones only where the quantity is the ballast's: of those that every train passes whole, and of
-/// the others in a paler curve that meets it.
+/// Values of the seats; only ballasted seats for a quantity of the ballast. Seats that every train passes with every
+/// wheel are in one curve, the others in a paler curve that joins it.
 fn per_seat(
     run: &Run,
     counts: &[u64],
@@ -113,7 +113,7 @@ fn per_seat(
     [series(&|i| whole[i]), pale].into_iter().flatten().collect()
 }
 
-/// A curve that moves through the counts and stands at the last one; none where it has no value.
+/// A curve that moves through the counts and stands at the last one; none if it has no value.
 fn moved((name, class): (&str, &str), places: &[f64], moving: Vec<Vec<f64>>) -> Option<Series> {
     if !moving.iter().flatten().any(|value| value.is_finite()) {
         return None;

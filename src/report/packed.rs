@@ -1,4 +1,4 @@
-//! The page of a packed bed: what it is like, how it was made, and what it looks like.
+//! The page of a packed bed: its properties, its making, and its pictures.
 
 use super::Figure;
 use super::bed::{BedView, Colour, Side, bed_svg};
@@ -20,7 +20,7 @@ const HEIGHT: f64 = 300.0;
 /// A bed as the page shows it.
 pub struct BedPage<'a> {
     pub summary: &'a BedSummary,
-    /// What was taken of each grading, from the floor upwards.
+    /// The sample of each grading, from the floor upwards.
     pub samples: &'a [Sample],
     pub grains: &'a [Grain],
     pub links: &'a [Link],
@@ -29,7 +29,7 @@ pub struct BedPage<'a> {
 }
 
 impl BedPage<'_> {
-    /// The whole page, which needs nothing from elsewhere.
+    /// The whole page, in one file without external parts.
     pub fn html(&self) -> String {
         let summary = self.summary;
         let [length, width] = summary.plan_m;
@@ -53,21 +53,22 @@ impl BedPage<'_> {
     }
 
     fn layers(&self, html: &mut String) {
-        let caption = "Porosity of a whole layer has its loose borders in it, at the floor and at walls; that inside has not. Neighbours \
-             are counted by bodies: two that touch with several pebbles are one pair; pressed means under the plate, before friction came back.";
+        let caption = "The porosity of a layer includes the loose zones at the floor and at the walls; the inner \
+             porosity does not. Neighbours are counted per grain: two grains that touch at several pebbles count once. \
+             Pressed: under the plate, before friction was switched on again.";
         *html += &table_head(
             "At a glance",
             caption,
             &[
-                "layer, from below",
+                "layer, bottom first",
                 "grains",
                 "thickness [mm]",
-                "asked",
+                "target [mm]",
                 "porosity",
-                "inside",
-                "grading off by",
+                "inner porosity",
+                "grading error",
                 "neighbours pressed",
-                "at rest",
+                "neighbours at rest",
                 "without rattlers",
                 "rattlers",
             ],
@@ -96,9 +97,10 @@ impl BedPage<'_> {
     }
 
     fn stages(&self, html: &mut String) {
-        let caption = "Each stage ends when the mean force out of balance is small against the mean force that acts, three looks in a row.";
-        let head = ["stage", "time [s]", "plate [kPa]", "level [mm]", "out of balance", "neighbours, layer by layer"];
-        *html += &table_head("How it was made", caption, &head);
+        let caption = "A stage ends when the mean unbalanced force is small compared with the mean acting force at \
+            three checks in a row.";
+        let head = ["stage", "time [s]", "plate [kPa]", "level [mm]", "force imbalance", "neighbours, by layer"];
+        *html += &table_head("How the bed was made", caption, &head);
         for stage in &self.summary.stages {
             let layers = stage.state.layers.iter().filter(|layer| layer.bodies > 0);
             let neighbours: Vec<String> = layers.map(|layer| plain(layer.coordination, 3)).collect();
@@ -114,7 +116,7 @@ impl BedPage<'_> {
         *html += TABLE_END;
         let _ = write!(
             html,
-            "<p class=\"caption\">Kept under {}: the same recipe gives the same bed, bit by bit.</p></section>",
+            "<p class=\"caption\">Stored as {}. The same recipe gives the same bed, bit for bit.</p></section>",
             &self.summary.hash[..16]
         );
     }
@@ -132,14 +134,14 @@ impl BedPage<'_> {
                 false,
                 "Along the track",
                 "along",
-                "The grains nearest to the eye, coloured by the largest force on them.",
+                "The grains in front, coloured by the largest contact force on each.",
             ),
             side(
                 Side::Y,
                 true,
                 "Across, with its force chains",
                 "across",
-                "Lines join grains that press on each other, as wide as the force.",
+                "Lines join grains in contact; the width of a line grows with the force.",
             ),
             self.gradings(),
         ]
@@ -166,7 +168,7 @@ impl BedPage<'_> {
         for (index, (sample, layer)) in self.samples.iter().zip(&self.summary.layers).enumerate() {
             let class = format!("s{}", index % 4);
             let asked = sample.curve.points().iter().map(|[size, share]| (*size, *share)).collect();
-            chart.series.push(Series::new(&format!("{} asked", layer.name), &class, Mark::Faint, asked));
+            chart.series.push(Series::new(&format!("{} target", layer.name), &class, Mark::Faint, asked));
             let reached = sample.curve.points().windows(2).flat_map(|pair| {
                 let [low, high] = [pair[0][0], pair[1][0]];
                 (0..=16).map(move |k| low * (high / low).powf(f64::from(k) / 16.0))
@@ -178,9 +180,9 @@ impl BedPage<'_> {
         chart.draw(&mut svg, "gradings", Frame { x: 0.0, y: 4.0, width: WIDTH, height: HEIGHT });
         Figure {
             id: "gradings".to_owned(),
-            title: "Gradings asked and reached".to_owned(),
-            caption: "Thin lines were asked for; the others are the grains of this bed.".to_owned(),
-            svg: svg.finish(WIDTH, HEIGHT + 12.0, "Gradings asked and reached"),
+            title: "Target and achieved gradings".to_owned(),
+            caption: "Thin lines: target gradings. Thick lines: the grains of this bed.".to_owned(),
+            svg: svg.finish(WIDTH, HEIGHT + 12.0, "Target and achieved gradings"),
         }
     }
 }

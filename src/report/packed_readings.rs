@@ -1,4 +1,4 @@
-//! What was measured in a packed bed: over its height, in its contacts, under a plate.
+//! Measurements in a packed bed: over its height, in its contacts, under a plate.
 
 use super::Figure;
 use super::curves::{Axis, Chart, Mark, Series};
@@ -15,7 +15,7 @@ const PROFILE: f64 = 340.0;
 const CONTACTS: f64 = 320.0;
 const ROSE: f64 = 118.0;
 const CURVE: f64 = 300.0;
-/// On which the axis of porosity ends.
+/// The axis of porosity ends on a multiple of this value.
 const ROUND: f64 = 0.05;
 /// Force over its mean from which the tail is fitted.
 const FIT: f64 = 1.0;
@@ -36,14 +36,15 @@ pub fn write(html: &mut String, readings: &BedReadings) {
 fn plate_table(html: &mut String, plate: &PlateTest) {
     let what = match plate.sides_m {
         Some([length, width]) => {
-            format!("of {} m x {} m, what a sleeper covers of this cell,", plain(length, 3), plain(width, 3))
+            format!("of {} m x {} m (the area of this cell under a sleeper)", plain(length, 3), plain(width, 3))
         }
         None => "over the whole cell".to_owned(),
     };
     let caption = format!(
-        "A rigid plate {what} is pressed on the finished bed to {} kPa, taken back, and pressed again; each step ends at rest. \
-         Stiffness is the secant from the seated plate. Moduli are those of a half-space that gives way alike (DIN 18134); a cell of so \
-         many grains on a rigid floor is none, so they compare beds, not sites.",
+        "A rigid plate {what} loads the finished bed to {} kPa, is unloaded, and loads it again; each step ends at \
+         rest. Stiffness is the secant from the seated plate. The moduli are those of a half-space with the same \
+         deformation (DIN 18134). This cell stands on a rigid floor and is not a half-space, so use the moduli to \
+         compare beds, not sites.",
         plain(plate.pressure_Pa / 1e3, 3)
     );
     let head =
@@ -76,11 +77,11 @@ fn curve(plate: &PlateTest) -> Figure {
     // both loadings begin at a seat
     let second = plate.curve.iter().skip(1).position(|point| point.pressure <= plate.curve[0].pressure * 1.5);
     let second = second.map_or(plate.curve.len() - 1, |k| k + 1);
-    chart.series.push(Series::new("first loading and back", "s0", Mark::Dots, points(&plate.curve[..=second])));
+    chart.series.push(Series::new("first loading and unloading", "s0", Mark::Dots, points(&plate.curve[..=second])));
     chart.series.push(Series::new("second", "s1", Mark::Dots, points(&plate.curve[second..])));
     let mut svg = Svg::default();
     chart.draw(&mut svg, "plate-curve", Frame { x: 0.0, y: 4.0, width: WIDTH, height: CURVE });
-    figure("plate", "Plate load test", "Each mark is a state of rest.", svg, CURVE + 12.0)
+    figure("plate", "Plate load test", "Each mark is a state at rest.", svg, CURVE + 12.0)
 }
 
 fn profile(readings: &BedReadings) -> Option<Figure> {
@@ -108,25 +109,28 @@ fn profile(readings: &BedReadings) -> Option<Figure> {
     let columns = charts.len();
     let names = Names {
         id: "profile",
-        title: "Over the height",
-        caption: "Means of slabs from the floor upwards: over the whole cell at rest, and of what lies under the plate when it first presses in full. \
-                  Pressures are on horizontal planes, and on vertical ones along and across the track; what packing has locked in stays at rest.",
+        title: "Profiles over the height",
+        caption: "Means over horizontal slabs, from the floor upwards. At rest: over the whole cell. Under the plate: \
+                  over the grains below the plate at the first full pressure. Vertical: pressure on horizontal planes. \
+                  Along and across: pressures on vertical planes. Pressures locked in by packing remain at rest.",
     };
     panels(&names, &charts, columns)
 }
 
 fn contact_table(html: &mut String, readings: &BedReadings) {
-    let caption = "Contacts between grains, walls left out. Strong ones carry more than the mean normal force. The fabric's deviator is 0 where \
-                   contacts look everywhere alike, and 1 where they look one way; its vertical part is a third where no direction leads. A tail of 1 is exponential; larger ones fall faster.";
+    let caption = "Contacts between grains, without walls. Strong contacts carry more than the mean normal force. The \
+                   fabric deviator is 0 if contact directions are uniform, and 1 if all contacts have one direction. \
+                   The vertical part is one third if no direction is preferred. The tail is the k of a fit \
+                   exp(\u{2212}k f), with f the normal force over its mean; forces fall faster with a larger k.";
     let head = [
         "contacts",
         "number",
         "mean force [N]",
-        "largest over mean",
-        "above the mean",
-        "load they carry",
+        "largest / mean",
+        "share above the mean",
+        "load above the mean",
         "tail",
-        "friction used",
+        "mobilised friction",
         "sliding",
         "fabric deviator",
         "vertical part",
@@ -193,8 +197,9 @@ fn contacts(readings: &BedReadings) -> Figure {
     figure(
         "contacts",
         "Forces and directions of contacts",
-        "Left: how normal forces are spread, and the exponential fitted to those above the mean. Right: how often normals look which way in a \
-         vertical plane, over what it would be without preference (the dotted circle): filled all contacts, outlined the strong ones.",
+        "Left: distribution of normal forces, and the exponential fitted to forces above the mean. Right: frequency of \
+         contact normals by direction in a vertical plane, relative to a uniform distribution (dotted circle). Filled: \
+         all contacts. Outlined: strong contacts.",
         svg,
         CONTACTS + 12.0,
     )
@@ -216,11 +221,11 @@ fn rose(svg: &mut Svg, (x, y): (f64, f64), title: &str, [all, strong]: [&Vec<f64
     };
     svg.group("opacity=\"0.35\"", |svg| svg.path("dot s0", &outline(all), true, "all contacts"));
     svg.path("line s1", &outline(strong), true, "strong contacts");
-    svg.path("load", &circle, true, "no preference");
+    svg.path("load", &circle, true, "uniform distribution");
     svg.line("axis", (x - ROSE, y), (x + ROSE, y));
     svg.line("axis", (x, y - ROSE), (x, y + ROSE));
     svg.text("strong", (x, y - ROSE - 12.0), Anchor::Middle, title);
-    svg.text("small muted", (x, y + ROSE + 16.0), Anchor::Middle, "vertical up, horizontal to the side");
+    svg.text("small muted", (x, y + ROSE + 16.0), Anchor::Middle, "vertical: up; horizontal: to the side");
 }
 
 /// The axis from 0, or from the least of the values, to somewhat beyond the largest.

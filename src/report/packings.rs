@@ -1,10 +1,10 @@
-//! What scatters from packing to packing: a table of the page.
+//! Scatter from packing to packing: a table of the page.
 
 use super::number::plain;
 use crate::results::Run;
 use std::fmt::Write;
 
-/// Scalars of the table: name, how it is called, its unit and that unit in SI.
+/// Scalars of the table: name, label, unit, and the size of the unit in SI.
 const ROWS: [(&str, &str, &str, f64); 9] = [
     ("settlement_step", "Step at the structure", "mm", 1e-3),
     ("max_settlement", "Largest settlement", "mm", 1e-3),
@@ -17,7 +17,7 @@ const ROWS: [(&str, &str, &str, f64); 9] = [
     ("max_rail_displacement", "Largest rail displacement", "mm", 1e-3),
 ];
 
-/// The table over packings; nothing where there is one.
+/// The table over packings; nothing if there is one.
 pub fn packings(html: &mut String, run: &Run) {
     if run.packings.is_empty() {
         return;
@@ -25,9 +25,10 @@ pub fn packings(html: &mut String, run: &Run) {
     let seeds: Vec<String> = run.packings.iter().map(|packing| packing.seed.to_string()).collect();
     let _ = write!(
         html,
-        "<section id=\"packings\"><h2>Over packings</h2><p class=\"caption\">The same scene on {} packings of its grains: this page shows \
-         seed {}, thin curves those of seed {}. A standard deviation is that of one packing.</p><div class=\"scroll\"><table>\
-         <tr><th class=\"text\"></th><th></th><th>this packing</th><th>mean</th><th>standard deviation</th><th>least</th><th>largest</th></tr>",
+        "<section id=\"packings\"><h2>Over packings</h2><p class=\"caption\">The same scene with {} packings of its \
+         grains. This page shows seed {}; thin curves show seed {}. The standard deviation is for one packing.</p><div \
+         class=\"scroll\"><table><tr><th class=\"text\"></th><th></th><th>this packing</th><th>mean</th><th>standard \
+         deviation</th><th>least</th><th>largest</th></tr>",
         run.packings.len() + 1,
         run.scenario.solve.seed,
         seeds.join(", ")
@@ -43,11 +44,11 @@ pub fn packings(html: &mut String, run: &Run) {
     *html += "</table></div></section>\n";
 }
 
-/// A caption with a word on the thin curves, where there are some.
+/// A caption with a note on the thin curves, if there are any.
 pub fn with_thin_curves(run: &Run, caption: &str) -> String {
     match run.packings.len() {
         0 => caption.to_owned(),
-        1 => format!("{caption} Thin: another packing of the same grains."),
-        count => format!("{caption} Thin: {count} other packings of the same grains."),
+        1 => format!("{caption} Thin curves: another packing of the same grains."),
+        count => format!("{caption} Thin curves: {count} other packings of the same grains."),
     }
 }

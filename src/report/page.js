@@ -1,4 +1,4 @@
-// What a reader can do with the pictures of a page: read values, switch lines off, and move through the axles.
+// Functions of the pictures of a page: read values, switch lines off, and move through the axles.
 //
 // The page is complete without this script, and the script loads nothing. The data of a chart are the JSON in its
 // <metadata>, written by readings.rs, in the units of its axes.
@@ -30,7 +30,7 @@
     return chart;
   }
 
-  // Puts the values of a curve where they lie on the picture, px; what is no number has no place.
+  // Places of the values of a curve on the picture, px; a value that is not a number has no place.
   function place(chart, index) {
     const { frame: [left, top, width, height], x, y, grids, series } = chart.data;
     const curve = series[index];
@@ -42,7 +42,7 @@
     chart.inside = (u, v) => u >= left - 6 && u <= left + width + 6 && v >= top - 6 && v <= top + height + 6;
   }
 
-  // `1 234.5` with a true minus sign; a number that keeps its zeros is told with as many digits as its neighbours.
+  // `1 234.5` with a true minus sign; a number that keeps its zeros has as many digits as its neighbours.
   function told(value, axis, zeros) {
     let text = axis.log ? Number(value.toPrecision(3)).toString() : value.toFixed(axis.digits);
     if (!zeros && text.includes(".")) text = text.replace(/\.?0+$/, "");
@@ -77,7 +77,7 @@
     return best;
   }
 
-  // Of a line that is drawn between its samples, the place under the pointer.
+  // The place under the pointer on a line that is drawn between its samples.
   function between(curve, u) {
     for (let k = 1; k < curve.px.length; k++) {
       const [a, b] = [curve.px[k - 1], curve.px[k]];

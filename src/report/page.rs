@@ -1,4 +1,5 @@
-//! The report of a run: one HTML page with its pictures inside, that needs nothing from elsewhere and is whole without its script.
+//! The report of a run: one HTML page with its pictures inside, without external parts; the page is complete without
+//! its script.
 
 use super::headline::headline;
 use super::number::{plain, significant, whole};
@@ -18,17 +19,17 @@ pub fn page(run: &Run) -> String {
     page_with(run, "")
 }
 
-/// The page of a run that is not finished: what there is so far.
+/// The page of an unfinished run, with the results so far.
 pub fn page_so_far(so_far: &SoFar) -> String {
     let notice = format!(
-        "<section id=\"unfinished\"><h2>Not finished</h2><p class=\"caption\">{}. Figures and tables show what is recorded so far; \
-         what the scene expects is judged when the run is finished.</p></section>\n",
+        "<section id=\"unfinished\"><h2>Not finished</h2><p class=\"caption\">{}. Figures and tables show the records \
+         so far. Expectations are checked when the run is finished.</p></section>\n",
         prose(&standing(so_far))
     );
     page_with(&so_far.run, &notice)
 }
 
-/// Where a run stands that is not finished: `40 of 500 axles after 1.2 h of computing; now trains on grains, 43 % of that`.
+/// Progress of an unfinished run: `40 of 500 axles after 1.2 h of computing; now trains on grains, 43 % done`.
 pub fn standing(so_far: &SoFar) -> String {
     let done = match (so_far.clock, &so_far.run.scenario.loading) {
         (Clock::Axles(axles), Some(Loading::Traffic(traffic))) => {
@@ -37,8 +38,7 @@ pub fn standing(so_far: &SoFar) -> String {
         (clock, _) => clock.to_string(),
     };
     let stage = so_far.stage.as_ref();
-    let now =
-        stage.map_or(String::new(), |(what, share)| format!("; now {what}, {} % of that", plain(100.0 * share, 2)));
+    let now = stage.map_or(String::new(), |(what, share)| format!("; now {what}, {} % done", plain(100.0 * share, 2)));
     format!("{done} after {} of computing{now}", duration(so_far.seconds))
 }
 
@@ -122,7 +122,7 @@ pub(super) fn subtitle(scenario: &Scenario) -> String {
     text
 }
 
-/// Where to find what.
+/// The contents of the page.
 fn contents(html: &mut String, figures: &[Figure], run: &Run) {
     *html += "<nav id=\"contents\"><h2>Contents</h2><ol>";
     for figure in figures {
@@ -134,7 +134,7 @@ fn contents(html: &mut String, figures: &[Figure], run: &Run) {
     if !run.blocks.is_empty() {
         *html += "<li><a href=\"#blocks\">Blocks</a></li>";
     }
-    *html += "<li><a href=\"#provenance\">What made this</a></li></ol></nav>\n";
+    *html += "<li><a href=\"#provenance\">How this was made</a></li></ol></nav>\n";
 }
 
 pub(super) fn expectations(html: &mut String, verdicts: &[Verdict]) {
@@ -143,8 +143,8 @@ pub(super) fn expectations(html: &mut String, verdicts: &[Verdict]) {
     }
     let missed = verdicts.iter().filter(|verdict| !verdict.met).count();
     let caption = match missed {
-        0 => "Everything that the scene expects holds.".to_owned(),
-        n => format!("{n} of {} do not hold.", verdicts.len()),
+        0 => "All expectations of the scene are met.".to_owned(),
+        n => format!("{n} of {} expectations are not met.", verdicts.len()),
     };
     let _ = write!(
         html,
@@ -155,7 +155,8 @@ pub(super) fn expectations(html: &mut String, verdicts: &[Verdict]) {
         let (class, word) = if verdict.met { ("good", "\u{2713} met") } else { ("bad", "\u{2717} missed") };
         let _ = write!(
             html,
-            "<tr><td class=\"text\"><code>{}</code></td><td class=\"text\">{}</td><td class=\"text {class}\">{word}</td></tr>",
+            "<tr><td class=\"text\"><code>{}</code></td><td class=\"text\">{}</td><td class=\"text \
+            {class}\">{word}</td></tr>",
             escape(&verdict.text),
             prose(&computed(verdict))
         );
@@ -169,20 +170,21 @@ pub(super) fn picture(html: &mut String, figure: &Figure) {
     let (id, title, caption) = (escape(&figure.id), prose(&figure.title), prose(&figure.caption));
     let _ = writeln!(
         html,
-        "<section id=\"{id}\"><h2>{title}</h2><p class=\"caption\">{caption}</p><div class=\"scroll\">{svg}</div></section>"
+        "<section id=\"{id}\"><h2>{title}</h2><p class=\"caption\">{caption}</p><div \
+        class=\"scroll\">{svg}</div></section>"
     );
 }
 
-/// What each kind of train does at the last count, against its own static load.
+/// Results of each type of train at the last count, compared with its own static load.
 fn trains(html: &mut String, run: &Run) {
     let Some(last) = run.trains.iter().map(|row| row.axles).max() else { return };
     let heads = [
         ("Trains so far", ""),
         ("Static wheel load", "kN"),
         ("Wheel force, largest", "kN"),
-        ("Over its static load", ""),
+        ("Largest / static load", ""),
         ("Wheel force, least", "kN"),
-        ("Missing of its static load", "%"),
+        ("Wheel unloading", "%"),
         ("Rail seat load", "kN"),
         ("Contact force", "kN"),
         ("Rail moment", "kN m"),
@@ -190,9 +192,10 @@ fn trains(html: &mut String, run: &Run) {
     let heads: String = heads.iter().map(|(name, unit)| format!("<th>{name}<small>{unit}</small></th>")).collect();
     let _ = write!(
         html,
-        "<section id=\"trains\"><h2>Trains</h2><p class=\"caption\">Extremes of a passage of each kind of train after {} \
-         axles, each wheel against its own static load. Figures of one passage are of the first kind; histories of all are kept.</p>\
-         <div class=\"scroll\"><table><tr><th class=\"text\">Train</th>{heads}</tr>",
+        "<section id=\"trains\"><h2>Trains</h2><p class=\"caption\">Extremes of one passage of each type of train \
+         after {} axles. Each wheel is compared with its own static load. Figures of one passage show the first type; \
+         histories of all types are kept.</p><div class=\"scroll\"><table><tr><th \
+         class=\"text\">Train</th>{heads}</tr>",
         whole(last)
     );
     for row in run.trains.iter().filter(|row| row.axles == last) {
@@ -258,8 +261,8 @@ fn blocks(html: &mut String, run: &Run) {
     }
     let _ = writeln!(
         html,
-        "<section class=\"long\" id=\"blocks\"><h2>Blocks</h2><p class=\"caption\">Extremes of the passage computed for \
-         each block of axles. {}</p>{table}</section>",
+        "<section class=\"long\" id=\"blocks\"><h2>Blocks</h2><p class=\"caption\">Extremes of the passage computed \
+         for each block of axles. {}</p>{table}</section>",
         prose(&super::blocks::said(run))
     );
 }
@@ -267,8 +270,8 @@ fn blocks(html: &mut String, run: &Run) {
 pub(super) fn provenance(html: &mut String, made: &Provenance) {
     let _ = writeln!(
         html,
-        "<section class=\"long\" id=\"provenance\"><h2>What made this</h2><dl><dt>Program</dt><dd>{} {}</dd>\
-         <dt>File</dt><dd>{}</dd><dt>SHA-256</dt><dd><code>{}</code></dd><dt>Seed</dt><dd>{}</dd></dl>",
+        "<section class=\"long\" id=\"provenance\"><h2>How this was made</h2><dl><dt>Program</dt><dd>{} \
+         {}</dd><dt>File</dt><dd>{}</dd><dt>SHA-256</dt><dd><code>{}</code></dd><dt>Seed</dt><dd>{}</dd></dl>",
         escape(&made.program),
         escape(&made.version),
         escape(&made.file),

@@ -7,14 +7,14 @@ use super::view::WIDTH;
 
 const GAP: f64 = 14.0;
 
-/// Names of a figure, and what is to be seen on it.
+/// Names and caption of a figure.
 pub struct Names<'a> {
     pub id: &'a str,
     pub title: &'a str,
     pub caption: &'a str,
 }
 
-/// A figure of charts, each with its height in px, in rows of `columns`; `None` where none of them shows anything.
+/// A figure of charts, each with its height in px, in rows of `columns`; `None` if all charts are empty.
 pub fn panels(names: &Names<'_>, charts: &[(Chart, f64)], columns: usize) -> Option<Figure> {
     if charts.iter().all(|(chart, _)| chart.is_empty()) {
         return None;

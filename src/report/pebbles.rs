@@ -1,5 +1,4 @@
-//! What pebbles buy and what they cost: the error of shape against their number, and the tests of contacts that they
-//! make.
+//! Accuracy and cost of pebbles: the error of shape and the number of contact tests against the number of pebbles.
 
 use super::curves::{Axis, Chart, Mark, Series};
 use super::svg::{Anchor, Frame, Svg};
@@ -9,7 +8,7 @@ use super::view::WIDTH;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PebbleRow {
     pub pebbles: usize,
-    /// Share of the volume that lies elsewhere.
+    /// Share of the volume that differs between clump and surface.
     pub volume: f64,
     /// Mean distance of the surfaces over the size of the grain.
     pub distance: f64,
@@ -22,8 +21,8 @@ pub struct PebbleRow {
 /// Shape error and cost side by side.
 pub fn grain_pebbles_svg(rows: &[PebbleRow]) -> String {
     let mut svg = Svg::default();
-    svg.text("strong", (6.0, 18.0), Anchor::Start, "What pebbles buy, and what they cost");
-    let axis = || Axis { logarithmic: true, range: Some((0.9, 60.0)), ..Axis::new("Pebbles a grain", ("", 1.0)) };
+    svg.text("strong", (6.0, 18.0), Anchor::Start, "Shape error and cost against the number of pebbles");
+    let axis = || Axis { logarithmic: true, range: Some((0.9, 60.0)), ..Axis::new("Pebbles per grain", ("", 1.0)) };
     let of = |value: fn(&PebbleRow) -> f64| rows.iter().map(|row| (row.pebbles as f64, value(row))).collect::<Vec<_>>();
     let mut left = Chart::new(axis(), Axis { from_zero: true, ..Axis::new("Error of shape", ("%", 0.01)) });
     left.series = vec![
@@ -31,10 +30,8 @@ pub fn grain_pebbles_svg(rows: &[PebbleRow]) -> String {
         Series::new("mean distance / size", "s1", Mark::Dots, of(|row| row.distance)),
         Series::new("inertia", "s2", Mark::Dots, of(|row| row.inertia)),
     ];
-    let mut right = Chart::new(
-        axis(),
-        Axis { from_zero: true, ..Axis::new("Pairs of pebbles tested a pair of grains", ("", 1.0)) },
-    );
+    let mut right =
+        Chart::new(axis(), Axis { from_zero: true, ..Axis::new("Pebble pairs tested per pair of grains", ("", 1.0)) });
     right.series = vec![Series::new("", "s3", Mark::Dots, of(|row| row.tests))];
     let frame = |x: f64, width: f64| Frame { x, y: 26.0, width, height: 330.0 };
     left.draw(&mut svg, "pebbles-error", frame(0.0, 0.56 * WIDTH));

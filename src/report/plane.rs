@@ -1,4 +1,4 @@
-//! Where data lie on a picture: the plane between two axes, and round marks on them.
+//! Frame of the data on a picture: the plane between two axes, and round marks on them.
 
 use super::number::ticks;
 use super::svg::Frame;
@@ -24,7 +24,7 @@ impl Plane {
         (self.frame.x + across * self.frame.width, self.frame.y + down * self.frame.height)
     }
 
-    /// What is shown at a place of the picture: the inverse of [`Plane::point_at`].
+    /// The values at a place of the picture: the inverse of [`Plane::point_at`].
     pub fn value_at(&self, (x, y): (f64, f64)) -> (f64, f64) {
         let value = |share: f64, (low, high): (f64, f64), logarithmic: bool| {
             if logarithmic { low * (high / low).powf(share) } else { low + share * (high - low) }
@@ -36,7 +36,7 @@ impl Plane {
     }
 }
 
-/// Marks of a logarithmic axis: powers of ten, and what is needed between them for two marks at least.
+/// Marks of a logarithmic axis: powers of ten, and values between them if needed for at least two marks.
 pub(super) fn decades(low: f64, high: f64) -> Vec<f64> {
     let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
     let marks = |parts: &[f64]| -> Vec<f64> {

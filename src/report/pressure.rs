@@ -23,7 +23,7 @@ pub fn contact_pressure(run: &Run) -> Option<Figure> {
         chart.bands.iter_mut().for_each(|band| band.label.clear()); // the limit's name stands there
         chart.levels = vec![(limit, "500 kPa, concrete sleepers (UIC, unchecked)".to_owned())];
     }
-    let caption = "Largest force of each half sleeper on its support during one passage, over half the sleeper's bearing \
-                   area: the mean pressure that design rules speak of, not the peak under single stones.";
+    let caption = "Largest force of each half sleeper on its support during one passage, divided by half the sleeper's \
+                   bearing area. This is the mean pressure used in design rules, not the peak under single stones.";
     panels(&Names { id: "contact_pressure", title: "Sleeper pressure on the ballast", caption }, &[(chart, 300.0)], 1)
 }

@@ -1,4 +1,4 @@
-//! Text of a page: safe, with what stands between backticks set as code, and numbers in the unit in which they are read.
+//! Text of a page: escaped, with text between backticks as code, and numbers in the shown unit.
 
 use super::number::{plain, shown_unit};
 use super::svg::escape;
@@ -7,7 +7,7 @@ use crate::results::Verdict;
 /// Digits of a computed value in a sentence or a table.
 const DIGITS: usize = 4;
 
-/// A text as HTML. What stands between two backticks becomes code; a backtick without its second is left out.
+/// A text as HTML. Text between two backticks becomes code; a single backtick is left out.
 pub(super) fn prose(text: &str) -> String {
     let pieces: Vec<String> = text.split('`').map(escape).collect();
     let closed = |index: usize| index % 2 == 1 && index + 1 < pieces.len();
@@ -18,12 +18,12 @@ pub(super) fn prose(text: &str) -> String {
     pieces.iter().enumerate().map(set).collect()
 }
 
-/// A text without backticks, for a place that knows no code.
+/// A text without backticks, for a place that cannot show code.
 pub(super) fn unmarked(text: &str) -> String {
     text.replace('`', "")
 }
 
-/// What an expectation was computed to be, each term in the unit in which it is read: `1.264 mm and 1.758 mm`.
+/// The computed values of an expectation, each in its shown unit: `1.264 mm and 1.758 mm`.
 pub(super) fn computed(verdict: &Verdict) -> String {
     if let Some(problem) = &verdict.problem {
         return problem.clone();

@@ -1,7 +1,8 @@
-//! What a chart shows, as data beside its drawing: the page's script reads values from it and moves curves with it.
+//! The data of a chart beside its drawing: the page's script reads values from the data and moves curves.
 //!
-//! One JSON object in the `metadata` of the chart, in the units of its axes. A line holds what is needed to
-//! tell it to a part of a pixel, so that the data are smaller than the drawing; dots, bars and curves that move hold every value.
+//! One JSON object in the `metadata` of the chart, in the units of its axes. A line holds only the points needed for an
+//! accuracy of a part of a pixel, so the data are smaller than the drawing; dots, bars and curves that move hold every
+//! value.
 
 use super::curves::{Axis, Chart, Mark, Series};
 use super::plane::Plane;
@@ -9,11 +10,13 @@ use super::series::{has_dots, line_pixels};
 use super::svg::Svg;
 use std::fmt::Write;
 
-/// Steps into which an axis is cut by the last digit that is kept, fine across, where steep curves need it; and by the last that is told.
+/// Steps of an axis by the last digit that is stored (finer on the x axis, because steep curves need it), and by the
+/// last digit that is shown.
 const ACROSS: [f64; 2] = [10_000.0, 2_000.0];
 const UPWARDS: [f64; 2] = [2_000.0, 500.0];
-/// How much coarser than the drawing the data of a line are, px: columns that keep their peaks, and what a value between two samples
-/// may be off. A pointer is no finer, and the data stay a third of the drawing.
+/// Resolution of the data of a line, px: width of the columns that keep their peaks, and allowed error of a value
+/// between two samples. It is coarser than the drawing but as fine as a pointer, and the data have a third of the size
+/// of the drawing.
 const COLUMN: f64 = 2.0;
 const OFF: f64 = 0.25;
 /// Digits that are kept of values on a logarithmic axis.
@@ -74,7 +77,7 @@ fn curve(chart: &Chart, index: usize, points: &[(f64, f64)], grid: usize, upward
     json + "}"
 }
 
-/// The points of a curve whose values can be asked for, SI; what is none is a gap.
+/// The points of a curve with values that can be read, SI; a value that is not finite is a gap.
 fn shown(series: &Series, plane: &Plane) -> Vec<(f64, f64)> {
     let named = !series.labels.is_empty() || !series.moving.is_empty();
     if named || has_dots(series) || matches!(series.mark, Mark::Bars(_)) {
@@ -91,7 +94,8 @@ fn shown(series: &Series, plane: &Plane) -> Vec<(f64, f64)> {
     points
 }
 
-/// `{"name":"Settlement","unit":"mm","range":[0,5],"down":true,"log":false,"digits":3}`: `digits` decimals are worth showing.
+/// `{"name":"Settlement","unit":"mm","range":[0,5],"down":true,"log":false,"digits":3}`: `digits` decimals are worth
+/// showing.
 fn axis(axis: &Axis, (low, high): (f64, f64), steps: f64) -> String {
     let (low, high) = (low / axis.size, high / axis.size);
     let digits = if axis.whole { 0 } else { decimals((high - low) / steps) };
@@ -104,7 +108,7 @@ fn axis(axis: &Axis, (low, high): (f64, f64), steps: f64) -> String {
     )
 }
 
-/// How numbers of an axis are shortened.
+/// Rounding of the numbers of an axis.
 struct Steps {
     size: f64,
     decimals: Option<usize>,
@@ -134,7 +138,7 @@ impl Steps {
     }
 }
 
-/// Decimals with which a number is told to `step`.
+/// Decimals that show a number to `step`.
 fn decimals(step: f64) -> usize {
     if step > 0.0 && step.is_finite() { (-step.log10()).ceil().clamp(0.0, 9.0) as usize } else { 0 }
 }
@@ -171,7 +175,7 @@ mod tests {
         assert_eq!(data["grids"], serde_json::json!([[0, 1, 2]]));
         assert_eq!(data["series"][0]["y"], serde_json::json!([0, 1.234, null]));
         assert_eq!((&data["y"]["name"], &data["y"]["unit"]), (&"b <&>".into(), &"mm".into()));
-        // what has no name of its own belongs to the entry of its colour
+        // a series without a name belongs to the legend entry of its colour
         assert_eq!(data["series"][1]["entry"], 0);
     }
 

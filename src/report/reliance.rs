@@ -1,11 +1,11 @@
-//! What the numbers rest on, on the first page: a reader sees what was warned of before a number is used.
+//! Warnings, assumptions and confidence on the first page, so that a reader sees them before using a number.
 
 use super::prose::prose;
 use super::svg::escape;
 use crate::results::Reliance;
 use std::fmt::Write;
 
-/// Writes the section; nothing where there is nothing to say.
+/// Writes the section; nothing if it is empty.
 pub fn reliance(html: &mut String, reliance: &Reliance) {
     if *reliance == Reliance::default() {
         return;
@@ -16,7 +16,7 @@ pub fn reliance(html: &mut String, reliance: &Reliance) {
         let place = if warned.place.is_empty() { String::new() } else { format!(", {}", warned.place) };
         format!("{} <small>({}{})</small>", prose(&warned.message), warned.code, escape(&place))
     });
-    group(html, "Warned of", warned);
+    group(html, "Warnings", warned);
     let silenced = reliance.silenced.iter().map(|silenced| {
         format!(
             "{}: <q>{}</q> <small>({})</small>",
@@ -33,12 +33,12 @@ pub fn reliance(html: &mut String, reliance: &Reliance) {
         .map(|entry| format!("<span title=\"{}\"><code>{}</code></span>", escape(&entry.source), escape(&entry.name)));
     let names: Vec<String> = names.collect();
     let unchecked = (!names.is_empty())
-        .then(|| format!("{} of the library: data that nobody has checked against its source", names.join(", ")));
+        .then(|| format!("{} of the library: data not checked against the source", names.join(", ")));
     group(html, "Unchecked", unchecked.into_iter());
     *html += "</dl></section>\n";
 }
 
-/// A group of sentences, already HTML; nothing where there is none.
+/// A group of sentences, already HTML; nothing if there is none.
 fn group(html: &mut String, name: &str, sentences: impl Iterator<Item = String>) {
     let items: Vec<String> = sentences.map(|sentence| format!("<li>{}</li>", capitalised(&sentence))).collect();
     if !items.is_empty() {

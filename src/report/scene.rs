@@ -104,7 +104,7 @@ fn draw_close(svg: &mut Svg, scenario: &Scenario, supports: &[SupportNode], plac
     draw_chainage(svg, &view, bottom + 4.0)
 }
 
-/// What the colours of a close-up mean.
+/// Meaning of the colours of a close-up.
 fn draw_key(svg: &mut Svg, scenario: &Scenario, y: f64) {
     let mut x = WIDTH - MARGIN;
     let under_sleepers = has_usps(scenario).then_some(("usp", "under sleeper pad"));
@@ -267,7 +267,7 @@ fn signed(number: i32) -> String {
     if number < 0 { format!("\u{2212}{}", number.abs()) } else { format!("+{number}") }
 }
 
-/// The spacing of each section in a close-up, above the rail, with what carries its seats.
+/// The spacing of each section in a close-up, above the rail, with the supports of its seats.
 fn draw_spacings(svg: &mut Svg, scenario: &Scenario, supports: &[SupportNode], view: &View) {
     for (index, section) in scenario.track.sections.iter().enumerate() {
         let standing = scenario.track.seats.iter().zip(supports);
@@ -318,7 +318,7 @@ fn carried(section: &Section, seats: &[&Seat], supports: &[&SupportNode]) -> Vec
     parts
 }
 
-/// Name, length and content of each stretch, and what is tamped, one below the other where they overlap.
+/// Name, length and content of each stretch and tamping, one below the other if they overlap.
 fn draw_stretches(svg: &mut Svg, scenario: &Scenario, view: &View, y: f64) -> f64 {
     let mut rows: Vec<f64> = Vec::new(); // right ends
     let stretches = scenario.track.stretches.iter().map(|s| (s.name.as_str(), s.start, s.end, s.changes.to_string()));
@@ -337,7 +337,7 @@ fn draw_stretches(svg: &mut Svg, scenario: &Scenario, view: &View, y: f64) -> f6
     y + 24.0 * rows.len() as f64
 }
 
-/// What a tamping reaches, seats side by side together: its name, from where to where, m, and when.
+/// Ranges of a tamping, neighbouring seats joined: its name, start and end, m, and count.
 fn tamped<'a>(scenario: &'a Scenario, tamping: &'a Tamping) -> Vec<(&'a str, f64, f64, String)> {
     let track = &scenario.track;
     let after: Vec<String> = tamping.after.iter().map(|count| whole(*count)).collect();

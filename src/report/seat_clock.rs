@@ -1,4 +1,4 @@
-//! The time of a passage as a seat sees it: zero when the leading wheel stands over it, so that seats can be compared.
+//! The time of a passage at a seat: zero when the leading wheel stands over the seat, so that seats can be compared.
 
 use super::counts::Count;
 use super::curves::{Axis, Band, Chart, Mark, Series};
@@ -34,8 +34,8 @@ impl<'a> Passages<'a> {
         of_part.and_then(|counts| counts.get(&axles)).map_or(&[], Vec::as_slice)
     }
 
-    /// A history of a part of the track at a count, over the time of the place; both by the names that they have in files. Empty where
-    /// there is none.
+    /// A history of a part of the track at a count, over the time of the place. Part and quantity have their names in
+    /// files. Empty if there is none.
     pub fn history(&self, quantity: &str, id: &str, axles: u64) -> Vec<(f64, f64)> {
         let rows = self.rows(quantity, id, axles);
         let Some(x) = rows.first().map(|row| row.x_m) else { return vec![] };
@@ -43,8 +43,8 @@ impl<'a> Passages<'a> {
         rows.iter().map(|row| (row.time_s - zero, row.value)).collect()
     }
 
-    /// A chart of one quantity at one seat, one curve a count, shaded while the seat's sleeper has no contact with its support at the
-    /// last one.
+    /// A chart of one quantity at one seat, one curve a count, shaded while the seat's sleeper has no contact with its
+    /// support at the last one.
     pub fn panel(&self, quantity: Response, seat: &str, title: &str, counts: &[Count]) -> Chart {
         let mut y = Axis::new(title, shown_unit(quantity.unit()));
         y.downwards = is_downward(quantity);
@@ -63,7 +63,8 @@ impl<'a> Passages<'a> {
     }
 }
 
-/// When the leading wheel stands over x, s, by its own history; before its first and after its last sample it keeps its speed there.
+/// When the leading wheel stands over x, s, by its own history; before its first and after its last sample it keeps its
+/// speed there.
 fn arrival(wheel: &[&HistoryRow], x: f64) -> Option<f64> {
     let path: Vec<(f64, f64)> = wheel.iter().map(|h| (h.time_s, h.x_m)).collect();
     let forward = path.last()?.1 > path.first()?.1;
@@ -74,7 +75,7 @@ fn arrival(wheel: &[&HistoryRow], x: f64) -> Option<f64> {
     arrival.is_finite().then_some(arrival)
 }
 
-/// The time that panels show, s: the leading vehicle, or as much of it as tells something.
+/// The time that panels show, s: the leading vehicle, or a part of it.
 pub fn window(run: &Run) -> (f64, f64) {
     let Some(Loading::Traffic(traffic)) = &run.scenario.loading else { return (0.0, 1.0) };
     let train = &traffic.train;
@@ -82,7 +83,7 @@ pub fn window(run: &Run) -> (f64, f64) {
     (-BEFORE / *train.speed, (base + BEFORE) / *train.speed)
 }
 
-/// When a force is not above zero.
+/// Times at which a force is not above zero.
 pub fn unloaded(samples: &[(f64, f64)]) -> Vec<Band> {
     let pieces = samples.chunk_by(|a, b| (a.1 <= 0.0) == (b.1 <= 0.0));
     let bands = pieces.filter(|piece| piece[0].1 <= 0.0).map(|piece| Band {

@@ -1,5 +1,5 @@
-//! The picture of a stability map: a panel for each integrator and void, time steps across and contacts upwards, and the
-//! list of hard scenes below. Shade is error, a sign is an end; both are told apart in grey.
+//! The picture of a stability map: a panel for each integrator and void, time steps across and contacts upwards, and
+//! the list of hard scenes below. The shade is the error, a sign is the result; both can be read in grey.
 
 use super::number::significant;
 use super::svg::{Anchor, Frame, Svg};
@@ -17,8 +17,9 @@ pub fn stability_svg(stability: &Stability) -> String {
     let mut svg = Svg::default();
     let map = &stability.map;
     let (across, up) = (map.time_steps.len() as f64 * CELL, map.contacts.len() as f64 * CELL);
-    svg.text("strong", (16.0, 24.0), Anchor::Start, &format!("{}: where it fails", stability.title));
-    let under = "Each cell: the first bogie over the transition. Across the time step, upwards the Hertz constant of wheel on rail.";
+    svg.text("strong", (16.0, 24.0), Anchor::Start, &format!("{}: limits of stability", stability.title));
+    let under = "Each cell: the first bogie over the transition. Horizontal: time step. Vertical: Hertz constant of \
+        wheel on rail.";
     svg.text("small muted", (16.0, 42.0), Anchor::Start, under);
     legend(&mut svg);
     for (column, void) in map.voids.iter().enumerate() {
@@ -70,8 +71,8 @@ fn legend(svg: &mut Svg) {
         (Verdict::Stable { error: 0.0 }, "below 0.1 %", 92.0),
         (Verdict::Stable { error: 5e-3 }, "below 1 %", 84.0),
         (Verdict::Stable { error: 5e-2 }, "below 10 %", 92.0),
-        (Verdict::Coarse { error: 1.0, code: "" }, "further off, warned before", 164.0),
-        (Verdict::Unstable { why: String::new(), code: "" }, "runs away, and says so", 160.0),
+        (Verdict::Coarse { error: 1.0, code: "" }, "above 10 %, with a warning", 164.0),
+        (Verdict::Unstable { why: String::new(), code: "" }, "unstable, reported", 160.0),
         (Verdict::Refused { code: "", message: String::new() }, "refused with a diagnostic", 160.0),
         (Verdict::Wrong { why: String::new() }, "silently wrong", 100.0),
     ];

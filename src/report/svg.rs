@@ -11,7 +11,7 @@ pub struct Frame {
     pub height: f64,
 }
 
-/// Where a text is held.
+/// Anchor of a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
     Start,
@@ -39,7 +39,7 @@ impl Svg {
         let _ = write!(self.body, r#"<rect class="{class}" x="{x}" y="{y}" width="{width}" height="{height}"/>"#);
     }
 
-    /// A rectangle that says `title` when it is pointed at.
+    /// A rectangle with the tooltip `title`.
     pub fn titled_rect(&mut self, class: &str, frame: Frame, title: &str) {
         self.body += "<g>";
         self.rect(class, frame);
@@ -87,7 +87,7 @@ impl Svg {
         self.body += "\"/>";
     }
 
-    /// Ends a tag, with what it says when it is pointed at.
+    /// Ends a tag, with its tooltip.
     fn close(&mut self, tag: &str, title: &str) {
         if title.is_empty() {
             self.body += "/>";
@@ -120,7 +120,7 @@ impl Svg {
         self.body += xml;
     }
 
-    /// What `draw` draws shares `attributes`.
+    /// Everything drawn by `draw` shares `attributes`.
     pub fn group(&mut self, attributes: &str, draw: impl FnOnce(&mut Svg)) {
         let _ = write!(self.body, "<g {attributes}>");
         draw(self);

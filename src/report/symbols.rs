@@ -16,7 +16,7 @@ pub(super) fn draw_spring(svg: &mut Svg, (x, top): (f64, f64), bottom: f64, half
     svg.path("spring", &points, false, "");
 }
 
-/// Pebbles in rows, each row shifted, the same at every call.
+/// Pebbles in rows, each row shifted, equal at every call.
 pub(super) fn draw_stones(svg: &mut Svg, area: Frame, scale: f64) {
     let size = (0.11 * scale).clamp(3.0, 8.0);
     let mut y = area.y + 0.7 * size;

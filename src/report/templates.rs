@@ -1,4 +1,4 @@
-//! Templates of grains: surfaces beside the clumps that stand for them.
+//! Templates of grains: surfaces beside their clumps.
 
 use super::grain::{Look, draw_pebbles, draw_surface};
 use super::number::plain;
@@ -60,7 +60,7 @@ fn draw_material(
         Anchor::Start,
         &format!("Grains of {name}: surfaces and their clumps{shown}"),
     );
-    let note = "elsewhere: volume that a clump has outside of its surface, and lacks inside";
+    let note = "elsewhere: share of the clump's volume outside the surface; the same volume is missing inside";
     svg.text("small muted", (6.0, top + 34.0), Anchor::Start, note);
     let top = top + 12.0;
     let fitted = match shape.fitted(seed) {
@@ -117,12 +117,7 @@ pub fn grain_templates_svg(counts: &[usize], rows: &[Vec<Fitted>]) -> String {
     let mut svg = Svg::default();
     let column = (WIDTH - 10.0) / (counts.len() + 1) as f64;
     let (row, head) = (132.0, 44.0);
-    svg.text(
-        "strong",
-        (6.0, 18.0),
-        Anchor::Start,
-        "Angular grains and the clumps that stand for them, of equal volume",
-    );
+    svg.text("strong", (6.0, 18.0), Anchor::Start, "Angular grains and their clumps of equal volume");
     let heading = |svg: &mut Svg, k: usize, text: &str| {
         svg.text("small muted", (5.0 + (k as f64 + 0.5) * column, 38.0), Anchor::Middle, text);
     };

@@ -1,6 +1,6 @@
-//! Thins a long series to what the pixels can show, with every peak kept.
+//! Thins a long series to the resolution of the pixels; every peak is kept.
 
-/// Distance from a straight line that nobody sees, px.
+/// Distance from a straight line that is not visible, px.
 pub const UNSEEN: f64 = 0.08;
 /// Points that one straight piece may stand for, so that the search stays linear.
 const LONGEST: usize = 128;
@@ -57,7 +57,7 @@ mod tests {
         let wave: Vec<(f64, f64)> = (0..400).map(f64::from).map(|k| (k / 4.0, 40.0 * (k / 40.0).sin())).collect();
         let kept = straighten(&wave, UNSEEN);
         assert!(kept.len() < 200 && kept[0] == wave[0] && kept[kept.len() - 1] == wave[399]);
-        // what is left out lies on what stays
+        // the points left out lie on the remaining line
         for (x, y) in &wave {
             let after = kept.iter().position(|p| p.0 >= *x).unwrap().max(1);
             let (a, b) = (kept[after - 1], kept[after]);

@@ -1,4 +1,4 @@
-//! A window on the track, and where its places lie on the picture.
+//! A window on the track, and its places on the picture.
 
 use super::svg::Frame;
 use crate::scenario::{Loading, Scenario, Section};
@@ -8,13 +8,14 @@ pub(super) const MARGIN: f64 = 26.0;
 /// Thickness of a drawn rail pad, m.
 const PAD: f64 = 0.035;
 
-/// Depth of a section's rail seats, m, below the top of what is drawn: of the rail, or of the sleepers where there is none.
+/// Depth of a section's rail seats, m, below the top of what is drawn: of the rail, or of the sleepers where there is
+/// none.
 pub(super) fn seat_depth(section: &Section) -> f64 {
     section.rail.as_ref().map_or(0.0, |rail| rail.height + PAD)
 }
 
-/// Height of the ballast beside a sleeper in the drawing, m above the underside of the sleeper. A scene with grains shows the crib that it states,
-/// or none. Other scenes show three quarters of the sleeper's height.
+/// Height of the ballast beside a sleeper in the drawing, m above the underside of the sleeper. A scene with grains
+/// shows the crib that it states, or none. Other scenes show three quarters of the sleeper's height.
 pub(super) fn height_beside(scenario: &Scenario, section: &Section, sleeper: f64) -> f64 {
     let rig = matches!(scenario.loading, Some(Loading::Rig(_)));
     match &section.crib {
@@ -24,7 +25,7 @@ pub(super) fn height_beside(scenario: &Scenario, section: &Section, sleeper: f64
     }
 }
 
-/// At which a length (m) is drawn, px a metre: as wide as there is room, without a short rig growing high.
+/// Scale, px per metre: as wide as the picture allows, but limited so that a short rig does not become too high.
 pub(super) fn scale(length: f64) -> f64 {
     ((WIDTH - 2.0 * MARGIN) / length).min((400.0 / length).clamp(90.0, 200.0))
 }

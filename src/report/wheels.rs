@@ -13,10 +13,10 @@ use crate::scenario::Track;
 const HEIGHT: f64 = 250.0;
 /// Wheels that get a panel: those of the leading vehicle.
 const WHEELS: usize = 4;
-/// Half the length that is shown, m: the ripple of single sleepers is to be seen.
+/// Half the length that is shown, m: the ripple of single sleepers must be visible.
 const CLOSE: f64 = 15.0;
 
-/// The first transition and what is near it, where the track is longer.
+/// The range near the first transition, if the track is longer.
 fn close_up(track: &Track) -> Option<(f64, f64)> {
     let x = track.transitions.first()?.x;
     let (left, right) = ((x - CLOSE).max(track.start()), (x + CLOSE).min(track.end()));
@@ -54,9 +54,9 @@ pub fn wheel_force(run: &Run) -> Option<Figure> {
     let load = load.map_or(String::new(), |f| format!(", {} kN", significant(f / 1e3, 3)));
     let place = if close.is_some() { " around the first transition" } else { "" };
     let caption = format!(
-        "Force of each wheel of the leading vehicle on one rail, where the wheel stands{place}; dotted the static load{load}; the \
-         legend counts the axles that had passed. The ripple is that of the sleepers, stiffer than the bays between them. \
-         All panels have one scale."
+        "Force of each wheel of the leading vehicle on one rail, at the place of the wheel{place}. Dotted: static \
+         load{load}. The legend gives the number of axles that have passed. The ripple comes from the sleepers: the \
+         track is stiffer over a sleeper than between sleepers. All panels have one scale."
     );
     let charts: Vec<(Chart, f64)> = charts.into_iter().map(|chart| (chart, HEIGHT)).collect();
     panels(&Names { id: "wheel_force", title: "Wheel\u{2013}rail forces", caption: &caption }, &charts, 2)

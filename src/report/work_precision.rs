@@ -19,7 +19,8 @@ pub fn chart_svg(chart: &Chart) -> String {
     let picture = Picture::new(chart);
     svg.text("strong", (16.0, 24.0), Anchor::Start, &format!("{}: error against time", chart.title));
     let under = format!(
-        "One passage over the track as {} axles leave it, {} seats lose contact. Against the finest step and mesh of the same beam theory.",
+        "One passage over the track after {} axles; {} seats lose contact. Reference: finest step and mesh of the same \
+        beam theory.",
         chart.axles, chart.losing_contact
     );
     svg.text("small muted", (16.0, 42.0), Anchor::Start, &under);
@@ -67,7 +68,7 @@ impl<'a> Picture<'a> {
         Picture { chart, beam, methods, decades, most: 10f64.powf(largest.log10().ceil().min(1.0)) }
     }
 
-    /// Points of a line, from the cheapest to the dearest, whatever became of them.
+    /// Points of a line, from the cheapest to the most expensive, including failed ones.
     fn line(&self, method: Integrator, beam: Beam) -> Vec<&'a Point> {
         let of_line = |p: &&Point| {
             p.level == Level::Settled
@@ -91,7 +92,7 @@ impl<'a> Picture<'a> {
         if self.chart.points.iter().any(|p| p.sweep == Sweep::Tolerance) {
             svg.line(&format!("line {VARYING}"), (x, y - 4.0), (x + 24.0, y - 4.0));
             plus(svg, (x + 12.0, y - 4.0), "");
-            svg.text("", (x + 30.0, y), Anchor::Start, "steps that vary");
+            svg.text("", (x + 30.0, y), Anchor::Start, "variable steps");
         }
         let (mut x, y) = (16.0, 88.0);
         let other = if self.beam == Beam::Euler { Beam::Timoshenko } else { Beam::Euler };
@@ -100,16 +101,16 @@ impl<'a> Picture<'a> {
         x += 44.0 + text_width(&other.to_string());
         svg.circle("hollow s0", (x + 6.0, y - 4.0), 6.5, "");
         svg.text("small", (x + 6.0, y), Anchor::Middle, "4");
-        svg.text("", (x + 18.0, y), Anchor::Start, "elements a bay");
+        svg.text("", (x + 18.0, y), Anchor::Start, "elements per bay");
         x += 128.0;
         svg.circle("ring", (x + 8.0, y - 4.0), 8.0, "");
-        svg.text("", (x + 22.0, y), Anchor::Start, "the scene's own");
+        svg.text("", (x + 22.0, y), Anchor::Start, "scene's setting");
         x += 142.0;
         svg.line("frontier", (x + 4.0, y - 4.0), (x + 24.0, y - 4.0));
-        svg.text("", (x + 34.0, y), Anchor::Start, "nothing cheaper is better");
+        svg.text("", (x + 34.0, y), Anchor::Start, "best at this cost");
         x += 220.0;
         cross(svg, "s1", (x + 6.0, y - 4.0), "");
-        svg.text("", (x + 18.0, y), Anchor::Start, "failed or ran away");
+        svg.text("", (x + 18.0, y), Anchor::Start, "failed or unstable");
         x += 158.0;
         svg.line("mark", (x, y - 4.0), (x + 24.0, y - 4.0));
         svg.text("", (x + 30.0, y), Anchor::Start, "slope 2");
@@ -161,7 +162,7 @@ impl<'a> Picture<'a> {
             .collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let path: Vec<(f64, f64)> = points.into_iter().map(|(s, e)| plane.point(s, e)).collect();
-        svg.path("frontier", &path, false, "nothing cheaper is better");
+        svg.path("frontier", &path, false, "best at this cost");
     }
 
     fn model(&self, svg: &mut Svg, plane: &Plane, error: ReadError) {
@@ -222,7 +223,7 @@ impl<'a> Picture<'a> {
     fn own(&self, svg: &mut Svg, plane: &Plane, error: ReadError) {
         let own = self.chart.points.iter().find(|p| p.default);
         if let Some((seconds, errors)) = own.and_then(|p| p.outcome.done()) {
-            svg.circle("ring", plane.point(seconds, error(errors)), 8.0, "the scene's own numerics");
+            svg.circle("ring", plane.point(seconds, error(errors)), 8.0, "numerics of the scene");
         }
     }
 }
@@ -233,7 +234,7 @@ fn title(point: &Point, error: ReadError) -> String {
         Some(tolerance) => format!("up to {} ms with tolerance {tolerance:e}", number(v.time_step * 1e3)),
         None => format!("{} ms", number(v.time_step * 1e3)),
     };
-    let head = format!("{}, {step}, {} elements a bay, {}", v.method, v.elements_per_bay, v.beam);
+    let head = format!("{}, {step}, {} elements per bay, {}", v.method, v.elements_per_bay, v.beam);
     match &point.outcome {
         Outcome::Done { seconds, errors, .. } => {
             format!("{head}: {} % in {} s", significant(100.0 * error(errors), 3), significant(*seconds, 3))
@@ -332,7 +333,7 @@ fn percent(decade: i32) -> f64 {
     10f64.powi(decade + 2)
 }
 
-/// A tick without the dust of a power of ten.
+/// A tick without the rounding error of a power of ten.
 fn round(value: f64) -> String {
     number((value * 1e6).round() / 1e6)
 }

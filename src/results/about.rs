@@ -1,6 +1,6 @@
-//! What a Parquet file of a run says about itself in its metadata: the units of its numbers, and what made the run.
+//! Metadata of the Parquet files of a run: the units of the columns, and what made the run.
 //!
-//! Each entry has a key that begins with `trackbed.`; pandas finds them all in the `attrs` of its table. Nothing of them
+//! Each entry has a key that begins with `trackbed.`; pandas puts them all into the `attrs` of its table. No entry
 //! depends on the clock or on the machine.
 
 use super::Provenance;
@@ -14,7 +14,7 @@ pub(super) type Units<'a> = BTreeMap<&'a str, &'static str>;
 /// The key under which pandas keeps and looks for the attributes of a table.
 const OF_PANDAS: &str = "PANDAS_ATTRS";
 
-/// The entries of a file; none of one that nobody has made yet, such as a piece beside a checkpoint.
+/// The entries of a file; none for a file of an unfinished run, such as a piece beside a checkpoint.
 pub(super) fn entries(units: &Units<'_>, made_by: Option<&Provenance>) -> Option<Vec<KeyValue>> {
     let made_by = made_by?;
     let said = [

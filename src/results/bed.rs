@@ -1,4 +1,4 @@
-//! What people read off a packed bed.
+//! Summary of a packed bed.
 
 use super::{BedReadings, bed_hash};
 use crate::graph::BedRecipe;
@@ -30,13 +30,14 @@ pub struct BedLayer {
     /// m.
     pub thickness_asked_m: f64,
     pub thickness_m: f64,
-    /// Porosity of the whole layer, walls included, and of what lies a quarter of its thickness inside.
+    /// Porosity of the whole layer, walls included, and of its inner part, a quarter of the thickness away from its
+    /// borders.
     pub porosity: f64,
     pub inner_porosity: f64,
-    /// Largest distance between the curve that was asked for and that of the grains, as a share of the mass.
+    /// Largest difference between the target grading and the grading of the grains, as a share of the mass.
     pub grading_error: f64,
-    /// Neighbours a body under the plate, before friction came back; then in the finished bed, of all bodies and of those
-    /// that are no rattlers.
+    /// Neighbours per body: under the plate, before friction is switched on again; in the finished bed, for all bodies;
+    /// the same without rattlers.
     pub coordination_pressed: f64,
     pub coordination: f64,
     pub coordination_without_rattlers: f64,
@@ -44,10 +45,10 @@ pub struct BedLayer {
     pub rattlers: f64,
 }
 
-/// Share of the thickness asked for by which a layer may miss it without a word.
+/// Difference between actual and requested thickness that is reported, as a share of the requested one.
 const MISSED: f64 = 0.05;
 
-/// Sums up a bed of a plan, with what was read off it.
+/// Summary of a bed of a plan, with its readings.
 pub fn bed_summary(title: &str, plan: &BedRecipe, packed: &Packed<f32>, readings: Option<BedReadings>) -> BedSummary {
     let recipe = &plan.recipe;
     let layers: Vec<BedLayer> = (0..recipe.layers.len()).map(|number| bed_layer(recipe, packed, number)).collect();
@@ -68,14 +69,15 @@ pub fn bed_summary(title: &str, plan: &BedRecipe, packed: &Packed<f32>, readings
 }
 
 impl BedLayer {
-    /// What is said of a layer that is not as thick as it should be.
+    /// Note on a layer whose thickness differs from the requested one.
     fn missed(&self) -> Option<String> {
         let (asked, reached) = (self.thickness_asked_m, self.thickness_m);
         ((reached / asked - 1.0).abs() > MISSED).then(|| {
             let mm = |length: f64| (1e3 * length).round();
             let (name, reached, asked) = (&self.name, mm(reached), mm(asked));
             format!(
-                "`{name}` has become {reached} mm thick, not {asked} mm: what it holds is guessed before it is packed."
+                "`{name}` is {reached} mm thick, not {asked} mm as asked. The number of grains is estimated before \
+                packing."
             )
         })
     }
@@ -121,7 +123,7 @@ mod tests {
             rattlers: 0.0,
         };
         assert_eq!((of(0.29).missed(), of(0.312).missed()), (None, None));
-        let told = "`gravel` has become 259 mm thick, not 300 mm: what it holds is guessed before it is packed.";
+        let told = "`gravel` is 259 mm thick, not 300 mm as asked. The number of grains is estimated before packing.";
         assert_eq!(of(0.2592).missed().as_deref(), Some(told));
         assert!(of(0.341).missed().is_some());
     }

@@ -1,4 +1,4 @@
-//! What is measured in a packed bed: over its height, in its contacts, and under a plate.
+//! Measurements in a packed bed: over its height, in its contacts, and under a plate.
 
 use crate::graph::BedRecipe;
 use crate::solvers::granular::measure::{Fabric, ForceSpread, Reading, Region, Rose, Survey};
@@ -9,7 +9,7 @@ use crate::store::{Shelf, StoreError, recipe_hash};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Height of a slab, of the largest grain of its layer; and how many a layer has at most.
+/// Height of a slab, as a share of the largest grain of its layer, and the largest number of slabs in a layer.
 const SLAB: f64 = 0.5;
 const SLABS: f64 = 24.0;
 
@@ -21,12 +21,12 @@ pub struct BedReadings {
     /// Directions of contacts with more than the mean normal force.
     pub strong_directions: Directions,
     pub forces: ForceSpread,
-    /// `None` where it failed, which a note then tells.
+    /// `None` if the test failed; a note then gives the reason.
     pub plate: Option<PlateTest>,
     pub notes: Vec<String>,
 }
 
-/// What lies between two levels. Pressures are positive; on vertical planes along and across the track.
+/// Values between two levels. Pressures are positive; two of them act on vertical planes, along and across the track.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case)]
 pub struct ProfileRow {
@@ -39,7 +39,7 @@ pub struct ProfileRow {
     pub across_Pa: f64,
 }
 
-/// Where the contacts between grains look.
+/// Directions of the contacts between grains.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Directions {
     pub fabric: Fabric,
@@ -48,11 +48,11 @@ pub struct Directions {
     pub rose: Rose,
 }
 
-/// A plate that is pressed on the bed twice.
+/// A plate test with two loadings.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case)]
 pub struct PlateTest {
-    /// Along the track and across, m; `None` where it covers the whole cell.
+    /// Along the track and across, m; `None` if it covers the whole cell.
     pub sides_m: Option<[f64; 2]>,
     pub area_m2: f64,
     pub pressure_Pa: f64,
@@ -65,7 +65,7 @@ pub struct PlateTest {
     pub loaded: Vec<ProfileRow>,
 }
 
-/// Measures a bed. `tell` hears how many steps of the plate are done, of all.
+/// Measures a bed. `tell` gets the number of plate steps that are done, and their total.
 pub fn read_bed(
     plan: &BedRecipe,
     packed: &Packed<f32>,
@@ -76,7 +76,8 @@ pub fn read_bed(
     let forces = ForceSpread::from_pushes(survey.pushes());
     let row = |slab: &[f64; 2]| Some(profile_row(slab, &survey.slab(*slab, packed.area())?));
     let mut notes = Vec::new();
-    let plate = press(plan, packed, &slabs, tell).map_err(|why| notes.push(format!("No stiffness: {why}."))).ok();
+    let plate =
+        press(plan, packed, &slabs, tell).map_err(|why| notes.push(format!("Stiffness was not measured: {why}."))).ok();
     Ok(BedReadings {
         profile: slabs.iter().filter_map(row).collect(),
         directions: Directions::of_contacts(&survey, 0.0),
@@ -87,7 +88,7 @@ pub fn read_bed(
     })
 }
 
-/// Readings of a bed that were kept; `None` where there are none. Fails where they are damaged.
+/// Readings of a bed that were kept; `None` if there are none. Fails if they are damaged.
 pub fn kept_readings(cache: &Path, plan: &BedRecipe) -> Result<Option<BedReadings>, StoreError> {
     shelf(cache).get(&readings_hash(plan))
 }
@@ -97,12 +98,12 @@ pub fn keep_readings(cache: &Path, plan: &BedRecipe, readings: &BedReadings) -> 
     shelf(cache).put(&readings_hash(plan), readings)
 }
 
-/// Readings lie beside the beds that they are of.
+/// Readings are stored beside their beds.
 fn shelf(cache: &Path) -> Shelf {
     Shelf::new(cache, "readings")
 }
 
-/// Names what made the bed and what it is measured with.
+/// Hash of the bed's recipe and of the measuring method.
 fn readings_hash(plan: &BedRecipe) -> String {
     recipe_hash(&(&plan.recipe, &plan.plate))
 }
@@ -166,7 +167,7 @@ fn press(
     })
 }
 
-/// What lies under the plate, level by level.
+/// The grains under the plate, level by level.
 fn under(plate: &Plate, packed: &Packed<f32>, bed: &mut Bed, slabs: &[[f64; 2]]) -> Result<Vec<ProfileRow>, Failure> {
     let survey = packed.survey(bed)?;
     let [x, y] = plate.centre;

@@ -9,10 +9,11 @@ use parquet::file::writer::SerializedRowGroupWriter;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-/// Reads a file of columns. The library that reads them panics on some that are damaged: that is an error like any other damage.
+/// Reads a file of columns. The library that reads columns panics on some damaged files; the panic becomes an error
+/// like any other damage.
 pub(super) fn undamaged<T>(path: &Path, read: impl FnOnce() -> Result<T, ResultsError>) -> Result<T, ResultsError> {
     let read = catch_unwind(AssertUnwindSafe(read));
-    read.unwrap_or_else(|_| Err(ResultsError::malformed(path, "its columns are not what its footer says")))
+    read.unwrap_or_else(|_| Err(ResultsError::malformed(path, "its columns do not match its footer")))
 }
 
 /// Values for which room is made before they are there.
@@ -30,7 +31,7 @@ pub(super) fn write_column<D: DataType, W: std::io::Write + Send>(
     column.close()
 }
 
-/// Reads a column, counted from 0, of a group of rows. Fails where it lacks values.
+/// Reads a column, counted from 0, of a group of rows. Fails if it lacks values.
 pub(super) fn read_column<D: DataType>(group: &dyn RowGroupReader, column: usize) -> ParquetResult<Vec<D::T>> {
     let rows = group.metadata().num_rows();
     let count =

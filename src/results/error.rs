@@ -1,4 +1,4 @@
-//! What can go wrong between a run and its files, each said in one line that names the file.
+//! Errors in writing and reading the files of a run; each message is one line with the name of the file.
 
 use crate::store::StoreError;
 use std::fmt;
@@ -8,9 +8,9 @@ use std::path::Path;
 /// A failure to write or read a run's directory.
 #[derive(Debug)]
 pub enum ResultsError {
-    /// A file cannot be kept, or not be read back.
+    /// A file cannot be written or read.
     Store(StoreError),
-    /// A number that is no number was about to be written; `row` counts from 1.
+    /// The program was about to write a number that is not finite; `row` counts from 1.
     NotFinite { table: String, column: String, row: usize },
 }
 
@@ -23,7 +23,7 @@ impl ResultsError {
         StoreError::damaged(path, cause).into()
     }
 
-    /// A number that no file may hold.
+    /// A number that must not be in a file.
     pub(super) fn not_finite(table: &str, column: &str, row: usize) -> Self {
         ResultsError::NotFinite { table: table.to_owned(), column: column.to_owned(), row }
     }

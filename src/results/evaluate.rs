@@ -11,7 +11,7 @@ use crate::scenario::{Scenario, Seat, Track};
 use crate::syntax::tree::{BinaryOp, Comparison};
 use std::collections::{BTreeMap, HashMap};
 
-/// What an expression can be about.
+/// The tables that an expression can read.
 #[derive(Debug, Clone, Copy)]
 pub struct Tables<'a> {
     pub sleepers: SleeperTable<'a>,
@@ -20,7 +20,7 @@ pub struct Tables<'a> {
     pub histories: &'a [HistoryRow],
     pub scalars: &'a BTreeMap<String, Scalar>,
     pub track: &'a Track,
-    /// What carries each of its seats; none in a rig.
+    /// The support of each of its seats; none in a rig.
     pub supports: &'a [SupportNode],
 }
 
@@ -37,7 +37,7 @@ pub enum SleeperTable<'a> {
 type Reading<'a> = (u64, &'a str, f64, f64);
 
 impl<'a> SleeperTable<'a> {
-    /// What its rows count.
+    /// Unit of the count of its rows: axles or cycles.
     fn clock(self) -> fn(u64) -> Clock {
         match self {
             SleeperTable::Axles(_) => Clock::Axles,
@@ -45,7 +45,8 @@ impl<'a> SleeperTable<'a> {
         }
     }
 
-    /// The column of a response, of the seats that count in extremes or of those `everywhere`; `None` where the table has none.
+    /// The column of a response, for the seats that count in extremes or for all (`everywhere`); `None` if the table
+    /// has none.
     fn column(self, response: Response, everywhere: bool) -> Option<Vec<Reading<'a>>> {
         Some(match self {
             SleeperTable::Axles(rows) => {
@@ -141,7 +142,7 @@ pub fn known(expression: &Expression) -> Option<f64> {
     }
 }
 
-/// A function of one value or more; `None` where it has no value.
+/// A function of one value or more; `None` if it has no value.
 fn apply(function: Function, values: &[f64]) -> Option<f64> {
     let first = *values.first()?;
     match function {
@@ -197,10 +198,10 @@ fn evaluate_measure(measure: &Measure, tables: Tables<'_>) -> Result<f64, String
         Reduction::Rms => mean(|value| value * value).map(f64::sqrt),
         Reduction::Percentile(share) => percentile(&values, *share),
         Reduction::Misfit(measured) if values.is_empty() => {
-            return Err(format!("{} to be held against {} measured values", absent(measure, clock), measured.len()));
+            return Err(format!("{} to compare with {} measured values", absent(measure, clock), measured.len()));
         }
         Reduction::Misfit(measured) => return misfit(measure, values, measured),
-        Reduction::Itself => return Err(format!("`{name}` has many values: take its max, min or mean")),
+        Reduction::Itself => return Err(format!("`{name}` has many values: write max, min or mean of `{name}`")),
     };
     result.or_else(|| peak(measure, tables)).ok_or_else(|| absent(measure, clock))
 }
@@ -214,7 +215,7 @@ fn percentile(values: &[(f64, f64)], share: f64) -> Option<f64> {
     Some(below + place.fract() * (above - below))
 }
 
-/// Root of the mean square of what the values depart from measured ones, at the measured places that they reach.
+/// Root mean square difference between values and measured values, at the measured places inside their range.
 fn misfit(measure: &Measure, mut values: Vec<(f64, f64)>, measured: &[(f64, f64)]) -> Result<f64, String> {
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     values.dedup_by(|next, kept| (next.0 - kept.0).abs() < PLACE_TOLERANCE);
@@ -223,7 +224,7 @@ fn misfit(measure: &Measure, mut values: Vec<(f64, f64)>, measured: &[(f64, f64)
     if squares.is_empty() {
         let [first, last] = [values[0].0, values[values.len() - 1].0];
         let name = measure.response.name();
-        return Err(format!("no measured place lies where `{name}` is known, from {first} m to {last} m"));
+        return Err(format!("no measured place lies in the range of `{name}`, from {first} m to {last} m"));
     }
     Ok((squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
 }
@@ -295,8 +296,8 @@ fn covered<'a>(
     column.into_iter().filter(move |(other, _, x, _)| Some(*other) == count && inside(*x))
 }
 
-/// The column of `rail.csv` that holds a response along the rail: what varies in a passage by its largest value, for a minimum
-/// by its smallest.
+/// The column of `rail.csv` that holds a response along the rail: what varies in a passage by its largest value, for a
+/// minimum by its smallest.
 fn rail_column(measure: &Measure) -> Option<fn(&RailRow) -> f64> {
     let least = measure.reduction == Reduction::Min;
     Some(match measure.response {
@@ -395,7 +396,7 @@ mod tests {
         let measured = |off: f64| Reduction::Misfit(vec![(-28.05, mean + off), (-25.0, mean - off), (-5e3, 1.0)]);
         assert!((value(over(measured(0.1e-3))).unwrap() - 0.1e-3).abs() < 1e-6);
         let nowhere = value(over(Reduction::Misfit(vec![(10.0, 0.0)]))).unwrap_err();
-        assert!(nowhere.starts_with("no measured place lies where `settlement` is known, from -3"), "{nowhere}");
+        assert!(nowhere.starts_with("no measured place lies in the range of `settlement`, from -3"), "{nowhere}");
         let of = |values: &[f64], share| percentile(&values.iter().map(|v| (0.0, *v)).collect::<Vec<_>>(), share);
         assert_eq!(of(&[3.0, 1.0, 2.0], 0.5), Some(2.0));
         assert_eq!((of(&[1.0, 2.0], 0.25), of(&[4.0], 0.9), of(&[], 0.5)), (Some(1.25), Some(4.0), None));

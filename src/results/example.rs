@@ -186,7 +186,7 @@ fn disturbance(x: f64, axles: u64) -> f64 {
     decay * (0.15 + 0.85 * progress(axles)) * (2.1 * x).sin()
 }
 
-/// What a wagon of 98.1 kN a wheel does whose largest wheel force is this one, N.
+/// The passage of a wagon with 98.1 kN per wheel and this largest wheel force, N.
 fn train_row(axles: u64, largest: f64) -> TrainRow {
     TrainRow {
         axles,

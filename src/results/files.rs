@@ -1,8 +1,8 @@
 //! A run's directory: which file holds which part of a [`Run`], and both ways between them.
 //!
-//! Numbers survive the way there and back bit for bit, and two equal runs leave equal bytes: what differs between them
-//! goes into `timings.json`, which is no part of the [`Run`]. A number that is not finite is refused before any file
-//! is touched.
+//! Numbers are written and read back bit for bit, and two equal runs give equal bytes. Values that differ between equal
+//! runs go into `timings.json`, which is not part of the [`Run`]. A number that is not finite is refused before any
+//! file is touched.
 
 use super::error::check_finite;
 use super::histories::{self, HISTORIES};
@@ -30,7 +30,7 @@ pub fn files(run: &Run, directory: &Path) -> Result<Vec<NamedBytes>, ResultsErro
         (super::BlockRow::FILE, table(&run.blocks, directory)?),
         (super::RailRow::FILE, table(&run.rail, directory)?),
     ];
-    // these are there only where there are several laws, several trains, or tamping
+    // these files exist only with several laws, several trains, or tamping
     if !run.laws.is_empty() {
         files.push((super::LawRow::FILE, table(&run.laws, directory)?));
     }
@@ -109,7 +109,7 @@ pub fn timings_file(timings: &BTreeMap<String, f64>, directory: &Path) -> Result
     Ok((TIMINGS.to_owned(), json(timings, &directory.join(TIMINGS))?))
 }
 
-/// Reads `timings.json`; empty where there is none.
+/// Reads `timings.json`; empty if there is none.
 pub fn read_timings(directory: &Path) -> Result<BTreeMap<String, f64>, ResultsError> {
     let path = directory.join(TIMINGS);
     if path.exists() { read_json(&path) } else { Ok(BTreeMap::new()) }
@@ -129,7 +129,7 @@ fn summary_json(run: &Run, directory: &Path) -> Result<Vec<u8>, ResultsError> {
     json(&run.summary, &path)
 }
 
-/// JSON has no word for a number that is not finite: what does not come back equal held one.
+/// JSON cannot hold a number that is not finite: a value that does not come back equal held such a number.
 fn scenario_json(run: &Run, directory: &Path) -> Result<Vec<u8>, ResultsError> {
     let path = directory.join(SCENARIO);
     let bytes = json(&run.scenario, &path)?;
@@ -169,13 +169,14 @@ fn check_row<R: Row>(row: &R, number: usize, path: &Path) -> Result<(), ResultsE
     column.map_or(Ok(()), |column| Err(ResultsError::not_finite(R::FILE, column, number)))
 }
 
-/// The first column of a row that holds no finite number: JSON makes null of such, and a row holds nothing else that could be null.
+/// The first column of a row that holds no finite number. JSON turns such a number into null, and a row has no other
+/// null.
 fn not_finite<R: Row>(row: &R) -> Result<Option<&'static str>, serde_json::Error> {
     let fields = serde_json::to_value(row)?;
     Ok(R::COLUMNS.iter().copied().find(|column| fields[*column].is_null()))
 }
 
-/// A table that not every run has.
+/// A table that exists only in some runs.
 fn read_table_if_any<R: Row>(directory: &Path) -> Result<Vec<R>, ResultsError> {
     if directory.join(R::FILE).exists() { read_table(directory) } else { Ok(Vec::new()) }
 }

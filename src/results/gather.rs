@@ -1,11 +1,11 @@
-//! Everything that a run says, from its recorder.
+//! The results of a run, from its recorder.
 
 use super::{Provenance, Reliance, Run, RunRecorder, Summary, TestTables, law_rows, summarise_laws, verdicts};
 use crate::diag::{Diagnostic, Sources};
 use crate::graph::Graph;
 use crate::scenario::Scenario;
 
-/// The texts that made a run, and what the check said of them.
+/// The source texts of a run, and their diagnostics.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
     /// The main file first.
@@ -16,7 +16,7 @@ pub struct Source<'a> {
 }
 
 impl Run {
-    /// Takes together what a recorder has of a run.
+    /// Collects the results of a run from its recorder.
     pub fn gather(recorder: &RunRecorder<'_>, scenario: &Scenario, graph: &Graph, source: Source<'_>) -> Run {
         let Source { sources, sha256, diagnostics } = source;
         let provenance = Provenance::new(sources, sha256.to_owned(), scenario.solve.seed, graph.listing().text());

@@ -1,4 +1,4 @@
-//! A bed of grains as people look at it: one row for each pebble, one for each contact, brought back into the period.
+//! A bed of grains as tables: one row for each pebble and one for each contact, with places inside the period.
 
 use crate::solvers::granular::{Bed, ContactState, Domain, Party, Real, Snapshot};
 use serde::{Deserialize, Serialize};
@@ -43,7 +43,7 @@ impl Link {
         norm(self.force)
     }
 
-    /// Above 0 where it pushes \[N\].
+    /// Above 0 if it pushes \[N\].
     pub fn normal_force(&self) -> f64 {
         (0..3).map(|c| self.force[c] * self.normal[c]).sum()
     }
@@ -58,8 +58,8 @@ pub fn places<R: Real>(bed: &Bed<R>) -> Vec<[f64; 3]> {
     bed.pebbles().map(|pebble| pebble.place).collect()
 }
 
-/// Every pebble, body by body in the order of making. `snapshot` is of the same instant; `reference` holds the [`places`] of
-/// an earlier one, and no displacement is given where it is none.
+/// Every pebble, body by body in the order of making. `snapshot` is of the same instant; `reference` holds the
+/// [`places`] of an earlier one, and no displacement is given where it is none.
 pub fn grains<R: Real>(bed: &Bed<R>, snapshot: &Snapshot, reference: Option<&[[f64; 3]]>) -> Vec<Grain> {
     let (coordination, largest) = (coordination(bed.len(), snapshot), largest_forces(bed.len(), snapshot));
     let states: Vec<_> = bed.states().collect();
@@ -105,7 +105,7 @@ pub fn links<R: Real>(bed: &Bed<R>, snapshot: &Snapshot) -> Vec<Link> {
     snapshot.contacts.iter().filter_map(link).collect()
 }
 
-/// What brings a place back into the period \[m\].
+/// Shift that brings a place back into the period \[m\].
 fn into_period(domain: &Domain, place: [f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|axis| domain.period(axis).map_or(0.0, |period| -period * (place[axis] / period).floor()))
 }

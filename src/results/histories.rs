@@ -1,8 +1,8 @@
 //! `histories.parquet`: the long table of everything sampled along a passage, one row a value.
 //!
-//! Columns `axles` INT64, `time_s` DOUBLE, `quantity` UTF8, `id` UTF8, `x_m` DOUBLE, `value` DOUBLE, `train` UTF8; dictionaries
-//! where values repeat, compressed with Snappy. The metadata of a finished file hold the units of its quantities and what made the
-//! run (`about.rs`). Equal rows make equal bytes: nothing of the file depends on the clock.
+//! Columns `axles` INT64, `time_s` DOUBLE, `quantity` UTF8, `id` UTF8, `x_m` DOUBLE, `value` DOUBLE, `train` UTF8;
+//! dictionaries where values repeat, compressed with Snappy. The metadata of a finished file hold the units of its
+//! quantities and what made the run (`about.rs`). Equal rows make equal bytes; the file does not depend on the clock.
 
 use super::about::{self, Units};
 use super::columns::{read_column, undamaged, write_column};
@@ -104,7 +104,7 @@ fn units(rows: &[HistoryRow]) -> Units<'_> {
         .collect()
 }
 
-/// The unit of a quantity. That of a sleeper over a volume of grains is named after the response that it is.
+/// The unit of a quantity. A quantity of a sleeper over a volume of grains has the name of its response.
 fn unit(quantity: &str) -> Option<&'static str> {
     Response::of_name(quantity.strip_suffix("_on_grains").unwrap_or(quantity)).map(Response::unit)
 }

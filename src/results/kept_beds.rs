@@ -1,4 +1,5 @@
-//! The beds under a track that a run has told so far, and their copies in the directory of a run that can be resumed.
+//! The beds under a track that a run has reported so far, and their copies in the directory of a run that can be
+//! resumed.
 
 use super::under_track::{BedsAtCount, Part, Reference, beds_at_count, reference};
 use super::{ResultsError, under_track_files};
@@ -25,13 +26,13 @@ pub(super) struct BedPieces {
 }
 
 impl KeptBeds {
-    /// Takes the beds as they lie at a count, without a train or under one.
+    /// Stores the beds at a count, without a train or under a train.
     pub(super) fn take(&mut self, when: (u64, bool), beds: &[BedUnderTrack<'_>], part: Part) {
         let reference = self.reference.get_or_insert_with(|| reference(beds));
         self.told.push(beds_at_count(when, beds, reference, part));
     }
 
-    /// Copies what has none yet, and names all copies.
+    /// Copies the beds that have no copy yet, and gives the names of all copies.
     pub(super) fn save(&mut self, directory: &Directory) -> Result<BedPieces, ResultsError> {
         if let (Some(reference), None) = (&self.reference, &self.pieces.reference) {
             let unwritable = |cause| ResultsError::unwritable(directory.path(), cause);

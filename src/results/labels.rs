@@ -1,11 +1,11 @@
-//! How the scalars of a summary are called that people ask for first, and in which units they read them.
+//! Labels and units of the most important scalars of a summary.
 
 /// A scalar of a summary as a line of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Label {
     /// Its name in `summary.json`.
     pub name: &'static str,
-    /// What it is called; two spaces at the front where it says more of the line above.
+    /// Its label; two leading spaces mark a detail of the line above.
     pub text: &'static str,
     pub unit: &'static str,
     /// The unit in SI.
@@ -30,7 +30,7 @@ pub const OF_TRACKS: [Label; 14] = [
     Label::new("broken_bonds_share", "broken bonds", "%", 0.01),
     Label::new("max_wheel_force", "largest wheel force", "kN", 1e3),
     Label::new("dynamic_amplification", "dynamic amplification", "", 1.0),
-    Label::new("wheel_unloading", "wheel load missing", "%", 0.01),
+    Label::new("wheel_unloading", "wheel unloading", "%", 0.01),
     Label::new("max_rail_seat_load", "largest rail seat load", "kN", 1e3),
     Label::new("max_rail_moment", "largest rail moment", "kN m", 1e3),
     Label::new("max_rail_displacement", "largest rail displacement", "mm", 1e-3),
@@ -43,7 +43,7 @@ pub const OF_TESTS: [Label; 11] = [
     Label::new("support_stiffness", "resilient stiffness", "MN/m", 1e6),
     Label::new("oedometric_modulus", "oedometric modulus", "MPa", 1e6),
     Label::new("peak_deviator", "largest deviator", "kPa", 1e3),
-    Label::new("peak_friction_angle", "largest angle of friction", "deg", std::f64::consts::PI / 180.0),
+    Label::new("peak_friction_angle", "largest friction angle", "deg", std::f64::consts::PI / 180.0),
     Label::new("peak_strain", "  at a strain of", "%", 0.01),
     Label::new("broken_bonds_share", "broken bonds", "%", 0.01),
     Label::new("cycles", "cycles", "", 1.0),

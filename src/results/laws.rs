@@ -1,4 +1,4 @@
-//! What several laws make of the same forces: the table `laws.csv`, their scalars and their spread.
+//! Settlement by several laws under the same forces: the table `laws.csv`, its scalars and the spread of the laws.
 
 use super::summarise::largest;
 use super::{BlockRow, Row, Scalar};
@@ -53,8 +53,8 @@ pub fn law_rows(scenario: &Scenario, counts: &[LawCount]) -> Vec<LawRow> {
     rows
 }
 
-/// `laws.NAME.max_settlement` and `laws.NAME.far_field_settlement` after the last count, and `law_spread`: the largest of the
-/// first over the least. No spread where a law settles nothing.
+/// `laws.NAME.max_settlement` and `laws.NAME.far_field_settlement` after the last count, and `law_spread`: ratio of the
+/// largest to the smallest `max_settlement`. No spread if the settlement by one law is zero.
 pub fn summarise_laws(scenario: &Scenario, rows: &[LawRow]) -> BTreeMap<String, Scalar> {
     let mut scalars = BTreeMap::new();
     let last = rows.iter().map(|row| row.axles).max();
@@ -77,10 +77,11 @@ pub fn summarise_laws(scenario: &Scenario, rows: &[LawRow]) -> BTreeMap<String, 
     scalars
 }
 
-/// Settlement that nobody measures, m: under a law with a threshold the forces were below it nearly everywhere.
+/// Settlement too small to measure, m: under a law with a threshold, almost all forces were below the threshold.
 const NOTHING: f64 = 1e-5;
 
-/// A sentence for each law under which nothing has settled in a run with traffic, with the force that would have been needed.
+/// A sentence for each law under which nothing has settled in a run with traffic, with the force that would have been
+/// needed.
 pub fn unsettled(scenario: &Scenario, blocks: &[BlockRow], rows: &[LawRow]) -> Vec<String> {
     let ballasted = scenario.track.seats.iter().any(|seat| seat.is_ballasted());
     if !ballasted || blocks.is_empty() || !matches!(scenario.loading, Some(Loading::Traffic(_))) {
@@ -95,20 +96,20 @@ pub fn unsettled(scenario: &Scenario, blocks: &[BlockRow], rows: &[LawRow]) -> V
     laws(scenario).enumerate().filter_map(|(index, law)| sentence(law, most(index, law), force)).collect()
 }
 
-/// Nothing is said of a law under which something has settled; `force` (N) is the largest of the run.
+/// `None` for a law under which a sleeper has settled; `force` (N) is the largest of the run.
 fn sentence(law: &SettlementLaw, most: f64, force: f64) -> Option<String> {
     let threshold = law.law.threshold();
     if most > if threshold.is_some() { NOTHING } else { 0.0 } {
         return None;
     }
     let tenths = |force: f64| number((force / 100.0).round() / 10.0);
-    let threshold = threshold.map_or(String::new(), |t| format!(", its threshold is {} kN", tenths(t)));
+    let threshold = threshold.map_or(String::new(), |t| format!(", and the threshold of the law is {} kN", tenths(t)));
     let (what, at_most) = match most {
         0.0 => ("nothing", String::new()),
-        most => ("practically nothing", format!(", at most {} mm", number((most * 1e7).round() / 1e4))),
+        most => ("almost nothing", format!(", at most {} mm", number((most * 1e7).round() / 1e4))),
     };
     Some(format!(
-        "{what} settled under law `{}`{at_most}: the largest contact force was {} kN a seat{threshold}",
+        "{what} settled under law `{}`{at_most}: the largest contact force was {} kN per seat{threshold}",
         law.name,
         tenths(force)
     ))

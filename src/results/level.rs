@@ -1,9 +1,9 @@
-//! Longitudinal level D1 of EN 13848-1: what wavelengths of 3 .. 25 m leave of a vertical profile.
+//! Longitudinal level D1 of EN 13848-1: a vertical profile filtered to wavelengths of 3 .. 25 m.
 //!
-//! The filter is a Butterworth high pass at 25 m and low pass at 3 m, each of fourth order, run over the profile and back, so
-//! that nothing is shifted: its gain is `1 / (1 + (f1/f)^8) / (1 + (f/f2)^8)`, one half at both limits (the order is common
-//! practice and unchecked against the standard's text). Beyond its ends the profile goes on level for [`PAD`] on each side:
-//! a model is shorter than the filter's memory, and this adds neither slope nor waves.
+//! The filter is a Butterworth high pass at 25 m and low pass at 3 m, each of fourth order, run over the profile and
+//! back, so that nothing is shifted: its gain is `1 / (1 + (f1/f)^8) / (1 + (f/f2)^8)`, one half at both limits (the
+//! order is common practice and unchecked against the standard's text). Beyond its ends the profile goes on level for
+//! [`PAD`] on each side: a model is shorter than the filter's memory, and this adds neither slope nor waves.
 
 /// Distance of samples, m.
 const STEP: f64 = 0.1;
@@ -25,7 +25,7 @@ pub struct LongitudinalLevel {
     pub deviation: f64,
 }
 
-/// Filters a profile of chainage (ascending) and level, m; `None` where it has no length.
+/// Filters a profile of chainage (ascending) and level, m; `None` if it has no length.
 pub fn longitudinal_level(profile: &[(f64, f64)]) -> Option<LongitudinalLevel> {
     let (first, last) = (profile.first()?, profile.last()?);
     let steps = ((last.0 - first.0) / STEP).round() as usize;

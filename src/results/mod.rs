@@ -1,6 +1,6 @@
-//! What a run leaves behind: tables, histories, a summary with what made it, and the files that hold them.
+//! Results of a run: tables, histories, a summary with the provenance, and the files that hold them.
 //!
-//! Values are SI; signs and names are those of the language guide. [`summarise`] and [`verdicts`] make numbers of the
+//! Values are SI; signs and names are as in the language guide. [`summarise`] and [`verdicts`] make numbers of the
 //! tables, [`write()`] and [`read`] move a [`Run`] to a directory and back, bit for bit.
 
 mod about;
@@ -70,31 +70,31 @@ pub use crate::store::{Beds, FoundBed, bed_hash, write_atomically};
 use crate::scenario::{Loading, Scenario};
 use serde::{Deserialize, Serialize};
 
-/// Everything that a run's directory says, as data.
+/// Everything in a run's directory, as data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     pub scenario: Scenario,
     pub summary: Summary,
     pub sleepers: Vec<SleeperRow>,
     pub blocks: Vec<BlockRow>,
-    /// Settlement by each law; empty where there is only one.
+    /// Settlement by each law; empty if there is only one.
     pub laws: Vec<LawRow>,
     pub rail: Vec<RailRow>,
-    /// Passages of each kind of train; empty where there is only one.
+    /// Passages of each kind of train; empty if there is only one.
     pub trains: Vec<TrainRow>,
     /// Sleepers that were tamped; empty without tamping.
     pub tampings: Vec<TampingRow>,
     pub histories: Vec<HistoryRow>,
-    /// Beds of grains under the track at the recorded counts; empty where it stands on something else.
+    /// Beds of grains under the track at the recorded counts; empty if it stands on something else.
     pub beds: Vec<BedsAtCount>,
     /// Tests of packed beds; a track has none.
     pub tests: Option<BedTests>,
-    /// The same on further packings of the grains under the track; empty where there is one.
+    /// The same on further packings of the grains under the track; empty if there is one.
     pub packings: Vec<Packing>,
 }
 
 impl Run {
-    /// Histories of no train, and of the train that leads the traffic: figures of one passage show that one.
+    /// Histories of no train, and of the train that leads the traffic: figures of one passage show the leading train.
     pub fn leading_histories(&self) -> impl Iterator<Item = &HistoryRow> {
         let leading = match &self.scenario.loading {
             Some(Loading::Traffic(traffic)) => traffic.train.name.as_str(),

@@ -1,4 +1,4 @@
-//! The same run on further packings of its grains: what scatters from bed to bed.
+//! The same run on further packings of its grains: scatter from bed to bed.
 
 use super::summary::Scalar;
 use super::{ResultsError, Run, SleeperRow};
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 /// Folder in a run's directory that holds the runs on further packings, each called by its seed.
 const FOLDER: &str = "packings";
 
-/// Scalars that are told over packings.
+/// Scalars that are reported over packings.
 pub const OVER_PACKINGS: [&str; 9] = [
     "settlement_step",
     "max_settlement",
@@ -60,7 +60,8 @@ fn read_packing(seed: u64, directory: &Path) -> Result<Packing, ResultsError> {
 }
 
 impl Run {
-    /// How a scalar scatters over this packing and the further ones; `None` where there are none, or one of them has no such scalar.
+    /// How a scalar scatters over this packing and the further ones; `None` if there are none, or one of them has no
+    /// such scalar.
     pub fn scatter(&self, name: &str) -> Option<Scatter> {
         let of = |scalars: &BTreeMap<String, Scalar>| scalars.get(name).map(|scalar| scalar.value);
         let all = std::iter::once(&self.summary.scalars).chain(self.packings.iter().map(|packing| &packing.scalars));
@@ -75,8 +76,8 @@ impl Run {
         Some(Scatter { mean, deviation: (squares / (values.len() - 1) as f64).sqrt(), least, largest })
     }
 
-    /// Takes the runs on further packings, and tells mean and standard deviation of scalars over all of them: `max_settlement_mean`,
-    /// `max_settlement_deviation`.
+    /// Takes the runs on further packings, and adds mean and standard deviation of scalars over all of them:
+    /// `max_settlement_mean`, `max_settlement_deviation`.
     pub fn with_packings(mut self, packings: Vec<Packing>) -> Run {
         self.packings = packings;
         for name in OVER_PACKINGS {

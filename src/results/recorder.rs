@@ -1,5 +1,5 @@
-//! Listens to a run and makes its tables. What it holds between two blocks is small and goes into the checkpoint;
-//! histories go into their own file as soon as they exist.
+//! Listens to a run and makes its tables. Between two blocks the recorder holds little data, which goes into the
+//! checkpoint; histories go into their own file as soon as they exist.
 
 use super::kept_beds::{BedPieces, KeptBeds};
 use super::under_track::Part;
@@ -31,9 +31,9 @@ pub struct RunTables {
     pub rail: Vec<RailRow>,
     /// Settlement of every ballasted seat after every block.
     pub settlements: Vec<HistoryRow>,
-    /// Settlement by each law after every block; empty where there is only one law.
+    /// Settlement by each law after every block; empty if there is only one law.
     pub laws: Vec<LawCount>,
-    /// Passages of each kind of train; empty where there is only one.
+    /// Passages of each kind of train; empty if there is only one.
     pub trains: Vec<TrainRow>,
     pub tampings: Vec<TampingRow>,
     /// Largest sagging moment and displacement of the last passages, or of a static check, N m and m.
@@ -46,7 +46,7 @@ pub struct RunTables {
 }
 
 impl RunTables {
-    /// What expressions are about: these tables with the histories and scalars of their run.
+    /// The data that expressions read: these tables with the histories and scalars of their run.
     pub fn view<'a>(
         &'a self,
         histories: &'a [HistoryRow],
@@ -59,7 +59,7 @@ impl RunTables {
     }
 }
 
-/// What a checkpoint holds; the histories so far stand in pieces beside it.
+/// The content of a checkpoint; the histories so far are stored in pieces beside it.
 #[derive(Serialize, Deserialize)]
 struct Saved {
     checkpoint: Checkpoint,
@@ -68,14 +68,14 @@ struct Saved {
     /// The track before the passages of a block under way.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     unloaded: Option<Unloaded>,
-    /// Beds under the track, which stand in pieces too.
+    /// Beds under the track, also stored in pieces.
     #[serde(default)]
     beds: BedPieces,
     #[serde(default)]
     spent: Spent,
 }
 
-/// Computing that is done and kept.
+/// Completed and stored parts of the run.
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 struct Spent {
     seconds: f64,
@@ -92,14 +92,14 @@ pub struct RunRecorder<'a> {
     /// In the parts before this one, and when this one began.
     spent: Spent,
     begun: Instant,
-    /// What the run is busy with, and the share of it that is done.
+    /// The present stage of the run, and the share of this stage that is done.
     stage: Option<(String, f64)>,
     records: &'a [Record],
     supports: &'a [SupportNode],
     /// Chainages between which every wheel of a train passes, m, for each kind of train.
     passed: Vec<Range<f64>>,
     directory: Option<&'a Directory>,
-    /// Becomes true where somebody wants the run to keep its state and stop.
+    /// Becomes true when the run must store its state and stop.
     interrupted: Option<&'a AtomicBool>,
     /// When a checkpoint is due.
     due: Option<Instant>,
@@ -115,14 +115,16 @@ pub struct RunRecorder<'a> {
     bed: Option<BedSummary>,
     /// The bed of the last test, as it ended.
     pub last_bed: Option<Bed<f32>>,
-    /// Why nothing more could be kept: it has ended the run.
+    /// Error in storing that has ended the run.
     failure: Option<ResultsError>,
 }
 
-/// Time between two checkpoints at least, and as a multiple of what the last one took: they cost a twentieth of a run at most.
+/// Time between two checkpoints at least, and as a multiple of what the last one took: they cost a twentieth of a run
+/// at most.
 const KEEP: Duration = Duration::from_secs(2);
 const SHARE: u32 = 20;
-/// What checkpoints write in the mean at most: those of a track on grains have 100 MB, and a night has many of them.
+/// Limit of the mean rate at which checkpoints write: a checkpoint of a track on grains has 100 MB, and a night has
+/// many checkpoints.
 const BYTES_A_SECOND: u64 = 1 << 20;
 
 impl<'a> RunRecorder<'a> {
@@ -165,12 +167,12 @@ impl<'a> RunRecorder<'a> {
         RunRecorder { interrupted: Some(asked), ..self }
     }
 
-    /// The same, that shows beside its checkpoints what there is so far of a run that these texts made.
+    /// The same, and it stores the results so far of a run of these texts beside its checkpoints.
     pub fn made_by(self, source: Source<'a>) -> Self {
         RunRecorder { source: Some(source), ..self }
     }
 
-    /// What there is of the run; `None` where nobody has said what made it.
+    /// The results so far; `None` if the texts of the run are not known.
     pub fn gather(&self) -> Option<Run> {
         Some(Run::gather(self, self.scenario, self.graph, self.source?))
     }
@@ -185,12 +187,12 @@ impl<'a> RunRecorder<'a> {
         self.spent.parts + 1
     }
 
-    /// What the run is busy with, and the share of it that is done.
+    /// The present stage of the run, and the share of this stage that is done.
     pub fn stage(&self) -> Option<&(String, f64)> {
         self.stage.as_ref()
     }
 
-    /// Takes up what an interrupted run has left in the directory; `None` where it left nothing.
+    /// Continues from the state of an interrupted run in the directory; `None` if there is no such state.
     pub fn resume(&mut self) -> Result<Option<Checkpoint>, ResultsError> {
         let Some(directory) = self.directory else { return Ok(None) };
         let Some(saved) = directory.read_checkpoint::<Saved>()? else { return Ok(None) };
@@ -312,8 +314,8 @@ impl<'a> RunRecorder<'a> {
         self.passed.iter().filter(|passed| passed.contains(&x)).count()
     }
 
-    /// Whether a place counts in the extremes of a run: a train passes it whole, or none does anywhere, as on a track shorter than
-    /// the trains.
+    /// Whether a place counts in the extremes of a run: a train passes it whole, or none does anywhere, as on a track
+    /// shorter than the trains.
     fn counts(&self, x: f64) -> bool {
         self.trains_passing(x) > 0 || !self.track().seats.iter().any(|seat| self.trains_passing(seat.x) > 0)
     }

@@ -1,4 +1,4 @@
-//! What the answers of a run rest on, in sentences: what was warned of, what decides the answer, and how far to trust it.
+//! Limits of the results of a run, in sentences: warnings, assumptions, and confidence.
 
 use super::{RunTables, Scalar, SleeperRow};
 use crate::diag::{Code, Diagnostic, Severity, Sources, and_list};
@@ -8,18 +8,18 @@ use crate::units::number;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What a reader has to know before a number is used. Sentences have source text in backticks.
+/// Information that a reader needs before using a number. Sentences have source text in backticks.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Reliance {
-    /// How far the answer can be trusted, and how that is known.
+    /// Confidence in the answer, and its basis.
     pub confidence: Vec<String>,
     /// Warnings of the check.
     pub warnings: Vec<Warned>,
     /// Rules that the scene silences.
     pub silenced: Vec<Silenced>,
-    /// What the model takes for granted and the answer depends on.
+    /// Assumptions of the model that affect the answer.
     pub assumptions: Vec<String>,
-    /// Values of the library that nobody has checked against their source.
+    /// Values of the library that were not checked against their source.
     pub unchecked: Vec<Unchecked>,
 }
 
@@ -28,7 +28,7 @@ pub struct Reliance {
 pub struct Warned {
     pub code: String,
     pub message: String,
-    /// File and line: `bridge.track:34`; empty where no line is to blame.
+    /// File and line: `bridge.track:34`; empty if no line is to blame.
     pub place: String,
 }
 
@@ -36,7 +36,7 @@ pub struct Warned {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Silenced {
     pub rule: String,
-    /// What the rule warns of.
+    /// Title of the rule.
     pub title: String,
     pub reason: String,
 }
@@ -49,7 +49,7 @@ pub struct Unchecked {
 }
 
 impl Reliance {
-    /// What the answers rest on of a run whose check said `diagnostics` of `sources`, and which has these tables and scalars.
+    /// The reliance of a run with these `diagnostics` of `sources`, tables and scalars.
     pub fn new(
         scenario: &Scenario,
         graph: &Graph,
@@ -96,7 +96,7 @@ fn unchecked(scenario: &Scenario) -> Vec<Unchecked> {
     found
 }
 
-/// What is known of the error: of the laws, of the exchanges, of packings.
+/// Known errors: of the laws, of the exchanges, and of packings.
 fn confidence(
     scenario: &Scenario,
     graph: &Graph,
@@ -108,9 +108,10 @@ fn confidence(
         let seed = scenario.solve.seed;
         told.push(match scenario.solve.grains.repeats {
             1 => format!(
-                "one packing of the grains under the track, seed {seed}: `repeats = 5` runs others too, and shows their scatter"
+                "one packing of the grains under the track was run, seed {seed}: `repeats = 5` runs five packings and \
+                shows their scatter"
             ),
-            count => format!("figures and tables are of one packing, seed {seed}, of {count} that were asked for"),
+            count => format!("figures and tables show one packing, seed {seed}, of {count} packings asked for"),
         });
         told.extend(risen(tables));
     }
@@ -118,7 +119,10 @@ fn confidence(
         let error = scalars.get("update_error").filter(|error| error.value > 0.0);
         told.extend(error.map(|error| {
             let error = millimetres(error.value);
-            format!("trains that cells leave out: a standard error of the settlement of {error} at the worst sleeper")
+            format!(
+                "the cells do not compute every train: the standard error of the settlement is {error} at the \
+                worst sleeper"
+            )
         }));
     }
     if graph.laws().next().is_some() {
@@ -126,19 +130,22 @@ fn confidence(
         let error = scalars.get("update_error").filter(|error| error.value > 0.0);
         told.extend(error.map(|error| {
             let error = millimetres(error.value);
-            format!("exchanges of forces and settlement from time to time change the settlement by about {error}, as the run measured")
+            format!(
+                "forces and settlement are exchanged only between blocks: this changes the settlement by about \
+                {error}, as measured in the run"
+            )
         }));
     }
     if let Some(repeats) = scalars.get("repeats") {
         told.push(match repeats.value as u64 {
             1 => "one packing: the scatter between packings is not known; `repeats = 4` shows it".to_owned(),
-            n => format!("means of {n} packings; the bands are 95 % of the mean by their scatter"),
+            n => format!("means of {n} packings; the bands are 95 % confidence intervals of the mean"),
         });
     }
     told
 }
 
-/// How far sleepers have risen over grains under trains, where they have.
+/// Rise of sleepers over grains under trains, if any.
 fn risen(tables: &RunTables) -> Option<String> {
     let start = |row: &SleeperRow| tables.sleepers.iter().find(|first| first.sleeper == row.sleeper);
     let last = tables.sleepers.last()?.axles;
@@ -147,18 +154,19 @@ fn risen(tables: &RunTables) -> Option<String> {
     let (count, most) = risen.fold((0, 0.0_f64), |(count, most), up| (count + 1, most.max(up)));
     (count > 0).then(|| {
         format!(
-            "{count} {} risen, by {} at most: grains that were packed dense hold more stress than they need for their weight, and \
-             give it back under trains. Real ballast settles; a bed packed with more `packing.friction` is looser",
+            "{count} {} risen, by {} at most: densely packed grains hold more stress than their weight needs, and \
+             release this stress under trains. Real ballast settles; a bed packed with more `packing.friction` is \
+             looser",
             if count == 1 { "sleeper has" } else { "sleepers have" },
             millimetres(most)
         )
     })
 }
 
-/// Rise of a sleeper that is told, m.
+/// Smallest rise of a sleeper that is reported, m.
 const RISEN: f64 = 1e-6;
 
-/// How far the laws of the scene lie from each other, and which of them are asked beyond their calibration.
+/// Spread between the laws of the scene, and the laws that are used outside their calibration.
 fn spread_of_laws(scenario: &Scenario, warnings: &[Warned], scalars: &BTreeMap<String, Scalar>) -> String {
     let laws: Vec<&SettlementLaw> = std::iter::once(&scenario.solve.law).chain(&scenario.solve.other_laws).collect();
     let beyond = |law: &&&SettlementLaw| {
@@ -178,7 +186,8 @@ fn spread_of_laws(scenario: &Scenario, warnings: &[Warned], scalars: &BTreeMap<S
     largest.sort_by(|a, b| a.0.total_cmp(&b.0));
     match (&largest[..], scalars.get("law_spread")) {
         ([least, .., most], Some(spread)) => format!(
-            "largest over smallest settlement of the {} laws: {}, from {} by `{}` to {} by `{}`{outside}",
+            "ratio of the largest to the smallest settlement of the {} laws: {}, from {} by `{}` to {} by \
+            `{}`{outside}",
             largest.len(),
             number(rounded(spread.value)),
             millimetres(least.0),
@@ -187,8 +196,8 @@ fn spread_of_laws(scenario: &Scenario, warnings: &[Warned], scalars: &BTreeMap<S
             most.1
         ),
         _ => format!(
-            "settlement is by one law, `{}`, and published laws differ by a factor of ten and more{outside}: compare designs by it, and \
-             name several laws to see the spread",
+            "settlement is computed by one law, `{}`, and published laws differ by a factor of ten and more{outside}: \
+             use it to compare designs, and name several laws to see the spread",
             laws[0].name
         ),
     }
@@ -201,18 +210,18 @@ fn assumptions(scenario: &Scenario, graph: &Graph, tables: &RunTables) -> Vec<St
         let law = &scenario.solve.law;
         let by = if law.law.knows_forces_alone() { "force" } else { "deflection" };
         told.push(format!(
-            "each sleeper settles by law `{}` from the {by} on its own ballast; the subgrade does not settle",
+            "each sleeper settles by law `{}`, from the {by} on its own ballast; the subgrade does not settle",
             law.name
         ));
     }
     told.extend(supports(graph));
     if traffic && scenario.track.irregularity.is_none() {
         told.push(
-            "the rail is level as built: wheel forces change by stiffness, settlement and voids alone".to_owned(),
+            "the rail is level as built: wheel forces vary only because of stiffness, settlement and voids".to_owned(),
         );
     }
     if traffic {
-        told.push("both rails are alike: one rail with half of each vehicle is computed".to_owned());
+        told.push("both rails are equal: one rail with half of each vehicle is computed".to_owned());
         told.extend(at_the_ends(&scenario.track, tables));
     }
     told.extend(shared(graph, tables));
@@ -227,7 +236,9 @@ fn supports(graph: &Graph) -> Option<String> {
     if let Some(node) = cells {
         let bays = node.cells.first().map_or(0, |cell| cell.copies);
         return Some(format!(
-            "{} periodic cells of grains of {} carry the sleepers at first, each under the forces of its own seat; sleepers whose forces part get cells of their own; grains do not move along the track from one cell to the next, and the soil below is a spring",
+            "{} periodic cells of grains of {} carry the sleepers at first, each under the forces of its own seat; a \
+            sleeper gets its own cell when its forces differ from the others; grains do not move from one cell to the \
+            next, and the soil below is a spring",
             node.cells.len(),
             if bays == 1 { "1 bay".to_owned() } else { format!("{bays} bays") },
         ));
@@ -243,7 +254,8 @@ fn supports(graph: &Graph) -> Option<String> {
             grains.stretches.iter().map(|stretch| format!("{} to {} m", metre(stretch.start), metre(end(stretch))));
         let spans: Vec<String> = spans.collect();
         return Some(format!(
-            "grains carry the sleepers from {}; springs beyond answer and settle as the nearest third of these sleepers",
+            "grains carry the sleepers from {}; beyond, springs have the stiffness and settlement of the nearest third \
+            of these sleepers",
             spans.join(" and ")
         ));
     }
@@ -258,16 +270,17 @@ fn supports(graph: &Graph) -> Option<String> {
     let range = if least == most { most } else { format!("{least} to {most}") };
     let how = graph.decisions.iter().find(|decision| decision.pass == "supports");
     let how = how.map_or(String::new(), |decision| format!(" ({})", decision.what));
-    Some(format!("under the sleepers lie springs of {range} MN/m per seat, which keep their stiffness{how}"))
+    Some(format!("the sleepers stand on springs of {range} MN/m per seat with constant stiffness{how}"))
 }
 
-/// How many passages stood for how many trains.
+/// Number of computed passages, and of the trains that they represent.
 fn shared(graph: &Graph, tables: &RunTables) -> Option<String> {
     let trains = graph.blocks()?.trains_left(0);
     let passages: u64 = tables.blocks.iter().map(|block| block.passages).sum();
     (1..trains).contains(&passages).then(|| {
         format!(
-            "{passages} passages stand for {trains} trains: all of a kind in a block run over the same settled track"
+            "{passages} passages represent {trains} trains: all trains of one type in a block run over the same \
+            settled track"
         )
     })
 }
@@ -280,11 +293,12 @@ fn at_the_ends(track: &Track, tables: &RunTables) -> Option<String> {
     let near = track.transitions.iter().find(|t| partly.iter().any(|x| (x - t.x).abs() < 5.0));
     let near = near.map_or(String::new(), |transition| {
         let name = if transition.name.is_empty() { String::new() } else { format!(" `{}`", transition.name) };
-        format!("; transition{name} lies among them, so read nothing from it")
+        format!("; transition{name} lies among these seats, so its results are not valid")
     });
     (!partly.is_empty()).then(|| {
         format!(
-            "{} of {} seats near the ends see a part of each train: they take the mean of their neighbours and count in no extreme{near}",
+            "{} of {} seats near the ends are passed by only a part of each train: they take the mean of their \
+            neighbours and are left out of extremes{near}",
             partly.len(),
             track.seats.len()
         )
@@ -298,7 +312,7 @@ fn coarse_grains(track: &Track) -> Vec<String> {
         let Material::Granular(granular) = &layer.material else { continue };
         if *granular.scale > 1.0 {
             let sentence =
-                format!("grains of layer `{}` are modelled {} times as large as they are", layer.name, *granular.scale);
+                format!("grains of layer `{}` are modelled {} times larger than they are", layer.name, *granular.scale);
             if !told.contains(&sentence) {
                 told.push(sentence);
             }

@@ -1,4 +1,4 @@
-//! What a run that is not finished has so far: kept beside its checkpoints, and read by others while it goes on.
+//! Results so far of an unfinished run: stored beside its checkpoints, and readable while the run goes on.
 
 use super::files::json;
 use super::kept_beds::BedPieces;
@@ -13,11 +13,11 @@ const KEY: &str = "so-far";
 /// A run under way.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SoFar {
-    /// The run as if it had ended here; nothing is said of its expectations.
+    /// The run as if it had ended here, without its expectations.
     pub run: Run,
     /// Blocks that are done end here.
     pub clock: Clock,
-    /// What is being done, and the share of it that is done.
+    /// The present stage, and the share of this stage that is done.
     pub stage: Option<(String, f64)>,
     /// Seconds of computing up to here, over all parts of the run.
     pub seconds: f64,
@@ -29,7 +29,7 @@ pub struct SoFar {
 }
 
 impl SoFar {
-    /// Keeps what a recorder has, of which these histories and beds are kept as pieces.
+    /// Stores the content of a recorder; these histories and beds are stored as pieces.
     pub(super) fn keep(
         recorder: &RunRecorder<'_>,
         clock: Clock,
@@ -48,7 +48,7 @@ impl SoFar {
         Ok(())
     }
 
-    /// What the run of a directory has so far; `None` where it has kept nothing yet that could be shown.
+    /// The results so far of the run in a directory; `None` if it has stored nothing yet that can be shown.
     pub fn read(from: &Unfinished) -> Result<Option<SoFar>, ResultsError> {
         let Some(bytes) = from.kept(KEY)? else { return Ok(None) };
         let mut so_far: SoFar =

@@ -1,9 +1,9 @@
-//! Rail, sleepers and grains at a recorded count as VTK files of polygonal data, which ParaView opens: `states/rail_000500.vtp`,
-//! `states/sleepers_000500.vtp`, and with grains under the track `states/grains_000500.vtp` and `states/contacts_000500.vtp`. All
-//! stand over axles in `states/states.pvd`.
+//! Rail, sleepers and grains at a recorded count as VTK files of polygonal data, which ParaView opens:
+//! `states/rail_000500.vtp`, `states/sleepers_000500.vtp`, and with grains under the track `states/grains_000500.vtp`
+//! and `states/contacts_000500.vtp`. All stand over axles in `states/states.pvd`.
 //!
-//! Places are as the track lies unloaded, z up, the rails at 0 where they have not settled; sleepers are boxes in their true size. What
-//! traffic does stands beside as data: warp by `displacement` to see the rail under the passage.
+//! Places are those of the unloaded track, z up. A rail that has not settled is at 0. Sleepers are boxes in their true
+//! size. Effects of traffic are data of the points: warp by `displacement` to see the rail under the passage.
 
 use super::vtk::{File, bodies_vtk, contacts_vtk};
 use super::{BedsAtCount, Grain, Link, NamedBytes, RailRow, ResultsError, Run, SleeperRow};
@@ -13,12 +13,12 @@ use std::io;
 use std::path::Path;
 
 const FOLDER: &str = "states";
-/// Between the rails where no sleeper says it, m.
+/// Distance between the rails if no sleeper gives it, m.
 const GAUGE: f64 = 1.5;
 /// The corners of the six sides of a box, seen from outside; bit 0 of a corner is x, bit 1 y, bit 2 z.
 const SIDES: [[usize; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
 
-/// The states that the scene's records ask for; none where none does.
+/// The states that the scene's records ask for; none if none does.
 pub(super) fn files(run: &Run, directory: &Path) -> Result<Vec<NamedBytes>, ResultsError> {
     let mut counts: Vec<u64> =
         run.scenario.records.iter().filter(|r| r.states).flat_map(|r| r.after.iter().copied()).collect();
@@ -46,7 +46,8 @@ pub(super) fn files(run: &Run, directory: &Path) -> Result<Vec<NamedBytes>, Resu
         }
     }
     let collection = format!(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n{listed}</Collection>\n</VTKFile>\n"
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" \
+        version=\"1.0\">\n<Collection>\n{listed}</Collection>\n</VTKFile>\n"
     );
     files.push((format!("{FOLDER}/states.pvd"), collection.into_bytes()));
     Ok(files)
@@ -108,7 +109,8 @@ fn rail_vtk(scenario: &Scenario, rows: &[&RailRow]) -> io::Result<Vec<u8>> {
     Ok(file.out)
 }
 
-/// Sleepers as boxes; seats on slabs and rigid supports have none. A sleeper lies at its settlement, or hangs above it by its void.
+/// Sleepers as boxes; seats on slabs and rigid supports have none. A sleeper lies at its settlement, or hangs above it
+/// by its void.
 fn sleepers_vtk(scenario: &Scenario, rows: &[&SleeperRow]) -> io::Result<Vec<u8>> {
     let seats = scenario.track.seats.iter().zip(rows);
     let boxes: Vec<(SleeperBody, &SleeperRow, i32)> =

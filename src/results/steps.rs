@@ -1,4 +1,4 @@
-//! Steps of the track at its transitions, and changes of its level over a base: what lifts and drops a wheel.
+//! Steps of the track at its transitions, and changes of its level over a base; both move a wheel up and down.
 
 use super::level::value_at;
 use crate::scenario::{Side, Track};
@@ -8,9 +8,10 @@ const BESIDE: f64 = 5.0;
 /// The longer base over which level changes are taken, m: twist and level are commonly measured over 3 m (EN 13848-1).
 pub const LONG_BASE: f64 = 3.0;
 
-/// By how much the softer side of each transition lies below the stiffer one, m, with its name: the mean settlement of the seats within
-/// 5 m on the one side, less that on the other. A negative step lies on the structure: its own ballast settles more. `settlements`
-/// are of seats by chainage, m; a transition without seats on both sides is left out.
+/// By how much the softer side of each transition lies below the stiffer one, m, with its name: the mean settlement of
+/// the seats within 5 m on the softer side, minus the mean on the stiffer side. With a negative step the ballast on the
+/// structure settles more. `settlements` are of seats by chainage, m; a transition without seats on both sides is left
+/// out.
 pub fn settlement_steps<'t>(track: &'t Track, settlements: &[(f64, f64)]) -> Vec<(&'t str, f64)> {
     let mean = |from: f64, to: f64| {
         let beside: Vec<f64> = settlements.iter().filter(|(x, _)| (from..to).contains(x)).map(|(_, s)| *s).collect();
@@ -25,8 +26,9 @@ pub fn settlement_steps<'t>(track: &'t Track, settlements: &[(f64, f64)]) -> Vec
     track.transitions.iter().filter_map(step).collect()
 }
 
-/// The largest change of a profile over a base, m, up or down; `None` where the profile is shorter. Points are chainage and level, m,
-/// ascending; between them it is straight, so that the largest change stands where one end of the base lies at a point.
+/// The largest change of a profile over a base, m, up or down; `None` if the profile is shorter. Points are chainage
+/// and level, m, ascending; between them it is straight, so that the largest change stands where one end of the base
+/// lies at a point.
 pub fn largest_change(profile: &[(f64, f64)], base: f64) -> Option<f64> {
     let (first, last) = (profile.first()?.0, profile.last()?.0);
     let starts = profile.iter().flat_map(|(x, _)| [*x, *x - base]);

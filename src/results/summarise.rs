@@ -1,4 +1,4 @@
-//! The scalars of `summary.json`, from the tables: every extreme is that after the last axle count.
+//! The scalars of `summary.json`, from the tables. Every extreme is taken after the last axle count.
 
 use super::evaluate::subgrade_pressures;
 use super::steps::{LONG_BASE, largest_change, settlement_steps};
@@ -23,14 +23,14 @@ pub struct RailMaxima {
     /// Largest change of the unloaded level between two wheels of a bogie, and over 3 m, m.
     pub change_wheelbase: Option<f64>,
     pub change_3m: Option<f64>,
-    /// Longitudinal level D1, largest from its mean and standard deviation, m: of the rail without a vehicle, and under a
-    /// standing wheel.
+    /// Longitudinal level D1, largest from its mean and standard deviation, m: of the rail without a vehicle, and under
+    /// a standing wheel.
     pub level: Option<(f64, f64)>,
     pub loaded_level: Option<(f64, f64)>,
 }
 
 impl RailMaxima {
-    /// What the rail's profile after the last axle count says, of the places that count.
+    /// Scalars of the rail profile after the last axle count, over the places that count.
     pub fn from_profile(scenario: &Scenario, rail: &[RailRow], counts: impl Fn(f64) -> bool) -> Self {
         let last = rail.iter().map(|row| row.axles).max();
         let rows: Vec<&RailRow> = rail.iter().filter(|row| Some(row.axles) == last && counts(row.x_m)).collect();
@@ -55,7 +55,7 @@ fn entry(name: &str, value: Option<f64>, unit: &'static str) -> Entry {
     (name.to_owned(), value, unit)
 }
 
-/// Computes the scalars that the tables allow; what does not exist on the scene is left out.
+/// Computes the scalars that the tables allow; quantities that the scene does not have are left out.
 pub fn summarise(
     scenario: &Scenario,
     supports: &[SupportNode],
@@ -93,7 +93,7 @@ fn of_rail(rail: RailMaxima) -> Vec<Entry> {
     ]
 }
 
-/// What lies under sleepers on ballast.
+/// Scalars of the supports of ballasted sleepers.
 fn of_ballast(scenario: &Scenario, supports: &[SupportNode], last: &[&SleeperRow]) -> Vec<Entry> {
     let ballasted = ballasted(scenario, last);
     if ballasted.is_empty() {
@@ -120,8 +120,8 @@ fn of_ballast(scenario: &Scenario, supports: &[SupportNode], last: &[&SleeperRow
     ]
 }
 
-/// The step at each transition that traffic has made: the largest, and each under the name of its transition. A structure at an end of
-/// the model is one though no train runs over it whole.
+/// The step at each transition that traffic has made: the largest, and each under the name of its transition. A
+/// structure at an end of the model counts, although no train runs over all of it.
 fn of_steps(scenario: &Scenario, sleepers: &[SleeperRow], blocks: &[BlockRow]) -> Vec<Entry> {
     if blocks.is_empty() {
         return Vec::new();
@@ -136,7 +136,7 @@ fn of_steps(scenario: &Scenario, sleepers: &[SleeperRow], blocks: &[BlockRow]) -
     std::iter::once(entry("settlement_step", largest_step, "m")).chain(named).collect()
 }
 
-/// How the exchanges went, and the wheels after the last of them.
+/// Scalars of the exchanges, and of the wheels after the last exchange.
 fn of_blocks(blocks: &[BlockRow], trains: &[TrainRow]) -> Vec<Entry> {
     let Some(block) = blocks.last() else { return Vec::new() };
     let worst = |measure: fn(&TrainRow) -> f64| worst_train(trains, measure).map(measure);
@@ -154,7 +154,7 @@ fn of_blocks(blocks: &[BlockRow], trains: &[TrainRow]) -> Vec<Entry> {
     ]
 }
 
-/// Bonds of glued grains that have broken; `None` where none were made.
+/// Bonds of glued grains that have broken; `None` if none were made.
 pub(super) fn broken_bonds(bonds: Bonds) -> Option<f64> {
     (bonds.made() > 0).then_some(bonds.broken as f64)
 }
@@ -176,7 +176,7 @@ pub fn static_wheel_load(scenario: &Scenario, train: &Train) -> Option<f64> {
     largest(loads).filter(|load| *load > 0.0)
 }
 
-/// The row of the last count whose train does worst, each against its own static load.
+/// The row of the last count with the worst train, each compared with its own static load.
 pub fn worst_train(trains: &[TrainRow], measure: fn(&TrainRow) -> f64) -> Option<&TrainRow> {
     let last = trains.iter().map(|row| row.axles).max();
     let rows = trains.iter().filter(|row| Some(row.axles) == last && row.static_wheel_load_N > 0.0);
@@ -208,7 +208,7 @@ fn ballasted<'a>(scenario: &'a Scenario, rows: &[&'a SleeperRow]) -> Vec<(&'a Se
     seats.filter_map(|seat| Some((seat, *by_name.get(track.seat_name(seat).as_str())?))).collect()
 }
 
-/// Median settlement of the seats far from every transition; of the far half where none is far enough.
+/// Median settlement of the seats far from every transition; of the far half if none is far enough.
 fn far_field(scenario: &Scenario, ballasted: &[(&Seat, &SleeperRow)]) -> Option<f64> {
     scenario.track.far_field(ballasted.iter().map(|(seat, row)| (seat.x, row.settlement_m)).collect())
 }

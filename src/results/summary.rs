@@ -1,4 +1,4 @@
-//! `summary.json`: the scalars of a run under their names, its expectations, and what made it.
+//! `summary.json`: the scalars of a run under their names, its expectations, and its provenance.
 
 use super::Reliance;
 use crate::check::EDIT;
@@ -12,7 +12,7 @@ pub struct Summary {
     #[serde(flatten)]
     pub scalars: BTreeMap<String, Scalar>,
     pub expectations: Vec<Verdict>,
-    /// What its numbers rest on; empty in a file of an older version.
+    /// The reliance of its numbers; empty in a file of an older version.
     #[serde(default)]
     pub reliance: Reliance,
     pub provenance: Provenance,
@@ -31,12 +31,12 @@ impl Scalar {
     }
 }
 
-/// An expectation of the scene and how it came out.
+/// An expectation of the scene and its result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
     pub text: String,
     pub met: bool,
-    /// The operands as computed, in `unit`; empty where one could not be computed.
+    /// The operands as computed, in `unit`; empty if one could not be computed.
     pub values: Vec<f64>,
     pub unit: String,
     /// Why an operand could not be computed; the expectation then counts as missed.
@@ -44,7 +44,7 @@ pub struct Verdict {
     pub problem: Option<String>,
 }
 
-/// What made a run: enough to make it again.
+/// Provenance of a run: the data needed to repeat it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     pub program: String,
@@ -63,7 +63,7 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// What made a run of `sources`, the main file first, with the hash of all that made it and its plan.
+    /// Provenance of a run of `sources`, the main file first, with the hash of all inputs and the plan.
     pub fn new(sources: &Sources, sha256: String, seed: u64, plan: String) -> Provenance {
         // the name alone: equal scenes give equal files wherever they lie
         let name = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or(path).to_string();

@@ -20,7 +20,7 @@ pub struct SleeperRow {
     pub axles: u64,
     pub sleeper: String,
     pub x_m: f64,
-    /// What the scene starts with and what traffic has added.
+    /// Initial settlement of the scene plus the settlement by traffic.
     pub settlement_m: f64,
     pub void_m: f64,
     pub gravity_contact_force_N: f64,
@@ -30,15 +30,16 @@ pub struct SleeperRow {
     /// Stiffness of support and under sleeper pad in series.
     pub support_stiffness_N_per_m: f64,
     pub contact_loss_s: f64,
-    /// Kinds of trains of which every wheel comes and goes over it. Near the ends of the way wheels start and stop: of a kind that does
-    /// not pass whole its forces, displacement and contact loss are the means of the nearest ten seats of the section that it passes.
-    /// A seat that no kind passes is no extreme of the summary.
+    /// Number of train types that pass this seat with every wheel. Wheels start and stop near the ends of the track.
+    /// For a train type that does not pass with every wheel, forces, displacement and contact loss are the means of the
+    /// nearest ten seats of the section that this type passes. A seat that no type passes is left out of the extremes
+    /// of the summary.
     pub trains_passing: usize,
 }
 
 impl SleeperRow {
-    /// Those of some rows that count in extremes: that a train passes whole; all of them where none does, as on a track shorter than the
-    /// trains, or in a static check.
+    /// The rows that count in extremes: seats that a train passes with every wheel. All rows count if there is no such
+    /// seat, for example on a track shorter than the trains, or in a static check.
     pub fn that_count<'a>(rows: impl Iterator<Item = &'a SleeperRow>) -> Vec<&'a SleeperRow> {
         let all: Vec<&SleeperRow> = rows.collect();
         let whole: Vec<&SleeperRow> = all.iter().copied().filter(|row| row.trains_passing > 0).collect();
@@ -64,7 +65,7 @@ impl Row for SleeperRow {
     ];
 }
 
-/// One place on the rail at one recorded axle count (`rail.csv`): where wheels run, four in each bay and
+/// One place on the rail at one recorded axle count (`rail.csv`). There are four places in each bay that wheels pass,
 /// one of them over a seat.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case)]
@@ -75,7 +76,7 @@ pub struct RailRow {
     pub level_m: f64,
     /// Unloaded, sagging.
     pub moment_N_m: f64,
-    /// The train's mean wheel load over the deflection that it adds standing here.
+    /// The train's mean wheel load at rest here, divided by the deflection that it adds.
     pub stiffness_N_per_m: f64,
     /// During the passage, sagging; linear between the nodes of the mesh.
     pub max_moment_N_m: f64,
@@ -115,8 +116,8 @@ pub struct TrainRow {
     pub max_rail_seat_load_N: f64,
     pub max_contact_force_N: f64,
     pub max_rail_moment_N_m: f64,
-    /// Largest force of any wheel over the static force of this wheel, and the largest share of its static force that a wheel lacks;
-    /// 0 without gravity.
+    /// Largest ratio of a wheel's force to its static force, and the largest unloading of a wheel as a share of its
+    /// static force; 0 without gravity.
     pub dynamic_amplification: f64,
     pub wheel_unloading: f64,
 }
@@ -154,7 +155,7 @@ impl Row for TampingRow {
     const COLUMNS: &'static [&'static str] = &["axles", "sleeper", "x_m", "settlement_before_m", "settlement_after_m"];
 }
 
-/// One block of the iteration (`blocks.csv`): a passage computed at `axles`, and the axles that it stands for.
+/// One block of the iteration (`blocks.csv`): a passage computed at `axles`, and the axles that it represents.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case)]
 pub struct BlockRow {
@@ -172,15 +173,15 @@ pub struct BlockRow {
     pub max_settlement_step_m: f64,
     /// Estimated error of settlement that the block adds at the worst seat; 0 for a block of one train, which has none.
     pub error_m: f64,
-    /// By how much a disturbance comes back with the other sign: the exchange overshoots above 1 and grows above 2. 0 where
-    /// the track moved too evenly to tell.
+    /// Factor by which a disturbance comes back with the opposite sign: the exchange overshoots above 1 and grows above
+    /// 2. 0 if the track moved too evenly to measure it.
     pub overshoot: f64,
-    /// Amplitude of a sawtooth along the track in what the block settled, as a share of `max_settlement_step_m`.
+    /// Sawtooth amplitude of the block's settlement along the track, as a share of `max_settlement_step_m`.
     pub sawtooth: f64,
-    /// Longer blocks that were tried and thrown away, and those of them that overshot.
+    /// Longer blocks that were tried and rejected, and the number of rejected blocks that overshot.
     pub rejected: u64,
     pub overshot: u64,
-    /// All that were computed for the block, and their work.
+    /// All passages computed for the block, and their work.
     pub passages: u64,
     pub time_steps: u64,
     pub newton_iterations: u64,
@@ -191,7 +192,7 @@ pub struct BlockRow {
     pub broken_bonds: u64,
 }
 
-/// From here on a sawtooth is more than sleepers of unlike loads make.
+/// Above this amplitude a sawtooth is larger than unequal sleeper loads can cause.
 const SAWTOOTH: f64 = 0.1;
 
 impl BlockRow {
@@ -200,7 +201,7 @@ impl BlockRow {
         Bonds { intact: self.bonds, broken: self.broken_bonds }
     }
 
-    /// What the exchanges of a run show of overshooting, in a sentence; `None` where all is well.
+    /// Overshooting in the exchanges of a run, in a sentence; `None` if there is none.
     pub fn overshoot(blocks: &[BlockRow]) -> Option<String> {
         let cured: Vec<&BlockRow> = blocks.iter().filter(|b| b.overshot > 0).collect();
         let worst = blocks.iter().max_by(|a, b| a.sawtooth.total_cmp(&b.sawtooth)).filter(|b| b.sawtooth > SAWTOOTH);
@@ -214,7 +215,7 @@ impl BlockRow {
         let shortest = cured.iter().map(|b| b.block_axles).min();
         let cured = shortest.map(|shortest| {
             let tried: u64 = cured.iter().map(|b| b.overshot).sum();
-            format!("{tried} blocks overshot and were done again in halves, down to {shortest} axles")
+            format!("{tried} blocks overshot and were repeated with half the length, down to {shortest} axles")
         });
         let said: Vec<String> = cured.into_iter().chain(sawtooth).collect();
         (!said.is_empty()).then(|| said.join("; "))
@@ -258,6 +259,6 @@ pub struct HistoryRow {
     /// Chainage, m: of the seat, of the wheel at that moment, or of the place on the rail.
     pub x_m: f64,
     pub value: f64,
-    /// Whose passage it is; empty where no train runs, as for settlement.
+    /// Name of the train; empty without a train, for example for settlement.
     pub train: SmolStr,
 }

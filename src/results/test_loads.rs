@@ -1,4 +1,4 @@
-//! What records keep of seats under test loads: one state of rest, beside the one without the loads.
+//! Records of seats under test loads: one state at rest with the loads, one without.
 
 use super::HistoryRow;
 use crate::graph::{History, Record};
@@ -6,8 +6,9 @@ use crate::nodes::Unloaded;
 use crate::scenario::Track;
 use smol_str::SmolStr;
 
-/// Rows of the recorded quantities of a seat, at every seat where a record names none. Forces are whole, displacements count from
-/// the track without the loads. The rail is kept whole beside it, and nothing has a velocity.
+/// Rows of the recorded quantities of a seat, at every seat if a record names no seat. Forces are total values;
+/// displacements are measured from the track without the loads. The whole rail is recorded too. There are no
+/// velocities.
 pub(super) fn at_seats(track: &Track, records: &[Record], unloaded: &Unloaded, loaded: &Unloaded) -> Vec<HistoryRow> {
     let every: Vec<usize> = (0..track.seats.len()).collect();
     let mut rows = Vec::new();

@@ -1,7 +1,7 @@
 //! Beds of grains under a track, as they lie at the recorded counts: a section along the rail seats, or all of them.
 //!
-//! Places are chainage, the distance from the centre line and the height above the undersides of the sleepers as built. All
-//! numbers are those of single precision, as in the files.
+//! Places are chainage, the distance from the centre line and the height above the undersides of the sleepers as built.
+//! All numbers are those of single precision, as in the files.
 
 use super::grains::norm;
 use super::{Grain, Link, grains, links, places};
@@ -17,14 +17,14 @@ const WEAK: f64 = 0.1;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct BedsAtCount {
     pub axles: u64,
-    /// Whether the leading bogie of the next train passes; without a train where not.
+    /// Whether the leading bogie of the next train stands on the bed; otherwise without a train.
     pub under_train: bool,
     /// Displacements count from the first recorded count.
     pub grains: Vec<Grain>,
     pub links: Vec<Link>,
 }
 
-/// What of the beds is kept.
+/// The part of the beds that is stored.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Part {
     All,
@@ -72,7 +72,7 @@ pub(super) fn beds_at_count(
 }
 
 impl BedsAtCount {
-    /// What lies about a line so far from the centre line (m), without the weakest contacts.
+    /// The section about a line at this distance from the centre line (m), without the weakest contacts.
     pub fn along_seats(mut self, y: f64) -> BedsAtCount {
         let mean = self.grains.iter().map(|grain| grain.radius).sum::<f64>() / self.grains.len().max(1) as f64;
         let half = THICK * mean;

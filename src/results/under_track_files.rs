@@ -1,7 +1,8 @@
-//! `grains.parquet` and `contacts.parquet`: the beds under a track at the recorded counts, one row a pebble and one a contact.
+//! `grains.parquet` and `contacts.parquet`: the beds under a track at the recorded counts, one row a pebble and one a
+//! contact.
 //!
-//! Columns that count are INT64, all others FLOAT, compressed with Snappy. The metadata of finished files hold units and what made the
-//! run (`about.rs`). Equal rows make equal bytes.
+//! Columns that count are INT64, all others FLOAT, compressed with Snappy. The metadata of finished files hold units
+//! and what made the run (`about.rs`). Equal rows make equal bytes.
 
 use super::about::{self, Units};
 use super::columns::{read_column, undamaged, write_column};
@@ -68,7 +69,7 @@ type Row = (Vec<i64>, Vec<f32>);
 /// Rows that are held in columns at once.
 const GROUP_ROWS: usize = 1 << 18;
 
-/// Both files; none where nothing was kept.
+/// Both files; none if no bed was recorded.
 pub(super) fn files(
     beds: &[BedsAtCount],
     made_by: &Provenance,
@@ -95,7 +96,7 @@ pub(super) fn encode(
     ])
 }
 
-/// The beds of a directory; none where it has none.
+/// The beds of a directory; none if it has none.
 pub(super) fn read(directory: &Path) -> Result<Vec<BedsAtCount>, ResultsError> {
     let [grains, contacts] = [GRAINS, CONTACTS].map(|name| directory.join(name));
     if !grains.exists() {

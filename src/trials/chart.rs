@@ -1,12 +1,12 @@
 //! Error against time: one passage over the frozen settled track with many numerics, each against the finest.
 //!
-//! Sweeps, not the full product: every integrator over the time step, every mesh at a fine step, both beam theories. The
-//! reference of a beam theory has the finest step halved once more and twice the elements of the scene, at least eight. The
-//! difference of the two references is the error of the model, which no step mends.
+//! Sweeps, not the full product: every integrator over the time step, every mesh at a fine step, both beam theories.
+//! The reference of a beam theory has the finest step halved once more and twice the elements of the scene, at least
+//! eight. The difference of the two references is the error of the model, which does not depend on the step.
 //!
-//! Orders of convergence come from a track that springs back, where all is smooth, and from the wheel forces of passages,
-//! which begin quasi-statically and in which sleepers lift and strike. The differences d of neighbouring steps give
-//! log2(d(2 dt) / d(dt)).
+//! Orders of convergence come from a track that springs back, where all is smooth, and from the wheel forces of
+//! passages, which begin quasi-statically and in which sleepers lift and strike. The differences d of neighbouring
+//! steps give log2(d(2 dt) / d(dt)).
 
 use super::planned::Planned;
 use super::settled::Settled;
@@ -16,14 +16,14 @@ use crate::scenario::{Beam, Integrator};
 use crate::solvers::track::TrackError;
 use serde::Serialize;
 
-/// What to compare.
+/// Settings of the comparison.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Request {
     /// How often the scene's time step is halved.
     pub halvings: u32,
 }
 
-/// How the track lies under a passage.
+/// State of the track under a passage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
@@ -40,7 +40,7 @@ impl Level {
     }
 }
 
-/// What a point is compared along.
+/// The value that varies along a line of points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sweep {
@@ -70,7 +70,7 @@ pub struct Point {
     pub variant: Variant,
     /// The numerics of the scene itself.
     pub default: bool,
-    /// On the frontier: nothing cheaper has a smaller error of the wheel force.
+    /// On the frontier: no cheaper point has a smaller error of the wheel force.
     pub efficient: bool,
     pub outcome: Outcome,
 }
@@ -87,7 +87,7 @@ pub enum Outcome {
         iterations: usize,
         errors: Errors,
     },
-    /// Came to an end that is no answer: its forces have run away.
+    /// Ended with an invalid result: its forces are unstable.
     Unstable { seconds: f64, reason: String },
     /// Was stopped by the solver.
     Failed { seconds: f64, reason: String },
@@ -111,7 +111,7 @@ impl Outcome {
     }
 }
 
-/// Observed order of an integrator in the time step; none where too few of its steps gave an answer.
+/// Observed order of an integrator in the time step; none if too few of its steps gave an answer.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Order {
     pub method: Integrator,
@@ -141,7 +141,7 @@ pub struct Chart {
     pub points: Vec<Point>,
     pub orders: Vec<Order>,
     pub cheapest: Vec<Cheapest>,
-    /// Euler–Bernoulli against Timoshenko, both at their finest; none where one of them failed.
+    /// Euler–Bernoulli against Timoshenko, both at their finest; none if one of them failed.
     pub model_error: Option<Errors>,
 }
 
@@ -159,7 +159,7 @@ pub const QUANTITIES: [(&str, ReadError); 4] = [
 /// Errors that a user may ask for.
 pub const TOLERANCES: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
-/// Compares; fails where the references do.
+/// Compares; fails if the references do.
 pub fn chart(
     planned: &Planned,
     settled: &Settled,
@@ -279,7 +279,7 @@ fn cost(variant: &Variant) -> f64 {
 const SHORT: f64 = 0.4;
 
 struct Bench {
-    /// What the scene says, and the same in even steps.
+    /// The numerics of the scene, and the same with even steps.
     scene: Variant,
     own: Variant,
     references: Vec<(Level, Beam, Measured)>,
@@ -358,7 +358,7 @@ impl Bench {
     }
 }
 
-/// Share of a wheel's static force that lifts no sleeper when it is let go.
+/// Share of a wheel's static force that can be released without lifting a sleeper.
 const SMALL: f64 = 0.02;
 /// Instants of free vibration that are compared, at intervals of the scene's step.
 const INSTANTS: usize = 400;
@@ -377,7 +377,7 @@ fn released(case: &Case, variant: Variant) -> Option<f64> {
     (small > 0.0).then(|| (large / small).log2())
 }
 
-/// Marks the points of the settled track and the scene's beam theory that nothing cheaper beats.
+/// Marks the points of the settled track and the scene's beam theory on the frontier of time and error.
 fn mark_frontier(points: &mut [Point], beam: Beam) {
     let candidate = |p: &Point| p.level == Level::Settled && p.variant.beam == beam && p.sweep != Sweep::Reference;
     let mut order: Vec<usize> = (0..points.len()).filter(|i| candidate(&points[*i])).collect();

@@ -1,8 +1,8 @@
-//! Trials of numerics: one scene, and many ways to compute it.
+//! Trials of numerics: one scene computed with many settings.
 //!
-//! [`chart`] runs one passage over the settled track with many numerics and sets error against time; [`stability`] tries
-//! numerics, contacts and voids that no scene should have, and a list of hard scenes, and says of each how it ends.
-//! [`grains`] measures what steps of a bed of grains cost.
+//! [`chart`] runs one passage over the settled track with many numerics and sets error against time; [`stability`]
+//! tries extreme numerics, contacts and voids, and a list of hard scenes, and reports the result of each. [`grains`]
+//! measures the cost of steps of a bed of grains.
 
 pub mod chart;
 mod clock;

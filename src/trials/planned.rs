@@ -1,4 +1,4 @@
-//! What the plan of a scene says of its passages: the track on its supports and the trains that run over it.
+//! The passages in the plan of a scene: the track on its supports and the trains that run over it.
 
 use crate::graph::{Blocks, Graph, Responses, TrackNode};
 use crate::lower::Origins;
@@ -9,13 +9,13 @@ pub struct Planned {
     pub graph: Graph,
     pub origins: Origins,
     pub node: TrackNode,
-    /// What the supports answer as the scene starts: stiffness, damping and seating.
+    /// Responses of the supports at the start of the scene: stiffness, damping and seating.
     pub responses: Responses,
     pub blocks: Blocks,
 }
 
 impl Planned {
-    /// The passages of a plan; `None` where no train runs over a track.
+    /// The passages of a plan; `None` if no train runs over a track.
     pub fn new(graph: &Graph, origins: &Origins) -> Option<Planned> {
         let (node, blocks) = (graph.track()?.clone(), graph.blocks()?.clone());
         let seats = graph.supports.iter().map(|support| support.spring).collect();

@@ -1,4 +1,4 @@
-//! The track as a run of the scene leaves it: the state over which variants are compared.
+//! The track after a run of the scene: the state on which variants are compared.
 
 use crate::execute::{Event, Listener, RunError, execute};
 use crate::graph::Graph;
@@ -12,7 +12,7 @@ pub struct Settled {
     pub settlement: Vec<f64>,
 }
 
-/// Why there is none.
+/// Why there is no such state.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NotSettled {
     Run(RunError),

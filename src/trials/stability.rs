@@ -1,8 +1,10 @@
-//! Where a passage fails: integrators, time steps, contacts and voids, most of them beyond what a scene may state.
+//! Map of passages that fail: integrators, time steps, contacts and voids, most of them outside the range that a scene
+//! may have.
 //!
-//! Every cell of the map is a passage of the first bogie over the transition. It is compared with a passage over the same
-//! track, contact and void at a sixteenth of the scene's step. A cell that is far from it, that has run away or holds what is
-//! no number, and of which nothing has warned, is **wrong**: the one end that must not be.
+//! Every cell of the map is a passage of the first bogie over the transition. It is compared with a passage over the
+//! same track, contact and void at a sixteenth of the scene's step. A cell is **wrong** if it differs much from this
+//! passage, is unstable or holds a value that is not a number, and no diagnostic has warned of it. No cell may be
+//! wrong.
 
 use super::planned::Planned;
 use super::stress::{Stress, stresses};
@@ -60,7 +62,7 @@ const REFERENCE_STEP: f64 = 1.0 / 16.0;
 /// Run of the leading wheel before and after the transition, m.
 const APPROACH: f64 = 5.0;
 
-/// Maps a scene and tries it under stress. Fails where the scene itself cannot be prepared.
+/// Maps a scene and tries it under stress. Fails if the scene itself cannot be prepared.
 pub fn stability(
     scenario: &Scenario,
     planned: &Planned,

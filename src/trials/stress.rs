@@ -19,14 +19,14 @@ pub struct Stress {
     pub wheel_force: Option<f64>,
     /// Seats whose sleepers lost contact at some time.
     pub losing_contact: Option<usize>,
-    /// Physics rules that speak up before the run.
+    /// Physics rules that report something before the run.
     pub warnings: Vec<&'static str>,
     /// Whether the error is what the energy of a free vibration seems to gain.
     pub energy: bool,
 }
 
 impl Stress {
-    /// How it ended, in a line.
+    /// The result in one line.
     pub fn told(&self) -> String {
         match &self.verdict {
             Verdict::Stable { error } if self.energy => {
@@ -47,7 +47,8 @@ struct Hard {
     method: Option<Integrator>,
 }
 
-/// Share by which undamped free vibration may seem to gain energy: what one step makes of a strike.
+/// Apparent energy gain of undamped free vibration that is accepted, as a share: the effect of one step during an
+/// impact.
 const ENERGY: f64 = 0.01;
 /// Steps of free vibration.
 const FREE_STEPS: usize = 2000;
@@ -221,7 +222,8 @@ fn passage(hard: &Hard) -> Stress {
     }
 }
 
-/// The track without any damping springs back from under the train, three sleepers hanging: its energy must not grow.
+/// The track without any damping springs back after the train load is removed, with three hanging sleepers; its energy
+/// must not grow.
 fn free_vibration(scenario: &Scenario, method: Integrator, coarser: f64) -> Option<Stress> {
     let mut scenario = scenario.clone();
     undamp(&mut scenario);
@@ -242,7 +244,7 @@ fn free_vibration(scenario: &Scenario, method: Integrator, coarser: f64) -> Opti
             Ok(ratio) if ratio <= 1.0 + ENERGY => Verdict::Stable { error: (ratio - 1.0).max(0.0) },
             Ok(ratio) => match foreseen.warning() {
                 Some(code) => Verdict::Coarse { error: ratio - 1.0, code },
-                None => Verdict::Wrong { why: format!("the energy grows to {ratio:.2} times that of the start") },
+                None => Verdict::Wrong { why: format!("the energy grows to {ratio:.2} times its initial value") },
             },
         };
     let name = format!("let go without damping: {method}, {} ms", number(time_step * 1e3));

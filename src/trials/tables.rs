@@ -1,4 +1,4 @@
-//! The tables of a chart and a map as CSV: one row a passage, SI units, empty where there is no value.
+//! The tables of a chart and a map as CSV: one row a passage, SI units, empty if there is no value.
 
 use super::chart::{Chart, Outcome};
 use super::stability::Stability;

@@ -1,7 +1,7 @@
-//! One passage with numerics of its own: what a chart compares and a stability map tries.
+//! One passage with its own numerics, for charts and stability maps.
 //!
-//! A [`Case`] is the physics (a track as it lies, a train, from where to where), a [`Variant`] the numerics. [`Prepared`] is
-//! a variant factored for a track; it runs any case on that track and says what came out and what it cost.
+//! A [`Case`] is the physics (a track as it lies, a train, from where to where), a [`Variant`] the numerics.
+//! [`Prepared`] is a variant factored for a track; it runs any case on this track and returns result and cost.
 
 use super::clock::Clock;
 use super::planned::Planned;
@@ -44,7 +44,7 @@ pub struct Variant {
 }
 
 impl Variant {
-    /// The numerics that the plan of a scene says.
+    /// The numerics in the plan of a scene.
     pub fn planned(planned: &Planned) -> Variant {
         let Planned { node, blocks, .. } = planned;
         let shears = node.rail.iter().any(|rail| rail.shear.is_some());
@@ -93,7 +93,8 @@ impl Case {
         }
     }
 
-    /// The same, ended where a whole number of steps of `time` (s) has passed, so that all steps that divide it end there.
+    /// The same, ended where a whole number of steps of `time` (s) has passed, so that all steps that divide it end
+    /// there.
     pub fn aligned(mut self, time: f64) -> Case {
         let run = self.right - self.left - self.train.wheel_base();
         let step = self.train.speed * time;
@@ -118,7 +119,7 @@ impl Case {
 /// Half the length over which a force is spread so that nothing moves faster than a step when it is let go, m.
 const BELL: f64 = 5.0;
 
-/// What a passage showed.
+/// Results of a passage.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Measured {
     /// Wheel forces at equal intervals from the start, one instant after another, N.
@@ -226,8 +227,8 @@ impl Prepared {
         }
     }
 
-    /// Deflection of the middle of the rail (m) after every interval of `steps` steps while the track springs back from a
-    /// force spread there (N), `count` times.
+    /// Deflection of the middle of the rail (m) after every interval of `steps` steps while the track springs back from
+    /// a force spread there (N), `count` times.
     pub fn ring(&self, case: &Case, force: f64, steps: usize, count: usize) -> Result<Vec<f64>, TrackError> {
         let level: TrackLevel = case.node.level(&case.settlement, &case.responses);
         let node = self.track().seat_node(case.node.seats.len() / 2);
@@ -290,8 +291,8 @@ fn measured(
     }
 }
 
-/// Density of steel, kg/m^3, its moduli, Pa, and the share of a rail's section that carries shear: for a Timoshenko rail
-/// where the scene states no shear stiffness.
+/// Density of steel, kg/m^3, its moduli, Pa, and the share of a rail's section that carries shear: for a Timoshenko
+/// rail where the scene states no shear stiffness.
 const DENSITY: f64 = 7850.0;
 const YOUNGS_MODULUS: f64 = 210e9;
 const SHEAR_MODULUS: f64 = 81e9;
@@ -309,7 +310,8 @@ fn set_beam(model: &mut TrackModel, beam: Beam) {
     }
 }
 
-/// How far a passage is from a reference; each a share of the largest value of the reference unless it has a unit.
+/// Differences between a passage and a reference; each is a share of the largest value of the reference unless it has a
+/// unit.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Errors {
     /// Largest difference of a wheel force at one instant, over the static wheel force.
@@ -322,7 +324,7 @@ pub struct Errors {
     pub seat_load: f64,
     /// Sum over seats of the difference of the time without contact, s.
     pub contact_loss_s: f64,
-    /// The same over the sum of those times; none where the reference keeps contact everywhere.
+    /// The same over the sum of those times; none if the reference keeps contact everywhere.
     pub contact_loss: Option<f64>,
     pub rail_moment: f64,
 }

@@ -1,4 +1,5 @@
-//! How a trial ended: right, coarse, refused, or wrong without a word, judged against a reference and what diagnostics foresaw.
+//! Result of a trial: right, coarse, refused, or wrong without a diagnostic, judged by a reference and by the
+//! diagnostics before the run.
 
 use super::planned::Planned;
 use super::variant::Measured;
@@ -14,7 +15,7 @@ use crate::solvers::track::TrackError;
 use crate::units::number;
 use serde::Serialize;
 
-/// How a trial ended.
+/// Result of a trial.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "ends")]
 pub enum Verdict {
@@ -22,7 +23,7 @@ pub enum Verdict {
     Stable { error: f64 },
     /// Further away, and a diagnostic has said so before the run.
     Coarse { error: f64, code: &'static str },
-    /// Ran away by its numerics, where the reference does not, and a run says so.
+    /// Unstable because of its numerics, while the reference is stable, and a run reports it.
     Unstable { why: String, code: &'static str },
     /// Refused, before or during the run.
     Refused { code: &'static str, message: String },
@@ -71,7 +72,7 @@ impl Verdict {
         }
     }
 
-    /// What else is to be said.
+    /// Additional text.
     pub fn why(&self) -> &str {
         match self {
             Verdict::Unstable { why, .. } | Verdict::Wrong { why } => why,
@@ -81,11 +82,11 @@ impl Verdict {
     }
 }
 
-/// Largest error of a passage that still shows what happens: of the wheel force as a root mean square over the static one,
-/// and of the peak seat loads over the largest of them.
+/// Largest error of a passage that still shows what happens: of the wheel force as a root mean square over the static
+/// one, and of the peak seat loads over the largest of them.
 pub const TOLERATED: f64 = 0.1;
 
-/// What `check` says of a time step before anything runs.
+/// Diagnostics of `check` on the time step before the run.
 pub(super) enum Foreseen {
     Fine,
     Warned(&'static str),
@@ -98,7 +99,7 @@ impl Foreseen {
     }
 }
 
-/// Lowers a scene and says what its diagnostics foresee of its numerics, whatever rules it silences.
+/// Lowers a scene and returns the diagnostics on its numerics, also from rules that the scene silences.
 pub(super) fn check(scenario: &Scenario) -> (Option<Planned>, Foreseen, Vec<&'static str>) {
     let Lowered { graph, origins, diagnostics, .. } = lower(scenario);
     if let Some(error) = diagnostics.iter().find(|d| d.is_error()) {
@@ -110,7 +111,7 @@ pub(super) fn check(scenario: &Scenario) -> (Option<Planned>, Foreseen, Vec<&'st
     let aloud = Scenario { allow: Vec::new(), deny: Vec::new(), ..scenario.clone() };
     let mut warnings = lint(&aloud, &planned.graph);
     warnings.dedup_by_key(|d| d.code);
-    // of the step, and of a speed at which the track answers no longer as at rest
+    // on the step, and on a speed at which the track no longer responds as at rest
     let foreseen = match warnings.iter().find(|d| [Code::L1005, Code::L1002].contains(&d.code)) {
         Some(warning) => Foreseen::Warned(warning.code.as_str()),
         None => Foreseen::Fine,
@@ -125,7 +126,7 @@ pub(super) fn refused(cause: &TrackError, planned: &Planned) -> Verdict {
     Verdict::Refused { code: diagnostic.code.as_str(), message: diagnostic.message }
 }
 
-/// A passage against its reference. `warning` is the code that has spoken of its numerics before.
+/// Compares a passage with its reference. `warning` is the code that reported its numerics before the run.
 pub(super) fn judge(
     measured: &Measured,
     reference: &Measured,

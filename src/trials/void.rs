@@ -8,7 +8,7 @@ use serde::Serialize;
 pub struct Void {
     /// m.
     pub depth: f64,
-    /// Under so many sleepers nearest to the transition; where absent all supports lie lower, and the stiff side does not.
+    /// Number of sleepers nearest to the transition; if absent, all ballasted supports lie lower.
     pub sleepers: Option<usize>,
 }
 

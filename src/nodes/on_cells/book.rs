@@ -1,4 +1,4 @@
-//! What is known of each cell beside the state of its grains, and what follows for the seats of the track.
+//! Data of each cell in addition to the state of its grains, and the values that follow for the seats of the track.
 
 use super::cell::Passed;
 use super::hardening::{Computed, Hardening, Jump};
@@ -7,7 +7,7 @@ use crate::graph::{CellPlan, CellsNode};
 use crate::solvers::track::Spring;
 use serde::{Deserialize, Serialize};
 
-/// A load that differs by more from the one of before begins a new run of trains that are alike.
+/// A load that differs from the previous load by more than this share begins a new run of equal trains.
 const ALIKE: f64 = 0.1;
 
 /// The account of a cell.
@@ -18,9 +18,9 @@ pub(super) struct Book {
     /// By all trains so far, and the standard error of it, m.
     pub settled: f64,
     pub error: f64,
-    /// What the last block added to this error, m.
+    /// Error added by the last block, m.
     pub error_added: f64,
-    /// What the last train added, m.
+    /// Settlement added by the last train, m.
     pub rate: f64,
     /// Trains that were computed under about the same load, run by run; the last one goes on.
     pub computed: Vec<Vec<Computed>>,
@@ -58,7 +58,8 @@ impl Book {
         }
     }
 
-    /// What a run of trains adds of which the first `now` are computed, with the law where there is one; `None` where others must be computed.
+    /// Settlement added by a run of trains with the first `now` trains computed, by the law if there is one; `None` if
+    /// further trains must be computed.
     pub fn jump(&self, law: Option<&Hardening>, now: usize, passed: u64, trains: u64) -> Option<Jump> {
         let known = self.known();
         match law {
@@ -71,9 +72,9 @@ impl Book {
         }
     }
 
-    /// Whether a jump is good enough: its error and those of before, over the largest settlement of all cells, m. A settlement acts by
-    /// the forces that it moves to other sleepers; where it is small against the compression under the train it moves none, and the
-    /// compression is what an error is compared with.
+    /// Whether a jump is accurate enough: its error and the earlier errors, relative to the largest settlement of all
+    /// cells, m. Settlement matters because it moves forces to other sleepers. If it is small compared with the
+    /// compression under the train, it moves no forces, and the error is compared with the compression.
     pub fn bears(&self, jump: &Jump, largest: f64, tolerance: f64) -> bool {
         self.error + jump.error <= tolerance * largest.max(self.load / self.stiffness)
     }
@@ -97,7 +98,7 @@ pub(super) fn laws(beds: usize, plans: &[CellPlan], books: &[Book]) -> Vec<Optio
     (0..beds).map(of_bed).collect()
 }
 
-/// What every seat stands on: grains, the soil below and the pad under the sleeper, one after the other.
+/// Stiffness under every seat: grains, the soil below and the under sleeper pad, in series.
 pub(super) fn supports(node: &CellsNode, layout: &Layout, books: &[Book]) -> Vec<Option<Spring>> {
     let spring = |cell: &Option<usize>| {
         let cell = (*cell)?;

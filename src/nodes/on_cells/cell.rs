@@ -1,7 +1,7 @@
 //! One cell at work: sleepers without a rail on a periodic bed, each under the forces of its seat.
 //!
-//! The forces are those on the support, which have the inertia of the sleeper in them already. So the sleepers of a cell are light; where
-//! the support bears nothing they lie on it with what they weigh.
+//! The forces are the forces on the support, which already include the inertia of the sleeper. So the sleepers of a
+//! cell are light. If the support force is zero, a sleeper lies on the support with its own weight.
 
 use super::forces::TrainForces;
 use crate::graph::{BedPlan, CellPlan, CellsNode, SleeperOnGrains};
@@ -19,19 +19,19 @@ const OF_SLEEPER: f64 = 0.2;
 /// Steps between looks at inertia, and at how deep the sleepers are, s.
 const HOLD: u64 = 200;
 const LOOK: f64 = 0.5e-3;
-/// Before a train the force goes to that between two trains in this time, and stands; over the last part of that time the level of a
-/// sleeper is read, s.
+/// Time before a train in which the force goes to its value between two trains and stays there; over the last part of
+/// this time the level of a sleeper is read, s.
 const LEAD: f64 = 0.02;
 const STAND: f64 = 0.02;
 const READ: f64 = 0.005;
-/// Static load on every sleeper, N, about what bears on one under a wheel of 20 t an axle; time in which it grows and stands, s; local
-/// damping (Cundall) meanwhile.
+/// Static load on every sleeper, N, about the load on a sleeper under a 20 t axle; time in which it grows and stays, s;
+/// local damping (Cundall) during this time.
 const PRESS: f64 = 40e3;
 const PRESSING: [f64; 2] = [0.06, 0.03];
 const DAMPING: f64 = 0.7;
-/// Force that a train must add before its secant says anything, N.
+/// Smallest force added by a train for which the secant stiffness is used, N.
 const LOADED: f64 = 2e3;
-/// Share of the height of the bed that a sleeper may sink before nothing carries it.
+/// Settlement of a sleeper, as a share of the height of the bed, above which the bed no longer carries it.
 const SUNK: f64 = 0.5;
 
 /// A cell of grains with its sleepers.
@@ -50,12 +50,12 @@ pub(super) struct Cell {
     pub height: f64,
 }
 
-/// What a train did to the sleeper in the middle.
+/// Effect of a train on the sleeper in the middle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Passed {
     /// m.
     pub added: f64,
-    /// Secant of its largest force, N/m; `None` where the train hardly loads the cell.
+    /// Secant of its largest force, N/m; `None` if the train hardly loads the cell.
     pub stiffness: Option<f64>,
 }
 
@@ -85,7 +85,7 @@ impl Cell {
         Ok(cell)
     }
 
-    /// Stiffness under a static load on all sleepers, N/m. Asked of a copy: a load compacts.
+    /// Stiffness under a static load on all sleepers, N/m. It is measured on a copy, because a load compacts the bed.
     pub fn pressed(mut self, gravity: f64) -> Result<f64, NodeError> {
         self.bed.set_damping(DAMPING);
         let before = self.level();
@@ -113,7 +113,7 @@ impl Cell {
         self.run(STAND - READ, |_| ())?;
         let after = self.mean_level(READ)?;
         if after > SUNK * self.height {
-            let why = format!("a sleeper has sunk by {:.0} mm: nothing carries it", 1e3 * after);
+            let why = format!("a sleeper has sunk by {:.0} mm: the grains do not carry it", 1e3 * after);
             return Err(NodeError::Other { node: "cells".into(), why });
         }
         let load = train.load(self.middle);
@@ -153,7 +153,7 @@ impl Cell {
         forces.iter().map(|force| (vec![self.bed.time()], vec![*force])).collect()
     }
 
-    /// Puts a force that goes so in time on every support: times, s, and forces, N.
+    /// Applies a force history to every support: times, s, and forces, N.
     fn drive(&mut self, tables: &[(Vec<f64>, Vec<f64>)], gravity: f64) {
         for (number, (times, forces)) in tables.iter().enumerate() {
             let mass = LIGHT * self.weights[number] / gravity;

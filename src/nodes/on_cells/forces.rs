@@ -1,10 +1,10 @@
-//! What a train does to the sleepers of a cell: forces at equal intervals, of one train among others or of one alone.
+//! Forces of a train on the sleepers of a cell at equal intervals, for one train among others or one train alone.
 
 use crate::nodes::SeatForces;
 
 /// A train alone begins and ends so long before and after its forces differ from those at rest, s.
 const MARGIN: f64 = 0.02;
-/// Share of the largest force by which a force differs from that at rest.
+/// Smallest difference from the force at rest that counts, as a share of the largest force.
 const DIFFERS: f64 = 0.02;
 
 /// Forces on the sleepers of a cell while one train passes; the next one may follow at once.
@@ -17,8 +17,9 @@ pub struct TrainForces {
 }
 
 impl TrainForces {
-    /// The forces at these seats. Trains that follow each other every `headway` (s) add what each brings beyond the force at rest, which
-    /// is exact for a track that never lifts; the train begins where the sleeper `middle` bears least.
+    /// The forces at these seats. Trains that follow each other every `headway` (s) each add their force beyond the
+    /// force at rest; this is exact for a track that never lifts. The train begins when the force on the sleeper
+    /// `middle` is smallest.
     pub fn new(forces: &SeatForces, seats: &[usize], middle: usize, headway: Option<f64>) -> Option<TrainForces> {
         let histories: Vec<&[f64]> =
             seats.iter().map(|seat| forces.seats.get(*seat).map(Vec::as_slice)).collect::<Option<_>>()?;
@@ -29,7 +30,7 @@ impl TrainForces {
             Some(headway) => close(&histories, middle, (headway / forces.interval).round().max(1.0) as usize),
             None => alone(&histories, (MARGIN / forces.interval).ceil() as usize),
         };
-        // a headway is no whole number of intervals: its values are set apart by as much more
+        // a headway is not a whole number of intervals: the interval of the values is scaled to fit
         let interval = headway.map_or(forces.interval, |headway| headway / sleepers[0].len() as f64);
         Some(TrainForces { interval, sleepers })
     }

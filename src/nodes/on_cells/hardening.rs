@@ -1,11 +1,13 @@
-//! The law of jumps: each train adds less than the one before, as a power of their number. It is fitted to what the cells have done.
+//! The law of jumps: each train adds less than the one before, as a power of their number. It is fitted to the results
+//! of the cells.
 //!
-//! The n-th train on a bed settles `kappa n^-q` under a load that stays. A cell that has computed `a` of the `n` trains that have passed
-//! is younger than its track, so a train that it computes as its a-th counts as `(a / n)^q` of what it does.
+//! The n-th train on a bed settles `kappa n^-q` under a load that stays. A cell that has computed `a` of the `n` trains
+//! that have passed is younger than its track, so a train that it computes as its a-th counts as `(a / n)^q` of what it
+//! does.
 
 use serde::{Deserialize, Serialize};
 
-/// How fast what a train adds fades.
+/// Exponent by which the settlement added per train decreases.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Hardening {
     pub exponent: f64,
@@ -22,15 +24,15 @@ pub struct Computed {
 
 /// Trains of all cells from which a law may be fitted.
 const FEWEST: usize = 6;
-/// Trains of a cell that say what the next ones add.
+/// Trains of a cell that are used to predict the next trains.
 const RECENT: usize = 8;
-/// Exponents that are tried, from one that never fades to one that comes to an end.
+/// Exponents that are tried, from no decrease to a finite total settlement.
 const LARGEST: f64 = 1.5;
 const TRIED: usize = 301;
 
 impl Hardening {
-    /// The law of cells on equal beds, by least squares over all exponents; each cell has its own factor. `None` while too few trains
-    /// have been computed.
+    /// The law of cells on equal beds, by least squares over all exponents; each cell has its own factor. `None` while
+    /// too few trains have been computed.
     pub fn fitted(cells: &[&[Computed]]) -> Option<Hardening> {
         let count: usize = cells.iter().map(|trains| trains.len()).sum();
         let free = count.checked_sub(cells.len() + 1)?;
@@ -49,8 +51,8 @@ impl Hardening {
         Some(Hardening { exponent: exponent(best), error: below.max(above) })
     }
 
-    /// What a run of `trains` adds behind `passed` others. A cell has computed `known` trains under such forces, the last `now` of them in
-    /// this run, as its first ones.
+    /// Settlement added by a run of `trains` after `passed` other trains. A cell has computed `known` trains under such
+    /// forces; the last `now` of them are the first trains of this run.
     pub fn settled(&self, known: &[Computed], now: usize, passed: u64, trains: u64) -> Jump {
         let q = self.exponent;
         let number = |at: usize| (passed + at as u64 + 1) as f64;
@@ -61,7 +63,7 @@ impl Hardening {
             by_exponent += counted * (number(at) / train.age).ln();
         }
         let left: Vec<f64> = (now..trains as usize).map(number).collect();
-        // late trains say what comes next: a law that bends is straight over a few of them
+        // the last trains predict the next trains: a curved law is straight over a few trains
         let recent = &known[known.len().saturating_sub(RECENT)..];
         let squares: f64 = recent.iter().map(|train| train.age.powf(-2.0 * q)).sum();
         if left.is_empty() || squares == 0.0 {
@@ -77,14 +79,14 @@ impl Hardening {
     }
 }
 
-/// What a run of trains adds to the settlement, and the standard error of it, m.
+/// Settlement added by a run of trains, and its standard error, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Jump {
     pub settled: f64,
     pub error: f64,
 }
 
-/// Sum of the squares by which trains miss the law with the best factor.
+/// Sum of squared differences between trains and the law with the best factor.
 fn misfit(trains: &[Computed], exponent: f64) -> f64 {
     let (mut rates, mut squares, mut all) = (0.0, 0.0, 0.0);
     for train in trains {

@@ -1,19 +1,20 @@
-//! Which cell answers for which seat. Seats share a cell as long as trains load them alike; where forces part, so do the cells.
+//! Cell of each seat. Seats share a cell as long as trains load them equally; a seat with other forces gets its own
+//! cell.
 
 use crate::graph::{CellPlan, CellsNode, seats_alike};
 use serde::{Deserialize, Serialize};
 
-/// The cells of now. Those behind the ones of the plan have parted from others on the way.
+/// The present cells. Cells after the planned ones were split off from others during the run.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Layout {
     pub plans: Vec<CellPlan>,
     /// The cell that answers for each seat; `None` for a seat without grains below.
     pub cell_of: Vec<Option<usize>>,
-    /// For each cell behind those of the plan the one that it has parted from, and its seat.
+    /// For each cell after the planned ones: the cell from which it was split off, and its seat.
     parted: Vec<[usize; 2]>,
 }
 
-/// What makes the layout of now from the plan.
+/// The splits that lead from the plan to the present layout.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct StoredLayout {
     cell_of: Vec<Option<usize>>,
@@ -42,9 +43,9 @@ impl Layout {
         is_whole.then_some(layout)
     }
 
-    /// Gives seats a cell of their own whose load differs from that of the seat which answers for them by more than `tolerance` of the
-    /// largest load, N; seats that are loaded alike share it. `loads` has none for seats that a train does not pass whole: they stay with
-    /// their cell. Tells for each new cell the one whose grains it goes on with.
+    /// Gives a seat its own cell if its load differs from the load of its cell's main seat by more than `tolerance` of
+    /// the largest load, N. Seats with equal loads share the new cell. `loads` has no value for seats that a train does
+    /// not pass with every wheel; they keep their cell. Returns for each new cell the cell whose grains it takes over.
     pub fn part(&mut self, node: &CellsNode, loads: &[Option<f64>], tolerance: f64) -> Vec<usize> {
         let largest = loads.iter().flatten().fold(0.0, |most: f64, load| most.max(*load));
         let apart = tolerance * largest;
@@ -60,7 +61,7 @@ impl Layout {
         from
     }
 
-    /// Seats of a cell that are loaded otherwise than the one that answers, each with its load, N.
+    /// Seats of a cell whose load differs from the load of its main seat, each with its load, N.
     fn parted(&self, cell: usize, loads: &[Option<f64>], apart: f64) -> Vec<(f64, usize)> {
         let Some(own) = loads.get(self.plans[cell].seat()).copied().flatten() else { return Vec::new() };
         let members = self.cell_of.iter().zip(loads).enumerate().filter(|(_, (of, _))| **of == Some(cell));
@@ -68,7 +69,7 @@ impl Layout {
         with_load.filter(|(load, _)| (load - own).abs() > apart).collect()
     }
 
-    /// Adds a cell that parts from another one, at a seat; gives its number, `None` where there is no such cell or seat.
+    /// Adds a cell that parts from another one, at a seat; gives its number, `None` if there is no such cell or seat.
     fn add(&mut self, node: &CellsNode, from: usize, seat: usize) -> Option<usize> {
         let at = node.seats.get(seat)?.as_ref()?;
         let mut plan = CellPlan { x: at.x, ..self.plans.get(from)?.clone() };

@@ -1,9 +1,9 @@
 //! A track whose sleepers stand on periodic cells of grains: tier `cells`.
 //!
-//! Each cell is driven by the forces on the supports of its own sleepers, as the plane track finds them, and gives back how stiff it is and
-//! how much a train adds to its settlement. Of the trains of a block a cell computes as many as the accuracy asks for; the others are a
-//! jump, by a law that is fitted to what all cells have done so far. The rail joins the sleepers in the plane track only: cells do
-//! not push each other along the track, as the bays of a bed do.
+//! Each cell is driven by the forces on the supports of its own sleepers, computed with the plane track. It returns its
+//! stiffness and the settlement that a train adds. A cell computes as many trains of a block as the accuracy requires;
+//! the other trains are a jump, by a law that is fitted to the results of all cells so far. The rail joins the sleepers
+//! in the plane track only: cells do not push each other along the track, as the bays of a bed do.
 
 mod book;
 mod cell;
@@ -26,10 +26,10 @@ use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
 
-/// Grows whenever the same cells are built otherwise than before, or kept in another form.
+/// Version: increased when the same cells are built in another way, or stored in another form.
 const METHOD: &str = "cell of grains 2";
 
-/// What cells are made of.
+/// Data of cells.
 #[derive(Clone, Copy)]
 pub struct Parts<'a> {
     pub cells: &'a CellsNode,
@@ -55,10 +55,11 @@ struct Live {
     underway: Option<Underway>,
 }
 
-/// A block that has begun and is not done. Its trains come in runs: of one kind, in one direction, with one passage of the plane track.
+/// A block that has begun and is not done. Its trains come in runs: of one kind, in one direction, with one passage of
+/// the plane track.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 struct Underway {
-    /// The books as the block began: what others are told until it is done.
+    /// The books at the start of the block: other nodes get these values until the block is done.
     began: Vec<Book>,
     /// Runs that are done.
     runs: usize,
@@ -72,7 +73,7 @@ impl<'a> CellGround<'a> {
         CellGround { parts, responses: Responses { revision: 0, seats: Vec::new() }, live: None }
     }
 
-    /// Takes over what the books say of the supports.
+    /// Takes over the values of the supports from the books.
     fn answer(&mut self) {
         let Some(live) = &self.live else { return };
         let seats = book::supports(self.parts.cells, &live.layout, live.told());
@@ -107,7 +108,7 @@ impl Substructure for CellGround<'_> {
         Forces::Histories
     }
 
-    /// What the last train added, once more for each.
+    /// Prediction: each train adds the settlement of the last train.
     fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError> {
         let trains = loads.iter().map(|load| load.trains).sum::<u64>() as f64;
         let live = self.live()?;
@@ -189,7 +190,8 @@ impl Live {
                         going_on(tell(Stage::StaticLoad, 0.0))?;
                         Ok((cell.store(), cell.pressed(node.gravity)?))
                     };
-                    // what comes later must not know whether it was built before: it goes on from what is stored in both cases
+                    // later results must not depend on whether the cell was built before: both cases continue from the
+                    // stored state
                     let (stored, stiffness) = parts.beds.built::<_, NodeError>(&hash, build)?;
                     (Cell::restore(stored, plan.sleepers.len())?, Book::new(stiffness))
                 }
@@ -209,7 +211,7 @@ impl Live {
         self.underway.get_or_insert_with(|| Underway { began: books.clone(), runs: 0, computed: Vec::new() })
     }
 
-    /// What others are told of the cells.
+    /// The values of the cells that other nodes get.
     fn told(&self) -> &[Book] {
         self.underway.as_ref().map_or(&self.books, |underway| &underway.began)
     }
@@ -243,7 +245,7 @@ impl Live {
         }
     }
 
-    /// Gives seats cells of their own that the trains of one load treat otherwise than the seats which they shared one with.
+    /// Splits cells whose seats get different loads from the trains of one load.
     fn part(&mut self, node: &CellsNode, load: &Load<'_>) -> Result<(), NodeError> {
         let loads = loads_of_seats(node, load)?;
         for from in self.layout.part(node, &loads, node.tolerance) {
@@ -255,8 +257,9 @@ impl Live {
         Ok(())
     }
 
-    /// What the run under way adds to each cell; `None` for a cell that must compute a further train first. Each computes one at least:
-    /// forces have changed since the last run, and a law that holds no more shows it there.
+    /// Settlement that the run under way adds to each cell; `None` for a cell that must compute a further train first.
+    /// Each cell computes at least one train: forces have changed since the last run, and this train shows if the law
+    /// no longer holds.
     fn jumps(&self, node: &CellsNode, trains: u64) -> Vec<Option<Jump>> {
         let plans = &self.layout.plans;
         let laws = laws(node.beds.len(), plans, &self.books);
@@ -315,7 +318,8 @@ impl Live {
     }
 }
 
-/// What a cell is built of, wherever its seat is and whatever lies below: cells that are alike but for these are built once.
+/// Data that determine how a cell is built. The place of its seat and the soil below do not matter, so cells that
+/// differ only in these are built once.
 fn anywhere(plan: &CellPlan) -> CellPlan {
     let mut plan = CellPlan { x: 0.0, soil: None, ..plan.clone() };
     plan.sleepers.iter_mut().for_each(|sleeper| sleeper.seat = 0);
@@ -326,7 +330,7 @@ fn no_forces() -> NodeError {
     NodeError::Other { node: "cells".into(), why: "a passage brings no forces of sleepers".into() }
 }
 
-/// What a train adds to the force on the support of each seat that it passes whole, N.
+/// Force that a train adds on the support of each seat that it passes with every wheel, N.
 fn loads_of_seats(node: &CellsNode, load: &Load<'_>) -> Result<Vec<Option<f64>>, NodeError> {
     let forces = load.passage.forces.as_ref().ok_or_else(no_forces)?;
     let of_seat = |(number, seat): (usize, &Option<SeatOnCell>)| {

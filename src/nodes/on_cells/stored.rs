@@ -10,7 +10,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::{Deserialize, Serialize};
 
-/// What [`Live`] holds.
+/// Content of [`Live`].
 #[derive(Serialize, Deserialize)]
 struct Stored {
     layout: StoredLayout,
@@ -45,7 +45,7 @@ impl Cell {
         let bed = Bed::restore(bed).map_err(foreign)?;
         let is_whole = [walls.len(), forces.len(), weights.len()] == [sleepers; 3] && middle < sleepers;
         if !is_whole || walls.iter().any(|wall| wall.0 as usize >= bed.walls().len()) {
-            return Err(foreign("a cell of it has other sleepers"));
+            return Err(foreign("one cell has other sleepers"));
         }
         Ok(Cell { bed, walls, stride, forces, weights, middle, height })
     }

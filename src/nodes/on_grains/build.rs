@@ -1,5 +1,6 @@
-//! How a track comes to stand on grains, as in the paper (sections 2.1.3, 2.3 and 2.4): cells are packed, laid side by side, sleepers set
-//! down, cribs filled and layers glued where the scene asks for it, the soil put below, the rail laid on. Each stage is at rest before the next one begins.
+//! Builds a track on grains, as in the paper (sections 2.1.3, 2.3 and 2.4): cells are packed, laid side by side,
+//! sleepers set down, cribs filled and layers glued where the scene asks for it, the soil put below, the rail laid on.
+//! Each stage is at rest before the next one begins.
 
 use super::soil::{Plan, SoilBelow};
 use super::step::{Coupled, Spent, StandingBed};
@@ -13,16 +14,17 @@ use crate::solvers::track::{Foot, Leapfrog, Spring, Track, TrackLevel};
 use crate::store::{Beds, recipe_hash};
 use std::sync::Arc;
 
-/// The time step over the step that each grain bears by itself. The rest is for contacts that form between two looks at inertia.
-/// At 0.95, and with one look a passage, loaded sleepers made the step too long and the run stopped.
+/// The time step over the step that each grain bears by itself. The reserve is for contacts that form between two
+/// updates of the inertia. At 0.95, and with one update per passage, loaded sleepers made the step too long and the run
+/// stopped.
 pub const OF_STRIDE: f64 = 0.9;
-/// How grains share contacts when inertia is added for the step.
+/// Rule for sharing contacts between grains when inertia is added for the step.
 pub const SHARING: Sharing = Sharing::ByNeed;
 
-/// Grows whenever the same parts are built otherwise than before, or kept in another form.
+/// Version: increased when the same parts are built in another way, or stored in another form.
 const METHOD: &str = "track on grains 10";
 
-/// What a track on grains is made of.
+/// Data of a track on grains.
 #[derive(Clone, Copy)]
 pub struct Parts<'a> {
     pub grains: &'a GrainsNode,
@@ -32,7 +34,7 @@ pub struct Parts<'a> {
 }
 
 impl Parts<'_> {
-    /// Names what is built of these parts, whatever runs over it later.
+    /// Hash of the built track; it does not depend on the trains.
     pub fn hash(&self) -> String {
         let GrainsNode { beds, stretches, settlement, pads, damping_time, gravity, time_step, added_inertia, .. } =
             self.grains;
@@ -40,7 +42,7 @@ impl Parts<'_> {
         recipe_hash(&(METHOD, grains, self.soil, self.track))
     }
 
-    /// Builds all of it; `beyond` says what lies under the seats that do not stand on grains.
+    /// Builds the whole track; `beyond` gives the supports of the seats that do not stand on grains.
     pub fn build(&self, beyond: &[Option<Spring>], tell: &mut Telling<'_>) -> Result<Coupled, NodeError> {
         let mut beds = Vec::with_capacity(self.grains.stretches.len());
         let (mut feet, mut time_step) = (0, f64::INFINITY);
@@ -115,14 +117,14 @@ impl Parts<'_> {
         seats.map(|(number, seat)| seat.is_ballasted().then(|| self.support(number, stiffness))).collect()
     }
 
-    /// What a sleeper stands on where its support has a stiffness, N/m: the support, and its pad in series.
+    /// Stiffness under a sleeper, N/m: the support and its pad in series.
     pub fn support(&self, seat: usize, stiffness: f64) -> Spring {
         let ground = Spring { stiffness, damping: self.grains.damping_time * stiffness, seating: None };
         self.grains.pads.get(seat).copied().flatten().map_or(ground, |pad| pad.on(ground))
     }
 
-    /// The level of the supports beyond the grains: as much higher as they give way under the track alone, which lies level so, and lower
-    /// by what has settled, m.
+    /// Level of the supports beyond the grains, m: raised by their deflection under the track alone, so that the track
+    /// lies level, and lowered by their settlement.
     pub fn level(&self, beyond: &[Option<Spring>], settlement: &[f64]) -> TrackLevel {
         let seats = self.track.seats.iter().enumerate().zip(beyond).zip(settlement);
         let settlements = seats.map(|(((number, seat), spring), settled)| {

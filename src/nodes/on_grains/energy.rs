@@ -1,4 +1,4 @@
-//! Where the work of wheels goes in a passage: an account of rail, grains and soil, and of what is lost between them.
+//! Energy balance of a passage: rail, grains, soil, and the loss between them.
 
 use super::passage::REACH;
 use super::step::Coupled;
@@ -20,9 +20,9 @@ pub struct PassageEnergy {
     pub local_damping: f64,
     /// Lost in the soil: by plastic flow, damping and through quiet faces.
     pub lost_in_soil: f64,
-    /// What one part gave to another and the other did not take.
+    /// Energy that one part gave and the next part did not receive.
     pub interfaces: f64,
-    /// What the accounts of the parts do not explain, interfaces not counted.
+    /// Energy that the balances of the parts do not explain, without interfaces.
     pub unaccounted: f64,
 }
 
@@ -38,7 +38,8 @@ impl Coupled {
         }
     }
 
-    /// The account so far. That of the rail is half a step ahead of the others: what its feet did in that half is taken back.
+    /// The balance so far. The balance of the rail is half a step ahead of the others, so the work of its feet in that
+    /// half step is subtracted.
     pub fn energy(&self) -> PassageEnergy {
         let rail = self.rail.energy().unwrap_or_default();
         let half = 0.5 * self.time_step();
@@ -70,7 +71,7 @@ impl Coupled {
 }
 
 impl GrainGround<'_> {
-    /// The account of a passage with these wheel forces, on a copy. `tell` hears how far it is.
+    /// The balance of a passage with these wheel forces, on a copy. `tell` gets the progress.
     pub fn energy_of(&self, load: &Load<'_>, tell: &mut Telling<'_>) -> Result<PassageEnergy, NodeError> {
         let mut coupled = self.live_at_rest()?.coupled.clone();
         let none = || NodeError::Other { node: "grains".into(), why: "a passage brings no wheel forces".into() };

@@ -1,12 +1,11 @@
-//! The extremes of a passage over the rail of the coupled model, and the histories that are recorded of it: what [`PassageOutcome`] holds
-//! of any passage.
+//! Extremes and recorded histories of a passage over the rail of the coupled model: the content of [`PassageOutcome`].
 
 use crate::graph::{History, PassagePlan, Record, TrackNode, Train};
 use crate::nodes::{PassageOutcome, Sample, SampledPart, SeatOutcome, Unloaded};
 use crate::solvers::track::LeapfrogView;
 use serde::{Deserialize, Serialize};
 
-/// Looks at a passage, step by step.
+/// Reads a passage, step by step.
 pub struct Extremes<'a> {
     track: &'a TrackNode,
     unloaded: &'a Unloaded,
@@ -20,7 +19,7 @@ pub struct Extremes<'a> {
     pub seen: Seen,
 }
 
-/// What has been seen so far.
+/// The extremes so far.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Seen {
     seats: Vec<SeatOutcome>,
@@ -38,7 +37,7 @@ fn widen(range: &mut (f64, f64), value: f64) {
     *range = (range.0.min(value), range.1.max(value));
 }
 
-/// What a passage is recorded for, and how often.
+/// Records of a passage, and their interval.
 pub struct Recorded<'a> {
     pub records: &'a [Record],
     pub axles: u64,

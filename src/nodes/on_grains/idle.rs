@@ -1,10 +1,10 @@
-//! A track on grains without traffic: it must lie still.
+//! A track on grains without traffic: it must not move.
 
 use super::{GrainGround, Stage, Telling};
 use crate::nodes::NodeError;
 
 impl GrainGround<'_> {
-    /// The farthest that the underside of a sleeper moves in a while (s) without a train, on a copy, m.
+    /// Largest movement of the underside of a sleeper during a time (s) without a train, on a copy, m.
     pub fn idle(&self, seconds: f64, tell: &mut Telling<'_>) -> Result<f64, NodeError> {
         let mut coupled = self.live_at_rest()?.coupled.clone();
         // levels are known from the first step on

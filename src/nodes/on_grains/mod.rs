@@ -1,8 +1,9 @@
 //! A track whose sleepers stand on grains: packed beds under a rail, and soil below (the paper's DEM-FDM model).
 //!
-//! Between two exchanges the wheel forces of the plane track run over the rail of this model, and what they leave goes back: settlement
-//! of every support, and how stiff it is (the paper's Fig. 3). Sleepers beyond the grains stand on springs; their supports settle as the
-//! median of the outer third of the sleepers on grains, and so do those in the last bay before grains that are held.
+//! Between two exchanges the wheel forces of the plane track run over the rail of this model. The settlement and the
+//! stiffness of every support go back to the plane track (the paper's Fig. 3). Sleepers beyond the grains stand on
+//! springs; their supports settle as the median of the outer third of the sleepers on grains, and so do those in the
+//! last bay before grains that are held.
 
 mod build;
 mod energy;
@@ -42,7 +43,7 @@ use std::ops::ControlFlow;
 use step::Coupled;
 use underway::Underway;
 
-/// What a track on grains is busy with.
+/// Stage of the computation of a track on grains.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
     Packing,
@@ -60,11 +61,11 @@ impl fmt::Display for Stage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Stage::Packing => "packing a cell",
-            Stage::Laying => "cells side by side",
-            Stage::Sleepers => "sleepers are set down",
-            Stage::Cribs => "cribs are filled",
+            Stage::Laying => "placing cells side by side",
+            Stage::Sleepers => "setting down sleepers",
+            Stage::Cribs => "filling cribs",
             Stage::Soil => "soil below",
-            Stage::Rail => "rail laid on, coming to rest",
+            Stage::Rail => "laying the rail, coming to rest",
             Stage::StaticLoad => "static load on the sleepers",
             Stage::Passage => "trains on grains",
             Stage::Rest => "coming to rest",
@@ -72,10 +73,10 @@ impl fmt::Display for Stage {
     }
 }
 
-/// Hears what is being done, and the share of it that is done. A break ends it.
+/// Gets the stage, and the share of this stage that is done. A break ends the computation.
 pub type Telling<'a> = dyn FnMut(Stage, f64) -> ControlFlow<()> + 'a;
 
-/// Fails where who listens has ended the run.
+/// Fails if the listener has ended the run.
 pub(super) fn going_on(told: ControlFlow<()>) -> Result<(), NodeError> {
     match told {
         ControlFlow::Continue(()) => Ok(()),
@@ -83,7 +84,7 @@ pub(super) fn going_on(told: ControlFlow<()>) -> Result<(), NodeError> {
     }
 }
 
-/// Tells how far trains are, and offers the state to be kept: who ends the run can keep it first.
+/// Reports the progress of trains, and offers the state: a listener that ends the run can store the state first.
 pub(super) fn tell_stage_and_state(
     (stage, share): (Stage, f64),
     state: &dyn Fn() -> Result<serde_json::Value, NodeError>,
@@ -100,7 +101,7 @@ pub struct GrainGround<'a> {
     live: Option<Live>,
     /// Axles after which the next block begins, where its first passage is recorded.
     record: Option<u64>,
-    /// What was recorded in the last block.
+    /// The records of the last block.
     recorded: Vec<VolumeSample>,
 }
 
@@ -113,7 +114,7 @@ pub(super) struct Live {
     underway: Option<Underway>,
 }
 
-/// What is known of every seat.
+/// Data of every seat.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Books {
     /// Under the seats that do not stand on grains.
@@ -126,7 +127,7 @@ pub(super) struct Books {
     rest: Vec<Reading>,
     /// Level of every support without load below the level as built, m, of the seats.
     settlement: Vec<f64>,
-    /// What the last train added, m.
+    /// Settlement added by the last train, m.
     rate: Vec<f64>,
     /// Grows whenever a stiffness changes.
     revision: u64,
@@ -166,7 +167,7 @@ impl<'a> GrainGround<'a> {
         self.parts
     }
 
-    /// Takes over what the books say of the supports.
+    /// Takes over the values of the supports from the books.
     fn answer(&mut self) {
         let Some(live) = &self.live else { return };
         let (books, coupled) = (live.told(), &live.coupled);
@@ -181,7 +182,8 @@ impl<'a> GrainGround<'a> {
 impl Substructure for GrainGround<'_> {
     fn prepare(&mut self, tell: &mut Telling<'_>) -> Result<(), NodeError> {
         let parts = self.parts;
-        // what comes later must not know whether it was built before: it goes on from what is stored in both cases
+        // later results must not depend on whether the track was built before: both cases continue from the stored
+        // state
         let state = parts.beds.built(&parts.hash(), || Live::build(parts, tell)?.save())?;
         self.restore(&state)
     }
@@ -198,7 +200,8 @@ impl Substructure for GrainGround<'_> {
         Forces::Wheels
     }
 
-    /// What the last train added, once more for each: nobody knows what grains do before they have done it.
+    /// Prediction: each train adds the settlement of the last train, because the response of grains is not known before
+    /// it is computed.
     fn predict(&self, loads: &[Load<'_>]) -> Result<Vec<f64>, NodeError> {
         let trains: u64 = loads.iter().map(|load| load.trains).sum();
         let rate = self.live.as_ref().map(|live| live.told().rate.as_slice()).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! What is done to a track on grains: it comes to rest, it is pressed, trains pass.
+//! Operations on a track on grains: it comes to rest, it is loaded, trains pass.
 
 use super::build::{OF_STRIDE, Parts, SHARING};
 use super::reading::{Reading, Watched};
@@ -18,19 +18,20 @@ const DAMPING: f64 = 0.7;
 const DRAG: f64 = 200.0;
 /// Steps between looks at rest.
 const LOOK: u64 = 200;
-/// At rest forces are in balance to this share of those that act, and no sleeper is faster, m/s: at two looks in a row.
+/// Conditions of rest, at two checks in a row: unbalanced forces are below this share of the acting forces, and no
+/// sleeper is faster than this, m/s.
 const UNBALANCE: f64 = 2e-3;
 const CREEP: f64 = 2e-5;
 const CALM: u32 = 2;
-/// Time after which a track that is built counts as restless, and time that it has to rest after a passage, s.
+/// Longest time in which a built track must come to rest, and time to rest after a passage, s.
 const LONGEST: f64 = 2.0;
 pub(super) const AFTER: f64 = 0.25;
-/// Wheels act on the rail from so far before the grains on to so far behind them, m: three times the length in which a rail's deflection
-/// fades.
+/// Wheels act on the rail from so far before the grains on to so far behind them, m: three times the length in which a
+/// rail's deflection fades.
 pub(super) const REACH: f64 = 6.0;
-/// Stiffness of supports before the grains are asked, N/m.
+/// Stiffness of supports before the stiffness of the grains is measured, N/m.
 const GUESS: f64 = 80e6;
-/// Static load on every sleeper, N, about what bears on one under a wheel of 20 t an axle; time in which it grows and stands, s.
+/// Static load on every sleeper, N, about the load on a sleeper under a 20 t axle; time in which it grows and stays, s.
 const PRESS: f64 = 40e3;
 const PRESSING: [f64; 2] = [0.06, 0.03];
 
@@ -59,7 +60,8 @@ impl Coupled {
         Ok(())
     }
 
-    /// Steps under wheels that are known until a time has passed (s); `see` hears the time and looks after each, and may end it.
+    /// Steps under known wheel forces for a time (s); `see` is called with the time after each step, and may end the
+    /// steps.
     pub fn run<A: Answer>(
         &mut self,
         time: f64,
@@ -101,7 +103,8 @@ impl Coupled {
         Ok(done)
     }
 
-    /// Runs until all is at rest, or the time is over (s); gives how far from rest it is, over what counts as rest. `tell` may end it.
+    /// Runs until everything is at rest, or the time is over (s). Returns the motion relative to the limit for rest.
+    /// `tell` may end it.
     pub fn come_to_rest<A: Answer>(&mut self, longest: f64, tell: &mut impl FnMut(f64) -> A) -> Result<f64, NodeError> {
         self.damped(|coupled| {
             let (mut calm, mut passed, mut fading) = (0, 0.0, Fading::default());
@@ -119,7 +122,7 @@ impl Coupled {
         })
     }
 
-    /// How far from rest: 1 where it just counts as rest.
+    /// Motion relative to the limit for rest: 1 at the limit.
     fn restlessness(&mut self) -> Result<f64, NodeError> {
         let mut most: f64 = 0.0;
         for standing in &mut self.beds {
@@ -130,7 +133,7 @@ impl Coupled {
         Ok((0..self.pushes.len()).map(speed).fold(most, f64::max))
     }
 
-    /// Presses all sleepers at once, and gives how stiff each support is, N/m.
+    /// Loads all sleepers at once, and returns the stiffness of each support, N/m.
     fn press(
         &mut self,
         parts: Parts<'_>,
@@ -152,8 +155,8 @@ impl Coupled {
 }
 
 impl Live {
-    /// Builds a track on grains and brings it to rest. Supports beyond the grains are made as stiff as those on them: the grains are asked on
-    /// a copy first.
+    /// Builds a track on grains and brings it to rest. Supports beyond the grains get the stiffness of the supports on
+    /// grains, which is first measured on a copy.
     pub fn build(parts: Parts<'_>, tell: &mut Telling<'_>) -> Result<Live, NodeError> {
         let mut coupled = parts.build(&parts.beyond(GUESS), tell)?;
         let mut copy = coupled.clone();
@@ -165,7 +168,8 @@ impl Live {
         let away = coupled.come_to_rest(LONGEST, &mut |share| tell(Stage::Rail, share))?;
         if away > 1.0 {
             let why = format!(
-                "the track on grains is not at rest after {LONGEST} s: {away:.1} times what counts as rest; pack the bed under more pressure"
+                "the track on grains is not at rest after {LONGEST} s: its motion is {away:.1} times the limit for \
+                rest; pack the bed under more pressure"
             );
             return Err(NodeError::Other { node: "grains".into(), why });
         }
@@ -190,7 +194,8 @@ impl Live {
     pub fn pass(&mut self, parts: Parts<'_>, load: &Load<'_>, follow: &mut Following<'_>) -> Result<(), NodeError> {
         let none = || NodeError::Other { node: "grains".into(), why: "a passage brings no wheel forces".into() };
         let wheels = load.passage.wheels.as_ref().ok_or_else(none)?;
-        // trains that follow each other closely are one passage; others pass one by one, and the track comes to rest between them
+        // trains that follow each other closely are one passage; others pass one by one, and the track comes to rest
+        // between them
         let passages: Vec<WheelRun<'_>> = match parts.grains.headway {
             Some(distance) => vec![WheelRun::new(wheels, load.trains, distance / wheels.speed)],
             None => (0..load.trains).map(|_| WheelRun::new(wheels, 1, 0.0)).collect(),
@@ -268,7 +273,7 @@ impl Live {
         self.close_the_books(parts, &watched)
     }
 
-    /// What a passage has left.
+    /// Result of a passage.
     fn close_the_books(&mut self, parts: Parts<'_>, watched: &[Watched]) -> Result<(), NodeError> {
         let Live { coupled, books, .. } = self;
         books.rest = coupled.readings();
@@ -300,7 +305,8 @@ impl Live {
         self.lay_beyond(parts)
     }
 
-    /// Updates the springs beyond the grains: stiffness of the supports near them (N/m), and level (m). The motion of the rail goes on.
+    /// Updates the springs beyond the grains: stiffness of the supports near them (N/m), and level (m). The motion of
+    /// the rail goes on.
     fn lay_beyond(&mut self, parts: Parts<'_>) -> Result<(), NodeError> {
         let Live { coupled, books, .. } = self;
         let beyond = parts.beyond_as_near(&books.stiffness);
@@ -321,7 +327,7 @@ impl Parts<'_> {
         self.grains.stretches.iter().flat_map(|stretch| &stretch.sleepers)
     }
 
-    /// The values of the carried feet, where those over buffers have what is read near them.
+    /// The values of the carried feet; feet over buffers take the values near them.
     fn with_buffers(&self, mut values: Vec<f64>) -> Vec<f64> {
         for (foot, sleeper) in self.sleepers().enumerate().filter(|(_, sleeper)| sleeper.buffer) {
             values[foot] = self.as_near(&values, sleeper.seat);
@@ -336,7 +342,8 @@ impl Parts<'_> {
         seats.map(|(number, seat)| seat.is_ballasted().then(|| spring(number))).collect()
     }
 
-    /// Median of the values of those carried feet that are read and in the third of the nearest bed that is next to a seat.
+    /// Median of the values of those carried feet that are read and in the third of the nearest bed that is next to a
+    /// seat.
     fn as_near(&self, values: &[f64], seat: usize) -> f64 {
         let away = |other: usize| (self.track.seats[other].x - self.track.seats[seat].x).abs();
         let mut values = values.iter();

@@ -1,4 +1,4 @@
-//! What a passage tells of the support under a sleeper: how stiff it is, and at which level it carries nothing.
+//! Reads the support under a sleeper during a passage: its stiffness, and the level at which its force is zero.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,15 +14,16 @@ pub const LIFTED: f64 = 100.0;
 
 /// One sleeper over a passage.
 ///
-/// A wheel, a bogie, or the bogies of two neighbours press it down and let it go again: its force rises and falls. A long
-/// train does that many times while the support settles, so that only the last of these loadings tells how stiff the support is now.
+/// A wheel, a bogie, or the bogies of two neighbours press it down and let it go again: its force rises and falls. A
+/// long train does this many times while the support settles, so only the last loading gives the present stiffness of
+/// the support.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Watched {
     /// The loading under way, or about to begin.
     now: Loading,
     /// Whether its force has risen.
     rises: bool,
-    /// The last one that is over and was no mere ringing, and the largest force that any has added, N.
+    /// The last complete loading that was more than ringing, and the largest force added by any loading, N.
     last: Option<Loading>,
     largest: f64,
     before: Reading,
@@ -78,28 +79,29 @@ impl Watched {
                 (self.now, self.rises) = (Loading::from(now), false);
             }
         } else if now.force <= self.now.begin.force.max(LIFTED) {
-            // in the air it may be anywhere: what counts is where it comes down
+            // its level in the air does not matter; the level at which it lands does
             self.now = Loading::from(now);
         } else if now.force - self.now.begin.force > LOADED * LIFTED {
             (self.now.peak, self.rises) = (now, true);
         }
     }
 
-    /// The last loading that says how stiff the support is.
+    /// The last loading that gives the stiffness of the support.
     fn told(&self) -> Option<Loading> {
         let ringing = self.now.added() < RINGING * self.largest.max(self.now.added());
         if self.rises && !ringing { Some(self.now) } else { self.last }
     }
 
-    /// Secant of the support from where the last loading begins to its largest force, N/m; `None` where no wheel loads it.
+    /// Secant of the support from where the last loading begins to its largest force, N/m; `None` if no wheel loads it.
     pub fn stiffness(&self) -> Option<f64> {
         let told = self.told()?;
         let way = told.peak.level - told.begin.level;
         (way > 0.0).then(|| told.added() / way)
     }
 
-    /// Level at which the support carries nothing, m, by its state at rest and a stiffness (N/m); for a sleeper that hangs, the one at
-    /// which it last left its support. `None` where it hangs and no wheel has pressed it down: nobody has seen its support.
+    /// Level at which the support carries nothing, m, by its state at rest and a stiffness (N/m); for a sleeper that
+    /// hangs, the one at which it last left its support. `None` if it hangs and no wheel has pressed it down: the level
+    /// of its support is not known.
     pub fn unloaded_level(&self, rest: Reading, stiffness: f64) -> Option<f64> {
         match self.left {
             _ if rest.force > LIFTED => Some(rest.level - rest.force / stiffness),
@@ -109,11 +111,11 @@ impl Watched {
     }
 }
 
-/// Times [`LIFTED`] that a wheel must add before its secant says anything.
+/// Smallest force added by a wheel, as a multiple of [`LIFTED`], for which the secant stiffness is used.
 const LOADED: f64 = 20.0;
-/// Share of a loading that goes before it is over: between the wheels of a bogie less goes.
+/// Share of the force that must disappear before a loading is over: between the wheels of a bogie the force drops less.
 const LET_GO: f64 = 0.75;
-/// Share of the largest loading of a passage below which another is the ringing of the track.
+/// A loading below this share of the passage's largest loading is ringing of the track.
 const RINGING: f64 = 0.5;
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Volumes of grains in a passage that is recorded, and the sleepers over them (the paper's Figs. 17 and 18).
 //!
-//! The grains of a volume are those whose middle lies inside as the passage begins. Velocities are means over their mass; their
-//! acceleration is the change of this mean over the interval of the histories, so that nothing between two samples is lost.
-//! Stress and coordination are read where inertia is looked at.
+//! The grains of a volume are those whose middle lies inside as the passage begins. Velocities are means over their
+//! mass; their acceleration is the change of this mean over the interval of the histories, so that nothing between two
+//! samples is lost. Stress and coordination are read where inertia is looked at.
 
 use super::build::Parts;
 use super::step::Coupled;
@@ -30,7 +30,7 @@ pub(super) struct Recording {
     pub samples: Vec<VolumeSample>,
     /// Heights of the undersides of the sleepers on each bed as built, m.
     pub tops: Vec<f64>,
-    /// Where the leading wheel was at the last look, m, before it has come to where beds are looked at under it.
+    /// Place of the leading wheel at the last check, m, before it reaches the place at which the beds are recorded.
     leading: Option<f64>,
     has_come: bool,
 }

@@ -1,4 +1,5 @@
-//! Vehicles ride on the rail over the grains: track, vehicles, grains and soil in one step, nothing exchanged but forces and velocities.
+//! Vehicles ride on the rail over the grains: track, vehicles, grains and soil in one step; only forces and velocities
+//! are exchanged.
 
 use super::build::Parts;
 use super::extremes::{Extremes, Recorded};
@@ -17,7 +18,7 @@ pub struct Riders<'a> {
     pub trains: u64,
     /// Axles that have passed before.
     pub axles: u64,
-    /// What the first of them is recorded for; `None` where it is not.
+    /// Records of the first of them; `None` if it is not recorded.
     pub records: Option<&'a [Record]>,
 }
 
@@ -29,7 +30,8 @@ impl GrainGround<'_> {
         Ok(ride.map_or_else(|| live.at_rest(self.parts()), |ride| ride.unloaded.clone()))
     }
 
-    /// Begins a block of trains that ride, or goes on with the one that is under way: gives the passages of its runs that are done.
+    /// Begins a block of trains that ride, or goes on with the one that is under way: gives the passages of its runs
+    /// that are done.
     pub fn begin_rides(&mut self) -> Result<Vec<PassageOutcome>, NodeError> {
         let unloaded = self.at_rest()?;
         let underway = self.working()?.block();
@@ -47,8 +49,8 @@ impl GrainGround<'_> {
         Ok(())
     }
 
-    /// Lets the next run of trains of a block ride over the grains, and gives the passage of the first of them; trains that follow each other
-    /// closely are one passage.
+    /// Lets the next run of trains of a block ride over the grains, and returns the passage of the first train. Trains
+    /// that follow each other closely are one passage.
     pub fn ride(&mut self, riders: &Riders<'_>, follow: &mut Following<'_>) -> Result<PassageOutcome, NodeError> {
         let parts = self.parts();
         let live = self.working()?;
@@ -116,7 +118,8 @@ impl Live {
         }
     }
 
-    /// The springs beyond the grains have sunk by what a train settles: the rail follows, and what the grains under it bear changes.
+    /// The springs beyond the grains have settled under a train: the rail goes down, and the load on the grains under
+    /// it changes.
     fn come_to_rest_on_springs(&mut self) -> Result<(), NodeError> {
         self.coupled.come_to_rest(AFTER, &mut |_| {})?;
         self.books.rest = self.coupled.readings();
@@ -182,7 +185,8 @@ impl Live {
         Ok(extremes.outcome())
     }
 
-    /// Puts a train before the rail, or where it was in the middle of its passage; gives the way that its first wheel goes, m.
+    /// Puts a train before the rail, or where it was in the middle of its passage; gives the way that its first wheel
+    /// goes, m.
     fn set_out(&mut self, parts: Parts<'_>, riders: &Riders<'_>, train: &Train) -> Result<f64, NodeError> {
         let ([left, right], [start, end]) = (parts.ends(), parts.track.ends());
         let direction = riders.runner.direction;

@@ -1,7 +1,7 @@
 //! The soil below a bed: the floor of the grains moves with the nodes of its surface.
 //!
-//! The soil takes every step of the grains, and not one for several of them: force and velocity would meet two steps apart then, and columns of
-//! spheres under a rail won a tenth of the wheels' work at one step in sixteen.
+//! The soil takes every step of the grains, and not one step for several of theirs. Otherwise force and velocity would
+//! be two steps apart: with one step in sixteen, columns of spheres under a rail gained a tenth of the wheels' work.
 
 use crate::graph::{SoilLayer, SoilNode};
 use crate::nodes::NodeError;
@@ -21,7 +21,7 @@ pub struct SoilBelow {
 const SAFE: f64 = 0.8;
 
 impl SoilBelow {
-    /// Puts soil under a bed at rest: it bears the bed as it lies, and lies still.
+    /// Puts soil under a bed at rest: it carries the bed in its present position without moving.
     pub fn new(bed: &mut Bed<f32>, floor: WallId, plan: Plan, node: &SoilNode) -> Result<SoilBelow, NodeError> {
         let (mut soil, sheet) = unloaded(plan, node)?;
         let nodes = nodes_under(&sheet, &soil);
@@ -59,7 +59,7 @@ impl SoilBelow {
         Ok(SoilBelow { soil, floor, nodes })
     }
 
-    /// The longest step that the soil bears with the contacts of now on its nodes, less what it keeps in hand, s.
+    /// Longest stable step of the soil with the present contacts on its nodes, minus a reserve, s.
     pub fn longest_step(&self, bed: &Bed<f32>) -> f64 {
         let springs: Vec<(usize, f64)> = match bed.wall(self.floor).sheet() {
             Some(sheet) => self.nodes.iter().copied().zip(sheet.stiffnesses().iter().copied()).collect(),
@@ -120,8 +120,8 @@ fn lines(from: f64, to: f64, size: f64) -> Vec<f64> {
     (0..=count).map(|line| from + (to - from) * line as f64 / count as f64).collect()
 }
 
-/// The materials of the layers, each once, and the material of each element by its place along the track and upwards. An element has the
-/// material at its middle.
+/// The materials of the layers, each once, and the material of each element by its place along the track and upwards.
+/// An element has the material at its middle.
 fn materials(start: f64, node: &SoilNode, x: &[f64], z: &[f64]) -> (Vec<Material>, Vec<Vec<usize>>) {
     let mut found: Vec<Material> = Vec::new();
     let mut number = |layer: &SoilLayer| {

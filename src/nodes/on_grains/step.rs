@@ -1,8 +1,9 @@
 //! One step of everything that moves together: grains, what stands on them, the rail over it and the soil below.
 //!
-//! All go by one leapfrog: forces at the present time, then velocities half a step on, then places. A bed computes its forces and moves
-//! its grains; its sleepers wait until the forces of all beds are known, then the rail says how they move, and the soil how the floor
-//! does. What two parts do to each other is one number at one time: force, moment and power are the same on both sides.
+//! All go by one leapfrog: forces at the present time, then velocities half a step on, then places. A bed computes its
+//! forces and moves its grains; its sleepers wait until the forces of all beds are known. Then the rail gives the
+//! motion of the sleepers, and the soil the motion of the floor. The interaction of two parts is one number at one
+//! time: force, moment and power are the same on both sides.
 
 use super::soil::SoilBelow;
 use crate::nodes::NodeError;
@@ -10,7 +11,7 @@ use crate::solvers::granular::{Bed, WallId};
 use crate::solvers::track::{Leapfrog, WheelLoads};
 use std::time::{Duration, Instant};
 
-/// Steps between looks at inertia: loads form contacts.
+/// Steps between updates of inertia: loads form contacts.
 pub const HOLD: u64 = 200;
 
 /// A bed with what stands on it and what lies below.
@@ -35,7 +36,7 @@ pub struct Coupled {
     pub spent: Spent,
 }
 
-/// Where the time of steps goes beside the grains.
+/// Time of steps outside the grains.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Spent {
     pub rail: Duration,
@@ -53,13 +54,15 @@ impl Coupled {
         self.rail.time_step()
     }
 
-    /// Level of the underside of a carried foot, m below the level as built, at the time of the forces of the last step.
+    /// Level of the underside of a carried foot, m below the level as built, at the time of the forces of the last
+    /// step.
     pub fn level(&self, foot: usize) -> f64 {
         self.rail.view().underside_displacement(foot)
     }
 }
 
-/// The first bed computes its forces, then all others do; the rail steps when all are known, and each bed goes on by what it says.
+/// The first bed computes its forces, then all others do; the rail steps when all forces are known, and each bed
+/// continues with the motion of the rail.
 fn in_turn(
     beds: &mut [StandingBed],
     rail: &mut Leapfrog,

@@ -15,7 +15,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::{Deserialize, Serialize};
 
-/// What [`Live`] holds.
+/// Content of [`Live`].
 #[derive(Serialize, Deserialize)]
 struct Stored {
     time_step: f64,
@@ -85,7 +85,7 @@ impl Live {
                     Some(SoilBelow::restore(&bed, parts.floor(number), parts.lies(number), node, state)?)
                 }
                 (None, None) => None,
-                _ => return Err(foreign("it holds soil that is not there, or none")),
+                _ => return Err(foreign("it holds soil that the scene does not have, or lacks the soil of the scene")),
             };
             Ok(StandingBed { bed, sleepers: stored.sleepers, soil })
         };

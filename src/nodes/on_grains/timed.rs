@@ -1,4 +1,4 @@
-//! How fast the steps of a track on grains are, and where their time goes.
+//! Speed of the steps of a track on grains, and the time of each part.
 
 use super::Live;
 use super::build::Parts;
@@ -10,7 +10,7 @@ use crate::nodes::{Load, NodeError};
 use serde::Serialize;
 use std::time::{Duration, Instant};
 
-/// Steps of a track on grains under wheels, and where their time went.
+/// Steps of a track on grains under wheels, and the time of each part.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TimedSteps {
     pub grains: usize,

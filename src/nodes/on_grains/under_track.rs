@@ -1,4 +1,4 @@
-//! The beds under a track at an instant, for those who look at them.
+//! The beds under a track at an instant, for reading.
 
 use super::build::Parts;
 use super::step::StandingBed;
@@ -18,7 +18,7 @@ pub struct BedUnderTrack<'a> {
 }
 
 impl GrainGround<'_> {
-    /// The beds as they lie now. The motion goes on afterwards as if nobody had looked.
+    /// The beds as they lie now. Reading does not change the motion afterwards.
     pub fn look(&mut self) -> Result<Vec<BedUnderTrack<'_>>, NodeError> {
         let parts = self.parts();
         let live = self.working()?;
@@ -28,7 +28,8 @@ impl GrainGround<'_> {
 }
 
 impl Live {
-    /// Mean height of the undersides of the sleepers on each bed when the track was built, above the origin of the bed, m. Asked at rest.
+    /// Mean height of the undersides of the sleepers on each bed when the track was built, above the origin of the bed,
+    /// m. Asked at rest.
     pub(super) fn tops(&self) -> Vec<f64> {
         let rest = &self.books.rest;
         self.coupled.beds.iter().map(|standing| standing.top(|foot| rest[foot].level)).collect()
@@ -46,7 +47,8 @@ impl Live {
 }
 
 impl StandingBed {
-    /// Mean height of the undersides of the sleepers when the track was built, m, by how far each has come down since (m).
+    /// Mean height of the undersides of the sleepers when the track was built, m, by how far each has come down since
+    /// (m).
     fn top(&self, lowered: impl Fn(usize) -> f64) -> f64 {
         let underside = |(wall, foot): &(_, usize)| {
             let wall = self.bed.wall(*wall);

@@ -1,4 +1,4 @@
-//! A block of trains under way: what must be known beside the state of all that moves, so that it can be gone on with in another process.
+//! A block of trains under way: the data needed in addition to the motion, so that another process can continue.
 
 use super::extremes::Seen;
 use super::reading::Watched;
@@ -10,17 +10,17 @@ use crate::solvers::track::LeapfrogState;
 use serde::{Deserialize, Serialize};
 use std::ops::{ControlFlow, Range};
 
-/// What is told while trains pass.
+/// Reports while trains pass.
 pub enum Told<'a> {
-    /// What is done, and the share of it that is.
+    /// The stage, and the share of this stage that is done.
     Stage(Stage, f64),
     /// The beds as the leading bogie of a recorded train passes the sleepers beside the structure.
     Beds(Vec<BedUnderTrack<'a>>),
-    /// A run can be gone on with from here; the function gives the state.
+    /// A run can continue from here; the function returns the state.
     State(&'a dyn Fn() -> Result<serde_json::Value, NodeError>),
 }
 
-/// Hears what is told while trains pass. A break ends the run.
+/// Gets the reports while trains pass. A break ends the run.
 pub type Following<'a> = dyn FnMut(Told<'_>) -> ControlFlow<()> + 'a;
 
 impl Told<'_> {
@@ -33,10 +33,11 @@ impl Told<'_> {
     }
 }
 
-/// A block that has begun and is not done. Its trains come in runs: of one kind, in one direction, with one passage of the plane track.
+/// A block that has begun and is not done. Its trains come in runs: of one kind, in one direction, with one passage of
+/// the plane track.
 #[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Underway {
-    /// The books as the block began: what others are told until it is done.
+    /// The books at the start of the block: other nodes get these values until the block is done.
     pub began: Books,
     /// Runs that are done, and passages of the run under way.
     pub runs: usize,
@@ -53,7 +54,7 @@ pub(super) struct Underway {
     pub recording: Option<Recording>,
 }
 
-/// What is known of vehicles that ride in a block under way.
+/// Data of vehicles that ride in a block under way.
 #[derive(Clone, Serialize, Deserialize)]
 pub(super) struct RideUnderway {
     /// The track as the block began.
@@ -66,7 +67,8 @@ pub(super) struct RideUnderway {
     pub seen: Seen,
     /// Whether vehicles are on the rail.
     pub on_rail: bool,
-    /// How rail and vehicles move, where that was stored in the middle of a passage: the vehicles must be there before it is taken over.
+    /// Motion of rail and vehicles, if it was stored in the middle of a passage. The vehicles must exist before the
+    /// motion is restored.
     #[serde(skip)]
     pub motion: Option<LeapfrogState>,
 }
@@ -103,7 +105,7 @@ impl Live {
         self.note_rate(&before, trains);
     }
 
-    /// What others are told of the ground.
+    /// The values of the ground that other nodes get.
     pub fn told(&self) -> &Books {
         self.underway.as_ref().map_or(&self.books, |underway| &underway.began)
     }

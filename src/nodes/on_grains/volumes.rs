@@ -18,7 +18,7 @@ impl Live {
         self.block().recording = Some(recording);
     }
 
-    /// Tells the beds where the leading wheel, at a place (m), comes to the sleepers beside the structure.
+    /// Reports the beds when the leading wheel, at a place (m), reaches the sleepers beside the structure.
     pub(super) fn tell_beds(
         &mut self,
         parts: Parts<'_>,
@@ -34,7 +34,8 @@ impl Live {
         going_on(follow(Told::Beds(beds)))
     }
 
-    /// The record of the passage under way, taken out for some steps: of the first one of the block only, and only where `wanted`.
+    /// The record of the passage under way, taken out for some steps: of the first one of the block only, and only
+    /// where `wanted`.
     pub(super) fn recording(&mut self, wanted: bool) -> Option<Recording> {
         let underway = self.block();
         if underway.runs > 0 || underway.passages > 0 || !wanted { None } else { underway.recording.take() }
@@ -47,7 +48,7 @@ impl Live {
         }
     }
 
-    /// What has been recorded in the block under way.
+    /// The records of the block under way.
     pub fn recorded(&mut self) -> Vec<VolumeSample> {
         let recording = self.underway.as_mut().and_then(|underway| underway.recording.take());
         recording.map(|recording| recording.samples).unwrap_or_default()
@@ -55,8 +56,8 @@ impl Live {
 }
 
 impl Parts<'_> {
-    /// Chainage of the third sleeper before the structure, m. Forces are kept when the leading wheel is there: a bogie then stands where
-    /// tracks settle most.
+    /// Chainage of the third sleeper before the structure, m. Forces are kept when the leading wheel is there: a bogie
+    /// then stands where tracks settle most.
     fn beside_structure(&self) -> Option<f64> {
         let seats = &self.track.seats;
         let sleepers = &self.grains.stretches.first()?.sleepers;

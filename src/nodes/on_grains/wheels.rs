@@ -2,7 +2,8 @@
 
 use crate::nodes::WheelHistories;
 
-/// Time in which the first forces grow from nothing, s: wheels that stand before the grains at once would ring the rail.
+/// Time in which the first forces grow from nothing, s: forces that start at full size before the grains would make the
+/// rail vibrate.
 const RAMP: f64 = 0.02;
 
 /// Trains that follow each other over the rail, each with the same forces.
@@ -18,7 +19,7 @@ impl<'a> WheelRun<'a> {
         WheelRun { histories, starts: (0..trains).map(|train| train as f64 * headway).collect() }
     }
 
-    /// The time between which a wheel is between two places (m), s; `None` where none ever is.
+    /// Start and end of the time in which a wheel is between two places (m), s; `None` if no wheel ever is.
     pub fn within(&self, [left, right]: [f64; 2]) -> Option<[f64; 2]> {
         let inside = |instant: &[(f64, f64)]| instant.iter().any(|(x, _)| (left..=right).contains(x));
         let instants: Vec<usize> =
@@ -41,8 +42,8 @@ impl<'a> WheelRun<'a> {
         self.histories.instant(instant).first().map(|(x, _)| *x)
     }
 
-    /// Chainage (m) and force (N) of every wheel at a time (s), into `out`, which is emptied first; straight between two instants. The
-    /// first forces grow from the time `begin` on.
+    /// Chainage (m) and force (N) of every wheel at a time (s), into `out`, which is emptied first; straight between
+    /// two instants. The first forces grow from the time `begin` on.
     pub fn loads_at(&self, time: f64, begin: f64, out: &mut Vec<(f64, f64)>) {
         out.clear();
         for start in &self.starts {

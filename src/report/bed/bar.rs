@@ -1,4 +1,4 @@
-//! The colours of a bed's picture, and the bar that says what they stand for.
+//! The colours of a bed's picture, and the colour bar.
 
 use super::super::colour_map::{colours, hex, shade};
 use super::super::number::{nice_step, significant, tick_label, ticks};
@@ -11,7 +11,7 @@ const SHADES: usize = 24;
 /// Share of the grains that may lie above the bar's end.
 const ABOVE: f64 = 0.01;
 
-/// The colours and what they stand for.
+/// The colours and their quantity.
 pub struct Bar {
     name: &'static str,
     unit: &'static str,
@@ -31,7 +31,7 @@ impl Bar {
         values.sort_by(f64::total_cmp);
         let largest = values.last().copied().unwrap_or(0.0);
         let usual = values.get(((1.0 - ABOVE) * values.len() as f64) as usize).copied().unwrap_or(largest);
-        // few stray values must not take the colours from all others
+        // a few outliers must not set the range of the colours
         let most = if largest > 1.5 * usual && usual > 0.0 { usual } else { largest };
         let step = nice_step(most.max(f64::MIN_POSITIVE) / 10.0);
         let most = if most > 0.0 { (most / step - 1e-9).ceil() * step } else { 1.0 };

@@ -1,8 +1,8 @@
-//! A bed of grains from the side, to scale: pebbles as balls, the nearest in front, coloured by what they do.
+//! A bed of grains from the side, to scale: pebbles as balls, the nearest in front, coloured by a quantity.
 //!
-//! Only what can be seen is written. On a raster a fifth of a pixel fine, or coarser where the picture is large, a pebble
-//! that nearer ones cover is left out; so the file grows with the face of the bed and not with its depth, and what is left
-//! out is narrower than a cell of the raster.
+//! Only visible pebbles are written. A pebble that nearer pebbles cover, on a raster of a fifth of a pixel (coarser for
+//! a large picture), is left out. So the size of the file depends on the front face of the bed and not on its depth,
+//! and any visible part that is left out is narrower than a cell of the raster.
 
 mod bar;
 mod raster;
@@ -24,7 +24,7 @@ const TOP: f64 = 78.0;
 /// Height of the bed, px, at most.
 const HIGHEST: f64 = 640.0;
 
-/// From where one looks.
+/// Direction of view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Side {
     /// Along y: x to the right, z upwards.
@@ -34,7 +34,7 @@ pub enum Side {
     Y,
 }
 
-/// What the colours say.
+/// Quantity of the colours.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Colour {
     Displacement,
@@ -48,7 +48,7 @@ pub enum Colour {
 pub struct BedView<'a> {
     pub title: &'a str,
     pub grains: &'a [Grain],
-    /// Contacts of grains that are seen, drawn over them as lines whose width is the force; none for no lines.
+    /// Contacts of visible grains, drawn over them as lines with the width of the force; none for no lines.
     pub chains: &'a [Link],
     pub walls: &'a [Wall],
     pub domain: &'a Domain,
@@ -56,7 +56,8 @@ pub struct BedView<'a> {
     pub colour: Colour,
 }
 
-/// The picture, valid on its own. A value that a grain has not, as a displacement without a reference, is drawn in grey.
+/// The picture, valid on its own. A grain without a value, for example displacement without a reference, is drawn in
+/// grey.
 pub fn bed_svg(bed: &BedView) -> String {
     let mut svg = Svg::default();
     let view = View::for_bed(bed);
@@ -86,7 +87,7 @@ pub fn bed_svg(bed: &BedView) -> String {
         draw_chains(svg, bed, &view, &chains);
     });
     let bottom = view.frame.y + view.frame.height + 44.0;
-    svg.finish(WIDTH, bottom, &format!("{}: the bed from the side", bed.title))
+    svg.finish(WIDTH, bottom, &format!("{}: side view of the bed", bed.title))
 }
 
 /// From the world to the picture.
@@ -124,7 +125,7 @@ impl View {
                 high[1] = high[1].max(wall.pose(bed.domain).position.z + half.z);
             }
         }
-        // a floor near enough to be worth the room
+        // a floor that is near enough to be shown
         let near = low[1] - 0.5 * (high[1] - low[1]);
         for level in bed.walls.iter().filter_map(|wall| floor(wall, bed.domain)).filter(|level| *level > near) {
             low[1] = low[1].min(level);
@@ -178,7 +179,7 @@ fn floor(wall: &Wall, domain: &Domain) -> Option<f64> {
     (pose.direction_to_space(normal).z > 0.999_999).then_some(pose.position.z)
 }
 
-/// Grains that can be seen, the farthest first.
+/// Visible grains, the farthest first.
 fn seen(bed: &BedView, view: &View) -> Vec<u32> {
     let mut order: Vec<u32> = (0..bed.grains.len() as u32).collect();
     let near = |index: &u32| view.near(&bed.grains[*index as usize]);
@@ -211,7 +212,7 @@ fn draw_grains(svg: &mut Svg, bed: &BedView, view: &View, seen: &[u32], bar: &Ba
     );
 }
 
-/// Contacts between grains that are seen, or of such a grain with a wall; the strongest last.
+/// Contacts between visible grains, or of a visible grain with a wall; the strongest last.
 fn seen_chains<'a>(bed: &BedView<'a>, seen: &[u32]) -> Vec<&'a Link> {
     let mut shown = vec![false; bed.grains.iter().map(|g| g.body as usize + 1).max().unwrap_or(0)];
     seen.iter().for_each(|&i| shown[bed.grains[i as usize].body as usize] = true);
@@ -229,7 +230,7 @@ fn draw_chains(svg: &mut Svg, bed: &BedView, view: &View, chains: &[&Link]) {
     svg.group(r#"class="chains""#, |svg| {
         for link in chains {
             let width = widest * link.size() / most;
-            // what is thinner than a hair only greys the picture
+            // thinner lines would only make the picture grey
             if width > 0.12 {
                 svg.stroke(view.projected(link.from), view.projected(link.to), width);
             }

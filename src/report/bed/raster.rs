@@ -1,9 +1,9 @@
-//! What of a picture is covered already, on a raster finer than its pixels.
+//! The covered part of a picture, on a raster finer than its pixels.
 
 /// Cells of the raster at most.
 const CELLS: f64 = 2e7;
 
-/// What is covered already.
+/// The cells that are covered.
 pub struct Raster {
     /// Cells a pixel.
     fine: f64,
@@ -19,7 +19,7 @@ impl Raster {
         Raster { fine, width, height, covered: vec![false; width * height] }
     }
 
-    /// Covers a disc, px; says whether some of it was open, or it is too small to tell.
+    /// Covers a disc, px. True if a part of the disc was not covered, or the disc is too small to check.
     pub fn cover(&mut self, x: f64, y: f64, radius: f64) -> bool {
         let [x, y, radius] = [x, y, radius].map(|v| v * self.fine);
         let (mut open, mut cells) = (false, 0);

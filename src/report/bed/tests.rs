@@ -72,7 +72,7 @@ fn colours_follow_the_value_and_what_has_none_is_grey() {
     assert_eq!(paints, ["url(#g0)", "url(#g8)", "url(#g16)", "url(#g23)", "url(#g24)"]);
     let svg = draw(&grains, &[], &bed(), Colour::Speed, Side::X);
     assert!(svg.contains("speed [mm/s]") && svg.contains("a &lt;bed&gt;"), "{svg}");
-    // one stray value does not take the colours from the others, and is told
+    // one outlier does not set the range of the colours, and is reported
     let mut many: Vec<Grain> = (0..200).map(|k| grain(f64::from(k), 0.0, 0.0, 0.4, 1e-3)).collect();
     many[7].displacement = Some([1.0, 0.0, 0.0]);
     let svg = draw(&many, &[], &bed(), Colour::Displacement, Side::X);

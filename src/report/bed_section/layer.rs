@@ -25,7 +25,7 @@ const ROOM: f64 = 10.0;
 pub struct Layer<'a> {
     pub run: &'a Run,
     pub beds: &'a BedsAtCount,
-    /// The same under a train, where that was told.
+    /// The same under a train, if it was recorded.
     pub loaded: Option<&'a BedsAtCount>,
     pub window: &'a Window,
     pub scales: &'a Scales,
@@ -68,7 +68,7 @@ impl Layer<'_> {
         shown.filter_map(|(seat, row)| Some((seat.sleeper?, row))).collect()
     }
 
-    /// Rail and supports, lowered by what they have come down.
+    /// Rail and supports, lowered by their settlement.
     fn draw_levels(&self, svg: &mut Svg, top: f64, seats: &[(SleeperBody, &SleeperRow)]) {
         let Window { from, to, .. } = *self.window;
         let (left, right) = (self.window.x(from), self.window.x(to));
@@ -103,7 +103,7 @@ impl Layer<'_> {
         svg.line("mark", (x, top), (x, bottom));
     }
 
-    /// Grains that can be seen, the farthest first; heights count from a place of the picture, px.
+    /// Visible grains, the farthest first; heights count from a place of the picture, px.
     fn draw_grains(&self, svg: &mut Svg, base: f64) {
         let (window, scale) = (self.window, self.window.scale);
         let mut grains: Vec<&Grain> = self.beds.grains.iter().filter(|g| window.holds(g.place[0])).collect();
@@ -122,7 +122,7 @@ impl Layer<'_> {
         });
     }
 
-    /// Sleepers over their voids, which are drawn too high, and the rail over them.
+    /// Sleepers over their enlarged voids, and the rail over them.
     fn draw_sleepers(&self, svg: &mut Svg, base: f64, seats: &[(SleeperBody, &SleeperRow)]) {
         let scale = self.window.scale;
         let mut tops = Vec::new();
@@ -146,18 +146,18 @@ impl Layer<'_> {
         svg.path("rail", &tops, false, "rail");
     }
 
-    /// The beds whose forces are shown, the force of the widest line, N, and when that is.
+    /// The beds with the forces that are shown, the force of the widest line, N, and the moment as text.
     fn forces(&self) -> (&BedsAtCount, f64, &'static str) {
         let [rest, under_train] = self.scales.forces;
         match self.loaded {
-            Some(loaded) => (loaded, under_train, "as the leading bogie of the next train passes"),
+            Some(loaded) => (loaded, under_train, "under the leading bogie of the next train"),
             None => (self.beds, rest, "without a train"),
         }
     }
 
     fn about_forces(&self) -> String {
         let (_, force, when) = self.forces();
-        format!("Contact forces {when}; widest line {} kN", significant(force / 1e3, 2))
+        format!("Contact forces {when}; widest line: {} kN", significant(force / 1e3, 2))
     }
 
     /// Lines of each width as one path, the thinnest first.

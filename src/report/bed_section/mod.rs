@@ -1,6 +1,7 @@
 //! A long section of the grains under each transition at the recorded counts: levels, grains, voids and force chains.
 //!
-//! Each count is a layer of the picture. The picture shows the last one; the page's script has a slider that moves through all.
+//! Each count is a layer of the picture. The picture shows the last one; the page's script has a slider that moves
+//! through all.
 
 mod layer;
 #[cfg(test)]
@@ -86,7 +87,7 @@ fn spread(run: &Run) -> Vec<&BedsAtCount> {
     }
 }
 
-/// The beds under the leading bogie of the train after a count, where they were told.
+/// The beds under the leading bogie of the train after a count, if they were recorded.
 fn under_train(run: &Run, axles: u64) -> Option<BedsAtCount> {
     run.beds.iter().find(|beds| beds.under_train && beds.axles == axles).map(|beds| section(run, beds))
 }
@@ -116,21 +117,23 @@ fn caption(run: &Run, scales: &Scales, shown: &[BedsAtCount], loaded: bool) -> S
     let voids = run.sleepers.iter().any(|row| row.void_m > 0.0);
     let factor = whole(scales.exaggeration as u64);
     let voids = if voids {
-        format!(" Sleepers that hang are drawn above their void (orange), {factor} times too high.")
+        format!(" Hanging sleepers are drawn above their void (orange); the void is enlarged {factor} times.")
     } else {
         " No sleeper hangs.".to_owned()
     };
     let train = match loaded {
         true => {
-            "They are taken as the leading bogie of the next train passes the sleepers beside the structure, where the picture says so. "
+            "If the picture says so, the forces are those under the leading bogie of the next train, beside the \
+            structure. "
         }
         false => "",
     };
     format!(
-        "Grains of the 3D model along the rail seats, to scale. They and the levels are without a train. Above, the level of the rail and of the supports, drawn \
-         {factor} times too large. In the middle the grains, coloured by how far each has moved {since}.{voids} Below, the forces of the \
-         contacts as lines: their width grows with the force, and those below {} % of the widest are left out. {train}The section is three mean pebbles thick; \
-         `grains.parquet` and `contacts.parquet` hold its numbers.",
+        "Grains of the 3D model along the rail seats, to scale. Grains and levels are shown without a train. Top: \
+         levels of the rail and of the supports, enlarged {factor} times. Middle: the grains, coloured by their \
+         displacement {since}.{voids} Bottom: contact forces as lines. The width of a line grows with the force; \
+         forces below {} % of the widest line are left out. {train}The section is three mean pebbles thick. Its \
+         numbers are in `grains.parquet` and `contacts.parquet`.",
         significant(100.0 * layer::WEAKEST, 2)
     )
 }

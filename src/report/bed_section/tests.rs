@@ -36,7 +36,7 @@ fn each_count_is_a_layer_and_the_last_one_is_shown() {
     assert!(run.beds.iter().any(|beds| beds.axles == last && !beds.under_train));
     let figure = bed_section(&run).unwrap();
     // forces under a train where they are known, of the bed at rest elsewhere
-    assert_eq!(figure.svg.matches("as the leading bogie of the next train passes").count(), 1);
+    assert_eq!(figure.svg.matches("under the leading bogie of the next train").count(), 1);
     assert_eq!(figure.svg.matches("Contact forces without a train").count(), counts.len() - 1);
     let document = roxmltree::Document::parse(&figure.svg).unwrap();
     let layers: Vec<_> = document.descendants().filter(|node| node.attribute("class") == Some("layer")).collect();
@@ -52,7 +52,7 @@ fn each_count_is_a_layer_and_the_last_one_is_shown() {
     // sleeper -3 hangs in the example
     let void = document.descendants().filter(|node| node.attribute("class") == Some("void"));
     assert!(void.filter_map(|node| node.attribute("height")).any(|height| height.parse::<f64>().unwrap() > 1.0));
-    assert!(figure.caption.contains("times too high"), "{}", figure.caption);
+    assert!(figure.caption.contains("the void is enlarged"), "{}", figure.caption);
     assert!(figure.svg.contains("[&quot;as built&quot;,"), "the script reads the counts");
 }
 

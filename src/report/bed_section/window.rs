@@ -83,7 +83,7 @@ fn extent(beds: &BedsAtCount, [from, to]: [f64; 2]) -> Option<[f64; 2]> {
     })
 }
 
-/// How much too large levels and voids are drawn, so that the largest of all counts fills its room.
+/// Enlargement of levels and voids, so that the largest value of all counts fills its room.
 pub fn exaggeration(run: &Run, scale: f64) -> f64 {
     let levels = run.rail.iter().map(|row| row.level_m.abs());
     let largest = run.sleepers.iter().map(|row| row.settlement_m.max(row.void_m)).chain(levels).fold(0.0, f64::max);

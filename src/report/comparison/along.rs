@@ -1,4 +1,5 @@
-//! Runs in one figure: what happens along the track at the last axle count that all have recorded, and with the axles.
+//! Runs in one figure: results along the track at the last axle count that all runs have recorded, and against the
+//! axles.
 
 use super::coloured;
 use crate::compare::{Comparison, common_count};
@@ -8,7 +9,7 @@ use crate::report::curves::{Axis, Chart, Mark, Series};
 use crate::report::number::{shown_unit, whole};
 use crate::results::{RailRow, Run, SleeperRow};
 
-/// What a figure shows of each seat.
+/// The quantity of each seat that a figure shows.
 struct OfSeats {
     id: &'static str,
     title: &'static str,
@@ -59,7 +60,7 @@ const OF_SEATS: [OfSeats; 4] = [
     },
 ];
 
-/// The figures of runs; none where they share no axle count.
+/// The figures of runs; none if they share no axle count.
 pub(super) fn figures(comparison: &Comparison) -> Vec<Figure> {
     let runs = || comparison.subjects.iter().filter_map(|subject| subject.run());
     let Some(axles) = common_count(runs()) else { return Vec::new() };
@@ -98,14 +99,14 @@ fn of_seats(comparison: &Comparison, axles: u64, what: &OfSeats) -> Option<Figur
         chart.series.extend(seats_of(run, axles, (&subject.name, &class), what));
     }
     let caption =
-        format!("{} Sections are those of the first run, the dashed line its transition.", said(axles, comparison));
+        format!("{} Sections and transition (dashed line) are those of the first run.", said(axles, comparison));
     figure(&chart, what.id, what.title, &caption)
 }
 
-/// `After 500 axles.`, and what thin curves are.
+/// `After 500 axles.`, and the meaning of thin curves.
 fn said(axles: u64, comparison: &Comparison) -> String {
     let thin = comparison.subjects.iter().filter_map(|subject| subject.run()).any(|run| !run.packings.is_empty());
-    let thin = if thin { " Thin: the same on further packings of its grains." } else { "" };
+    let thin = if thin { " Thin curves: further packings of the same grains." } else { "" };
     format!("After {} axles.{thin}", whole(axles))
 }
 

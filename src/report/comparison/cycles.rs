@@ -15,7 +15,7 @@ pub(super) fn figures(comparison: &Comparison) -> Vec<Figure> {
     let stiffness = Axis { from_zero: true, ..Axis::new("Resilient stiffness", ("MN/m", 1e6)) };
     let deviator = Axis { from_zero: true, ..Axis::new("Deviator", ("kPa", 1e3)) };
     let volume = Axis { from_zero: true, ..Axis::new("Volume strain", ("%", 0.01)) };
-    let thin = "Each packing has a curve; those of one result have one colour.";
+    let thin = "One curve for each packing; curves of one result have the same colour.";
     let figures = [
         drawn(comparison, (cycles(), settlement), &|test| of_cycles(test, |cycle| cycle.settlement))
             .and_then(|chart| figure(&chart, "settlement", "Settlement against cycles", thin)),
@@ -32,7 +32,7 @@ pub(super) fn figures(comparison: &Comparison) -> Vec<Figure> {
 /// Points of a test, and whether there are several of them.
 type Points = Vec<(f64, f64)>;
 
-/// A chart with a curve for each packing of each result; `None` where none has two points.
+/// A chart with a curve for each packing of each result; `None` if none has two points.
 fn drawn(comparison: &Comparison, (x, y): (Axis, Axis), of: &dyn Fn(&BedTest) -> Points) -> Option<Chart> {
     let mut chart = Chart::new(x, y);
     for (subject, class) in coloured(comparison) {

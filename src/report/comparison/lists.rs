@@ -8,20 +8,21 @@ use std::fmt::Write;
 
 const END: &str = "</section>\n";
 
-/// What differs in the scenes.
+/// Differences between the scenes.
 pub(super) fn edits(html: &mut String, comparison: &Comparison) {
     let caption = match comparison.edits.as_deref() {
-        None => "An older version has kept no whole scene, so that this is not known.",
+        None => "Not known: an older version of the program did not store the whole scene.",
         Some([]) => "Nothing: the scenes are the same.",
         Some(_) => {
-            "Values that are not the same in all scenes, under the names that --set takes; \u{2013} where a scene has none."
+            "Values that differ between the scenes, under the names that --set takes. \u{2013}: the scene has no such \
+            value."
         }
     };
     let Some(edits) = comparison.edits.as_deref().filter(|edits| !edits.is_empty()) else {
-        let _ = write!(html, "<section><h2>What differs in the scenes</h2><p class=\"caption\">{caption}</p>{END}");
+        let _ = write!(html, "<section><h2>Differences between the scenes</h2><p class=\"caption\">{caption}</p>{END}");
         return;
     };
-    *html += &table_head("What differs in the scenes", caption, &heads(comparison, "value", false));
+    *html += &table_head("Differences between the scenes", caption, &heads(comparison, "value", false));
     for Edit { path, texts } in edits {
         let cells: Vec<String> = texts.iter().map(|text| text.clone().unwrap_or("\u{2013}".to_owned())).collect();
         row(html, path, &cells);
@@ -42,7 +43,7 @@ fn heads<'a>(comparison: &'a Comparison, first: &'a str, differences: bool) -> V
     heads
 }
 
-/// The scalars that people ask for first, then all others folded away.
+/// The most important scalars, then all others in a closed list.
 pub(super) fn numbers(html: &mut String, comparison: &Comparison) {
     if comparison.numbers.is_empty() {
         return;
@@ -50,7 +51,7 @@ pub(super) fn numbers(html: &mut String, comparison: &Comparison) {
     let over = comparison.numbers.iter().flat_map(|row| &row.values).flatten().any(|n| n.confidence.is_some());
     let caption = match over {
         true => "Means over packings with their 95 % intervals; a difference in bold is larger than its own interval.",
-        false => "One packing each, or none: whether a difference of beds is chance is not known.",
+        false => "One packing each, or none: it is not known if a difference between beds is chance.",
     };
     let heads = heads(comparison, "", true);
     *html += &table_head("Numbers", if comparison.kind == Kind::Run && !over { "" } else { caption }, &heads);
@@ -115,15 +116,15 @@ fn differs(difference: &Difference, size: f64) -> String {
     if difference.is_sure() == Some(true) { format!("<b>{text}</b>") } else { text }
 }
 
-/// Where along the track runs part most.
+/// The largest differences between runs along the track.
 pub(super) fn seats(html: &mut String, comparison: &Comparison) {
     let Some(any) = comparison.seats.first() else { return };
     let caption = format!(
-        "After {} axles, over the seats that lie at one chainage in both runs and that whole trains pass: the largest difference, \
-         where it is, and the root mean square of all.",
+        "After {} axles, over the seats at the same chainage in both runs that whole trains pass: the largest \
+         difference, its place, and the root mean square over all seats.",
         any.axles
     );
-    let heads = ["", "difference", "at sleeper", "chainage [m]", "first", "this one", "root mean square", "seats"];
+    let heads = ["", "difference", "at sleeper", "chainage [m]", "first", "this run", "root mean square", "seats"];
     *html += &table_head("Along the track", &caption, &heads);
     for seat in &comparison.seats {
         let Some(column) = Column::ALL.iter().find(|column| column.name == seat.column) else { continue };
@@ -149,8 +150,7 @@ pub(super) fn point_table(html: &mut String, comparison: &Comparison) {
     if comparison.points.is_empty() {
         return;
     }
-    let caption =
-        "Points with equal values of what varies; \u{2013} where a study has no such point, or it failed there.";
+    let caption = "Points with equal varied values. \u{2013}: the study has no such point, or the point failed.";
     let mut heads = heads(comparison, "point", true);
     heads.insert(1, "measured");
     *html += &table_head("Points", caption, &heads);
@@ -175,9 +175,9 @@ pub(super) fn point_table(html: &mut String, comparison: &Comparison) {
     *html += END;
 }
 
-/// What made each result.
+/// Provenance of each result.
 pub(super) fn made(html: &mut String, comparison: &Comparison) {
-    *html += &table_head("What made these", "", &["", "title", "file", "seed", "program", "SHA-256"]);
+    *html += &table_head("How these were made", "", &["", "title", "file", "seed", "program", "SHA-256"]);
     for subject in &comparison.subjects {
         let made = &subject.made;
         let seed = made.seed.map_or(String::new(), |seed| seed.to_string());

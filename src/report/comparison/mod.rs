@@ -1,4 +1,4 @@
-//! The page of a comparison: what differs in the scenes, the numbers side by side, and the figures of all results in one.
+//! The page of a comparison: differences between the scenes, the numbers side by side, and figures with all results.
 
 mod along;
 mod cycles;
@@ -13,7 +13,7 @@ use lists::{edits, made, numbers, point_table, seats};
 /// Results that a reader can tell apart in one figure; tables hold all.
 const MOST: usize = 6;
 
-/// Makes the whole page, which needs nothing from elsewhere.
+/// Makes the whole page, in one file without external parts.
 pub fn comparison_page(comparison: &Comparison) -> String {
     let names: Vec<&str> = comparison.subjects.iter().map(|subject| subject.name.as_str()).collect();
     let mut html = opening(&names.join(" / "), &subtitle(comparison));

@@ -1,4 +1,5 @@
-//! Studies in one figure: what is measured against the one number that varies, else point for point against the first study.
+//! Studies in one figure: measured values against the one number that varies, or point for point against the first
+//! study.
 
 use super::coloured;
 use crate::compare::{Comparison, PointRow};
@@ -27,12 +28,13 @@ fn drawn(comparison: &Comparison, index: usize, of: (&str, &str), rows: &[&Point
         Some((path, unit)) => {
             let mut chart = Chart::new(axis(&path, &unit), axis(of.0, of.1));
             chart.series = curves(comparison, rows);
-            figure(&chart, &id, of.0, "Each point of a study by the value that varies.")
+            figure(&chart, &id, of.0, "Each point of a study against the varied value.")
         }
         None => {
             let mut chart = Chart::new(axis(&format!("in {}", comparison.subjects[0].name), of.1), axis(of.0, of.1));
             chart.series = against_the_first(comparison, rows);
-            let caption = "Each point of a study against the same point of the first: on the line nothing differs.";
+            let caption = "Each point of a study against the same point of the first study. On the line both values \
+                are equal.";
             figure(&chart, &id, of.0, caption)
         }
     }
@@ -42,7 +44,7 @@ fn axis(label: &str, unit: &str) -> Axis {
     Axis { unit: unit.to_owned().into(), ..Axis::new(label, ("", 1.0)) }
 }
 
-/// The path and unit of what varies where all studies vary one number.
+/// Path and unit of the varied number, if all studies vary one number.
 fn the_number_that_varies(comparison: &Comparison) -> Option<(String, String)> {
     let axes: BTreeSet<_> = comparison.subjects.iter().filter_map(|s| s.study()).map(|study| &study.axes).collect();
     let [axes] = axes.into_iter().collect::<Vec<_>>()[..] else { return None };

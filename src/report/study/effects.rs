@@ -1,4 +1,4 @@
-//! Main effects: the mean of what is measured over the points that share a value, for every value that varies.
+//! Main effects: the mean of a measured quantity over the points with the same value, for every varied value.
 
 use super::plane::{Plane, cut, range, titled};
 use crate::report::curves::{Mark, Series};
@@ -25,7 +25,7 @@ struct Group {
     rows: Vec<usize>,
 }
 
-/// The picture with its caption; none where fewer than two points ran.
+/// The picture with its caption; none if fewer than two points ran.
 pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
     let measured = answer.study.measured();
     let done = answer.designs().filter(|(_, row)| row.values().is_some()).count();
@@ -37,7 +37,7 @@ pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
     if axes.is_empty() {
         return None;
     }
-    // what is measured of one value that varies lies side by side, else the values do
+    // with one varied value its measured quantities lie side by side, otherwise the varied values do
     let panels: Vec<(usize, usize)> = (0..measured.len()).flat_map(|m| axes.iter().map(move |a| (m, *a))).collect();
     let each = if axes.len() == 1 { panels.len() } else { axes.len() };
     let beside = each.min(ACROSS);
@@ -55,18 +55,18 @@ pub(super) fn main_effects(answer: &Answer) -> Option<(String, String)> {
         svg.group(r#"class="chart""#, |svg| panel(svg, answer, *m, measured[*m], *axis, frame));
     }
     let height = (panels.len() / each * rows_each) as f64 * (HEIGHT + GAP);
-    let mut caption = "Dots: the mean over all points that share a value (or lie in one of six pieces of its range). \
-                       Bars: from the smallest to the largest of them. Rings: the points. A level line says that the value \
-                       hardly matters."
+    let mut caption = "Dots: mean over all points with the same value (or in the same sixth of its range). Bars: from \
+                       the smallest to the largest of these points. Rings: the points. A level line means that the \
+                       value has almost no effect."
         .to_owned();
     if answer.as_it_is().is_some_and(|row| row.values().is_some()) {
         caption += " Dashed: the scene as it is.";
     }
     if answer.study.repeats > 1 {
-        caption +=
-            " Whiskers: a standard deviation of the repeats up and down; what is smaller than they are may be chance.";
+        caption += " Whiskers: plus and minus one standard deviation of the repeats. A difference smaller than the \
+            whiskers may be chance.";
     }
-    Some((svg.finish(WIDTH, height, "Main effects of what varies"), caption))
+    Some((svg.finish(WIDTH, height, "Main effects of the varied values"), caption))
 }
 
 fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize, frame: Frame) {
@@ -129,7 +129,7 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
     });
     svg.group(r#"class="series" data-series="0""#, |svg| {
         let places: Vec<(f64, f64)> = means.iter().map(|at| plane.point(*at)).collect();
-        // between words lies nothing
+        // no line between words
         if !worded {
             svg.path("line s0", &places, false, "");
         }
@@ -140,7 +140,7 @@ fn panel(svg: &mut Svg, answer: &Answer, m: usize, what: &Measured, axis: usize,
     });
 }
 
-/// The mean of what is measured over the points of a group.
+/// The mean of a measured quantity over the points of a group.
 fn mean(group: &Group, value: &impl Fn(usize) -> Option<f64>) -> f64 {
     let values: Vec<f64> = group.rows.iter().filter_map(|row| value(*row)).collect();
     values.iter().sum::<f64>() / values.len() as f64
@@ -155,7 +155,7 @@ fn whisker(svg: &mut Svg, low: (f64, f64), high: (f64, f64)) {
     }
 }
 
-/// Where a row stands on the level scale of an axis: its number, else the place of its value in the list.
+/// Place of a row on the x axis: its number, or the place of its value in the list.
 fn place(answer: &Answer, axis: usize) -> impl Fn(usize) -> f64 + '_ {
     let numeric = answer.designs().all(|(_, row)| row.levels[axis].number.is_some());
     move |row: usize| {

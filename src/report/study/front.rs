@@ -8,7 +8,7 @@ use crate::study::{Answer, Row};
 
 const SIZE: (f64, f64) = (960.0, 430.0);
 
-/// The picture with its caption; none where there is one objective.
+/// The picture with its caption; none if there is one objective.
 pub(super) fn pareto(answer: &Answer) -> Option<(String, String)> {
     let [first, second, ..] = answer.study.objectives.as_slice() else { return None };
     let measured = answer.study.measured();

@@ -1,5 +1,5 @@
-//! The page of a study: the best designs beside the scene as it is, with the lines to paste; what misses its constraints; the Pareto
-//! front, main effects, and every point.
+//! The page of a study: the best designs beside the scene as it is, with the lines to paste; missed constraints; the
+//! Pareto front, main effects, and every point.
 
 mod effects;
 mod front;
@@ -15,10 +15,11 @@ use crate::study::{Answer, MetAndMissed, Miss, Row, amount};
 use std::fmt::Write;
 use table::table;
 
-/// Best designs that the page spells out.
+/// Number of best designs that the page shows in full.
 const MOST_SHOWN: usize = 12;
 
-/// Makes the whole page. `file` is the name of the scene's file, `design` the scene of the first of the best points, else of the nearest.
+/// Makes the whole page. `file` is the name of the scene's file, `design` the scene of the first of the best points,
+/// else of the nearest.
 pub fn study_page(answer: &Answer, file: &str, design: Option<&Scenario>) -> String {
     let title = format!("{}: study {}", answer.title, answer.study.name);
     let mut html = opening(&title, &subtitle(answer));
@@ -89,7 +90,8 @@ fn goal(goal: Goal) -> &'static str {
     }
 }
 
-/// The best design or the designs of the front, each against the scene as it is; where none meets every constraint, the nearest.
+/// The best design or the designs of the front, each against the scene as it is; the nearest design if none meets every
+/// constraint.
 fn best(html: &mut String, answer: &Answer, file: &str) {
     let best = answer.best();
     if let Some(nearest) = answer.nearest() {
@@ -109,7 +111,7 @@ fn best(html: &mut String, answer: &Answer, file: &str) {
         (true, 1) => "No other point that meets every constraint is better.".to_owned(),
         (true, n) => format!("{n} points are equally good; the first of them is written out below."),
         (false, 1) => "One point is better than all others in every objective.".to_owned(),
-        (false, n) => format!("{n} points are such that no other is better in every objective."),
+        (false, n) => format!("{n} points are best: no other point is better in every objective."),
     };
     let against = answer.against_as_it_is().map_or(String::new(), |sentence| format!(" {sentence}"));
     let _ = write!(html, "<p class=\"caption\">{}</p>", prose(&format!("{caption}{against}")));
@@ -120,7 +122,7 @@ fn best(html: &mut String, answer: &Answer, file: &str) {
     written_out(html, answer, &answer.rows[*first], file);
 }
 
-/// No design is feasible: the one that misses least.
+/// If no design is feasible: the design with the smallest miss.
 fn nearest_design(html: &mut String, answer: &Answer, nearest: usize, file: &str) {
     let row = &answer.rows[nearest];
     let _ = write!(
@@ -145,7 +147,8 @@ fn beside_as_it_is(answer: &Answer, rows: &[usize]) -> Vec<usize> {
 fn written_out(html: &mut String, answer: &Answer, row: &Row, file: &str) {
     let _ = write!(
         html,
-        "<p class=\"note\">Point {} as lines of the file, and as a run:</p><pre>{}\n\ntrackbed run {}{} --out best</pre></section>\n",
+        "<p class=\"note\">Point {} as lines of the file, and as a run:</p><pre>{}\n\ntrackbed run {}{} --out \
+        best</pre></section>\n",
         row.number,
         escape(&pasted(&answer.study, row)),
         escape(file),
@@ -153,21 +156,23 @@ fn written_out(html: &mut String, answer: &Answer, row: &Row, file: &str) {
     );
 }
 
-/// How the designs do against each constraint; nothing where there is none.
+/// Number of designs that meet each constraint; nothing if there is no constraint.
 fn constraints(html: &mut String, answer: &Answer) {
     let all = answer.constraints();
     if all.is_empty() {
         return;
     }
-    *html += "<section id=\"constraints\"><h2>Constraints</h2><p class=\"caption\">Designs that meet and miss each of them; \
-              a share is of the limit.</p><div class=\"scroll\"><table><tr><th class=\"text\">constraint</th><th>met by</th>\
-              <th>missed by</th><th>least miss</th><th>largest miss</th></tr>";
+    *html += "<section id=\"constraints\"><h2>Constraints</h2><p class=\"caption\">Number of designs that meet and \
+              miss each constraint. Shares are relative to the limit.</p><div class=\"scroll\"><table><tr><th \
+              class=\"text\">constraint</th><th>met by</th><th>missed by</th><th>least miss</th><th>largest \
+              miss</th></tr>";
     for MetAndMissed { text, unit, met, missed, least, largest } in &all {
         let shown = |miss: &Option<Miss>| miss.map_or("\u{2013}".to_owned(), |miss| amount(&miss, unit));
         let class = if *met == 0 && *missed > 0 { " bad" } else { "" };
         let _ = write!(
             html,
-            "<tr><td class=\"text{class}\"><code>{}</code></td><td>{met}</td><td>{missed}</td><td>{}</td><td>{}</td></tr>",
+            "<tr><td \
+            class=\"text{class}\"><code>{}</code></td><td>{met}</td><td>{missed}</td><td>{}</td><td>{}</td></tr>",
             escape(text),
             escape(&shown(least)),
             escape(&shown(largest))
@@ -179,8 +184,9 @@ fn constraints(html: &mut String, answer: &Answer) {
 /// Every point.
 fn points(html: &mut String, answer: &Answer) {
     let rows: Vec<usize> = (0..answer.rows.len()).collect();
-    *html += "<section id=\"points\" class=\"long\"><h2>All points</h2><p class=\"caption\">The scene as it is first, then the points in the \
-              order of the design, each with its difference to it; the best are marked. The same is in <code>study.csv</code>.</p>";
+    *html += "<section id=\"points\" class=\"long\"><h2>All points</h2><p class=\"caption\">First the scene as it is, \
+              then the points in the order of the design, each with its difference to the scene as it is. The best \
+              points are marked. The file <code>study.csv</code> has the same table.</p>";
     table(html, answer, &rows, true);
     *html += "</section>\n";
 }
@@ -208,6 +214,7 @@ fn picture(html: &mut String, id: &str, title: &str, caption: &str, svg: &str) {
     let caption = prose(caption);
     let _ = writeln!(
         html,
-        "<section id=\"{id}\"><h2>{title}</h2><p class=\"caption\">{caption}</p><div class=\"scroll\">{svg}</div></section>"
+        "<section id=\"{id}\"><h2>{title}</h2><p class=\"caption\">{caption}</p><div \
+        class=\"scroll\">{svg}</div></section>"
     );
 }

@@ -5,7 +5,7 @@ use crate::report::number::{nice_step, tick_label, ticks};
 use crate::report::svg::{Anchor, Frame, Svg};
 use crate::report::{plane, readings};
 
-/// Where data lie on the picture.
+/// Frame of the data on the picture.
 pub(super) struct Plane {
     pub frame: Frame,
     pub x: (f64, f64),
@@ -18,7 +18,7 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     if !(low.is_finite() && high.is_finite()) {
         return (0.0, 1.0);
     }
-    // what differs in its fifth digit only is level
+    // a difference only in the fifth digit is drawn level
     let room = (0.08 * (high - low)).max(1e-4 * low.abs().max(high.abs())).max(1e-12);
     (low - room, high + room)
 }
@@ -30,7 +30,7 @@ impl Plane {
         (self.frame.x + across * self.frame.width, self.frame.y + (1.0 - up) * self.frame.height)
     }
 
-    /// Writes what is shown as data, for the script of the page: the axes by name and unit, and the series.
+    /// Writes the data of the diagram for the script of the page: the axes by name and unit, and the series.
     pub fn readings(&self, svg: &mut Svg, [x, y]: [(&str, &str); 2], series: Vec<Series>) {
         let axis = |(name, unit): (&str, &str)| Axis { unit: unit.to_owned().into(), ..Axis::new(name, ("", 1.0)) };
         let chart = Chart { series, ..Chart::new(axis(x), axis(y)) };

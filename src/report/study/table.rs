@@ -6,7 +6,7 @@ use crate::report::svg::escape;
 use crate::study::{Answer, PointOutcome, Row};
 use std::fmt::Write;
 
-/// Writes these rows; `whole` says what became of each, too.
+/// Writes these rows; `whole` adds the status of each row.
 pub(super) fn table(html: &mut String, answer: &Answer, rows: &[usize], whole: bool) {
     let study = &answer.study;
     let measured = study.measured();

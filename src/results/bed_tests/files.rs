@@ -12,8 +12,8 @@ const BEDS: &str = "beds.json";
 const BODIES: &str = "bodies.vtp";
 const CONTACTS: &str = "contacts.vtp";
 
-/// Every file of tests: tables, the last bed, what their page is made of, and the summary, which comes last. `directory` stands in
-/// messages only. Equal runs leave equal bytes.
+/// Every file of tests: tables, the last bed, the data of the page, and the summary, which comes last. `directory` is
+/// used in messages only. Equal runs give equal bytes.
 pub fn test_files(view: &BedTestsView, directory: &Path) -> Result<Vec<NamedBytes>, ResultsError> {
     let (run, tests) = (&view.run, &view.tests);
     for (name, scalar) in &run.summary.scalars {

@@ -1,4 +1,4 @@
-//! What tests of packed beds leave behind: cycles, loops, what sensors read, a summary, and the files that hold them.
+//! Results of tests on packed beds: cycles, loops, sensor readings, a summary, and the files that hold them.
 
 mod files;
 mod summarise;
@@ -25,7 +25,7 @@ pub struct BedTest {
 /// Tests of beds under actuators.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BedTests {
-    /// Names and chainages of what stands on the bed, m.
+    /// Names and chainages of the sleepers on the bed, m.
     pub sleepers: Vec<(String, f64)>,
     /// Names and chainages of the sensors, m.
     pub sensors: Vec<(String, f64)>,
@@ -35,17 +35,17 @@ pub struct BedTests {
     pub tests: Vec<BedTest>,
 }
 
-/// A sleeper over one cycle (`cycles.csv`). Forces are on what the bed models: of one rail, or of both.
+/// A sleeper over one cycle (`cycles.csv`). Forces are for one rail or for both, as the bed models them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[allow(non_snake_case)] // the names are the file's columns
 pub struct CycleRow {
     pub seed: u64,
     pub sleeper: String,
     pub cycle: u64,
-    /// At the end of the cycle, below the place of rest under its own weight.
+    /// At the end of the cycle, measured from rest under its own weight.
     pub settlement_m: f64,
     pub deepest_m: f64,
-    /// Range of force over rebound; 0 where nothing rebounds.
+    /// Range of force divided by rebound; 0 without rebound.
     pub stiffness_N_per_m: f64,
     pub max_contact_force_N: f64,
     pub work_J: f64,

@@ -1,4 +1,4 @@
-//! The few numbers of a test, over its packings, and what the scene expects of it.
+//! The scalars of a test over its packings, and the expectations of the scene.
 
 use super::super::{HistoryRow, Scalar, SleeperTable, Tables, broken_bonds, broken_share, mean_and_confidence};
 use super::{BedTest, BedTests};
@@ -8,7 +8,8 @@ use crate::solvers::granular::rig::Cycle;
 use smol_str::SmolStr;
 use std::collections::BTreeMap;
 
-/// Scalars of the sleeper that settles most in each packing: mean over packings, and its confidence where there are several.
+/// Scalars of the sleeper that settles most in each packing: mean over packings, and its confidence where there are
+/// several.
 fn scalars(tests: &[BedTest], plate: Option<f64>) -> BTreeMap<String, Scalar> {
     let mut scalars = BTreeMap::new();
     let last = tests.iter().flat_map(|test| &test.answer.cycles).map(|cycle| cycle.number).max().unwrap_or(0);
@@ -33,7 +34,8 @@ fn scalars(tests: &[BedTest], plate: Option<f64>) -> BTreeMap<String, Scalar> {
     let stiffness = |cycle: Cycle| Some(cycle.stiffness).filter(|stiffness| *stiffness > 0.0);
     put("support_stiffness", "N/m", &|test| stiffness(worst(test, last)?));
     put("first_support_stiffness", "N/m", &|test| stiffness(worst(test, 1)?));
-    // of a specimen: the largest deviator of all that is kept, what it mobilises, and the secant to half of it
+    // of a specimen: the largest recorded deviator, the friction angle that it mobilises, and the secant modulus to
+    // half of this deviator
     let peak =
         |test: &BedTest| test.answer.specimen.iter().copied().max_by(|a, b| a.deviator().total_cmp(&b.deviator()));
     put("peak_deviator", "Pa", &|test| Some(peak(test)?.deviator()));
@@ -73,14 +75,14 @@ fn scalars(tests: &[BedTest], plate: Option<f64>) -> BTreeMap<String, Scalar> {
     scalars
 }
 
-/// What expressions can be about, in means over packings.
+/// Quantities that expressions can use, as means over packings.
 pub struct TestTables {
     sleepers: Vec<MeanCycleRow>,
     histories: Vec<HistoryRow>,
     pub scalars: BTreeMap<String, Scalar>,
 }
 
-/// A sleeper after a cycle: means over packings, SI, of what [`Cycle`] holds.
+/// A sleeper after a cycle: the values of [`Cycle`] as means over packings, SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeanCycleRow {
     pub cycle: u64,
@@ -107,7 +109,7 @@ impl TestTables {
         }
     }
 
-    /// What expressions are about.
+    /// The tables that expressions read.
     pub fn view<'a>(&'a self, track: &'a Track) -> Tables<'a> {
         let TestTables { sleepers, histories, scalars } = self;
         Tables {
@@ -145,7 +147,7 @@ fn mean_cycles(sleepers: &[(String, f64)], tests: &[BedTest]) -> Vec<MeanCycleRo
     first.answer.cycles.iter().enumerate().map(row).collect()
 }
 
-/// What sensors and sleepers did in the cycles that are kept, of all packings.
+/// Readings of sensors and sleepers in the recorded cycles, for all packings.
 fn histories(sensors: &[(String, f64)], sleepers: &[(String, f64)], tests: &[BedTest]) -> Vec<HistoryRow> {
     let mut rows = Vec::new();
     let mut put = |cycle: u64, phase: f64, quantity: Response, (id, x): &(String, f64), value: f64| {

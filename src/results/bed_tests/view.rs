@@ -1,4 +1,4 @@
-//! Tests with the last bed as it ended: what their page is made of, kept beside the tables (`tests.json`).
+//! Tests with the last bed at its end: the data of the page, stored beside the tables (`tests.json`).
 
 use super::super::files::read_json;
 use super::super::{Grain, Link, ResultsError, Run, grains, links};
@@ -29,7 +29,7 @@ impl BedTestsView {
     }
 }
 
-/// The tests of a directory; `None` where it holds none.
+/// The tests of a directory; `None` if it holds none.
 pub fn read_tests(directory: &Path) -> Result<Option<BedTestsView>, ResultsError> {
     let path = directory.join(VIEW);
     path.exists().then(|| read_json(&path)).transpose()

@@ -1,4 +1,4 @@
-//! What the machine can do: how fast it moves bytes, and how many a program has held.
+//! Measurements of the machine: memory bandwidth, and peak memory of a program.
 
 use rayon::prelude::*;
 use std::time::Instant;
@@ -9,8 +9,8 @@ const LENGTH: usize = 4 << 20;
 const CHUNK: usize = 1 << 16;
 const ROUNDS: usize = 5;
 
-/// Bytes that the threads of the present pool move in a second by `a = b + s c` over arrays in memory, each counted once
-/// (McCalpin's triad; the best of five rounds).
+/// Bytes that the threads of the present pool move in a second by `a = b + s c` over arrays in memory, each counted
+/// once (McCalpin's triad; the best of five rounds).
 pub fn triad() -> f64 {
     let (mut a, b, c) = (vec![0.0f64; LENGTH], vec![1.0; LENGTH], vec![2.0; LENGTH]);
     let mut best = f64::INFINITY;

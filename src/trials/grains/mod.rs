@@ -1,4 +1,5 @@
-//! What steps of a bed of grains cost: speed, where the time goes, memory, against the machine's own bandwidth.
+//! Cost of the steps of a bed of grains: speed, time of each part, and memory traffic compared with the bandwidth of
+//! the machine.
 //!
 //! The case is one that other programs can run too: a bed under shaken gravity with a law that all of them have, see
 //! [`law`] and `benches/grains/peers.sh`.
@@ -47,7 +48,7 @@ pub fn bed<R: Real>(pile: &Pile, copies: [u32; 2], skin: Option<f64>) -> Bed<R> 
     bed
 }
 
-/// What to measure.
+/// Settings of the measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Request {
     /// Copies of the bed along x and y.
@@ -57,11 +58,11 @@ pub struct Request {
     /// Steps before those that are timed.
     pub warm: u64,
     pub steps: u64,
-    /// How often all is done anew, from the file's state; at least once. The run of middle length is told.
+    /// Number of repetitions from the file's state; at least one. The run with the median time is reported.
     pub repeat: u32,
 }
 
-/// What a measurement found. A sphere is a pebble here; a body without a fellow is both.
+/// Results of a measurement. A pebble is one sphere; a body of one sphere is a pebble and a body.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measured {
     pub bodies: u64,
@@ -100,7 +101,7 @@ pub struct Measured {
     pub bandwidth: Option<Bandwidth>,
 }
 
-/// Where the time of a step goes.
+/// Time of each part of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Shares {
     pub search: Share,
@@ -116,7 +117,7 @@ pub struct Share {
     pub ns_per_body_step: f64,
 }
 
-/// What the steps move, against what the machine can.
+/// Memory traffic of the steps, compared with the bandwidth of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Bandwidth {
     /// By a triad on the same threads.
@@ -124,7 +125,7 @@ pub struct Bandwidth {
     /// See [`Bed::bytes_per_step`].
     pub bytes_per_step: u64,
     pub used_bytes_per_second: f64,
-    /// Above 1 where the caches hold what the next pass needs.
+    /// Above 1 if the caches hold data that the next pass needs.
     pub share: f64,
 }
 
@@ -142,7 +143,7 @@ struct Round {
     timings: Timings,
 }
 
-/// Runs the bed and says what it cost. `progress` hears of steps done and of all of them.
+/// Runs the bed and returns the cost. `progress` gets the steps done and their total.
 pub fn measure<R: Real>(
     pile: &Pile,
     request: &Request,

@@ -1,7 +1,8 @@
 //! A bed in a file: a line of text for each pebble, read one at a time, and copies of it side by side.
 //!
-//! The first line says where the bed ends: `# periodic x 1.2 m, y 1.2 m; rigid floor z = 0`, either half of which may be
-//! absent. The others hold `x y z r` of a sphere or `clump x y z r` of a pebble, in m; the pebbles of a clump stand together.
+//! The first line gives the limits of the bed: `# periodic x 1.2 m, y 1.2 m; rigid floor z = 0`, either half of which
+//! may be absent. The others hold `x y z r` of a sphere or `clump x y z r` of a pebble, in m; the pebbles of a clump
+//! stand together.
 
 use crate::solvers::granular::clump::{Pebble, Template};
 use crate::solvers::granular::{Bed, ContactLaws, Domain, Placed, Real, Sphere};
@@ -24,7 +25,7 @@ const RADII: std::ops::RangeInclusive<f64> = 1e-5..=100.0;
 /// Bodies of a file.
 #[derive(Debug, Clone)]
 pub struct Pile {
-    /// Along x and y \[m\]; none where the bed is open.
+    /// Along x and y \[m\]; none if the bed is open.
     periods: [Option<f64>; 2],
     /// Level of a rigid floor \[m\].
     floor: Option<f64>,
@@ -39,7 +40,7 @@ enum Piece {
     Clump(Template),
 }
 
-/// Why a file is no bed.
+/// Why a file cannot be read as a bed.
 #[derive(Debug)]
 pub enum PileError {
     Unreadable(io::Error),
@@ -87,7 +88,7 @@ impl Pile {
             }
             let (clump, pebble) = pebble(line, text)?;
             if *form.get_or_insert(clump.is_some()) != clump.is_some() {
-                return malformed(line, "expected as many numbers as on the lines before");
+                return malformed(line, "expected as many numbers as on the first line");
             }
             let Some(name) = clump else {
                 pile.pieces.push(Piece::Sphere { centre: pebble.centre.into(), radius: pebble.radius });
@@ -97,7 +98,12 @@ impl Pile {
             match clumps.last_mut() {
                 Some(open) if open.name == name => open.pebbles.push(pebble),
                 _ if !seen.insert(name) => {
-                    return malformed(line, format!("clump {name} was left before; its pebbles must stand together"));
+                    return malformed(
+                        line,
+                        format!(
+                            "pebbles of clump {name} are on separate lines; write all its pebbles one after the other"
+                        ),
+                    );
                 }
                 _ => {
                     if clumps.len() >= BATCH {
@@ -163,8 +169,8 @@ impl Pile {
         self.pieces.iter().map(radius).fold(0.0, f64::max)
     }
 
-    /// A bed of so many copies along x and y, at rest, on its floor, without gravity and step. Bodies of one copy follow
-    /// each other, in the order of the file.
+    /// A bed of so many copies along x and y, at rest, on its floor, without gravity and step. Bodies of one copy
+    /// follow each other, in the order of the file.
     pub fn bed<R: Real>(&self, copies: [u32; 2], laws: ContactLaws, density: f64) -> Bed<R> {
         let mut domain = Domain::open();
         for (axis, (period, copies)) in self.periods.into_iter().zip(copies).enumerate() {
@@ -246,12 +252,12 @@ impl<S: BufRead> Lines<S> {
         match std::str::from_utf8(&self.text) {
             _ if self.text.len() as u64 == LINE => malformed(self.number, "expected a line of a few numbers"),
             Ok(text) => Ok(Some((self.number, text.trim()))),
-            Err(_) => malformed(self.number, "expected text, found bytes that are none"),
+            Err(_) => malformed(self.number, "expected text, found bytes that are not UTF-8 text"),
         }
     }
 }
 
-const NO_HEADER: &str = "expected where the bed ends: `# periodic x 1.2 m, y 1.2 m; rigid floor z = 0`";
+const NO_HEADER: &str = "expected the limits of the bed: `# periodic x 1.2 m, y 1.2 m; rigid floor z = 0`";
 
 /// Periods along x and y, and the level of the floor.
 fn header(text: &str) -> Result<([Option<f64>; 2], Option<f64>), PileError> {
@@ -350,8 +356,8 @@ mod tests {
     #[test]
     fn a_bad_line_is_named() {
         let head = "# periodic x 1 m, y 1 m; rigid floor z = 0\n";
-        assert!(wrong("").starts_with("line 1: expected where the bed ends"));
-        assert!(wrong("0 0 0 1\n").starts_with("line 1: expected where the bed ends"));
+        assert!(wrong("").starts_with("line 1: expected the limits of the bed"));
+        assert!(wrong("0 0 0 1\n").starts_with("line 1: expected the limits of the bed"));
         assert!(wrong("# periodic x -1 m\n").contains("line 1: expected a period"));
         assert!(wrong("# periodic z 1 m\n").contains("line 1: a bed is periodic along x and y"));
         assert!(wrong("# rigid floor at 0\n").contains("line 1: expected `rigid floor z = 0`"));
@@ -362,11 +368,14 @@ mod tests {
         assert_eq!(after("1 2 NaN 0.1"), "line 4: expected a number, found `NaN`");
         assert_eq!(after("1 2 3 0"), "line 4: expected a radius from 0.00001 m to 100 m, found 0 m");
         assert_eq!(after("1 1e9 3 0.1"), "line 4: expected a place within 100000 m of the origin, found 1000000000 m");
-        assert_eq!(after("1 1 2 3 0.1"), "line 4: expected as many numbers as on the lines before");
+        assert_eq!(after("1 1 2 3 0.1"), "line 4: expected as many numbers as on the first line");
         assert_eq!(after(&"1 ".repeat(5000)), "line 4: expected a line of a few numbers");
         let clumps = |lines: &str| wrong(&format!("{head}{lines}\n"));
         assert!(clumps("a 1 2 3 0.1").contains("line 2: expected the number of a clump"));
-        assert!(clumps("1 0 0 1 0.1\n2 1 0 1 0.1\n1 0 0 1 0.1").starts_with("line 4: clump 1 was left before"));
+        assert!(
+            clumps("1 0 0 1 0.1\n2 1 0 1 0.1\n1 0 0 1 0.1")
+                .starts_with("line 4: pebbles of clump 1 are on separate lines")
+        );
         assert!(clumps("5 0 0 1 0.1\n6 0 0 1 0.1\n6 0 0 9 0.1").starts_with("line 3: clump 6, which begins here: "));
         assert!(
             Pile::read(&b"# periodic x 1 m\n\xff\n"[..]).unwrap_err().to_string().starts_with("line 2: expected text")
