@@ -48,30 +48,34 @@ impl fmt::Display for SoilError {
             SoilError::Loose { node } => write!(f, "node {node} of the soil belongs to no element"),
             SoilError::Turned { element, volume } => write!(
                 f,
-                "soil element {element} is turned inside out or too distorted (its volume is {volume:.3e} m^3); number its lower four nodes counterclockwise seen from above, then its upper four"
+                "soil element {element} is turned inside out or too distorted (its volume is {volume:.3e} m^3); number its four lower nodes counterclockwise, seen from above, then its four upper nodes"
             ),
             SoilError::Lines { axis, at } => {
-                write!(f, "the grid lines of the soil along {} must grow; line {at} does not", ["x", "y", "z"][*axis])
+                write!(
+                    f,
+                    "the coordinates of the grid lines of the soil along {} must increase; line {at} does not",
+                    ["x", "y", "z"][*axis]
+                )
             }
             SoilError::NoFace { side } => write!(f, "no face of a soil element lies on the side {side}"),
             SoilError::Step { dt, limit } => write!(
                 f,
-                "a step of {dt:.3e} s is above the limit of {limit:.3e} s of the soil; take a shorter step or larger elements"
+                "the time step of {dt:.3e} s is above the limit of the soil, {limit:.3e} s; take a shorter step or larger elements"
             ),
             SoilError::Lost { node, step } => write!(
                 f,
-                "the motion of node {node} of the soil is no number any more in step {step}; the forces on it are no numbers or grow without bound"
+                "the motion of node {node} of the soil is not a finite number in step {step}; the forces on the node are not finite or grow without bound"
             ),
             SoilError::NotHeld => {
-                f.write_str("the soil has no state of rest: it can move as a whole; fix a face or put it on rollers")
+                f.write_str("the soil has no state of rest because it can move as a whole; fix a face or put a face on rollers")
             }
             SoilError::TooLarge { unknowns } => write!(
                 f,
-                "the stiffness of the soil with {unknowns} unknowns does not fit into memory when it is factored; take larger elements or a shorter box"
+                "the factored stiffness matrix of the soil ({unknowns} unknowns) does not fit into memory; take larger elements or a shorter box"
             ),
             SoilError::NoRest { iterations, left } => write!(
                 f,
-                "the soil finds no state of rest: after {iterations} iterations {:.2e} of the load is out of balance; the load is beyond its bearing capacity or near to it",
+                "no state of rest of the soil was found: after {iterations} iterations a share of {:.2e} of the load is out of balance; the load is near or above the bearing capacity",
                 left
             ),
             SoilError::OtherSoil { what, expected, found } => {

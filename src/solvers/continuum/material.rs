@@ -65,6 +65,6 @@ impl Material {
         want(dilates, "the dilation angle", dilation_angle, "from 0 to the friction angle, rad")?;
         want(tension >= 0.0, "the tension limit", tension, "a number from 0")?;
         let some = cohesion > 0.0 || friction_angle > 0.0;
-        want(some, "the cohesion", cohesion, "above 0 where there is no friction")
+        want(some, "the cohesion", cohesion, "above 0 if there is no friction")
     }
 }

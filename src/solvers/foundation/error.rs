@@ -35,7 +35,7 @@ impl fmt::Display for FoundationError {
             }
             FoundationError::Spread { layer, value } => write!(
                 f,
-                "expected the load to spread at 0 to below 90 degrees in layer {}, found {}",
+                "expected a load spread angle from 0 to below 90 degrees in layer {}, found {}",
                 layer + 1,
                 value.to_degrees()
             ),
@@ -43,10 +43,10 @@ impl fmt::Display for FoundationError {
                 write!(f, "expected a Poisson's ratio{} from 0 to below 0.5, found {value}", of(layer))
             }
             FoundationError::Spacing { value, width } => {
-                write!(f, "expected sleepers at least their width of {width} m apart, found {value} m")
+                write!(f, "expected a sleeper spacing of at least the sleeper width, {width} m, found {value} m")
             }
             FoundationError::Neighbours { value } => {
-                write!(f, "expected neighbours that bear 0 .. 1 of the load, found {value}")
+                write!(f, "expected a load share of the neighbours from 0 to 1, found {value}")
             }
         }
     }

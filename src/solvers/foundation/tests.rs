@@ -161,11 +161,11 @@ fn mistakes_are_named() {
     assert_eq!(plain(&[layer(0.3, f64::NAN, 0.2)]), "expected a positive Young's modulus of layer 1, found NaN");
     assert_eq!(plain(&[layer(0.3, 1e8, 0.5)]), "expected a Poisson's ratio of layer 1 from 0 to below 0.5, found 0.5");
     let steep = Layer { spread: 95f64.to_radians(), ..stack[0] };
-    assert_eq!(plain(&[steep]), "expected the load to spread at 0 to below 90 degrees in layer 1, found 95");
+    assert_eq!(plain(&[steep]), "expected a load spread angle from 0 to below 90 degrees in layer 1, found 95");
     let crowded = Bearing { spacings: [0.6, 0.2], ..sleeper() };
     assert_eq!(
         fails(crowded, &stack, Below::Rigid, Method::StressCone),
-        "expected sleepers at least their width of 0.3 m apart, found 0.2 m"
+        "expected a sleeper spacing of at least the sleeper width, 0.3 m, found 0.2 m"
     );
     assert_eq!(
         fails(sleeper(), &stack, Below::Springs { modulus: -1.0 }, Method::StressCone),
@@ -173,7 +173,7 @@ fn mistakes_are_named() {
     );
     assert_eq!(
         fails(sleeper(), &stack, Below::Rigid, Method::LayeredElastic { neighbours: 1.5 }),
-        "expected neighbours that bear 0 .. 1 of the load, found 1.5"
+        "expected a load share of the neighbours from 0 to 1, found 1.5"
     );
 }
 

@@ -58,9 +58,9 @@ impl<R: Real> Bed<R> {
             Gravity::Table { times, values } => {
                 bed.want(!times.is_empty(), "number of times of gravity", 0.0, POSITIVE)?;
                 let same = times.len() == values.len();
-                bed.want(same, "number of values of gravity", values.len() as f64, "that of times")?;
+                bed.want(same, "number of values of gravity", values.len() as f64, "the number of times")?;
                 bed.numbers("times of gravity", times)?;
-                let later = |t: &[f64]| bed.want(t[0] < t[1], "times of gravity", t[1], "each after the one before");
+                let later = |t: &[f64]| bed.want(t[0] < t[1], "times of gravity", t[1], "each above the time before it");
                 times.windows(2).try_for_each(later)?;
                 bed.numbers("gravity", values.as_flattened())
             }
@@ -83,7 +83,7 @@ impl<R: Real> Bed<R> {
 
     fn check_surface(&self, of: Subject, surface: u16) -> Result<(), Fault> {
         let fine = usize::from(surface) < self.laws.surfaces();
-        of.want(fine, "surface", f64::from(surface), "a number below that of the surfaces with laws")
+        of.want(fine, "surface", f64::from(surface), "a number below the number of surfaces with laws")
     }
 
     fn check_body(&self, body: &Body) -> Result<(), Fault> {

@@ -79,7 +79,7 @@ impl std::fmt::Display for RestoreError {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
             RestoreError::Version { found } => {
-                write!(f, "the checkpoint has layout {found}, this program reads layout {VERSION}; run from the start")
+                write!(f, "the checkpoint has layout {found}, but this program reads layout {VERSION}; run from the start")
             }
             RestoreError::Inconsistent(what) => write!(f, "the checkpoint is damaged: {what}; run from the start"),
             RestoreError::Failure(failure) => failure.fmt(f),
@@ -178,14 +178,14 @@ impl<R: Real> Checkpoint<R> {
                 _ => return Err(Inconsistent("bodies are not numbered one by one")),
             }
             if body.first != pebbles {
-                return Err(Inconsistent("pebbles do not follow their bodies"));
+                return Err(Inconsistent("pebbles are not in the order of their bodies"));
             }
             pebbles += u32::from(body.pebbles);
             parts[body.id as usize] = body.pebbles;
             if body.clump != super::body::SPHERE {
                 let arms = self.clumps.get(body.clump as usize).map(|c| c.arms as usize + usize::from(body.pebbles));
                 if body.clump != clumps || arms.is_none_or(|end| end > self.arms.len()) {
-                    return Err(Inconsistent("clumps do not follow their bodies"));
+                    return Err(Inconsistent("clumps are not in the order of their bodies"));
                 }
                 clumps += 1;
             }
@@ -202,12 +202,12 @@ impl<R: Real> Checkpoint<R> {
         }
         if !self.shear.iter().all(known) || self.walls.iter().any(|w| usize::from(w.surface()) >= self.laws.surfaces())
         {
-            return Err(Inconsistent("a contact or a wall belongs to nothing"));
+            return Err(Inconsistent("a contact names a body, or a wall a surface, that does not exist"));
         }
         if !self.bonds.iter().all(bound) {
-            return Err(Inconsistent("a bond belongs to nothing"));
+            return Err(Inconsistent("a bond names a pebble or a glue that does not exist"));
         }
-        self.is_sane().then_some(()).ok_or(Inconsistent("it holds a number that no bed can hold"))
+        self.is_sane().then_some(()).ok_or(Inconsistent("it holds a number out of range"))
     }
 
     /// Whether what no other check looks at is in numbers of which forces can be computed: damaged bytes hold any.

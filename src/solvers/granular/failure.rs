@@ -60,19 +60,19 @@ pub struct Culprit {
 impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Failure::NoTimeStep => write!(f, "no time step has been set; the limit of the contacts times 0.9 is one"),
+            Failure::NoTimeStep => write!(f, "no time step has been set; take 0.9 times the limit of the contacts"),
             Failure::Fault(fault) => fault.fmt(f),
             Failure::CellTooSmall => {
-                write!(f, "a period or bay is shorter than its bodies reach; make it longer than twice the largest")
+                write!(f, "a period or bay is too short for its bodies; make it longer than twice the largest body")
             }
-            Failure::Lost(c) => write!(f, "the motion of {c} is no number any more{}", c.advice()),
+            Failure::Lost(c) => write!(f, "the motion of {c} is not a finite number{}", c.advice()),
             Failure::Stride { culprit, share } => {
                 write!(f, "{culprit} moves by {share:.2} of its radius in one step{}", culprit.advice())
             }
             Failure::Overlap { culprit, share } => {
-                write!(f, "{culprit} is {share:.2} of the smaller radius deep in its neighbour{}", culprit.advice())
+                write!(f, "{culprit} overlaps its neighbour by {share:.2} of the smaller radius{}", culprit.advice())
             }
-            Failure::Growth(c) => write!(f, "{c} turns round in every step{}", c.advice()),
+            Failure::Growth(c) => write!(f, "{c} reverses its motion in every step{}", c.advice()),
         }
     }
 }
@@ -91,11 +91,11 @@ impl Culprit {
         let (dt, stable) = (self.dt, self.stable_dt);
         if dt > stable {
             format!(
-                ": the step of {dt:.3e} s is above the stable {stable:.3e} s of its contacts; take 0.9 of that, or scale masses"
+                ": the time step of {dt:.3e} s is above the stable step of its contacts, {stable:.3e} s; take 0.9 times the stable step, or scale masses"
             )
         } else {
             format!(
-                ": the step of {dt:.3e} s is stable, so it was pushed too hard or set in too deep; start with less overlap, or push more slowly"
+                ": the time step of {dt:.3e} s is stable, so the load on the body or its first overlap is too large; start with less overlap, or load more slowly"
             )
         }
     }

@@ -206,7 +206,7 @@ fn check_table(times: &[f64], velocities: &[Vector3<f64>]) -> Result<(), MotionE
     let same = times.len() == velocities.len();
     require(same, "number of velocities of a table", velocities.len() as f64, "as many as there are times")?;
     times.iter().try_for_each(|t| require(t.is_finite(), name, *t, "finite numbers"))?;
-    times.windows(2).try_for_each(|pair| require(pair[1] > pair[0], name, pair[1], "each after the one before"))?;
+    times.windows(2).try_for_each(|pair| require(pair[1] > pair[0], name, pair[1], "each above the time before it"))?;
     velocities.iter().try_for_each(|v| finite("velocities of a table", v))
 }
 

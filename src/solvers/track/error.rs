@@ -112,26 +112,29 @@ impl fmt::Display for TrackError {
             TrackError::OffTrack { x, start, end } => {
                 write!(f, "x = {x} m lies outside the track, which reaches from {start} m to {end} m")
             }
-            TrackError::Mechanism { x } => write!(f, "nothing holds the track or vehicle at x = {x} m"),
+            TrackError::Mechanism { x } => write!(f, "nothing holds the track or the vehicle at x = {x} m"),
             TrackError::NoEquilibrium { x, iterations } => {
-                write!(f, "no equilibrium after {iterations} iterations, the supports near x = {x} m keep changing")
+                write!(f, "no equilibrium after {iterations} iterations; the contacts near x = {x} m still change")
             }
             TrackError::StepNotConverged { step, time, x, contact } => {
-                write!(f, "contacts near x = {x} m did not settle in step {step} at {time} s, last {contact}")
+                write!(
+                    f,
+                    "the contacts near x = {x} m did not converge in step {step} at {time} s; the last to change: {contact}"
+                )
             }
             TrackError::RanAway { x, force, times } => {
-                write!(f, "a wheel force of {:.0} kN near x = {x} m, {times:.0} times the static one", force / 1e3)
+                write!(f, "the wheel force near x = {x} m is {:.0} kN, {times:.0} times the static force", force / 1e3)
             }
             TrackError::StepTooLong { time_step, limit, x, contact } => write!(
                 f,
-                "a time step of {:.3} us is too long for {contact} at x = {x} m, which allows {:.3} us",
+                "a time step of {:.3} us is too long for {contact} at x = {x} m; the longest stable step is {:.3} us",
                 1e6 * time_step,
                 1e6 * limit
             ),
             TrackError::Unstable { step, time, x, what } => write!(
                 f,
-                "the motion is unstable: {what} at x = {x} m in step {step} at {time} s; a shorter \
-                 step or more damping of fast motion holds it"
+                "the motion is unstable: {what} at x = {x} m in step {step} at {time} s; take a shorter \
+                 step or more damping of fast motion"
             ),
         }
     }
@@ -142,31 +145,31 @@ impl std::error::Error for TrackError {}
 impl fmt::Display for Flaw {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Flaw::Ends => "the right end of the track is not right of its left end",
-            Flaw::Irregularity => "the irregularity is not a number or has a gap",
-            Flaw::RailGap => "the rail sections do not follow each other",
+            Flaw::Ends => "the chainage of the right end of the track is not above the chainage of its left end",
+            Flaw::Irregularity => "the irregularity is not a finite number or has a gap",
+            Flaw::RailGap => "two rail sections leave a gap or overlap, or a section has no length",
             Flaw::Rail => "the rail has no bending stiffness or a negative mass",
             Flaw::RailShear => "the rail has no shear stiffness or a negative rotary inertia",
             Flaw::RailShort => "the rail sections do not reach the end of the track",
-            Flaw::Joint => "a joint does not lie between the ends of the rail",
-            Flaw::SlabOverlap => "a slab overlaps another one or the end of the track",
-            Flaw::Slab => "a slab lacks bending or foundation stiffness, or has a negative mass or damping",
+            Flaw::Joint => "a joint lies outside the rail",
+            Flaw::SlabOverlap => "a slab overlaps another slab or reaches beyond the end of the track",
+            Flaw::Slab => "a slab has no bending stiffness or no foundation stiffness, or a negative mass or damping",
             Flaw::SeatOutside => "a seat lies outside the track",
-            Flaw::SeatOrder => "two seats share a place or are out of order",
+            Flaw::SeatOrder => "two seats lie at the same chainage or are out of order",
             Flaw::Pad => "a pad has no stiffness or a negative damping",
-            Flaw::Seating => "a seating is not softer than its support, or lacks stiffness or closure",
-            Flaw::Sleeper => "a sleeper lacks mass or support stiffness, or has a negative damping",
-            Flaw::Carried => "a sleeper carried from outside has no mass",
-            Flaw::UnderPad => "an under sleeper pad lacks mass or stiffness, or has a negative damping",
-            Flaw::Pitch => "a sleeper that turns lacks inertia, or its rail pad stiffness against turning",
+            Flaw::Seating => "a seating is not softer than its support, or has no stiffness or no closure",
+            Flaw::Sleeper => "a sleeper has no mass or no support stiffness, or a negative damping",
+            Flaw::Carried => "a sleeper that external forces carry has no mass",
+            Flaw::UnderPad => "an under sleeper pad has no mass or no stiffness, or a negative damping",
+            Flaw::Pitch => "a sleeper that turns has no rotary inertia, or its rail pad has no rotational stiffness",
             Flaw::Unsupported => {
-                "a sleeper is carried by forces from outside, which this time step does not have: give it a support"
+                "external forces carry a sleeper, but this time integration has no external forces: give it a support"
             }
-            Flaw::NoSlab => "no slab under the seat",
+            Flaw::NoSlab => "no slab lies under the seat",
             Flaw::AuxiliaryRailOutside => "an auxiliary rail reaches beyond the track",
             Flaw::AuxiliaryRailShort => "an auxiliary rail lies on fewer than two seats",
             Flaw::AuxiliaryRail => {
-                "an auxiliary rail lacks bending or pad stiffness, or has a negative mass or damping"
+                "an auxiliary rail has no bending stiffness or no pad stiffness, or a negative mass or damping"
             }
         })
     }
@@ -206,10 +209,10 @@ impl fmt::Display for Unsettled {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Unsettled::Wheel { number, force, indentation } => {
-                write!(f, "wheel {number} with {force:.0} N at an indentation of {indentation:.3e} m")
+                write!(f, "wheel {number} (force {force:.0} N, indentation {indentation:.3e} m)")
             }
             Unsettled::Support { sleeper, phase, gap } => {
-                write!(f, "the support of sleeper {sleeper}, {} at a gap of {gap:.3e} m", phase.word())
+                write!(f, "the support of sleeper {sleeper} ({}, gap {gap:.3e} m)", phase.word())
             }
             Unsettled::Nothing => write!(f, "no support"),
         }

@@ -88,7 +88,7 @@ fn check(points: &[(f64, f64)]) -> Result<(), TrackError> {
     }
     match points.windows(2).find(|pair| pair[1].0 <= pair[0].0) {
         Some(pair) => {
-            fail(TrackParameter::Irregularity("chainage in an irregularity"), pair[1].0, "above the one before")
+            fail(TrackParameter::Irregularity("chainage in an irregularity"), pair[1].0, "above the chainage before it")
         }
         None => Ok(()),
     }

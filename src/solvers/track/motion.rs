@@ -82,7 +82,7 @@ impl Motion {
             return fail(
                 TrackParameter::SpeedProfile("chainage in a speed profile"),
                 pair[1].0,
-                "above the one before",
+                "above the chainage before it",
             );
         }
         let mut places = vec![start];

@@ -177,13 +177,13 @@ impl Wheel {
         }
         match (self.unknown, self.contact) {
             (Some(unknown), WheelContact::Given(_)) => {
-                fail(TrackParameter::Wheel("unknown of a wheel"), unknown as f64, "none under a given force")
+                fail(TrackParameter::Wheel("unknown of a wheel"), unknown as f64, "to be absent if the force is given")
             }
             (Some(unknown), _) if unknown >= order => {
                 fail(TrackParameter::Wheel("unknown of a wheel"), unknown as f64, "below the number of unknowns")
             }
             (None, WheelContact::Hertz(_) | WheelContact::Linear { .. }) => {
-                fail(TrackParameter::Wheel("unknowns of a wheel"), 0.0, "of 1 where the force is not given")
+                fail(TrackParameter::Wheel("unknowns of a wheel"), 0.0, "of 1 if the force is not given")
             }
             _ => Ok(()),
         }

@@ -140,6 +140,6 @@ fn inverse(vehicle: &Multibody, scheme: &Scheme) -> Result<DMatrix<f64>, TrackEr
     matrix.cholesky().map(|factor| factor.inverse()).ok_or(TrackError::Parameter {
         name: TrackParameter::Vehicle("unknowns of a vehicle"),
         value: vehicle.order() as f64,
-        expected: "that have a mass or springs to all sides",
+        expected: "that each have a mass or a spring",
     })
 }

@@ -132,7 +132,7 @@ impl fmt::Display for AngularError {
                 write!(f, "expected a {name} from {low} to {high}, found {value}")
             }
             AngularError::NotReached => {
-                write!(f, "no grain of these indices was found; make it less flat or less round")
+                write!(f, "no grain with these shape indices was found; make it less flat or less round")
             }
         }
     }

@@ -283,18 +283,18 @@ fn ball(diameter: f64) -> f64 {
 impl fmt::Display for GradingError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            GradingError::Size { size } => write!(f, "expected a size of grains above 0 m, found {size} m"),
+            GradingError::Size { size } => write!(f, "expected a grain size above 0 m, found {size} m"),
             GradingError::Falls { point } => {
-                write!(f, "expected sizes and shares from 0 to 1 that ascend, found one that does not at point {point}")
+                write!(f, "expected ascending sizes and ascending shares from 0 to 1, which is not so at point {point}")
             }
-            GradingError::Empty => write!(f, "the curve holds no mass: its first and its last share are the same"),
+            GradingError::Empty => write!(f, "the grading curve holds no mass because its first and last shares are equal"),
             GradingError::Volume { volume } => write!(f, "expected a solid volume above 0 m3, found {volume} m3"),
             GradingError::NoGrain { volume, mean } => {
-                write!(f, "{:.3e} m3 hold no grain of this grading, whose mean grain has {:.3e} m3", volume, mean)
+                write!(f, "a volume of {:.3e} m3 is too small for this grading; its mean grain has {:.3e} m3", volume, mean)
             }
             GradingError::TooMany { grains, finest } => write!(
                 f,
-                "the grading has {grains:.1e} grains in this volume; cut it below a size above {:.3} mm",
+                "the grading has {grains:.1e} grains in this volume, too many; remove the sizes below a limit above {:.3} mm",
                 1e3 * finest
             ),
         }

@@ -208,9 +208,9 @@ fn bodies(mesh: &Mesh) -> usize {
 impl fmt::Display for StlError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            StlError::NotStl => write!(f, "it is no STL file: neither text that begins with `solid` nor binary"),
+            StlError::NotStl => write!(f, "it is not an STL file: it is neither text that begins with `solid` nor binary"),
             StlError::Cut { facets, found } => {
-                write!(f, "it is cut off: a binary file of {facets} triangles that holds {found}")
+                write!(f, "it is cut off: the header gives {facets} triangles, the file holds {found}")
             }
             StlError::Text { expected, found, .. } if found.is_empty() => {
                 write!(f, "expected `{expected}`, found the end of the file")
@@ -218,7 +218,7 @@ impl fmt::Display for StlError {
             StlError::Text { expected, found, .. } => write!(f, "expected `{expected}`, found `{found}`"),
             StlError::Mesh(error) => error.fmt(f),
             StlError::Bodies { count } => {
-                write!(f, "it holds {count} bodies that do not hang together, a grain is one")
+                write!(f, "it holds {count} separate bodies; a grain must be one body")
             }
         }
     }

@@ -117,7 +117,7 @@ impl fmt::Display for TemplatesError {
             TemplatesError::Clump(error) => error.fmt(f),
             TemplatesError::TooFew { surface, found, fewest } => write!(
                 f,
-                "{found} pebbles fit into surface {surface} where {fewest} are asked for; it is all but a ball: ask for fewer"
+                "only {found} pebbles fit into surface {surface}, fewer than the {fewest} required, because it is nearly a ball: require fewer pebbles"
             ),
         }
     }

@@ -310,32 +310,32 @@ impl fmt::Display for Finding {
             Finding::Shape { wall, fault } => write!(f, "wall {}: {fault}", wall.0),
             Finding::WallMotion { wall, fault } => write!(f, "wall {}: {fault}", wall.0),
             Finding::Body { body, quantity, value } => {
-                write!(f, "body {}: its {quantity} is {value}; give a finite one, above 0 for mass and radius", body.0)
+                write!(f, "body {}: its {quantity} is {value}; give a finite value, above 0 for mass and radius", body.0)
             }
             Finding::Overlaps { count, body, other, place, overlap, share } => write!(
                 f,
-                "{count} contacts overlap by more than they should, most of all body {} and {other} at {}: {overlap:.3e} m, {share:.3} of \
+                "{count} contacts overlap too much; the largest overlap is between body {} and {other} at {}: {overlap:.3e} m, {share:.3} of \
                  the smaller radius; move them apart, or let radii grow under damping",
                 body.0,
                 At(*place)
             ),
             Finding::Outside { wall, count, body, place } => write!(
                 f,
-                "{count} bodies have a centre in the solid of wall {}, the first is body {} at {}; move them out, or turn the wall's normals round",
+                "{count} bodies have their centre inside wall {}; the first is body {} at {}; move them out, or reverse the normals of the wall",
                 wall.0,
                 body.0,
                 At(*place)
             ),
             Finding::WideWall { wall, axis, extent, period } => write!(
                 f,
-                "wall {} is {extent:.4} m long along {}, more than half of the period of {period:.4} m, and its images are not \
-                 seen; use a plane, or cut it into shorter walls",
+                "wall {} is {extent:.4} m long along {}, more than half of the period of {period:.4} m, but contacts with its periodic \
+                 images are not found; use a plane, or cut it into shorter walls",
                 wall.0, AXES[*axis]
             ),
             Finding::LeaningPlane { wall, axis, lean } => write!(
                 f,
-                "plane {} leans along the periodic {}, by {lean:.3e} of its normal, and does not meet itself there; turn the normal \
-                 across, or leave it open",
+                "plane {} leans along the periodic {}, by {lean:.3e} of its normal, so it is not continuous from period to period; turn \
+                 the normal perpendicular to it, or make that direction not periodic",
                 wall.0, AXES[*axis]
             ),
             Finding::LargeGrain { body, axis, diameter, cell } => write!(
@@ -347,7 +347,7 @@ impl fmt::Display for Finding {
             Finding::Step { dt, limit, body } => {
                 write!(f, "the time step of {dt:.3e} s is above the limit of {limit:.3e} s of the contacts")?;
                 if let Some((body, place)) = body {
-                    write!(f, ", which body {} at {} sets", body.0, At(*place))?;
+                    write!(f, ", set by body {} at {}", body.0, At(*place))?;
                 }
                 write!(f, "; take {:.3e} s, or scale masses", 0.9 * limit)
             }

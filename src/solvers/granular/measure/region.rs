@@ -23,7 +23,7 @@ pub struct NoRegion;
 
 impl fmt::Display for NoRegion {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "expected a region of some volume")
+        write!(f, "expected a region with a volume above 0 m3")
     }
 }
 

@@ -73,7 +73,7 @@ impl Push {
                 times.iter().try_for_each(|t| finite(name, *t))?;
                 times
                     .windows(2)
-                    .try_for_each(|pair| require(pair[1] > pair[0], name, pair[1], "each after the one before"))?;
+                    .try_for_each(|pair| require(pair[1] > pair[0], name, pair[1], "each above the time before it"))?;
                 forces.iter().try_for_each(|force| finite("applied force", *force))
             }
         }

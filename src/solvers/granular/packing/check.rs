@@ -35,9 +35,9 @@ impl Recipe {
         number("gravity", self.gravity, self.gravity > 0.0, "above 0 m/s2")?;
         number("local damping", self.local_damping, (0.0..1.0).contains(&self.local_damping), "from 0 to below 1")?;
         for (quantity, value) in [
-            ("force out of balance of a lift", self.rest.lift),
-            ("force out of balance of the bed", self.rest.bed),
-            ("share by which the pressure may be missed", self.rest.pressure),
+            ("limit of the force out of balance of a lift", self.rest.lift),
+            ("limit of the force out of balance of the bed", self.rest.bed),
+            ("tolerance of the pressure", self.rest.pressure),
             ("longest time of a stage", self.rest.longest),
         ] {
             number(quantity, value, value > 0.0, "above 0")?;

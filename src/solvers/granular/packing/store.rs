@@ -47,16 +47,16 @@ impl<R: Real> Packed<R> {
         let layers = self.densities.len();
         let of_all = |length: usize| length == layers;
         if layers == 0 || self.bed.laws.surfaces() != layers + 1 {
-            return Err("its layers are not those of its surfaces");
+            return Err("the number of layers does not match the number of surfaces");
         }
         if !of_all(self.samples.len()) || !of_all(self.levels.len()) || !of_all(self.bodies.len().wrapping_sub(1)) {
-            return Err("what is known of its layers is not of all of them");
+            return Err("data of a layer are missing");
         }
         if !self.plan.iter().chain(&self.densities).all(|x| x.is_finite() && *x > 0.0) {
-            return Err("its plan or a density is no size");
+            return Err("a side of its plan or a density is not a finite number above 0");
         }
         if !self.bodies.is_sorted() || self.bodies.last().copied() != Some(self.bed.len() as u32) {
-            return Err("its layers do not hold its bodies");
+            return Err("the number of bodies of its layers does not match its number of bodies");
         }
         if !self.samples.iter().all(|sample| sample.curve.is_whole()) {
             return Err("a grading has no points");

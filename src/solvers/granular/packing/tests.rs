@@ -142,7 +142,7 @@ fn a_bed_that_moves_on_is_refused() {
     // the plate comes down, and there is no time to press
     let error = outcome(&Recipe { rest: short, ..small() });
     assert!(matches!(&error, PackingError::Pressure { reached, target, .. } if reached < target), "{error}");
-    assert!(error.to_string().contains("ballast, lift 1 of 2: the plate stands at"), "{error}");
+    assert!(error.to_string().contains("ballast, lift 1 of 2: the pressure of the plate is"), "{error}");
     // forces that must all but vanish
     let strict = Rest { longest: 0.3, lift: 1e-12, ..Rest::default() };
     let error = outcome(&Recipe { rest: strict, ..small() });

@@ -54,8 +54,8 @@ impl fmt::Display for RigError {
         match self {
             RigError::Restless { stage, unbalance, limit, uncarried, time } => write!(
                 f,
-                "{stage}: forces are out of balance by {:.2} % after {time:.2} s, expected {:.2} %; {:.1} % of the force on the \
-                 sleepers is not carried",
+                "{stage}: forces are out of balance by {:.2} % after {time:.2} s, above the limit of {:.2} %; the bed does not \
+                 carry {:.1} % of the force on the sleepers",
                 100.0 * unbalance,
                 100.0 * limit,
                 100.0 * uncarried
@@ -68,12 +68,12 @@ impl fmt::Display for RigError {
             ),
             RigError::NoRoom { layer } => write!(
                 f,
-                "a grain of `{layer}` finds no place between the sleepers or beside them: space the sleepers wider, or cut the \
-                 grading above"
+                "a grain of `{layer}` is too large for the space between the sleepers and beside them: write a wider sleeper \
+                 spacing, or remove the largest sizes from the grading"
             ),
             RigError::Grading(cause) => write!(f, "grains for the cribs: {cause}"),
             RigError::Stopped => f.write_str("the test was stopped"),
-            RigError::Failure { cycle: 0, failure } => write!(f, "as sleepers are set down: {failure}"),
+            RigError::Failure { cycle: 0, failure } => write!(f, "while the sleepers are set down: {failure}"),
             RigError::Failure { cycle, failure } => write!(f, "in cycle {cycle}: {failure}"),
         }
     }

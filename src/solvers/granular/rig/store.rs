@@ -30,19 +30,19 @@ impl<'a, R: Real> Trial<'a, R> {
     fn check(&self) -> Result<(), &'static str> {
         let (state, sleepers) = (&self.state, self.rig.sleepers.len());
         if [state.walls.len(), state.rest.len(), state.current.len()] != [sleepers; 3] {
-            return Err("what is known of its sleepers is not of all of them");
+            return Err("data of a sleeper are missing");
         }
         if state.walls.iter().any(|wall| wall.0 as usize >= self.bed.walls().len()) {
-            return Err("a sleeper is no wall of its bed");
+            return Err("a sleeper has no wall in its bed");
         }
         let cycles = state.cycles.iter().map(|cycle| cycle.sleeper);
         if cycles.chain(state.samples.iter().map(|sample| sample.sleeper)).any(|sleeper| sleeper >= sleepers)
             || state.readings.iter().any(|reading| reading.sensor >= self.rig.sensors.len())
         {
-            return Err("what was read is of a sleeper or a sensor that is not there");
+            return Err("a reading names a sleeper or a sensor that does not exist");
         }
         if state.pieces > self.pieces() || !(state.stride.is_finite() && state.stride > 0.0) {
-            return Err("it is beyond its end, or has no time step");
+            return Err("its position is beyond the end of the test, or it has no time step");
         }
         Ok(())
     }

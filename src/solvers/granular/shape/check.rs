@@ -222,15 +222,15 @@ impl FaultKind {
     /// What one of them is, what several are, and what to do.
     fn words(self) -> [&'static str; 3] {
         match self {
-            FaultKind::Empty => ["mesh without triangles", "", "give one at least"],
-            FaultKind::TooMany => ["mesh of too many triangles", "", "make it coarser or cut it into several walls"],
+            FaultKind::Empty => ["mesh without triangles", "", "give at least one triangle"],
+            FaultKind::TooMany => ["mesh with too many triangles", "", "make it coarser or cut it into several walls"],
             FaultKind::NonFinite => {
                 ["vertex that is not a number", "vertices that are not numbers", "correct the file"]
             }
             FaultKind::OutOfRange => [
-                "triangle of a vertex that does not exist",
-                "triangles of vertices that do not exist",
-                "count vertices from 0, as far as there are any",
+                "triangle with a vertex that does not exist",
+                "triangles with vertices that do not exist",
+                "count vertices from 0 to the number of vertices less 1",
             ],
             FaultKind::Degenerate => [
                 "triangle without area",
@@ -240,12 +240,12 @@ impl FaultKind {
             FaultKind::OpenEdge => [
                 "open edge",
                 "open edges",
-                "close the hole, give vertices that should be one the same numbers, or make it a sheet",
+                "close the hole, give coincident vertices the same coordinates, or make it a sheet",
             ],
             FaultKind::NonManifoldEdge => [
-                "edge of more than two triangles",
-                "edges of more than two triangles",
-                "remove double triangles, or cut the mesh into several walls there",
+                "edge shared by more than two triangles",
+                "edges shared by more than two triangles",
+                "remove duplicate triangles, or cut the mesh into several walls there",
             ],
             FaultKind::Winding => [
                 "edge between triangles that face opposite ways",
@@ -258,7 +258,7 @@ impl FaultKind {
                 "swap two vertices of all its triangles; a body faces outward, a container and a hole in a body inward",
             ],
             FaultKind::Flat => {
-                ["closed part without volume", "closed parts without volume", "make it a sheet of both sides"]
+                ["closed part without volume", "closed parts without volume", "make it a two-sided sheet"]
             }
         }
     }

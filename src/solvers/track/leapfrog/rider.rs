@@ -102,7 +102,7 @@ impl Rider {
         self.inverse = matrix.cholesky().map(|factor| factor.inverse()).ok_or(TrackError::Parameter {
             name: TrackParameter::Vehicle("unknowns of a vehicle"),
             value: vehicle.order() as f64,
-            expected: "that have a mass or springs to all sides",
+            expected: "that each have a mass or a spring",
         })?;
         self.time_step = time_step;
         Ok(())

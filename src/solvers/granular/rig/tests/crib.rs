@@ -85,7 +85,7 @@ fn a_crib_too_narrow_for_its_grains_is_told() {
     let walls = stand(&mut bed, std::slice::from_ref(&sleeper), 9.81, |_| {}).unwrap();
     let error = fill(&mut bed, (&[sleeper], &walls), &filling, |_| {}).unwrap_err();
     assert!(
-        error == RigError::NoRoom { layer: "stone".into() } && error.to_string().contains("finds no place"),
+        error == RigError::NoRoom { layer: "stone".into() } && error.to_string().contains("is too large for the space"),
         "{error}"
     );
 }
