@@ -1,32 +1,34 @@
-//! What can go wrong between a track model and its passages, each with the place and time a caller needs to point at it.
+//! Errors of a track model and its passages, each with the place and time that a caller needs to report it.
 
 use super::support::SupportPhase;
 use std::fmt;
 
-/// Why a track, or a train over it, has no answer.
+/// Why a track, or a train over it, has no result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TrackError {
     /// The model contradicts itself near `x` (m).
     Model { x: f64, flaw: Flaw },
-    /// A number of the call is out of its range.
+    /// An argument is out of its range.
     Parameter { name: TrackParameter, value: f64, expected: &'static str },
     /// A wheel or a load stands outside the track.
     OffTrack { x: f64, start: f64, end: f64 },
-    /// Nothing holds the track near `x` (m), or a vehicle whose leading wheel is there: it moves without resistance.
+    /// Nothing holds the track near `x` (m), or the vehicle whose leading wheel is at `x`: it moves without resistance.
     Mechanism { x: f64 },
-    /// No set of closed supports was found that is in equilibrium; `x` (m) is where it last changed.
+    /// No set of closed supports in equilibrium was found; `x` (m) is the place of the last change.
     NoEquilibrium { x: f64, iterations: usize },
-    /// The contacts of a time step did not settle; `x` (m) is where they last changed, `contact` what is there.
+    /// The contacts of a time step did not converge; `x` (m) is the place of the last change, `contact` the contact
+    /// there.
     StepNotConverged { step: usize, time: f64, x: f64, contact: Unsettled },
-    /// A wheel force (N) is so many times its static value that the answer means nothing; `x` (m) is the seat that bears most.
+    /// A wheel force (N) is `times` its static value, so large that the result means nothing; `x` (m) is the seat with
+    /// the largest load.
     RanAway { x: f64, force: f64, times: f64 },
-    /// A step (s) is longer than a contact bears whose force acts from one step to the next: at `x` (m) by `limit` (s).
+    /// A step (s) is longer than the `limit` (s) of an explicit contact at `x` (m).
     StepTooLong { time_step: f64, limit: f64, x: f64, contact: Explicit },
-    /// A value has gone beyond sense, or is no number: the step is too long for what happens at `x` (m).
+    /// A value is beyond its limit or is not a number: the step is too long for the motion at `x` (m).
     Unstable { step: usize, time: f64, x: f64, what: Wild },
 }
 
-/// What contradicts itself in a model.
+/// The part of a model that contradicts itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Flaw {
     Ends,
@@ -53,11 +55,12 @@ pub enum Flaw {
     AuxiliaryRail,
 }
 
-/// A number of a call, by the part that it belongs to; where a part has several, with the words for it.
+/// A parameter of a call, by the part that it belongs to; if a part has several parameters, with the name of the
+/// parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TrackParameter {
     TimeStep,
-    /// A share by which a scheme damps.
+    /// A damping parameter of a scheme.
     Damping(&'static str),
     /// The tolerance of a step.
     Tolerance,
@@ -76,7 +79,7 @@ pub enum TrackParameter {
     Wheel(&'static str),
 }
 
-/// A contact whose force is computed from what is known at the beginning of a step.
+/// A contact whose force is computed from the state at the beginning of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Explicit {
     /// The support of an ordinary sleeper.
@@ -84,18 +87,18 @@ pub enum Explicit {
     Wheel,
 }
 
-/// The contact that was last moved in a step whose contacts do not settle.
+/// The contact that changed last in a step whose contacts do not converge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Unsettled {
-    /// A wheel by its number from 1 with its force, N, and indentation, m.
+    /// A wheel: its number from 1, its force, N, and its indentation, m.
     Wheel { number: usize, force: f64, indentation: f64 },
-    /// A support by the number of its sleeper from 1 with its gap, m.
+    /// A support: the number of its sleeper from 1, its phase, and its gap, m.
     Support { sleeper: usize, phase: SupportPhase, gap: f64 },
     /// None, on a track without wheels and sleepers.
     Nothing,
 }
 
-/// A value that has gone beyond sense.
+/// A value beyond its limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Wild {
     /// Force of a wheel, N.

@@ -1,4 +1,4 @@
-//! One time step halved again and again, and what a passage needs to choose among them: where it was before the step.
+//! One time step halved again and again, and the data that a passage needs to choose a step: its state before the step.
 
 use super::error::TrackError;
 use super::influence::Stepper;
