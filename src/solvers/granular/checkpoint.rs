@@ -1,4 +1,4 @@
-//! The whole state of a bed as data, and back, bit by bit.
+//! Converts the whole state of a bed to data, and back, bit by bit.
 
 use super::bed::Bed;
 use super::body::{Body, Clump};
@@ -16,7 +16,8 @@ use super::vector::Vec3;
 use super::walls::{Kept, Wall};
 use serde::{Deserialize, Serialize};
 
-/// Everything that the future of a bed depends on; serialise it with a format that keeps every bit of a number.
+/// The complete state on which the further motion of a bed depends; serialise it with a format that keeps every bit of
+/// a number.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Checkpoint<R: Real> {
@@ -46,7 +47,7 @@ pub struct Checkpoint<R: Real> {
     fixed_skin: Option<f64>,
 }
 
-/// A pebble's record.
+/// The record of a pebble.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(bound = "")]
 struct Grain<R: Real> {
@@ -57,11 +58,11 @@ struct Grain<R: Real> {
     mass: R,
 }
 
-/// Forces, velocities and stiffnesses of a bed at most, in SI: their squares are numbers in either precision.
+/// Largest valid force, velocity and stiffness in SI units: their squares are finite in both precisions.
 const LARGEST: f64 = 1e15;
-/// Time step of a bed at most, s.
+/// Longest valid time step, s.
 const LONGEST: f64 = 1.0;
-/// Layout of a checkpoint; another one is refused.
+/// Layout of a checkpoint; other layouts are refused.
 const VERSION: u32 = 2;
 
 /// A checkpoint that cannot be restored.
@@ -69,7 +70,7 @@ const VERSION: u32 = 2;
 pub enum RestoreError {
     /// Made by another version of this program.
     Version { found: u32 },
-    /// Its parts do not belong together.
+    /// Its parts do not match.
     Inconsistent(&'static str),
     /// Its lists cannot be made.
     Failure(Failure),
@@ -90,7 +91,7 @@ impl std::fmt::Display for RestoreError {
 impl std::error::Error for RestoreError {}
 
 impl<R: Real> Bed<R> {
-    /// The state as data. A bed restored from it goes on bit by bit as this one does.
+    /// The state as data. A bed restored from it continues bit by bit like this bed.
     pub fn checkpoint(&self) -> Checkpoint<R> {
         let pebble = |r: &R::Record| Grain {
             place: r.position(),
@@ -160,7 +161,7 @@ impl<R: Real> Bed<R> {
 }
 
 impl<R: Real> Checkpoint<R> {
-    /// Whether all parts belong together.
+    /// Fails unless all parts match.
     fn check(&self) -> Result<(), RestoreError> {
         use RestoreError::Inconsistent;
         if self.version != VERSION {
@@ -210,7 +211,7 @@ impl<R: Real> Checkpoint<R> {
         self.is_sane().then_some(()).ok_or(Inconsistent("it holds a number out of range"))
     }
 
-    /// Whether what no other check looks at is in numbers of which forces can be computed: damaged bytes hold any.
+    /// Whether the numbers that no other check covers are in their range: damaged bytes may hold any number.
     fn is_sane(&self) -> bool {
         let within = |x: f64| x.abs() <= LARGEST;
         let real = |x: &R| within(x.to_f64());

@@ -9,7 +9,7 @@ use crate::solvers::track::model::Foot;
 use crate::solvers::track::{Seat, WheelContact};
 use std::cmp::Ordering;
 
-/// The contact of a wheel is checked for wheel forces up to this many times the static force.
+/// Wheel force at which the limit of its contact is computed, as a multiple of the static wheel force.
 const PEAK: f64 = 3.0;
 
 /// The longest stable step of an explicit contact.
