@@ -1,20 +1,20 @@
-//! Why pebbles make no clump.
+//! Why pebbles do not form a clump.
 
 use std::fmt;
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum TemplateError {
     NoPebbles,
-    /// A radius (m) that is no number above 0, or so far from 1 m that its fifth power is none.
+    /// A radius (m) that is not a finite number above 0, or so far from 1 m that its fifth power is out of range.
     Radius {
         pebble: usize,
         radius: f64,
     },
-    /// A centre that is no number.
+    /// A centre that is not a finite number.
     Centre {
         pebble: usize,
     },
-    /// A pebble that lies in another one: it adds nothing and touches nothing.
+    /// A pebble inside another pebble: it adds no volume and cannot touch anything.
     Swallowed {
         pebble: usize,
         inside: usize,
