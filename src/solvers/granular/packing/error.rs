@@ -1,4 +1,4 @@
-//! Why there is no bed.
+//! Why a bed could not be packed.
 
 use super::super::failure::Failure;
 use super::super::grains::GradingError;
@@ -8,7 +8,7 @@ use std::fmt;
 /// Why a bed was not packed.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PackingError {
-    /// A number of the recipe, and what it should be.
+    /// A number of the recipe, and its valid range.
     Number {
         layer: Option<String>,
         quantity: &'static str,
@@ -18,19 +18,19 @@ pub enum PackingError {
     NoLayers,
     /// A grading that gives no grains.
     Grading(GradingError),
-    /// Grains that the plan is too small for.
+    /// Grains that are too large for the plan.
     LargeGrain {
         layer: String,
         diameter: f64,
         side: f64,
     },
-    /// Grains that a layer is too thin for.
+    /// Grains that are too large for the thickness of the layer.
     ThinLayer {
         layer: String,
         diameter: f64,
         thickness: f64,
     },
-    /// Loose grains found no place.
+    /// There was no room for a loose grain.
     NoRoom {
         layer: String,
     },
@@ -41,7 +41,7 @@ pub enum PackingError {
         target: f64,
         time: f64,
     },
-    /// Forces are not in balance after the time that a stage may take.
+    /// Forces are not in balance after the longest time of a stage.
     Restless {
         stage: StageKind,
         unbalance: f64,
@@ -52,7 +52,7 @@ pub enum PackingError {
         stage: StageKind,
         failure: Failure,
     },
-    /// Who listens has ended it.
+    /// The caller has stopped the packing.
     Stopped,
 }
 

@@ -9,7 +9,7 @@ use super::packed::Packed;
 use super::press::LAST;
 use serde::{Deserialize, Serialize};
 
-/// What [`Packed`] holds, to be kept. A bed that comes back goes on bit by bit as the one that was kept.
+/// The content of [`Packed`], for storage. A restored bed continues bit by bit like the stored bed.
 #[derive(Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct StoredBed<R: Real> {
@@ -35,14 +35,14 @@ impl<R: Real> Packed<R> {
         }
     }
 
-    /// The bed that was kept. Fails where what was kept is damaged: its lists must be those of its layers and stages.
+    /// Restores a stored bed. Fails if the data are damaged: the lists must match the layers and stages.
     pub fn restore(stored: StoredBed<R>) -> Result<Packed<R>, RestoreError> {
         let StoredBed { bed, plan, densities, bodies, samples, levels, stages } = stored;
         let packed = Packed { bed: Bed::restore(bed)?, plan, densities, bodies, samples, levels, stages };
         packed.check().map_err(RestoreError::Inconsistent).map(|()| packed)
     }
 
-    /// Whether what is said of layers and stages is said of each.
+    /// Fails unless the data of layers and stages are complete.
     fn check(&self) -> Result<(), &'static str> {
         let layers = self.densities.len();
         let of_all = |length: usize| length == layers;

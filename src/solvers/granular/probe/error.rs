@@ -1,26 +1,26 @@
-//! Why a plate load test gave nothing.
+//! Why a plate load test has no result.
 
 use super::super::failure::Failure;
 use std::fmt;
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum ProbeError {
-    /// A plate without a size, a pressure or a surface of the bed.
+    /// A plate without a size, without a pressure, or without a surface of the bed.
     Plate,
-    /// A plate whose image would touch the grains that it touches itself.
+    /// A plate and its periodic image that would touch the same grain.
     WidePlate {
         side: f64,
         period: f64,
     },
     /// No grain lies under the plate.
     Nothing,
-    /// The plate has gone deeper than it may.
+    /// The plate has sunk deeper than the limit.
     Sunk {
         pressure: f64,
         settlement: f64,
         target: f64,
     },
-    /// Forces are not in balance after the time that a step may take.
+    /// Forces are not in balance after the longest time of a step.
     Restless {
         pressure: f64,
         target: f64,
@@ -28,7 +28,7 @@ pub enum ProbeError {
         limit: f64,
         time: f64,
     },
-    /// More pressure has not brought it down.
+    /// More pressure gave no more settlement of the plate.
     NoSettlement,
     Failure(Failure),
 }

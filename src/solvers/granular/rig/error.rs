@@ -1,13 +1,13 @@
-//! Why a test has no answer.
+//! Why a test has no result.
 
 use super::super::failure::Failure;
 use super::super::grains::GradingError;
 use std::fmt;
 
-/// Why a test on a rig has no answer.
+/// Why a test on a rig has no result.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RigError {
-    /// Forces are not in balance after the time that a stage may take.
+    /// Forces are not in balance after the longest time of a stage.
     Restless {
         stage: Resting,
         unbalance: f64,
@@ -16,19 +16,19 @@ pub enum RigError {
         uncarried: f64,
         time: f64,
     },
-    /// A sleeper goes down as if nothing carried it.
+    /// A sleeper sinks into the bed without resistance.
     Sunk { sleeper: usize, depth: f64, cycle: u64 },
-    /// Grains for the cribs that find no place beside the sleepers.
+    /// There is no room for a grain of the cribs beside the sleepers.
     NoRoom { layer: String },
     /// A grading that gives no grains for the cribs.
     Grading(GradingError),
-    /// Who listens has ended it.
+    /// The caller has stopped the test.
     Stopped,
-    /// The motion of grains has run away.
+    /// The motion of the grains failed.
     Failure { cycle: u64, failure: Failure },
 }
 
-/// What comes to rest before a test begins.
+/// The part that comes to rest before a test begins.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Resting {
     /// The sleepers under their own weight.

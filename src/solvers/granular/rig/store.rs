@@ -1,4 +1,4 @@
-//! A test as data, to go on with later.
+//! A test as data, to be continued later.
 
 use super::super::bed::Bed;
 use super::super::checkpoint::{Checkpoint, RestoreError};
@@ -7,7 +7,7 @@ use super::description::Rig;
 use super::trial::{Trial, TrialState};
 use serde::{Deserialize, Serialize};
 
-/// What [`Trial`] holds. A test that comes back goes on bit by bit as the one that was stored.
+/// The content of [`Trial`]. A restored test continues bit by bit like the stored test.
 #[derive(Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct StoredTrial<R: Real> {
@@ -20,8 +20,8 @@ impl<'a, R: Real> Trial<'a, R> {
         StoredTrial { bed: self.bed.checkpoint(), state: self.state.clone() }
     }
 
-    /// The test of the same rig that was stored. Fails where what was stored is damaged: it must be of these sleepers and sensors, and
-    /// no further than the rig goes.
+    /// Restores a stored test of the same rig. Fails if the data are damaged: they must match the sleepers and sensors,
+    /// and must not go beyond the end of the test.
     pub fn restore(stored: StoredTrial<R>, rig: &'a Rig) -> Result<Self, RestoreError> {
         let trial = Trial { bed: Bed::restore(stored.bed)?, rig, state: stored.state };
         trial.check().map_err(RestoreError::Inconsistent).map(|()| trial)
