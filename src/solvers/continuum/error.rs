@@ -1,34 +1,34 @@
-//! What can be wrong with a soil, its boundaries and its steps.
+//! Errors of a soil, its boundaries and its steps.
 
 use std::fmt;
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum SoilError {
-    /// A property of a material, counted from 0, that cannot be.
+    /// An invalid property of a material; materials count from 0.
     Material { number: usize, what: &'static str, value: f64, expected: &'static str },
-    /// A number of the soil or of its settings that cannot be.
+    /// An invalid number of the soil or of its settings.
     Value { what: &'static str, value: f64, expected: &'static str },
-    /// No element at all.
+    /// The soil has no element.
     Empty,
-    /// An element that names a node or a material that there is not.
+    /// An element names a node or a material that does not exist.
     Missing { element: usize, what: &'static str, number: usize },
-    /// A node of no element.
+    /// A node belongs to no element.
     Loose { node: usize },
     /// An element without volume, or turned inside out.
     Turned { element: usize, volume: f64 },
-    /// Grid lines must grow.
+    /// Grid lines must increase.
     Lines { axis: usize, at: usize },
     /// No face of an element lies on that side of the soil.
     NoFace { side: &'static str },
     /// A step beyond the limit \[s\].
     Step { dt: f64, limit: f64 },
-    /// The motion of a node is no number any more.
+    /// The motion of a node is not a finite number.
     Lost { node: usize, step: u64 },
-    /// Boundaries leave the soil free to move as a whole.
+    /// The boundaries allow the soil to move as a whole.
     NotHeld,
-    /// A factor that does not fit into memory.
+    /// The factor of the stiffness matrix does not fit into memory.
     TooLarge { unknowns: usize },
-    /// Plastic soil that finds no state of rest: what is left of the load after so many iterations.
+    /// No state of rest of plastic soil was found; `left` is the share of the load out of balance after the iterations.
     NoRest { iterations: usize, left: f64 },
     /// A state that belongs to another soil.
     OtherSoil { what: &'static str, expected: usize, found: usize },

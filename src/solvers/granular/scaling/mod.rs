@@ -29,7 +29,7 @@ const TOLERANCE: f64 = 2e-3;
 /// Bodies of one task. The number is fixed, so that the number of threads does not change the results.
 const CHUNK: usize = 512;
 
-/// Range of the weights of contacts between bodies in the search for the longest step.
+/// Weights of contacts between bodies that are tried in the search for the longest step.
 const WEIGHTS: [f64; 2] = [1.0, 1.5];
 /// Bisections of the search range of the step, and its width as a factor.
 const HALVINGS_OF_STEP: usize = 9;
