@@ -124,8 +124,8 @@ mod tests {
         Layer { thickness, youngs_modulus, poisson_ratio, density: 2e3, spread: 0.5 }
     }
 
-    /// The settlement of a layer on a rough rigid base (Vorovich, Aleksandrov and Babeshko 1974): with n = 3 - 4 nu and x = k h,
-    /// `2 (1 - nu^2) / E (2 n sinh 2x - 4x) / (2 n cosh 2x + 1 + n^2 + 4 x^2)`.
+    /// The settlement of a layer on a rough rigid base (Vorovich, Aleksandrov and Babeshko 1974): with n = 3 - 4 nu and
+    /// x = k h, `2 (1 - nu^2) / E (2 n sinh 2x - 4x) / (2 n cosh 2x + 1 + n^2 + 4 x^2)`.
     fn on_rock(e: f64, nu: f64, x: f64) -> f64 {
         let n = 3.0 - 4.0 * nu;
         let above = 2.0 * n * (2.0 * x).sinh() - 4.0 * x;

@@ -93,7 +93,8 @@ pub fn in_series(first: f64, second: f64) -> f64 {
 }
 
 impl HertzMindlin {
-    /// The law between two elastic solids given by Young's modulus \[Pa\] and Poisson's ratio; `f64::INFINITY` is rigid.
+    /// The law between two elastic solids given by Young's modulus \[Pa\] and Poisson's ratio; `f64::INFINITY` is
+    /// rigid.
     pub fn between(first: (f64, f64), second: (f64, f64), friction: f64, restitution: f64) -> HertzMindlin {
         let normal = |(young, poisson): (f64, f64)| (1.0 - poisson * poisson) / young;
         let shear = |(young, poisson): (f64, f64)| 2.0 * (2.0 - poisson) * (1.0 + poisson) / young;

@@ -82,7 +82,8 @@ impl HardeningState {
     }
 }
 
-/// Solves f(N) = `shape` by Newton's method from a point at or below the root: a concave f is approached from that side only.
+/// Solves f(N) = `shape` by Newton's method from a point at or below the root: a concave f is approached from that side
+/// only.
 pub(super) fn invert(shape: f64, from: f64, value_and_slope: impl Fn(f64) -> (f64, f64)) -> f64 {
     let mut cycles = from;
     for _ in 0..200 {

@@ -62,7 +62,8 @@ impl Nasrollahi {
         self.alpha / self.reference_cycles * above.map(|above| above.powf(self.beta)).sum::<f64>()
     }
 
-    /// Settlement (m) of a support at `settlement` after `trains` further trains, each with cycles of peak `forces` (N).
+    /// Settlement (m) of a support at `settlement` after `trains` further trains, each with cycles of peak `forces`
+    /// (N).
     pub(super) fn after(&self, settlement: f64, forces: &[f64], trains: f64) -> f64 {
         let (mut now, mut left, mut step) = (settlement, trains, trains);
         let mut slope = self.rate(now, forces);

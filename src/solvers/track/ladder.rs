@@ -36,7 +36,8 @@ pub(super) struct Before {
 }
 
 impl Ladder {
-    /// Prepares the step of `scheme` and its first `halvings` halves; fails where the track is a mechanism without mass.
+    /// Prepares the step of `scheme` and its first `halvings` halves; fails where the track is a mechanism without
+    /// mass.
     pub fn new(track: &Arc<Track>, scheme: Scheme, halvings: usize) -> Result<Self, TrackError> {
         let rung = |n: usize| {
             let scheme = scheme.with_time_step(scheme.time_step / (1u64 << n.min(32)) as f64)?;

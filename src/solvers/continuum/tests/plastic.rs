@@ -35,8 +35,8 @@ fn triaxial(formulation: Formulation, pressure: f64, speed: f64) -> [[f64; 3]; 2
     })
 }
 
-/// `σ3 = -(p N + 2 c √N)` with N = (1 + sin φ) / (1 - sin φ) in compression, `σ1 = -(p - 2 c √N) / N` in extension; the volume grows by
-/// `2 sin ψ / (1 - sin ψ)` of the shortening, and by `2 sin ψ / (1 + sin ψ)` of the lengthening.
+/// `σ3 = -(p N + 2 c √N)` with N = (1 + sin φ) / (1 - sin φ) in compression, `σ1 = -(p - 2 c √N) / N` in extension; the
+/// volume grows by `2 sin ψ / (1 - sin ψ)` of the shortening, and by `2 sin ψ / (1 + sin ψ)` of the lengthening.
 #[test]
 fn triaxial_paths_of_one_element() {
     let n = 3.0;

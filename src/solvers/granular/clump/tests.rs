@@ -25,7 +25,8 @@ fn cap(radius: f64, from: f64) -> [f64; 4] {
     std::array::from_fn(|k| end[k] - start[k])
 }
 
-/// Two balls on the x axis, the first about the origin: volume, centroid, second moments along and across about the centroid.
+/// Two balls on the x axis, the first about the origin: volume, centroid, second moments along and across about the
+/// centroid.
 fn two_balls(r1: f64, r2: f64, distance: f64) -> [f64; 4] {
     let plane = (r1 * r1 - r2 * r2 + distance * distance) / (2.0 * distance);
     // Each ball up to the plane through the common circle; the first is seen from its far side.

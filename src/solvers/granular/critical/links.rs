@@ -132,7 +132,8 @@ impl<R: Real> Bed<R> {
         Ok(links)
     }
 
-    /// Names of the two pebbles of a listed pair and the image of the second, in an order that does not depend on the lists.
+    /// Names of the two pebbles of a listed pair and the image of the second, in an order that does not depend on the
+    /// lists.
     fn name_of_pair(&self, place: usize) -> PairName {
         let [a, b] = [self.contacts.first[place], self.contacts.second[place]].map(|pebble| self.name(pebble));
         let image = self.contacts.image[place];

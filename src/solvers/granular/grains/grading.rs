@@ -219,7 +219,8 @@ impl Piece {
         self.moment(0.0)
     }
 
-    /// Sum of d^p over these grains: with w the width, f the finest size and v its volume, m f^p / v ∫₀¹ exp((p - 3) w s) ds.
+    /// Sum of d^p over these grains: with w the width, f the finest size and v its volume, m f^p / v ∫₀¹ exp((p - 3) w
+    /// s) ds.
     fn moment(&self, power: f64) -> f64 {
         let w = (3.0 - power) * self.widths;
         let mean = if w > 0.0 { -(-w).exp_m1() / w } else { 1.0 };

@@ -87,7 +87,8 @@ fn discs(pebbles: &[Pebble], x: f64) -> Vec<Disc> {
     pebbles.iter().filter_map(disc).collect()
 }
 
-/// Area of a union of discs in a rectangle, by Green's theorem: `∮ x dy` along open arcs and along the sides x = constant.
+/// Area of a union of discs in a rectangle, by Green's theorem: `∮ x dy` along open arcs and along the sides x =
+/// constant.
 fn union_in_rectangle(discs: &[Disc], lower: &Vector2<f64>, upper: &Vector2<f64>) -> f64 {
     let mut arcs = Arcs::default();
     let mut total = 0.0;

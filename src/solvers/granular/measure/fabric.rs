@@ -60,7 +60,8 @@ pub(super) fn rows(tensor: &Matrix3<f64>) -> [[f64; 3]; 3] {
 pub struct Rose {
     /// By the angle from the vertical, 0 to 90 degrees in steps of 10.
     pub inclination: Vec<f64>,
-    /// By the angle from the horizontal of the projection on the vertical plane along x, 0 to 180 degrees in steps of 10.
+    /// By the angle from the horizontal of the projection on the vertical plane along x, 0 to 180 degrees in steps of
+    /// 10.
     pub along: Vec<f64>,
     /// The same for the vertical plane along y.
     pub across: Vec<f64>,

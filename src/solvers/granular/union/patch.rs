@@ -122,7 +122,8 @@ impl Patch {
         }
     }
 
-    /// The heights between which the integrand is smooth: poles, tops and bottoms of the rims of caps, corners of the patch.
+    /// The heights between which the integrand is smooth: poles, tops and bottoms of the rims of caps, corners of the
+    /// patch.
     fn breaks(&self) -> Vec<f64> {
         let mut heights = vec![-1.0, 1.0];
         for (k, cap) in self.caps.iter().enumerate() {

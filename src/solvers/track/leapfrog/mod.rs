@@ -122,8 +122,8 @@ pub struct Leapfrog {
 }
 
 impl Leapfrog {
-    /// The track at rest at `level` under gravity, with its carried feet held at their settlements, before a first step of
-    /// `time_step` (s).
+    /// The track at rest at `level` under gravity, with its carried feet held at their settlements, before a first step
+    /// of `time_step` (s).
     ///
     /// Fails if nothing holds the track, or if the step is longer than the supports of its ordinary sleepers allow.
     pub fn new(track: Arc<Track>, level: &TrackLevel, time_step: f64) -> Result<Self, TrackError> {

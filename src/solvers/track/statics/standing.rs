@@ -200,7 +200,8 @@ impl StandingTrain {
         }
     }
 
-    /// The linearised system and its right-hand side. For each vehicle a row per wheel that carries, then one per unknown.
+    /// The linearised system and its right-hand side. For each vehicle a row per wheel that carries, then one per
+    /// unknown.
     fn assemble(&self, system: &mut Skyline, level: &[f64], compliance: &[Vec<f64>]) -> Vec<f64> {
         let mut rhs = Vec::new();
         let mut row_of_wheel: Vec<Option<usize>> = vec![None; level.len()];

@@ -1,5 +1,5 @@
-//! The passage against a plain implementation: one dense system for track and vehicle, factored in every iteration of a full
-//! Newton method, without influence columns, phases or contact compliances.
+//! The passage against a plain implementation: one dense system for track and vehicle, factored in every iteration of a
+//! full Newton method, without influence columns, phases or contact compliances.
 //!
 //! Its support law replaces the jump at contact by a ramp 1e-12 m wide.
 

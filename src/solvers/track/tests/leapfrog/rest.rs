@@ -2,7 +2,8 @@
 
 use super::*;
 
-/// Twenty fixed sleepers under 100 kN over one of them: the moment is 17.66 kN m, where published figures are 16 and 19.
+/// Twenty fixed sleepers under 100 kN over one of them: the moment is 17.66 kN m, where published figures are 16 and
+/// 19.
 #[test]
 fn fixed_sleepers() {
     let mut model = ballast(20);
