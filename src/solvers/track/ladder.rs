@@ -36,7 +36,7 @@ pub(super) struct Before {
 }
 
 impl Ladder {
-    /// Prepares the step of `scheme` and its first `halvings` halves; fails where the track is a mechanism without
+    /// Prepares the step of `scheme` and its first `halvings` halves; fails if the track is a mechanism without
     /// mass.
     pub fn new(track: &Arc<Track>, scheme: Scheme, halvings: usize) -> Result<Self, TrackError> {
         let rung = |n: usize| {

@@ -66,7 +66,7 @@ impl Sequence {
     fn place(&self, kind: usize, train: u64) -> u64 {
         let (of, due) = (u128::from(self.shares[kind].trains), 2 * u128::from(train) + 1);
         let earlier = |(other, share): (usize, &Share)| {
-            // those with (2 j + 1) of <= due trains, or < where the other is named later
+            // those with (2 j + 1) of <= due trains, or < if the other is named later
             let trains = u128::from(share.trains);
             let ticks = due * trains;
             let ticks = if other <= kind { ticks } else { ticks - 1 };

@@ -160,7 +160,7 @@ fn recipes_that_make_no_bed_are_refused() {
     for (change, why) in [
         (&(|r: &mut Recipe| r.layers.clear()) as &dyn Fn(&mut Recipe), "no layer"),
         (&|r| r.plan[1] = 0.0, "side of the cell is 0"),
-        (&|r| r.plan[0] = 0.1, "more than a third of the cell's 100 mm"),
+        (&|r| r.plan[0] = 0.1, "more than a third of the cell side of 100 mm"),
         (&|r| r.layers[0].thickness = 0.04, "thinner than its largest grain of 50 mm"),
         (&|r| r.layers[0].lifts = 0, "number of lifts"),
         (&|r| r.layers[0].pressure = -1.0, "pressure of layer `ballast` is -1"),
