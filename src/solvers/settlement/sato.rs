@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// The parameters of the law.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sato {
-    /// Rate of the initial settlement, per cycle.
+    /// Rate of the initial settlement, 1 per cycle.
     pub alpha: f64,
     /// Continuing settlement per cycle, m.
     pub beta: f64,

@@ -39,7 +39,7 @@ pub fn unit_ball_in_box(lower: &[f64; 3], upper: &[f64; 3]) -> f64 {
         let sign = if lower_sides & 1 == 1 { 1.0 } else { -1.0 };
         total += sign * corner(at(0), at(1), at(2));
     }
-    if total < 0.0 { 0.0 } else { total } // by rounding; what is no number stays none
+    if total < 0.0 { 0.0 } else { total } // negative by rounding; a value that is not a number stays
 }
 
 /// Volume of the unit ball in {x > a, y > b, z > c}.

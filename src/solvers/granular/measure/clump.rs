@@ -39,7 +39,7 @@ pub(super) fn union_in(shape: &RegionShape, balls: &[Ball]) -> f64 {
             union_in_ball(&pebbles, &Pebble { centre: place(centre), radius: radius / unit })
         }
     };
-    let share = if share < 0.0 { 0.0 } else { share }; // by rounding; what is no number stays none
+    let share = if share < 0.0 { 0.0 } else { share }; // negative by rounding; a value that is not a number stays
     share * unit * unit * unit
 }
 
