@@ -62,8 +62,8 @@ impl Surface {
 }
 
 impl Spot {
-    /// Weight of each corner at a point of a facet: bilinear shape functions. They sum to 1; `Σ N x` is the point, `Σ N
-    /// v` its velocity, and forces `N F` at the corners have the force, the moment and the power of F there.
+    /// Weight of each corner at a point of a facet: bilinear shape functions. They sum to 1; `Σ N x` is the point,
+    /// `Σ N v` its velocity, and forces `N F` at the corners have the force, the moment and the power of F there.
     pub fn weights(local: [f64; 2]) -> [f64; 4] {
         let [x, y] = local;
         let [left, right, front, back] = [0.5 * (1.0 - x), 0.5 * (1.0 + x), 0.5 * (1.0 - y), 0.5 * (1.0 + y)];

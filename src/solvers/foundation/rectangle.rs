@@ -3,8 +3,8 @@
 /// Mean of `1 / r` between two equal rectangles, times the area of one, m: sides a and b, centres `(x, y)` apart.
 ///
 /// With `G = x^2 y/2 asinh(y/|x|) + x y^2/2 asinh(x/|y|) - r^3/6`, whose fourth mixed derivative `G_xxyy` is `1/r`, the
-/// fourfold integral is the second difference of G in both directions. For a rectangle with itself it is `2 a
-/// asinh(b/a) + 2 b asinh(a/b) - 2/3 ((a^2 + b^2)^(3/2) - a^3 - b^3) / (a b)`.
+/// fourfold integral is the second difference of G in both directions. For a rectangle with itself it is
+/// `2 a asinh(b/a) + 2 b asinh(a/b) - 2/3 ((a^2 + b^2)^(3/2) - a^3 - b^3) / (a b)`.
 pub(super) fn mean_inverse_distance([a, b]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
     let second = [(-1.0, 1.0), (0.0, -2.0), (1.0, 1.0)];
     let differences = second

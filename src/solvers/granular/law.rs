@@ -113,9 +113,10 @@ impl HertzMindlin {
     ///
     /// With Tsuji's dashpot and y = d^(5/4) instead of the overlap d, the speed as a function of y is the speed of a
     /// linear oscillator of the same ratio z, and y + 2 z v = 0 when the sum of spring and dashpot force becomes zero
-    /// (Antypov and Elliott 2011, EPL 94, 50004). So the linear closed forms hold. To the end of the overlap `e =
-    /// exp(-pi z / sqrt(1 - z^2))`; to the end of the push, if dashpots do not pull, `e = exp(-2 z acos(z) / sqrt(1 -
-    /// z^2))` (Schwager and Pöschel 2007, Granular Matter 9, 465-469, written shorter; z may be above 1 there).
+    /// (Antypov and Elliott 2011, EPL 94, 50004). So the linear closed forms hold. To the end of the overlap
+    /// `e = exp(-pi z / sqrt(1 - z^2))`; to the end of the push, if dashpots do not pull,
+    /// `e = exp(-2 z acos(z) / sqrt(1 - z^2))` (Schwager and Pöschel 2007, Granular Matter 9, 465-469, written shorter;
+    /// z may be above 1 there).
     pub fn damping_ratio(&self) -> f64 {
         let lost = -self.restitution.ln();
         let pulling = lost / std::f64::consts::PI.hypot(lost);

@@ -1,7 +1,7 @@
 //! A deformable floor: bilinear facets of a regular grid; its corners move with the soil below.
 //!
-//! A grain touches the facet under it. The contact point lies on the facet, with the weights N of the corners. So `v =
-//! sum N_i v_i` is the velocity of the floor at the grain and `f_i = N_i F` are the forces on the corners: force,
+//! A grain touches the facet under it. The contact point lies on the facet, with the weights N of the corners. So
+//! `v = sum N_i v_i` is the velocity of the floor at the grain and `f_i = N_i F` are the forces on the corners: force,
 //! moment and power are equal on both sides (methods 3). Weights are computed from the initial positions of the
 //! corners: displacements are small compared with a facet.
 

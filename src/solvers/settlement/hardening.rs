@@ -3,6 +3,7 @@
 //! A law S = s(F) f(N) does not define the settlement under a load that changes. Strain hardening is used: only the
 //! settlement counts, not its history. Under a new load the support continues from the number of cycles of that load
 //! that would have caused the same settlement,
+//!
 //! ```text
 //! f(N_eq) = S / s(F),   S' = s(F) f(N_eq + n).
 //! ```

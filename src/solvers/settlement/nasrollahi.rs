@@ -4,9 +4,9 @@
 //! dδ/dN = (α/N₀) Σ ( ⟨F − F_th(δ)⟩ / F₀ )^β,   F_th(δ) = F_∞ − (F_∞ − F_th0) e^{−γδ}
 //! ```
 //!
-//! over the cycles of one train, ⟨x⟩ = max(x, 0). Under a force below F_∞ the settlement ends at `δ_∞ = ln((F_∞ −
-//! F_th0)/(F_∞ − F)) / γ`. The right side depends on δ alone, so that a block of trains is one integration, by the pair
-//! of Dormand and Prince, with the error [`TOLERANCE`] per step.
+//! over the cycles of one train, ⟨x⟩ = max(x, 0). Under a force below F_∞ the settlement ends at
+//! `δ_∞ = ln((F_∞ − F_th0)/(F_∞ − F)) / γ`. The right side depends on δ alone, so that a block of trains is one
+//! integration, by the pair of Dormand and Prince, with the error [`TOLERANCE`] per step.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,11 +1,11 @@
 //! One time step of one track, factored once: the effective matrix, and the displacements by forces at the contacts
 //! within the step.
 //!
-//! With all supports closed the equation of a step is linear in the acceleration at its end, `M̂ a_{n+1} = r_n + (1-αf)
-//! q`. Here q are the wheel forces and the forces by which supports that are not closed differ from closed supports.
-//! The displacement by q is `A q` with `A = (1-αf) β Δt² M̂⁻¹`. For short steps A decays within a fraction of a metre,
-//! so each of its columns is kept only at the unknowns at which it is not negligible. Memory grows with the length of
-//! the track, not with its square.
+//! With all supports closed the equation of a step is linear in the acceleration at its end,
+//! `M̂ a_{n+1} = r_n + (1-αf) q`. Here q are the wheel forces and the forces by which supports that are not closed
+//! differ from closed supports. The displacement by q is `A q` with `A = (1-αf) β Δt² M̂⁻¹`. For short steps A decays
+//! within a fraction of a metre, so each of its columns is kept only at the unknowns at which it is not negligible.
+//! Memory grows with the length of the track, not with its square.
 
 use super::scheme::Scheme;
 use super::{Track, TrackError};

@@ -3,6 +3,7 @@
 //! ```text
 //! M y'' + C y' + K y = weight - Σ F_w e_w,    δ_w = y_w - (rail and its irregularity under the wheel)
 //! ```
+//!
 //! M is diagonal, F_w is the force of wheel w on the rail and e_w selects the unknown that moves the wheel.
 //! Displacements are positive down, rotations as seen in the direction of travel, so a train has the same matrices in
 //! both directions.

@@ -108,8 +108,8 @@ impl Rider {
         Ok(())
     }
 
-    /// State of rest on ground at `level` (m) that yields by `compliance` (m/N), at x (m): `K y + Σ F(y_w - level) e_w
-    /// = weight` by Newton's method.
+    /// State of rest on ground at `level` (m) that yields by `compliance` (m/N), at x (m):
+    /// `K y + Σ F(y_w - level) e_w = weight` by Newton's method.
     pub fn standing(&self, level: f64, compliance: f64, x: f64) -> Result<(BodyState, Vec<WheelState>), TrackError> {
         let (vehicle, order) = (&self.vehicle, self.vehicle.order());
         let mean_load = self.force_limit / WILD_FORCE;

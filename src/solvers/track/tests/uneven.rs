@@ -75,8 +75,8 @@ fn a_damped_mass_on_waves() {
     assert!((late.1 / expected - 1.0).abs() < 2e-3 && (late.0 / expected + 1.0).abs() < 2e-3);
 }
 
-/// A dip `r = D/2 (1 - cos ω t)`: within the dip `y = D/2 (1 - cos ω_0 t) - D/2 ω_0²/(ω_0² - ω²) (cos ω t - cos ω_0
-/// t)`.
+/// A dip `r = D/2 (1 - cos ω t)`: within the dip
+/// `y = D/2 (1 - cos ω_0 t) - D/2 ω_0²/(ω_0² - ω²) (cos ω t - cos ω_0 t)`.
 #[test]
 fn a_sprung_mass_in_a_dip() {
     let (depth, length, begin) = (2e-3, 3.0, 6.0);
