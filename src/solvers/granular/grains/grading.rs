@@ -284,7 +284,7 @@ impl fmt::Display for GradingError {
         match self {
             GradingError::Size { size } => write!(f, "expected a grain size above 0 m, found {size} m"),
             GradingError::Falls { point } => {
-                write!(f, "expected ascending sizes and ascending shares from 0 to 1, which is not so at point {point}")
+                write!(f, "sizes and shares (from 0 to 1) must ascend, but they do not ascend at point {point}")
             }
             GradingError::Empty => write!(f, "the grading curve holds no mass because its first and last shares are equal"),
             GradingError::Volume { volume } => write!(f, "expected a solid volume above 0 m3, found {volume} m3"),
