@@ -66,9 +66,9 @@ impl fmt::Display for SoilError {
                 f,
                 "the motion of node {node} of the soil is not a finite number in step {step}; the forces on the node are not finite or grow without bound"
             ),
-            SoilError::NotHeld => {
-                f.write_str("the soil has no state of rest because it can move as a whole; fix a face or put a face on rollers")
-            }
+            SoilError::NotHeld => f.write_str(
+                "the soil has no state of rest because it can move as a whole; fix a face or put a face on rollers",
+            ),
             SoilError::TooLarge { unknowns } => write!(
                 f,
                 "the factored stiffness matrix of the soil ({unknowns} unknowns) does not fit into memory; take larger elements or a shorter box"

@@ -61,7 +61,8 @@ impl<R: Real> Bed<R> {
                 let same = times.len() == values.len();
                 bed.want(same, "number of values of gravity", values.len() as f64, "the number of times")?;
                 bed.numbers("times of gravity", times)?;
-                let later = |t: &[f64]| bed.want(t[0] < t[1], "times of gravity", t[1], "each above the time before it");
+                let later =
+                    |t: &[f64]| bed.want(t[0] < t[1], "times of gravity", t[1], "each above the time before it");
                 times.windows(2).try_for_each(later)?;
                 bed.numbers("gravity", values.as_flattened())
             }

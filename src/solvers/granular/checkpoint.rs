@@ -80,7 +80,10 @@ impl std::fmt::Display for RestoreError {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
             RestoreError::Version { found } => {
-                write!(f, "the checkpoint has layout {found}, but this program reads layout {VERSION}; run from the start")
+                write!(
+                    f,
+                    "the checkpoint has layout {found}, but this program reads layout {VERSION}; run from the start"
+                )
             }
             RestoreError::Inconsistent(what) => write!(f, "the checkpoint is damaged: {what}; run from the start"),
             RestoreError::Failure(failure) => failure.fmt(f),

@@ -286,10 +286,16 @@ impl fmt::Display for GradingError {
             GradingError::Falls { point } => {
                 write!(f, "sizes and shares (from 0 to 1) must ascend, but they do not ascend at point {point}")
             }
-            GradingError::Empty => write!(f, "the grading curve holds no mass because its first and last shares are equal"),
+            GradingError::Empty => {
+                write!(f, "the grading curve holds no mass because its first and last shares are equal")
+            }
             GradingError::Volume { volume } => write!(f, "expected a solid volume above 0 m3, found {volume} m3"),
             GradingError::NoGrain { volume, mean } => {
-                write!(f, "a volume of {:.3e} m3 is too small for this grading; its mean grain has {:.3e} m3", volume, mean)
+                write!(
+                    f,
+                    "a volume of {:.3e} m3 is too small for this grading; its mean grain has {:.3e} m3",
+                    volume, mean
+                )
             }
             GradingError::TooMany { grains, finest } => write!(
                 f,

@@ -208,7 +208,9 @@ fn bodies(mesh: &Mesh) -> usize {
 impl fmt::Display for StlError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            StlError::NotStl => write!(f, "it is not an STL file: it is neither text that begins with `solid` nor binary"),
+            StlError::NotStl => {
+                write!(f, "it is not an STL file: it is neither text that begins with `solid` nor binary")
+            }
             StlError::Cut { facets, found } => {
                 write!(f, "it is cut off: the header gives {facets} triangles, the file holds {found}")
             }

@@ -310,7 +310,11 @@ impl fmt::Display for Finding {
             Finding::Shape { wall, fault } => write!(f, "wall {}: {fault}", wall.0),
             Finding::WallMotion { wall, fault } => write!(f, "wall {}: {fault}", wall.0),
             Finding::Body { body, quantity, value } => {
-                write!(f, "body {}: its {quantity} is {value}; give a finite value, above 0 for mass and radius", body.0)
+                write!(
+                    f,
+                    "body {}: its {quantity} is {value}; give a finite value, above 0 for mass and radius",
+                    body.0
+                )
             }
             Finding::Overlaps { count, body, other, place, overlap, share } => write!(
                 f,

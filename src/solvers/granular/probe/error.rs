@@ -36,7 +36,9 @@ pub enum ProbeError {
 impl fmt::Display for ProbeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            ProbeError::Plate => write!(f, "a plate needs sides above 0 m, a pressure above 0 Pa and a surface of the bed"),
+            ProbeError::Plate => {
+                write!(f, "a plate needs sides above 0 m, a pressure above 0 Pa and a surface of the bed")
+            }
             ProbeError::WidePlate { side, period } => write!(
                 f,
                 "a plate of {:.0} mm and one grain beside it are wider than the cell of {:.0} mm: take a longer cell, or a plate over the whole cell",
